@@ -1,0 +1,125 @@
+"""The diagnostic codes, each declared once.
+
+The hundreds name the family: 0 reading and syntax, 1 node descriptions, 2 system descriptions,
+3 safety rules, 4 generation. Every code has a page of its name under ``docs/diagnostics/`` and a
+case under ``tests/cases/``; a code is never given a second meaning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from deros.diagnostics import Severity
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """A kind of finding: its stable name (``DRS201``), a short title and its severity."""
+
+    name: str
+    title: str
+    severity: Severity
+
+
+ALL_CODES: dict[str, Code] = {}
+
+
+def _declare(number: int, title: str, severity: Severity = Severity.ERROR) -> Code:
+    code = Code(f"DRS{number:03d}", title, severity)
+    assert code.name not in ALL_CODES, f"{code.name} is declared twice"
+    ALL_CODES[code.name] = code
+    return code
+
+
+_W = Severity.WARNING
+_I = Severity.INFO
+
+# Reading and syntax
+UNREADABLE_FILE = _declare(1, "file cannot be read")
+NOT_UTF8 = _declare(2, "file is not UTF-8 text")
+SYNTAX_ERROR = _declare(3, "syntax error")
+NESTED_TOO_DEEPLY = _declare(4, "nested too deeply")
+UNKNOWN_LANGUAGE = _declare(5, "unknown kind of file")
+UNKNOWN_UNIT = _declare(6, "unknown unit")
+
+# Node descriptions
+UNKNOWN_PACKAGE = _declare(101, "unknown interface package")
+UNKNOWN_TYPE = _declare(102, "unknown message, service or action type")
+WRONG_DEFAULT = _declare(103, "default does not fit the parameter's type")
+DUPLICATE_NAME = _declare(104, "name declared twice in a node description")
+INVALID_ROS_NAME = _declare(105, "name that ROS 2 refuses")
+DEFAULT_OUT_OF_RANGE = _declare(106, "default outside the parameter's own bounds")
+UNKNOWN_FIELD_OF_PORT = _declare(107, "unknown field in a port's units")
+UNKNOWN_VIA_PARAMETER = _declare(108, "port takes its name from an unknown parameter")
+DUPLICATE_SECTION = _declare(109, "section given twice")
+BAD_CONSTRAINT = _declare(110, "constraint that does not fit the parameter's type")
+UNIT_CONFLICTS_WITH_REP103 = _declare(111, "unit of another dimension than REP 103 gives", _W)
+
+# System descriptions
+UNKNOWN_IMPORT = _declare(201, "imported file not found")
+CYCLIC_IMPORT = _declare(202, "cyclic import")
+UNKNOWN_NODE_TYPE = _declare(203, "unknown node type")
+UNKNOWN_PORT = _declare(204, "unknown port")
+UNKNOWN_TOPIC = _declare(205, "unknown topic")
+UNKNOWN_PARAMETER = _declare(206, "unknown parameter")
+WRONG_PARAMETER_VALUE = _declare(207, "parameter value of the wrong type")
+TYPE_MISMATCH = _declare(208, "two ends of a topic with different types")
+PINNED_TYPE_VIOLATED = _declare(209, "pinned topic type violated")
+NO_PUBLISHER = _declare(210, "topic without publisher", _W)
+NO_SUBSCRIBER = _declare(211, "topic without subscriber", _W)
+UNUSED_TOPIC = _declare(212, "declared topic that nobody uses", _W)
+UNWIRED_PORT = _declare(213, "port left unwired", _W)
+LIKELY_MISSPELLING = _declare(214, "topic names that probably mean the same topic", _W)
+DUPLICATE_NODE_NAME = _declare(215, "two nodes with one full name")
+TOPIC_PARAMETER_CONFLICT = _declare(216, "parameter contradicts the wiring made through it")
+UNTYPED_WIRING = _declare(217, "wiring through a parameter that no port claims", _I)
+DUPLICATE_TOPIC = _declare(218, "topic declared twice")
+DUPLICATE_SETTING = _declare(219, "parameter set or port connected twice")
+UNKNOWN_SYSTEM = _declare(220, "unknown system")
+PARAMETER_OUT_OF_RANGE = _declare(221, "parameter value outside the declared bounds")
+UNUSED_IMPORT = _declare(222, "import that nothing uses", _W)
+INVALID_SYSTEM_NAME = _declare(223, "name in a system that ROS 2 refuses")
+AMBIGUOUS_NODE_TYPE = _declare(224, "node type name that two imported files define")
+SERVICE_WITHOUT_SERVER = _declare(225, "service or action without a server", _W)
+DUPLICATE_SUBSYSTEM = _declare(226, "two subsystems with one name in one place")
+PARAMETER_WITHOUT_VALUE = _declare(227, "parameter without default and without value", _W)
+
+# Safety rules
+RULE_TOPIC_NOT_IN_SYSTEM = _declare(301, "topic of the rules that the system lacks")
+UNKNOWN_FIELD = _declare(302, "unknown message field")
+NOT_A_NUMBER_FIELD = _declare(303, "field that is no number where one is needed")
+WRONG_FUNCTION_ARGUMENT = _declare(304, "function on the wrong type")
+UNKNOWN_FUNCTION = _declare(305, "unknown function")
+INCOMPATIBLE_UNITS = _declare(306, "incompatible units")
+EMPTY_INTERVAL = _declare(307, "empty or reversed interval")
+NEVER_TRUE = _declare(308, "comparison that can never be true", _W)
+ALWAYS_TRUE = _declare(309, "comparison that is always true", _W)
+UNKNOWN_NAME = _declare(310, "unknown name")
+DUPLICATE_RULE_NAME = _declare(311, "name declared twice in the rules")
+UNKNOWN_RESET = _declare(312, "reset_by names no action")
+UNUSED_CONSTANT = _declare(313, "unused constant", _W)
+UNUSED_INPUT = _declare(314, "unused input", _W)
+UNUSED_RULE = _declare(315, "unused rule", _W)
+UNUSED_ACTION = _declare(316, "unused action", _W)
+NO_TIMEOUT = _declare(317, "rule on an input without a timeout", _W)
+RULE_TOPIC_NOT_PUBLISHED = _declare(318, "topic of the rules that nobody publishes")
+MISSING_NEEDS_TIMEOUT = _declare(319, "missing() of an input without a timeout")
+AGE_NOT_CONSTANT = _declare(320, "age() compared with something that is no constant")
+UNKNOWN_USED_SYSTEM = _declare(321, "use of a system that is not there")
+LATCHED_AND_RESET_BY = _declare(322, "action both latched and reset_by")
+BAD_DURATION = _declare(323, "duration that is negative or finer than a nanosecond")
+WRONG_OPERAND = _declare(324, "operands that cannot be compared")
+RESET_WITHOUT_TRIGGER = _declare(325, "action that a reset can never follow", _W)
+WRONG_ACTION_ARGUMENTS = _declare(326, "wrong number of arguments for an action")
+ACTION_TYPE_MISMATCH = _declare(327, "action publishes another type than its topic has")
+RULE_TYPE_UNKNOWN = _declare(328, "topic whose type the system does not tell")
+ACTION_VALUE = _declare(329, "value that the action's message cannot carry")
+EXACT_FLOAT_COMPARISON = _declare(330, "exact comparison of a floating-point value", _W)
+ACTION_TOPIC_NOT_IN_SYSTEM = _declare(331, "topic of an action that nobody in the system reads", _W)
+INVALID_RULES_NAME = _declare(332, "name in the rules that a target refuses")
+
+# Generation
+NAME_COLLISION = _declare(401, "two generated names collide")
+UNSUPPORTED_BY_TARGET = _declare(402, "construct that the target does not support")
+HAND_EDITED = _declare(403, "hand-edited file kept", _W)
+UNKNOWN_TARGET = _declare(404, "unknown generator")

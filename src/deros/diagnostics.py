@@ -1,0 +1,151 @@
+"""What every room of deros says to its users: positions, diagnostics and their codes.
+
+A check never prints and never raises for a fault in a user's text: it yields :class:`Diagnostic`
+objects, and the command line or an editor renders them. The codes are declared once, in
+:mod:`deros.codes`.
+"""
+
+from __future__ import annotations
+
+import enum
+from bisect import bisect_right
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from deros.codes import Code
+
+
+class Severity(enum.Enum):
+    """How bad a finding is; only errors fail a run, warnings do under ``--strict``."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    INFO = "info"
+
+
+class SourceFile:
+    """One text file as it was read: its path as the user named it, and its text.
+
+    Identity is what counts: two reads of one path are two sources. Positions in it are character
+    offsets; lines and columns (both from 1, columns in characters) are worked out on demand, because
+    a model has many more spans than diagnostics.
+    """
+
+    def __init__(self, path: str, text: str) -> None:
+        """Hold ``text`` read from ``path``."""
+        self.path = path
+        self.text = text
+
+    @cached_property
+    def _line_starts(self) -> list[int]:
+        starts = [0]
+        position = self.text.find("\n")
+        while position >= 0:
+            starts.append(position + 1)
+            position = self.text.find("\n", position + 1)
+        return starts
+
+    def line_column(self, offset: int) -> tuple[int, int]:
+        """Return line and column, both from 1, of a character offset."""
+        line = bisect_right(self._line_starts, offset)
+        return line, offset - self._line_starts[line - 1] + 1
+
+    def line(self, number: int) -> str:
+        """Return the text of line ``number`` (from 1) without its line end."""
+        starts = self._line_starts
+        end = starts[number] if number < len(starts) else len(self.text)
+        return self.text[starts[number - 1] : end].rstrip("\r\n")
+
+    def __repr__(self) -> str:
+        """Name the file only; its text is long."""
+        return f"SourceFile({self.path!r})"
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A piece of a source: characters ``start`` up to, not including, ``end``."""
+
+    source: SourceFile
+    start: int
+    end: int
+
+    @property
+    def file(self) -> str:
+        """The path of the source."""
+        return self.source.path
+
+    @property
+    def line(self) -> int:
+        """The line of the first character, from 1."""
+        return self.source.line_column(self.start)[0]
+
+    @property
+    def column(self) -> int:
+        """The column of the first character, from 1."""
+        return self.source.line_column(self.start)[1]
+
+    @property
+    def end_line(self) -> int:
+        """The line where the span ends, from 1."""
+        return self.source.line_column(self.end)[0]
+
+    @property
+    def end_column(self) -> int:
+        """The column just past the last character, from 1."""
+        return self.source.line_column(self.end)[1]
+
+    @property
+    def text(self) -> str:
+        """The characters themselves."""
+        return self.source.text[self.start : self.end]
+
+
+@dataclass(frozen=True, slots=True)
+class Related:
+    """Another place that belongs to a diagnostic, with what it has to do with it."""
+
+    span: Span
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding: what is wrong where, what was probably meant, and what to do."""
+
+    code: Code
+    message: str
+    span: Span
+    hint: str = ""
+    related: tuple[Related, ...] = ()
+    severity: Severity = field(default=Severity.ERROR)
+
+    @property
+    def is_error(self) -> bool:
+        """Whether this finding alone fails a run."""
+        return self.severity is Severity.ERROR
+
+
+def report(
+    code: Code,
+    message: str,
+    span: Span,
+    hint: str = "",
+    related: tuple[Related, ...] = (),
+) -> Diagnostic:
+    """Make a diagnostic with the severity that its code declares."""
+    return Diagnostic(code, message, span, hint, related, code.severity)
+
+
+def in_file_order(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Sort by file, position and code, dropping exact repeats."""
+    unique = dict.fromkeys(diagnostics)
+    return sorted(unique, key=lambda d: (d.span.file, d.span.start, d.span.end, d.code.name))
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Tell whether any of the findings is an error."""
+    return any(d.is_error for d in diagnostics)

@@ -1,0 +1,1 @@
+"""Message, service and action definitions, field paths and physical units."""

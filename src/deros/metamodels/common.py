@@ -1,0 +1,58 @@
+"""What the typed models of the three languages share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from deros.diagnostics import Span
+
+Scalar = bool | int | float | str
+Value = Scalar | tuple[Scalar, ...]
+"""A parameter's value: a scalar or, for array parameters, a tuple of scalars."""
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A name as written, with its place."""
+
+    text: str
+    span: Span = field(compare=False, repr=False)
+
+    def __str__(self) -> str:
+        """Return the name alone."""
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A range of numbers, each end closed or open."""
+
+    lower: float
+    upper: float
+    lower_closed: bool = True
+    upper_closed: bool = True
+
+    def __contains__(self, value: float) -> bool:
+        """Tell whether ``value`` lies within."""
+        above = value >= self.lower if self.lower_closed else value > self.lower
+        below = value <= self.upper if self.upper_closed else value < self.upper
+        return above and below
+
+
+@dataclass(frozen=True, slots=True)
+class QosProfile:
+    """The QoS policies that a model states; ``None`` leaves a policy to the preset or the default.
+
+    Durations are nanoseconds. Source: ROS 2 design, "About Quality of Service settings".
+    """
+
+    preset: str | None = None  # sensor_data, services, parameters, system_default
+    reliability: str | None = None  # reliable, best_effort
+    durability: str | None = None  # volatile, transient_local
+    depth: int | None = None
+    keep_all: bool = False
+    deadline_ns: int | None = None
+    lifespan_ns: int | None = None
+    liveliness: str | None = None  # automatic, manual_by_topic
+    lease_ns: int | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)

@@ -1,0 +1,283 @@
+"""The typed model of safety rules (``*.deros``): the syntax tree, names not yet resolved.
+
+What the rules mean, with names, fields and units resolved, is :mod:`deros.monitor.ir`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from decimal import Decimal
+from typing import Literal
+
+from deros.diagnostics import SourceFile, Span
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.common import Name
+from deros.metamodels.system import System
+
+ComparisonOperator = Literal["=", "!=", "<", "<=", ">", ">="]
+
+
+# Terms: what stands on either side of a comparison -------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number as written, exactly, with its unit if one follows (``0.5 m/s``)."""
+
+    value: Decimal
+    span: Span = field(compare=False, repr=False)
+    unit: str | None = None
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Boolean:
+    """``true`` or ``false``."""
+
+    value: bool
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class String:
+    """A quoted text, escapes already replaced."""
+
+    value: str
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class TopicPath:
+    """``topic /imu.orientation``, or the same without the keyword inside a rule.
+
+    ``path`` holds field names and array indices: ``position[2]`` is ``("position", 2)``.
+    """
+
+    topic: Name
+    path: tuple[str | int, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class NamePath:
+    """A name with what may follow it: an input, a constant, a message constant, an input's field."""
+
+    name: Name
+    path: tuple[str | int, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """``TERM.function(arguments)``; ``toRad(10 deg)`` has no ``receiver``."""
+
+    function: Name
+    receiver: Term | None
+    arguments: tuple[Term, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Negative:
+    """``-constant``."""
+
+    operand: Term
+    span: Span = field(compare=False, repr=False)
+
+
+Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative
+
+
+# Conditions -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """``left OP right``; ``==`` reads as ``=``."""
+
+    left: Term
+    operator: ComparisonOperator
+    right: Term
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Membership:
+    """``operand [not] in`` an interval, each end closed or open."""
+
+    operand: Term
+    negated: bool
+    lower: Term
+    upper: Term
+    lower_closed: bool
+    upper_closed: bool
+    span: Span = field(compare=False, repr=False)
+    interval_span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """A term that stands alone as a condition: a boolean field, ``missing()``, ``true``.
+
+    In the condition of a behaviour, ``entity.rule`` is such a term too: a :class:`NamePath`.
+    """
+
+    operand: Term
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """``not`` a condition."""
+
+    operand: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    """All of two or more conditions."""
+
+    operands: tuple[Condition, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    """Any of two or more conditions."""
+
+    operands: tuple[Condition, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """``operand for DURATION``."""
+
+    operand: Condition
+    duration: Number
+    span: Span = field(compare=False, repr=False)
+
+
+Condition = Comparison | Membership | Truth | Not | And | Or | For
+
+
+# Declarations -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """``use "FILE" import NAME``; ``system`` is ``None`` when it could not be loaded."""
+
+    path: str
+    system_name: Name
+    system: System | None = field(compare=False, repr=False)
+    span: Span = field(compare=False, repr=False)
+    path_span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class UnitDefinition:
+    """``unit knot = 0.514444 m/s``."""
+
+    name: Name
+    factor: Number
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """What a bound action publishes: ``publishes VALUE on TOPIC : TYPE``."""
+
+    value: Term
+    topic: Name
+    type: InterfaceType
+    type_span: Span = field(compare=False, repr=False)
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """A declared action: robot code (no ``binding``), or a state that the node publishes."""
+
+    name: Name
+    parameters: tuple[Name, ...]
+    span: Span = field(compare=False, repr=False)
+    binding: Binding | None = None
+    reset_by: Name | None = None
+    latched: bool = False
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """``const NAME = VALUE``; the value is a number, another constant or a conversion of one."""
+
+    name: Name
+    value: Term
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """``input NAME = topic TOPIC.FIELD [timeout T]``."""
+
+    name: Name
+    term: TopicPath
+    span: Span = field(compare=False, repr=False)
+    timeout: Number | None = None
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """``NAME: CONDITION;`` inside an entity."""
+
+    name: Name
+    condition: Condition
+    span: Span = field(compare=False, repr=False)
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Entity:
+    """A named group of rules."""
+
+    name: Name
+    rules: tuple[Rule, ...]
+    span: Span = field(compare=False, repr=False)
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ActionCall:
+    """``stop;`` or ``log_state("text");`` in the body of a behaviour."""
+
+    action: Name
+    arguments: tuple[Term, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """``[behaviour NAME:] if CONDITION then { … };`` with its body in the order written."""
+
+    condition: Condition
+    body: tuple[ActionCall | Behaviour, ...]
+    span: Span = field(compare=False, repr=False)
+    name: Name | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """A whole DeRoS program. ``name`` is the stem of its file."""
+
+    name: str
+    source: SourceFile = field(compare=False, repr=False)
+    uses: tuple[Use, ...] = ()
+    units: tuple[UnitDefinition, ...] = ()
+    actions: tuple[Action, ...] = ()
+    constants: tuple[Constant, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    entities: tuple[Entity, ...] = ()
+    behaviours: tuple[Behaviour, ...] = ()

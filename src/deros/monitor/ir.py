@@ -1,0 +1,285 @@
+"""The monitor's intermediate form: rules with every name, field and unit resolved.
+
+It is the one thing that the reference engine and every generated target read. Times are integer
+nanoseconds. Conditions have Kleene's three values; a value expression is a number, a boolean or a
+string, or unknown (``None`` in the engine). Unit conversion has been done: constants stand in the unit
+of the field they are compared with.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from deros.diagnostics import Span
+from deros.interfaces.types import FieldType, InterfaceType
+
+Operator = Literal["=", "!=", "<", "<=", ">", ">="]
+Scalar = bool | int | float | str
+
+
+# What is read from messages ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """One primitive field, or array of primitives, that the rules read from an input's message.
+
+    Attributes:
+        index: its place in :attr:`Program.leaves`.
+        input: index of the input it belongs to.
+        path: from the message's root: field names and array indices.
+        type: a primitive or an array of primitives.
+        nan_is_unknown: whether a NaN here makes the input unknown (see :class:`Input`).
+    """
+
+    index: int
+    input: int
+    path: tuple[str | int, ...]
+    type: FieldType
+    nan_is_unknown: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A value observed on a topic: named by an ``input`` line, or a topic term used in a rule.
+
+    It is unknown until the first message, after ``timeout_ns`` without one, and as soon as a message
+    carries a NaN (or an index that its array does not have) in a leaf with ``nan_is_unknown``; such a
+    message does not count for the timeout.
+    """
+
+    index: int
+    name: str
+    topic: str
+    type: InterfaceType
+    path: tuple[str | int, ...]
+    leaves: tuple[int, ...]
+    timeout_ns: int | None
+    span: Span = field(compare=False, repr=False)
+
+
+# Values -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Const:
+    """A constant value."""
+
+    value: Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """The present value of a leaf; unknown while its input is."""
+
+    leaf: int
+
+
+@dataclass(frozen=True, slots=True)
+class Apply:
+    """A function of the function table applied to values, in the order that its row declares.
+
+    ``state`` numbers the functions that remember something between messages (``rate``), else ``None``.
+    """
+
+    function: str
+    arguments: tuple[ValueExpression, ...]
+    input: int
+    state: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """``operand * factor + offset``: the conversion of a field into the other side's unit."""
+
+    operand: ValueExpression
+    factor: float
+    offset: float = 0.0
+
+
+ValueExpression = Const | Read | Apply | Scale
+
+
+# Conditions -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """A boolean value as a condition."""
+
+    operand: ValueExpression
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    """A comparison of two values of one kind."""
+
+    left: ValueExpression
+    operator: Operator
+    right: ValueExpression
+
+
+@dataclass(frozen=True, slots=True)
+class Within:
+    """Whether a number lies in an interval. ``not in`` is :class:`Not` of it."""
+
+    operand: ValueExpression
+    lower: ValueExpression
+    upper: ValueExpression
+    lower_closed: bool
+    upper_closed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """Whether an input's timeout has passed; never unknown."""
+
+    input: int
+
+
+@dataclass(frozen=True, slots=True)
+class Age:
+    """The time since an input's last counted message, compared with a constant.
+
+    Unknown before the first message, and again after a backward clock step; known otherwise, whatever
+    NaN or the timeout do to the input's value. ``age > T`` is first true at last + T + 1 ns, ``age >= T``
+    at last + T: both instants are deadlines.
+    """
+
+    input: int
+    operator: Operator
+    bound_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """Kleene's negation."""
+
+    operand: Condition
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    """Kleene's conjunction of two or more."""
+
+    operands: tuple[Condition, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    """Kleene's disjunction of two or more."""
+
+    operands: tuple[Condition, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """True once the operand has been true without a break for ``duration_ns`` (inclusive).
+
+    It is true or false, never unknown: an unknown operand clears the interval.
+    """
+
+    index: int  # its place among all For of the program, in the order they are evaluated
+    operand: Condition
+    duration_ns: int
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class RuleRef:
+    """The verdict of an entity's rule, in the condition of a behaviour."""
+
+    rule: int
+
+
+Condition = Truth | Compare | Within | Missing | Age | Not | And | Or | For | RuleRef
+
+
+# The program ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A rule of an entity."""
+
+    index: int
+    entity: str
+    name: str
+    condition: Condition
+    span: Span = field(compare=False, repr=False)
+
+    @property
+    def full_name(self) -> str:
+        """``entity.rule``."""
+        return f"{self.entity}.{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Trigger:
+    """Run one action with its arguments."""
+
+    action: int
+    arguments: tuple[Scalar, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """Acts when its condition turns true while the enclosing one (``parent``) holds.
+
+    ``index`` numbers all behaviours in the order written, outer before inner; ``name`` is the given
+    name or ``behaviour_N`` (N from 1).
+    """
+
+    index: int
+    name: str
+    condition: Condition
+    body: tuple[Trigger | Behaviour, ...]
+    parent: int | None
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """What a bound action publishes while active: ``value`` in the field ``path`` of the message.
+
+    For a boolean field the inactive state is published as the opposite value; for others the
+    inactive message has the field's default.
+    """
+
+    topic: str
+    type: InterfaceType
+    path: tuple[str, ...]
+    value: Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """An action; ``log_state`` is built in and has the reserved name ``log_state``."""
+
+    index: int
+    name: str
+    parameters: tuple[str, ...]
+    binding: Binding | None
+    reset_by: int | None
+    latched: bool
+    triggered_by: tuple[int, ...]  # indices of the behaviours whose bodies name it
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """Everything a monitor does."""
+
+    name: str
+    leaves: tuple[Leaf, ...]
+    inputs: tuple[Input, ...]
+    rules: tuple[Rule, ...]
+    behaviours: tuple[Behaviour, ...]  # the outermost ones; nested ones stand in their bodies
+    actions: tuple[Action, ...]
+
+    @property
+    def topics(self) -> dict[str, InterfaceType]:
+        """The topics read, in the order of their first input."""
+        return {each.topic: each.type for each in self.inputs}
