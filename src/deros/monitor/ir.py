@@ -177,7 +177,8 @@ class Or:
 class For:
     """True once the operand has been true without a break for ``duration_ns`` (inclusive).
 
-    It is true or false, never unknown: an unknown operand clears the interval.
+    An operand that is false or unknown clears the interval, and the whole is then false or unknown as
+    the operand is; while the operand is true but the time has not passed, the whole is false.
     """
 
     index: int  # its place among all For of the program, in the order they are evaluated
