@@ -1,0 +1,140 @@
+"""What each function of the function table computes: the reference that every target is held to.
+
+A result of ``None`` is *unknown*; none of them ever returns NaN. Arguments are never NaN, because
+an input that carries one is unknown as a whole (the beams of ``nearest`` excepted).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+FULL_TURN = 2.0 * math.pi
+BEARING_TOLERANCE = 1e-6
+"""Radians by which a beam may miss a bound of the sector of ``nearest`` and still count as in it.
+
+The angles of a scan are sums of 32-bit floats; over a full turn their error stays below this.
+"""
+
+
+def roll(x: float, y: float, z: float, w: float) -> float | None:
+    """Return the rotation about the x axis, in radians (REP 103: fixed axes, roll-pitch-yaw)."""
+    unit = _normalised(x, y, z, w)
+    if unit is None:
+        return None
+    x, y, z, w = unit
+    return math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+
+
+def pitch(x: float, y: float, z: float, w: float) -> float | None:
+    """Return the rotation about the y axis, in radians, from -pi/2 to pi/2."""
+    unit = _normalised(x, y, z, w)
+    if unit is None:
+        return None
+    x, y, z, w = unit
+    # Rounding can carry the sine of a vertical attitude just past 1.
+    return math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x))))
+
+
+def yaw(x: float, y: float, z: float, w: float) -> float | None:
+    """Return the rotation about the z axis, in radians."""
+    unit = _normalised(x, y, z, w)
+    if unit is None:
+        return None
+    x, y, z, w = unit
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def tilt(x: float, y: float, z: float, w: float) -> float | None:
+    """Return the angle between the body's z axis and the vertical, in radians, from 0 to pi.
+
+    It is acos(1 - 2(x² + y²)) of the normalised quaternion, written so that small angles keep all
+    their digits.
+    """
+    unit = _normalised(x, y, z, w)
+    if unit is None:
+        return None
+    x, y, z, w = unit
+    return 2.0 * math.atan2(math.hypot(x, y), math.hypot(z, w))
+
+
+def _normalised(x: float, y: float, z: float, w: float) -> tuple[float, float, float, float] | None:
+    length = math.hypot(x, y, z, w)
+    if not 0.0 < length < math.inf:
+        return None
+    return x / length, y / length, z / length, w / length
+
+
+def norm(x: float, y: float, z: float) -> float:
+    """Return the length of a vector; a plane vector has ``z`` 0."""
+    return math.hypot(x, y, z)
+
+
+def absolute(value: float) -> float:
+    """Return the value without its sign; an integer stays one."""
+    return abs(value)
+
+
+def rate(value: float, previous: float, elapsed_ns: int) -> float | None:
+    """Return the change per second between the last two messages, ``elapsed_ns`` apart.
+
+    Unknown for two messages of one instant, and from an infinity to itself.
+    """
+    if elapsed_ns == 0:
+        return None
+    change = (value - previous) / (elapsed_ns / 1e9)
+    return None if math.isnan(change) else change
+
+
+def least(values: Sequence[float]) -> float | None:
+    """Return the least element, unknown for an empty array."""
+    return min(values) if len(values) else None
+
+
+def greatest(values: Sequence[float]) -> float | None:
+    """Return the greatest element, unknown for an empty array."""
+    return max(values) if len(values) else None
+
+
+def count(values: Sequence[object]) -> int:
+    """Return the number of elements."""
+    return len(values)
+
+
+def nearest(
+    ranges: Sequence[float],
+    angle_min: float,
+    angle_increment: float,
+    range_min: float,
+    range_max: float,
+    start: float,
+    end: float,
+) -> float | None:
+    """Return the least valid range of a laser scan between two bearings, in metres.
+
+    The sector runs counter-clockwise from ``start`` to ``end`` (radians, bounds included), through
+    the back where ``end`` is less than ``start``; bearings a full turn apart are the same.
+
+    A beam that is NaN or shorter than ``range_min`` is invalid. As REP 117 has it, minus infinity
+    is an object too near to measure, and counts as ``range_min``; infinity, and what lies beyond
+    ``range_max``, means that nothing is there. Unknown when the sector holds no valid beam.
+    """
+    width = end - start if end >= start else end - start + FULL_TURN
+    shortest: float | None = None
+    for index, measured in enumerate(ranges):
+        if measured == -math.inf:
+            distance = range_min
+        elif not measured >= range_min:
+            continue
+        else:
+            distance = measured if measured <= range_max else math.inf
+        offset = (angle_min + index * angle_increment - start) % FULL_TURN
+        inside = offset <= width + BEARING_TOLERANCE or offset >= FULL_TURN - BEARING_TOLERANCE
+        if inside and (shortest is None or distance < shortest):
+            shortest = distance
+    return shortest
+
+
+def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
+    """Tell whether any beam of the scan is valid; a scan without one is no message at all."""
+    return any(measured >= range_min or measured == -math.inf for measured in ranges)
