@@ -1,1 +1,1 @@
-"""Generators: pure functions from a typed model to files, and the one writer that touches the disk."""
+"""Generators: pure functions from a typed model to files, and one writer that touches the disk."""

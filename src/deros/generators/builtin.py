@@ -1,0 +1,64 @@
+"""The generators that come with deros, as its entry points name them.
+
+Each loads its module when it runs, so that listing them costs next to nothing.
+"""
+
+from __future__ import annotations
+
+from deros.generators.protocol import Context, Files, Option, Options
+from deros.generators.registry import generator
+from deros.metamodels.node import NodeType
+from deros.metamodels.rules import Rules
+from deros.metamodels.system import System
+
+_MAINTAINER = Option("maintainer", "maintainer for package.xml, as 'Jane Doe <jane@example.com>'")
+_COPYRIGHT = Option("copyright", "years and holder for the files' headers, as '2026 Jane Doe'")
+
+
+@generator("rosnode", "python", (_MAINTAINER, _COPYRIGHT))
+def rosnode_python(model: NodeType, context: Context, options: Options) -> Files:
+    """A complete ament_python package: base class, your node, parameters, launch file, tests."""
+    from deros.generators.rosnode_python.generate import generate
+
+    return generate(model, context, options)
+
+
+@generator("rossystem", "launch")
+def rossystem_launch(model: System, context: Context, options: Options) -> Files:
+    """A ROS 2 launch file that starts every node with its parameters and remappings."""
+    from deros.generators.rossystem_launch.generate import generate
+
+    return generate(model, context, options)
+
+
+@generator("rossystem", "script")
+def rossystem_script(model: System, context: Context, options: Options) -> Files:
+    """The launch file's equivalent in one Python file that needs the standard library alone."""
+    from deros.generators.rossystem_script.generate import generate
+
+    return generate(model, context, options)
+
+
+@generator("rossystem", "params")
+def rossystem_params(model: System, context: Context, options: Options) -> Files:
+    """The parameters of every node as one ROS 2 parameter file (YAML)."""
+    from deros.generators.rossystem_params.generate import generate
+
+    return generate(model, context, options)
+
+
+@generator(
+    "deros",
+    "python",
+    (
+        Option("package", "name of the generated package (default: the rules' name with _safety)"),
+        Option("node", "name of the safety node (default: the package's name with _node)"),
+        _MAINTAINER,
+        _COPYRIGHT,
+    ),
+)
+def deros_python(model: Rules, context: Context, options: Options) -> Files:
+    """The safety node: its node description, the pure monitor, the node and your actions."""
+    from deros.generators.safety_python.generate import generate
+
+    return generate(model, context, options)

@@ -1,0 +1,9 @@
+"""What textX's plug-in registration asks for, for the rooms that offer plug-ins to textX.
+
+textX recognises a generator by its class, so a look-alike will not do; no other room imports textX.
+"""
+
+from textx.exceptions import TextXError
+from textx.registration import GeneratorDesc, GeneratorParam
+
+__all__ = ["GeneratorDesc", "GeneratorParam", "TextXError"]
