@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 InterfaceKind = Literal["msg", "srv", "action"]
@@ -19,10 +20,13 @@ INTEGER_RANGES: dict[str, tuple[int, int]] = {
     "int64": (-(2**63), 2**63 - 1),
     "uint64": (0, 2**64 - 1),
 }
-"""Least and greatest value of each integer primitive (``byte`` and ``char`` are octets in ROS 2)."""
+"""Least and greatest value of each integer primitive; ``byte`` and ``char`` are octets in ROS 2."""
 
 FLOAT_TYPES = frozenset({"float32", "float64"})
 STRING_TYPES = frozenset({"string", "wstring"})
+Primitive = bool | int | float | str
+"""A value of a primitive field."""
+
 PRIMITIVES = frozenset(INTEGER_RANGES) | FLOAT_TYPES | STRING_TYPES | {"bool"}
 
 
@@ -55,11 +59,13 @@ class FieldType:
         base: a member of :data:`PRIMITIVES`, or the nested message's type.
         array: ``None`` for a single value, else how the length is known.
         size: the length of a ``fixed`` array, the bound of a ``bounded`` one.
+        string_bound: the greatest length of a bounded string, in characters.
     """
 
     base: str | InterfaceType
     array: Literal["fixed", "bounded", "unbounded"] | None = None
     size: int | None = None
+    string_bound: int | None = None
 
     @property
     def is_array(self) -> bool:
@@ -79,7 +85,7 @@ class FieldType:
     @property
     def element(self) -> FieldType:
         """The type of one element of an array."""
-        return FieldType(self.base)
+        return FieldType(self.base, string_bound=self.string_bound)
 
     def __str__(self) -> str:
         """Return the spelling of ``.msg`` files, as ``float32[9]`` or ``string[<=3]``."""
@@ -89,7 +95,8 @@ class FieldType:
             "bounded": f"[<={self.size}]",
             "unbounded": "[]",
         }
-        return f"{self.base}{suffix[self.array]}"
+        bound = "" if self.string_bound is None else f"<={self.string_bound}"
+        return f"{self.base}{bound}{suffix[self.array]}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,16 +105,23 @@ class Constant:
 
     name: str
     type: str
-    value: bool | int | float | str
+    value: Primitive
 
 
 @dataclass(frozen=True, slots=True)
 class MessageDefinition:
-    """Fields, in order, and constants of one message (or half of a service)."""
+    """Fields, in order, and constants of one message (or a part of a service or action).
+
+    ``defaults`` holds the fields to which the definition gives a value (``float64 w 1``); the rest
+    start as zero, false, empty, or the defaults of their own message type.
+    """
 
     type: InterfaceType
     fields: tuple[tuple[str, FieldType], ...]
     constants: tuple[Constant, ...] = ()
+    defaults: Mapping[str, Primitive | tuple[Primitive, ...]] = field(
+        default_factory=dict, hash=False
+    )
 
     def field(self, name: str) -> FieldType | None:
         """Return the type of the field called ``name``, or ``None``."""

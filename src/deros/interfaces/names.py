@@ -1,0 +1,119 @@
+"""Names: near matches for hints, and the rules by which ROS 2 accepts or refuses one.
+
+The checks return ``None`` for a name that ROS 2 takes, else the reason why it does not, as a phrase
+that completes "the name … ". Sources: ``rcl_validate_topic_name``, ``rmw_validate_node_name``,
+``rmw_validate_namespace``, the ROS 2 design article "Topic and Service name mapping", REP 144, and
+the command line grammar of rcl for parameters.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+_NODE_LIMIT = 255
+_TOPIC_LIMIT = 245  # 255 of a full name, less the prefix that DDS adds
+_FORBIDDEN = re.compile(r"[^A-Za-z0-9_]")
+_FORBIDDEN_IN_PATH = re.compile(r"[^A-Za-z0-9_/]")
+_CLOSE = 0.6
+
+
+def near(name: str, candidates: Iterable[str], n: int = 3) -> list[str]:
+    """Return up to ``n`` of the candidates that ``name`` was probably meant to be, best first.
+
+    A difference of case alone is the closest; the name itself is never among them.
+    """
+    import difflib
+
+    distinct = [candidate for candidate in dict.fromkeys(candidates) if candidate != name]
+    lowered = name.lower()
+    same = [candidate for candidate in distinct if candidate.lower() == lowered]
+    close = difflib.get_close_matches(name, distinct, n, _CLOSE)
+    return list(dict.fromkeys([*same, *close]))[:n]
+
+
+def did_you_mean(matches: Iterable[str]) -> str:
+    """Word near matches as a hint, or return an empty text when there are none."""
+    quoted = [f"'{match}'" for match in matches]
+    if not quoted:
+        return ""
+    *first, last = quoted
+    return f"did you mean {', '.join(first)}{' or ' if first else ''}{last}?"
+
+
+def check_node_name(name: str) -> str | None:
+    """Say why ROS 2 refuses a node's name (the part without namespace), or return ``None``."""
+    if not name:
+        return "is empty"
+    if found := _FORBIDDEN.search(name):
+        return f"contains '{found[0]}'; a node name has only letters, digits and '_'"
+    if name[0].isdigit():
+        return "starts with a digit"
+    if len(name) > _NODE_LIMIT:
+        return f"is longer than {_NODE_LIMIT} characters"
+    return None
+
+
+def check_topic_name(name: str) -> str | None:
+    """Say why ROS 2 refuses a topic or service name, absolute, relative or private (``~/x``)."""
+    if not name:
+        return "is empty"
+    path = name
+    if name.startswith("~"):
+        path = name[1:]
+        if path and not path.startswith("/"):
+            return "has '~' without '/' behind it"
+    return _check_path(path, name)
+
+
+def check_namespace(name: str) -> str | None:
+    """Say why ROS 2 refuses a namespace, absolute or relative, or return ``None``."""
+    if not name:
+        return "is empty"
+    return None if name == "/" else _check_path(name, name)
+
+
+def _check_path(path: str, whole: str) -> str | None:
+    if "~" in path:
+        return "has '~' elsewhere than at its start"
+    if found := _FORBIDDEN_IN_PATH.search(path):
+        return f"contains '{found[0]}'; a graph name has only letters, digits, '_' and '/'"
+    if path.endswith("/"):
+        return "ends with '/'"
+    if "//" in path:
+        return "has an empty part ('//')"
+    for part in path.split("/"):
+        if part[:1].isdigit():
+            return f"has a part that starts with a digit ('{part}')"
+    if len(whole) > _TOPIC_LIMIT:
+        return f"is longer than {_TOPIC_LIMIT} characters"
+    return None
+
+
+def check_package_name(name: str) -> str | None:
+    """Say why a package's name is refused (REP 144 and rosidl), or return ``None``."""
+    if len(name) < 2:
+        return "is shorter than two characters"
+    if found := re.search(r"[^a-z0-9_]", name):
+        return f"contains '{found[0]}'; a package name has only lower-case letters, digits and '_'"
+    if not name[0].isalpha():
+        return "does not start with a letter"
+    if "__" in name:
+        return "contains '__'"
+    if name.endswith("_"):
+        return "ends with '_'"
+    return None
+
+
+def check_parameter_name(name: str) -> str | None:
+    """Say why a parameter's name (parts joined by ``.``) is refused, or return ``None``."""
+    if not name:
+        return "is empty"
+    for part in name.split("."):
+        if not part:
+            return "has an empty part"
+        if found := _FORBIDDEN.search(part):
+            return f"contains '{found[0]}'; a parameter name has only letters, digits, '_' and '.'"
+        if part[0].isdigit():
+            return f"has a part that starts with a digit ('{part}')"
+    return None

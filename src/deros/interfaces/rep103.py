@@ -1,0 +1,44 @@
+"""Units of the fields of common messages.
+
+ROS prescribes SI units and radians (REP 103), and the message definitions say the rest in comments;
+``rep103.json`` holds both as data. A unit given to a field of message type holds for all that is
+nested in it: ``geometry_msgs/Twist.linear`` tells ``x``, ``y`` and ``z`` wherever there is a Twist.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from deros.interfaces.fields import FieldPath
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceType
+
+
+def unit_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str | None:
+    """Return the unit of the field at ``path`` of the message ``kind``.
+
+    ``"1"`` says that it is a ratio, ``None`` that nothing is known of its unit.
+    """
+    here: InterfaceType | None = kind
+    for part in path:
+        if isinstance(part, int):
+            continue
+        if here is None:
+            return None
+        unit = _table().get(f"{here.package}/{here.name}", {}).get(part)
+        if unit is not None:
+            return unit
+        definition = store.message(here)
+        field = definition.field(part) if definition else None
+        here = field.base if field and isinstance(field.base, InterfaceType) else None
+    return None
+
+
+@cache
+def _table() -> Mapping[str, Mapping[str, str]]:
+    text = Path(__file__).with_name("rep103.json").read_text(encoding="utf-8")
+    table: dict[str, dict[str, str]] = json.loads(text)
+    return table

@@ -1,0 +1,305 @@
+"""Physical units: reading them, comparing their dimensions, converting values exactly.
+
+The unit library is pint, but loading its registry takes longer than checking a whole system, so the
+units that robots are described in stand in a table (``units.json``) and pint is asked only about a
+word that the table lacks. Both use exact fractions: ``0.4 sec`` is 400,000,000 ns, not nearly so.
+
+Unlike in SI and pint, an angle is a dimension of its own here: ``rad`` against a plain ratio, or
+``Hz`` against ``rad/s``, is the kind of mistake that a safety rule must not hide.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from deros.interfaces.names import near
+
+Exponents = tuple[tuple[str, Fraction], ...]
+"""Powers of base units, sorted by base, none of them zero."""
+
+_PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
+_NS_PER_S = 10**9
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_TOKEN = re.compile(
+    r"\s*(?:(?P<word>[^\W\d]\w*|°\w*|%)|(?P<one>1(?![\d.]))|(?P<power>\*\*|\^)"
+    r"|(?P<times>[*·⋅])|(?P<over>/)|(?P<open>\()|(?P<close>\))|(?P<integer>-?\d+))"
+)
+_SUPERSCRIPT_RUN = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
+_MAX_EXPONENT = 99
+_MAX_DEPTH = 50
+_MAX_DIGITS = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit as written, and what it amounts to in base units.
+
+    A value in this unit is ``value * factor + offset`` in base units (radian among them). Only
+    ``degC`` and ``degF`` have an offset; in a compound (``degC/s``) they count as differences.
+    """
+
+    text: str
+    exponents: Exponents
+    factor: Fraction
+    offset: Fraction = Fraction(0)
+
+    @property
+    def dimension(self) -> str:
+        """The physical dimension in words, as ``length/time^2``; ``number`` for none."""
+        bases = _table()["bases"]
+        above = [_power(bases.get(base, base), e) for base, e in self.exponents if e > 0]
+        below = [_power(bases.get(base, base), -e) for base, e in self.exponents if e < 0]
+        if not above and not below:
+            return "number"
+        return "/".join(["*".join(above) or "1", *below])
+
+    def __str__(self) -> str:
+        """Return the unit as written."""
+        return self.text
+
+
+def _power(base: str, exponent: Fraction) -> str:
+    return base if exponent == 1 else f"{base}^{exponent}"
+
+
+class UnitRegistry:
+    """The units known to one program: the table, the program's own, and pint's.
+
+    ``definitions`` maps a name to a factor and the unit it multiplies: ``unit knot = 0.514444 m/s``
+    is ``{"knot": (Decimal("0.514444"), "m/s")}``. They may use each other in any order, and hide
+    known units of their name.
+    """
+
+    def __init__(
+        self, definitions: Mapping[str, tuple[Decimal | float, str]] | None = None
+    ) -> None:
+        """Remember the program's own units; nothing is read yet."""
+        self._definitions = dict(definitions or {})
+        self._words: dict[str, Unit | None] = {}
+        self._parsed: dict[str, Unit | None] = {}
+        self._depth = 0
+
+    def parse(self, text: str) -> Unit | None:
+        """Read a unit such as ``m/s^2``, ``N*m`` or ``1`` (a plain number); ``None`` if unknown.
+
+        A unit defined by itself, directly or through others, is unknown too.
+        """
+        if text not in self._parsed:
+            self._parsed[text] = _Parser(text, self._word).unit()
+        return self._parsed[text]
+
+    def compatible(self, a: Unit, b: Unit) -> bool:
+        """Tell whether values of one unit can be compared with values of the other."""
+        return a.exponents == b.exponents
+
+    def factor(self, source: Unit, target: Unit) -> tuple[float, float]:
+        """Return ``(factor, offset)`` such that ``target value = source value * factor + offset``.
+
+        The units must be compatible.
+        """
+        factor, offset = _exact_factor(source, target)
+        return float(factor), float(offset)
+
+    def convert(self, value: Decimal | float, source: Unit, target: Unit) -> float:
+        """Convert a value between compatible units, rounding once, at the end.
+
+        Infinity and NaN stay what they are; a value beyond the range of a double becomes infinite.
+        """
+        factor, offset = _exact_factor(source, target)
+        exact = _fraction(value)
+        if exact is None:
+            return float(value)
+        try:
+            return float(exact * factor + offset)
+        except OverflowError:
+            return math.copysign(math.inf, exact)
+
+    def duration_ns(self, value: Decimal, unit: Unit) -> int | None:
+        """Return a duration in nanoseconds.
+
+        ``None`` when the unit is none of time, or the value is negative, no whole number of ns, or
+        longer than 64 bits of them (292 years).
+        """
+        exact = _fraction(value)
+        if exact is None or unit.exponents != (("s", Fraction(1)),):
+            return None
+        nanoseconds = exact * unit.factor * _NS_PER_S
+        if not 0 <= nanoseconds < 2**63 or nanoseconds.denominator != 1:
+            return None
+        return int(nanoseconds)
+
+    def suggest(self, text: str) -> list[str]:
+        """Return known unit words that resemble ``text``, best first."""
+        table = _table()
+        return near(text, [*self._definitions, *table["bases"], *table["units"], "ms", "cm", "km"])
+
+    def _word(self, word: str) -> Unit | None:
+        if word not in self._words:
+            if self._depth > _MAX_DEPTH:
+                return None
+            self._words[word] = None  # what a definition finds that leads back to itself
+            self._depth += 1
+            self._words[word] = self._look_up(word)
+            self._depth -= 1
+        return self._words[word]
+
+    def _look_up(self, word: str) -> Unit | None:
+        if word in self._definitions:
+            factor, text = self._definitions[word]
+            exact = _fraction(factor)
+            return self._multiple(word, exact, text) if exact and exact > 0 else None
+        table = _table()
+        if word in table["bases"]:
+            return Unit(word, ((word, Fraction(1)),), Fraction(1))
+        if word in table["units"]:
+            factor, text, *offset = table["units"][word]
+            return self._multiple(word, _number(factor), text, *map(_number, offset))
+        prefix, rest = word[:1], word[1:]
+        if prefix in table["prefixes"] and rest in table["prefixed"]:
+            return self._multiple(word, _number(table["prefixes"][prefix]), rest)
+        return _ask_pint(word)
+
+    def _multiple(
+        self, word: str, factor: Fraction, text: str, offset: Fraction = Fraction(0)
+    ) -> Unit | None:
+        unit = self.parse(text)
+        return unit and Unit(word, unit.exponents, factor * unit.factor, offset)
+
+
+class _Parser:
+    """Reads ``unit := power {('*' | '/') power}`` with ``power := atom ['^' integer]``."""
+
+    def __init__(self, text: str, word: Any) -> None:
+        text = _SUPERSCRIPT_RUN.sub(lambda run: "^" + run[0].translate(_SUPERSCRIPTS), text)
+        self._text = text.strip()
+        self._word = word
+        self._position = 0
+
+    def unit(self) -> Unit | None:
+        """Read the whole text."""
+        found = self._product(0)
+        if found is None or self._position != len(self._text):
+            return None
+        return Unit(re.sub(r"\s+", "", self._text), found.exponents, found.factor, found.offset)
+
+    def _take(self, *kinds: str) -> str | None:
+        match = _TOKEN.match(self._text, self._position)
+        if match is None or match.lastgroup not in kinds:
+            return None
+        self._position = match.end()
+        return match[match.lastgroup]
+
+    def _product(self, depth: int) -> Unit | None:
+        left = self._factor(depth)
+        while left is not None:
+            operator = self._take("times", "over")
+            if operator is None:
+                return left
+            right = self._factor(depth)
+            left = right and _combine(left, right, -1 if operator == "/" else 1)
+        return None
+
+    def _factor(self, depth: int) -> Unit | None:
+        base = self._atom(depth)
+        if base is None or self._take("power") is None:
+            return base
+        written = self._take("integer", "one")
+        if written is None or abs(int(written)) > _MAX_EXPONENT:
+            return None
+        return _combine(_ONE, base, int(written))
+
+    def _atom(self, depth: int) -> Unit | None:
+        if self._take("one"):
+            return _ONE
+        if self._take("open"):
+            inner = self._product(depth + 1) if depth < _MAX_DEPTH else None
+            return inner if self._take("close") else None
+        word = self._take("word")
+        found: Unit | None = self._word(word) if word else None
+        return found
+
+
+_ONE = Unit("1", (), Fraction(1))
+
+
+def _combine(left: Unit, right: Unit, exponent: int) -> Unit:
+    """Return ``left * right ** exponent``; without offset, as a product is one of differences."""
+    exponents = dict(left.exponents)
+    for base, power in right.exponents:
+        exponents[base] = exponents.get(base, Fraction(0)) + power * exponent
+    kept = tuple(sorted((base, power) for base, power in exponents.items() if power))
+    return Unit("", kept, left.factor * right.factor**exponent)
+
+
+def _exact_factor(source: Unit, target: Unit) -> tuple[Fraction, Fraction]:
+    factor = source.factor / target.factor
+    return factor, (source.offset - target.offset) / target.factor
+
+
+def _fraction(value: Decimal | float) -> Fraction | None:
+    """Return the exact value, or ``None`` where a double holds infinity, NaN or nothing like it."""
+    if isinstance(value, Decimal):
+        if value.is_finite() and abs(value.adjusted()) > _MAX_DIGITS:
+            return None if value else Fraction(0)
+        return Fraction(value) if value.is_finite() else None
+    return Fraction(value) if math.isfinite(value) else None
+
+
+@cache
+def _table() -> dict[str, Any]:
+    text = Path(__file__).with_name("units.json").read_text(encoding="utf-8")
+    table: dict[str, Any] = json.loads(text)
+    return table
+
+
+def _number(text: str) -> Fraction:
+    """Read ``0.001``, ``5/9``, ``pi/180`` or ``pi*2`` of the table."""
+    if text.startswith("pi/"):
+        return _PI / Fraction(text[3:])
+    if text.startswith("pi*"):
+        return _PI * Fraction(text[3:])
+    above, _, below = text.partition("/")
+    return Fraction(above) / Fraction(below or 1)
+
+
+@cache
+def _pint_registry() -> Any:
+    import pint  # takes a third of a second with its registry
+
+    return pint.UnitRegistry(non_int_type=Fraction)
+
+
+_PINT_BASES = {
+    "meter": "m",
+    "gram": "g",
+    "second": "s",
+    "ampere": "A",
+    "kelvin": "K",
+    "mole": "mol",
+    "candela": "cd",
+    "radian": "rad",
+    "bit": "bit",
+}
+
+
+def _ask_pint(word: str) -> Unit | None:
+    """Look a word up in pint; its root units keep the radian that its base units drop."""
+    registry = _pint_registry()
+    if word not in registry:
+        return None
+    factor, root = registry.get_root_units(word, check_nonmult=True)
+    if factor is None:  # a logarithmic unit or one with an offset of its own
+        return None
+    exponents = sorted(
+        (_PINT_BASES.get(base, base), Fraction(power)) for base, power in root._units.items()
+    )
+    return Unit(word, tuple(exponents), Fraction(factor))
