@@ -1,0 +1,255 @@
+"""The reference engine: what rules mean is what this does.
+
+It interprets the intermediate form directly and aims at being right at a glance; every generated
+monitor is held to give the same events at the same nanosecond. In short:
+
+* The monitor is driven by messages and by deadlines. The start is no event.
+* An event is: the deadlines of one instant, or one message, or a backward step of the clock. At each
+  event all rules are evaluated, then all behaviours, top to bottom; then resets are settled.
+* Deadlines that are due when a call comes are settled first, in time order, with the old values.
+* A call with an earlier time than the one before shows a backward step of the clock.
+
+Source: docs, "What a rule means"; the paper's section 4.4, whose prose (not its printed algorithm)
+gives the meaning of ``for``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from deros.diagnostics import Span
+from deros.monitor import walk
+from deros.monitor.evaluate import evaluate_condition, evaluate_value, is_nan
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import Age, Apply, Behaviour, For, Input, Program, Scalar, Trigger
+from deros.monitor.state import LeafValue, RateState, State
+
+EventKind = Literal["trigger", "reset", "refused", "clock_step"]
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that a monitor did, or that it saw the clock do.
+
+    Attributes:
+        t_ns: when; of a ``clock_step`` the new time.
+        kind: an action ran, became inactive, or stayed active although its reset was asked for.
+        action: the action's name; empty for a ``clock_step``.
+        behaviour: the name of the behaviour that triggered it; ``None`` for all but triggers.
+        arguments: of the action.
+        span: the call in the behaviour, or the action's declaration.
+    """
+
+    t_ns: int
+    kind: EventKind
+    action: str = ""
+    behaviour: str | None = None
+    arguments: tuple[Scalar, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+class Engine:
+    """Runs one program. Times are nanoseconds of one clock, given with every call.
+
+    Attributes:
+        events: all that has happened since the start, in order.
+    """
+
+    def __init__(self, program: Program, start_ns: int = 0) -> None:
+        """Start at ``start_ns``, from which timeouts count; nothing has been true yet."""
+        self.events: list[Event] = []
+        self._program = program
+        self._now_ns = start_ns
+        conditions = tuple(walk.conditions(program))
+        self._fors = [each for each in conditions if isinstance(each, For)]
+        self._ages = [each for each in conditions if isinstance(each, Age)]
+        values = walk.values(conditions)
+        self._functions = [each for each in values if isinstance(each, Apply)]
+        self._state = State(program, start_ns, sum(1 for _ in walk.behaviours(program)))
+        self._ran: set[int] = set()
+
+    @property
+    def next_deadline(self) -> int | None:
+        """The earliest instant at which something can happen without a message, if there is one."""
+        return min(self._deadlines(), default=None)
+
+    def message(self, t_ns: int, topic: str, leaves: Mapping[int, LeafValue]) -> list[Event]:
+        """Take a message: the value of every leaf of the topic's inputs. Return what happened.
+
+        ``None`` or NaN stands for an array element that the message does not have.
+
+        Raises:
+            ValueError: no input of the program is on ``topic``.
+        """
+        inputs = [each for each in self._program.inputs if each.topic == topic]
+        if not inputs:
+            raise ValueError(f"no input on topic {topic}")
+        before = len(self.events)
+        self._catch_up(t_ns)
+        for each in inputs:
+            self._observe(each, leaves, t_ns)
+        self._evaluate()
+        return self.events[before:]
+
+    def advance(self, t_ns: int) -> list[Event]:
+        """Settle all that is due up to and including ``t_ns``. Return what happened."""
+        before = len(self.events)
+        self._catch_up(t_ns)
+        return self.events[before:]
+
+    def reset(self, t_ns: int) -> bool:
+        """Reset every latched action that is active; tell whether none was refused."""
+        self._catch_up(t_ns)
+        results = [self._try_reset(each.index) for each in self._program.actions if each.latched]
+        return all(results)
+
+    # Time ---------------------------------------------------------------------------------------
+
+    def _deadlines(self) -> Iterator[int]:
+        """Yield every instant, not settled yet, at which a verdict can change by itself."""
+        for each, state in zip(self._program.inputs, self._state.inputs, strict=True):
+            if each.timeout_ns is not None and not state.missing:
+                yield state.base_ns + each.timeout_ns
+        ends = [
+            self._state.since[each.index] + each.duration_ns
+            for each in self._fors
+            if each.index in self._state.since
+        ]
+        for age in self._ages:
+            counted_ns = self._state.inputs[age.input].counted_ns
+            if counted_ns is not None:
+                ends += [counted_ns + change for change in age_changes(age)]
+        yield from (end for end in ends if end > self._now_ns)
+
+    def _catch_up(self, t_ns: int) -> None:
+        if t_ns < self._now_ns:
+            self._step_back(t_ns)
+        while (due_ns := self.next_deadline) is not None and due_ns <= t_ns:
+            self._now_ns = due_ns
+            for each, state in zip(self._program.inputs, self._state.inputs, strict=True):
+                if each.timeout_ns is not None and state.base_ns + each.timeout_ns <= due_ns:
+                    state.missing = True
+                    self._make_unknown(each)
+            self._evaluate()
+        self._now_ns = t_ns
+
+    def _step_back(self, t_ns: int) -> None:
+        self._now_ns = t_ns
+        self.events.append(Event(t_ns, "clock_step"))
+        self._state.forget(t_ns)
+        self._evaluate()
+
+    # Messages -----------------------------------------------------------------------------------
+
+    def _observe(self, each: Input, leaves: Mapping[int, LeafValue], t_ns: int) -> None:
+        for leaf in each.leaves:
+            self._state.values[leaf] = leaves[leaf]
+        if not self._counts(each):
+            self._make_unknown(each)
+            return
+        state = self._state.inputs[each.index]
+        state.base_ns = state.counted_ns = t_ns
+        state.missing = False
+        for function in self._functions_of(each):
+            if function.state is not None:
+                self._follow(function, function.state, t_ns)
+
+    def _counts(self, each: Input) -> bool:
+        """Tell whether the message just stored is one: all elements there, no NaN, guards met."""
+        for index in each.leaves:
+            leaf, value = self._program.leaves[index], self._state.values[index]
+            if value is None or (leaf.nan_is_unknown and _has_nan(value)):
+                return False
+        for function in self._functions_of(each):
+            guard = FUNCTIONS[function.function].guard
+            if guard is not None:
+                tested = [
+                    evaluate_value(function.arguments[n], self._state) for n in guard.arguments
+                ]
+                if not guard.evaluate(*tested):
+                    return False
+        return True
+
+    def _follow(self, function: Apply, number: int, t_ns: int) -> None:
+        """Let a ``rate()`` see the message just stored."""
+        rate = self._state.rates.setdefault(number, RateState())
+        value = evaluate_value(function.arguments[0], self._state)
+        evaluate = FUNCTIONS[function.function].evaluate
+        assert evaluate is not None
+        rate.slope = None
+        if rate.at_ns is not None and rate.value is not None and value is not None:
+            rate.slope = evaluate(value, rate.value, t_ns - rate.at_ns)
+        rate.at_ns, rate.value = t_ns, value
+
+    def _make_unknown(self, each: Input) -> None:
+        self._state.make_unknown(each.index)
+        for function in self._functions_of(each):
+            if function.state is not None:
+                self._state.rates.pop(function.state, None)
+
+    def _functions_of(self, each: Input) -> Iterator[Apply]:
+        return (function for function in self._functions if function.input == each.index)
+
+    # Verdicts and actions -----------------------------------------------------------------------
+
+    def _evaluate(self) -> None:
+        """Settle one event: all rules, all behaviours, and then the resets that were asked for."""
+        self._ran.clear()
+        for rule in self._program.rules:
+            verdict = evaluate_condition(rule.condition, self._state, self._now_ns)
+            self._state.verdicts[rule.index] = verdict
+        for behaviour in self._program.behaviours:
+            self._behave(behaviour, enclosing=True)
+        for action in self._program.actions:
+            if action.reset_by in self._ran:
+                self._try_reset(action.index)
+
+    def _behave(self, behaviour: Behaviour, enclosing: bool) -> None:
+        verdict = evaluate_condition(behaviour.condition, self._state, self._now_ns)
+        holds = enclosing and verdict is True
+        rises = holds and not self._state.holds[behaviour.index]
+        self._state.holds[behaviour.index] = holds
+        for item in behaviour.body:
+            if isinstance(item, Behaviour):
+                self._behave(item, holds)
+            elif rises:
+                self._run(item, behaviour)
+
+    def _run(self, trigger: Trigger, behaviour: Behaviour) -> None:
+        self._ran.add(trigger.action)
+        self._state.active[trigger.action] = True
+        name = self._program.actions[trigger.action].name
+        self.events.append(
+            Event(self._now_ns, "trigger", name, behaviour.name, trigger.arguments, trigger.span)
+        )
+
+    def _try_reset(self, index: int) -> bool:
+        """Reset an action if it is active; tell whether it is inactive now."""
+        action = self._program.actions[index]
+        if not self._state.active[index]:
+            return True
+        refused = any(self._state.holds[each] for each in action.triggered_by)
+        self._state.active[index] = refused
+        kind: EventKind = "refused" if refused else "reset"
+        self.events.append(Event(self._now_ns, kind, action.name, span=action.span))
+        return not refused
+
+
+def age_changes(age: Age) -> tuple[int, ...]:
+    """Return the ages, in nanoseconds, from which on a comparison of an age has another result."""
+    reached, passed = age.bound_ns, age.bound_ns + 1
+    match age.operator:
+        case ">=" | "<":
+            return (reached,)
+        case ">" | "<=":
+            return (passed,)
+        case _:
+            return (reached, passed)
+
+
+def _has_nan(value: LeafValue) -> bool:
+    if isinstance(value, Iterable):
+        return any(is_nan(element) for element in value)
+    return is_nan(value)

@@ -1,0 +1,139 @@
+"""What expressions and conditions are worth, by direct interpretation.
+
+Source: Kleene's strong three-valued logic, with ``None`` for unknown.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import (
+    Age,
+    And,
+    Apply,
+    Compare,
+    Condition,
+    Const,
+    For,
+    Missing,
+    Not,
+    Operator,
+    Or,
+    Read,
+    RuleRef,
+    Scale,
+    Truth,
+    ValueExpression,
+    Within,
+)
+from deros.monitor.state import State, Verdict
+
+_COMPARE: Mapping[Operator, Callable[[Any, Any], bool]] = {
+    "=": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+
+
+def is_nan(value: object) -> bool:
+    """Tell whether a scalar is NaN, of whichever library's floating-point type."""
+    return bool(value != value)
+
+
+# The types of operands agree by construction (deros.monitor.build), which Any stands for here.
+def evaluate_value(value: ValueExpression, state: State) -> Any:
+    """Return a value as of now, ``None`` for unknown; a NaN that computing yields is unknown too."""
+    match value:
+        case Const():
+            return value.value
+        case Read():
+            result = state.values[value.leaf]
+        case Apply(state=int(number)):
+            result = state.rates[number].slope if number in state.rates else None
+        case Apply():
+            arguments = [evaluate_value(each, state) for each in value.arguments]
+            evaluate = FUNCTIONS[value.function].evaluate
+            assert evaluate is not None, f"{value.function} is no function of values"
+            unknown = any(each is None for each in arguments)
+            result = None if unknown else evaluate(*arguments)
+        case Scale():
+            operand = evaluate_value(value.operand, state)
+            result = None if operand is None else operand * value.factor + value.offset
+    return None if not isinstance(result, Iterable) and is_nan(result) else result
+
+
+def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict:
+    """Return a condition's verdict at an event, and let its intervals (``For``) start or clear.
+
+    No operand is ever skipped: an interval must see every event, whatever stands beside it.
+    """
+    match condition:
+        case Truth():
+            truth = evaluate_value(condition.operand, state)
+            return None if truth is None else bool(truth)
+        case Compare():
+            left = evaluate_value(condition.left, state)
+            right = evaluate_value(condition.right, state)
+            if left is None or right is None:
+                return None
+            return bool(_COMPARE[condition.operator](left, right))
+        case Within():
+            return _within(condition, state)
+        case Missing():
+            return state.inputs[condition.input].missing
+        case Age():
+            counted_ns = state.inputs[condition.input].counted_ns
+            if counted_ns is None:
+                return None
+            return _COMPARE[condition.operator](t_ns - counted_ns, condition.bound_ns)
+        case Not():
+            verdict = evaluate_condition(condition.operand, state, t_ns)
+            return None if verdict is None else not verdict
+        case And():
+            verdicts = [evaluate_condition(each, state, t_ns) for each in condition.operands]
+            return _all(verdicts)
+        case Or():
+            verdicts = [evaluate_condition(each, state, t_ns) for each in condition.operands]
+            return _any(verdicts)
+        case For():
+            return _lasting(condition, state, t_ns)
+        case RuleRef():
+            return state.verdicts[condition.rule]
+
+
+def _within(condition: Within, state: State) -> Verdict:
+    operand = evaluate_value(condition.operand, state)
+    lower = evaluate_value(condition.lower, state)
+    upper = evaluate_value(condition.upper, state)
+    if operand is None or lower is None or upper is None:
+        return None
+    above = operand >= lower if condition.lower_closed else operand > lower
+    below = operand <= upper if condition.upper_closed else operand < upper
+    return bool(above and below)
+
+
+def _all(verdicts: list[Verdict]) -> Verdict:
+    if False in verdicts:
+        return False
+    return None if None in verdicts else True
+
+
+def _any(verdicts: list[Verdict]) -> Verdict:
+    if True in verdicts:
+        return True
+    return None if None in verdicts else False
+
+
+def _lasting(condition: For, state: State, t_ns: int) -> Verdict:
+    verdict = evaluate_condition(condition.operand, state, t_ns)
+    if verdict is not True:
+        state.since.pop(condition.index, None)
+        return verdict
+    since_ns = state.since.setdefault(condition.index, t_ns)
+    return t_ns - since_ns >= condition.duration_ns

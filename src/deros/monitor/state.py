@@ -1,0 +1,72 @@
+"""What a monitor remembers between two events."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from deros.monitor.ir import Program, Scalar
+
+LeafValue = Scalar | Sequence[Scalar] | None
+"""A leaf's value as it comes in a message; ``None``: the message has no such array element."""
+
+Verdict = bool | None
+"""Kleene's three values; ``None`` is unknown."""
+
+
+@dataclass(slots=True)
+class InputState:
+    """One input.
+
+    Attributes:
+        base_ns: from when its timeout counts: the last counted message, the start or a clock step.
+        counted_ns: the time of the last message that counted; ``None`` before the first.
+        missing: whether the timeout has passed since ``base_ns``.
+    """
+
+    base_ns: int
+    counted_ns: int | None = None
+    missing: bool = False
+
+
+@dataclass(slots=True)
+class RateState:
+    """The last counted message as ``rate()`` sees it, and the slope from the one before to it."""
+
+    at_ns: int | None = None
+    value: float | None = None
+    slope: float | None = None
+
+
+class State:
+    """The whole memory of a monitor, at its start.
+
+    Attributes:
+        values: of each leaf, ``None`` while its input is unknown.
+        inputs: of each input.
+        rates: of each function with a ``state`` number.
+        since: of each ``For``, since when its operand has been true without a break.
+        verdicts: of each rule, as of the last event.
+        holds: of each behaviour, whether it and all that enclose it held at the last event.
+        active: of each action, whether it was triggered and not reset since.
+    """
+
+    def __init__(self, program: Program, start_ns: int, behaviours: int) -> None:
+        """Remember nothing yet; timeouts count from ``start_ns``."""
+        self._program = program
+        self.verdicts: list[Verdict] = [None] * len(program.rules)
+        self.holds = [False] * behaviours
+        self.active = [False] * len(program.actions)
+        self.forget(start_ns)
+
+    def forget(self, t_ns: int) -> None:
+        """Drop all that was observed: every interval and every input. Verdicts and actions stay."""
+        self.values: list[LeafValue] = [None] * len(self._program.leaves)
+        self.inputs = [InputState(t_ns) for _ in self._program.inputs]
+        self.rates: dict[int, RateState] = {}
+        self.since: dict[int, int] = {}
+
+    def make_unknown(self, index: int) -> None:
+        """Make one input unknown; its age and its timeout are no values and go on."""
+        for leaf in self._program.inputs[index].leaves:
+            self.values[leaf] = None

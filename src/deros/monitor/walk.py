@@ -1,0 +1,93 @@
+"""Ways through a program: every behaviour, every condition, every value, in the order evaluated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from deros.monitor.ir import (
+    And,
+    Apply,
+    Behaviour,
+    Compare,
+    Condition,
+    For,
+    Not,
+    Or,
+    Program,
+    Read,
+    Scale,
+    Truth,
+    ValueExpression,
+    Within,
+)
+
+
+def behaviours(program: Program) -> Iterator[Behaviour]:
+    """Yield all behaviours in the order of their indices: outer before inner, top to bottom."""
+
+    def descend(each: Behaviour) -> Iterator[Behaviour]:
+        yield each
+        for item in each.body:
+            if isinstance(item, Behaviour):
+                yield from descend(item)
+
+    for each in program.behaviours:
+        yield from descend(each)
+
+
+def conditions(program: Program) -> Iterator[Condition]:
+    """Yield every condition of the rules, then of the behaviours, operands before the whole."""
+    for rule in program.rules:
+        yield from parts(rule.condition)
+    for behaviour in behaviours(program):
+        yield from parts(behaviour.condition)
+
+
+def parts(condition: Condition) -> Iterator[Condition]:
+    """Yield a condition's operands, theirs first, and then the condition itself."""
+    match condition:
+        case Not(operand=operand) | For(operand=operand):
+            yield from parts(operand)
+        case And(operands=operands) | Or(operands=operands):
+            for operand in operands:
+                yield from parts(operand)
+        case _:
+            pass
+    yield condition
+
+
+def values(conditions: Iterable[Condition]) -> Iterator[ValueExpression]:
+    """Yield every value expression that the given conditions hold, arguments before functions."""
+    for condition in conditions:
+        match condition:
+            case Truth(operand=operand):
+                yield from terms(operand)
+            case Compare(left=left, right=right):
+                yield from terms(left)
+                yield from terms(right)
+            case Within(operand=operand, lower=lower, upper=upper):
+                yield from terms(operand)
+                yield from terms(lower)
+                yield from terms(upper)
+            case _:
+                pass
+
+
+def terms(value: ValueExpression) -> Iterator[ValueExpression]:
+    """Yield a value's arguments, theirs first, and then the value itself."""
+    match value:
+        case Apply(arguments=arguments):
+            for argument in arguments:
+                yield from terms(argument)
+        case Scale(operand=operand):
+            yield from terms(operand)
+        case _:
+            pass
+    yield value
+
+
+def leaves(value: ValueExpression) -> Iterator[int]:
+    """Yield the indices of the leaves that a value reads."""
+    for term in terms(value):
+        if isinstance(term, Read):
+            yield term.leaf
