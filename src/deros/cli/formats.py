@@ -1,0 +1,133 @@
+"""Diagnostics for other programs: JSON, SARIF 2.1.0, and the annotations of GitHub Actions."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+from urllib.parse import quote
+
+from deros import __version__
+from deros.codes import ALL_CODES
+from deros.diagnostics import Diagnostic, Severity, Span
+
+_SARIF_LEVEL = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
+_GITHUB_COMMAND = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
+
+
+def render_json(diagnostics: Sequence[Diagnostic]) -> str:
+    """Return an array of flat objects; lines and columns count from 1, ends are exclusive."""
+    return json.dumps([_json_object(d) for d in diagnostics], indent=2, ensure_ascii=False) + "\n"
+
+
+def _json_object(diagnostic: Diagnostic) -> dict[str, Any]:
+    span = diagnostic.span
+    return {
+        "file": span.file,
+        "line": span.line,
+        "column": span.column,
+        "end_line": span.end_line,
+        "end_column": span.end_column,
+        "severity": diagnostic.severity.value,
+        "code": diagnostic.code.name,
+        "message": diagnostic.message,
+        "hint": diagnostic.hint,
+    }
+
+
+def render_sarif(diagnostics: Sequence[Diagnostic]) -> str:
+    """Return a log of the Static Analysis Results Interchange Format, version 2.1.0 (OASIS)."""
+    used = sorted({d.code.name for d in diagnostics})
+    index = {name: position for position, name in enumerate(used)}
+    log = {
+        "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
+        "version": "2.1.0",
+        "runs": [
+            {
+                "tool": {
+                    "driver": {
+                        "name": "deros",
+                        "version": __version__,
+                        "rules": [_sarif_rule(name) for name in used],
+                    }
+                },
+                "columnKind": "unicodeCodePoints",
+                "results": [_sarif_result(d, index[d.code.name]) for d in diagnostics],
+            }
+        ],
+    }
+    return json.dumps(log, indent=2, ensure_ascii=False) + "\n"
+
+
+def _sarif_rule(name: str) -> dict[str, Any]:
+    code = ALL_CODES[name]
+    return {
+        "id": name,
+        "shortDescription": {"text": code.title},
+        "defaultConfiguration": {"level": _SARIF_LEVEL[code.severity]},
+    }
+
+
+def _sarif_result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
+    text = diagnostic.message
+    if diagnostic.hint:
+        text = f"{text}\n{diagnostic.hint}"
+    result: dict[str, Any] = {
+        "ruleId": diagnostic.code.name,
+        "ruleIndex": rule_index,
+        "level": _SARIF_LEVEL[diagnostic.severity],
+        "message": {"text": text},
+        "locations": [{"physicalLocation": _sarif_location(diagnostic.span)}],
+    }
+    if diagnostic.related:
+        result["relatedLocations"] = [
+            {
+                "id": position,
+                "physicalLocation": _sarif_location(related.span),
+                "message": {"text": related.message},
+            }
+            for position, related in enumerate(diagnostic.related)
+        ]
+    return result
+
+
+def _sarif_location(span: Span) -> dict[str, Any]:
+    return {
+        "artifactLocation": {"uri": quote(span.file)},
+        "region": {
+            "startLine": span.line,
+            "startColumn": span.column,
+            "endLine": span.end_line,
+            "endColumn": span.end_column,
+        },
+    }
+
+
+def render_github(diagnostics: Sequence[Diagnostic]) -> str:
+    """Return one workflow command a line; GitHub shows them beside the lines of a pull request."""
+    return "".join(_github_line(d) for d in diagnostics)
+
+
+def _github_line(diagnostic: Diagnostic) -> str:
+    span = diagnostic.span
+    where = {
+        "file": span.file,
+        "line": span.line,
+        "col": span.column,
+        "endLine": span.end_line,
+        "endColumn": span.end_column,
+        "title": f"{diagnostic.code.name} {diagnostic.code.title}",
+    }
+    properties = ",".join(f"{name}={_property(str(value))}" for name, value in where.items())
+    text = diagnostic.message
+    if diagnostic.hint:
+        text = f"{text}\n{diagnostic.hint}"
+    return f"::{_GITHUB_COMMAND[diagnostic.severity]} {properties}::{_data(text)}\n"
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

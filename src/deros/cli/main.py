@@ -1,0 +1,128 @@
+"""``deros``: the command group, and what holds for every command.
+
+A command's module is imported only when it runs, so that ``deros --help`` answers at once. Exit
+codes: 0 clean, 1 findings, 2 usage, unreadable input or a bug of ours, 130 interrupted, 141 the
+reader of our output went away.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from importlib import import_module
+from typing import NoReturn
+
+import click
+
+from deros import __version__
+
+INTERRUPTED = 130
+BROKEN_PIPE = 141
+
+COMMANDS: dict[str, tuple[str, str]] = {
+    "check": ("deros.cli.check:check", "Check models and report every finding."),
+    "generate": ("deros.cli.generate:generate", "Generate code, launch files or parameters."),
+    "new": ("deros.cli.new:new", "Start a new model that checks clean."),
+    "simulate": ("deros.cli.simulate:simulate", "Run safety rules over a recorded trace."),
+    "up": ("deros.cli.up:up", "Start every node of a system; stop them all on Ctrl-C."),
+}
+"""Where each command is, and its line in the overview (so that the overview imports none)."""
+
+
+class LazyGroup(click.Group):
+    """A group that imports a command when it is called for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
+        """Return the names in the order of the overview."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
+        """Import and return a command, or ``None`` if there is none of that name."""
+        if cmd_name not in COMMANDS:
+            return None
+        module, _, name = COMMANDS[cmd_name][0].partition(":")
+        command: click.Command = getattr(import_module(module), name)
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command, naming the nearest ones when there is none."""
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            from deros.validators.hints import did_you_mean
+
+            hint = did_you_mean(args[0], COMMANDS)
+            message = f"No such command '{args[0]}'" + (f": {hint}" if hint else ".")
+            raise click.UsageError(message, ctx) from error
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        """Write the overview from the table, without importing the commands."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="deros")
+@click.option("--debug", is_flag=True, help="Show a traceback if deros itself fails.")
+def deros(debug: bool) -> None:
+    """Describe, check and generate ROS 2 nodes, systems and safety monitors.
+
+    Models are text: node descriptions (*.rnd), system descriptions (*.system) and safety rules
+    (*.deros).
+    """
+    del debug  # read from the arguments by main(), which must know it even if parsing them fails
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run ``deros`` and exit; no input ends in a traceback."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    code = run(given)
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        code = _reader_gone()
+    sys.exit(code)
+
+
+def run(arguments: list[str]) -> int:
+    """Run the command that ``arguments`` name and return the exit code."""
+    try:
+        result = deros.main(arguments, prog_name="deros", standalone_mode=False)
+        return result if isinstance(result, int) else 0
+    except click.exceptions.NoArgsIsHelpError as error:
+        error.show()
+        return error.exit_code
+    except click.ClickException as error:
+        error.show()
+        return 2
+    except (click.Abort, KeyboardInterrupt):
+        sys.stderr.write("\nderos: interrupted\n")
+        return INTERRUPTED
+    except BrokenPipeError:
+        return _reader_gone()
+    except Exception as error:  # the last resort: whatever it is, it is our bug
+        return _bug(error, debug="--debug" in arguments)
+
+
+def _reader_gone() -> int:
+    """Leave quietly: Python would complain when it flushes to the closed pipe at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return BROKEN_PIPE
+
+
+def _bug(error: Exception, *, debug: bool) -> int:
+    if debug:
+        traceback.print_exc()
+    sys.stderr.write(f"deros: this is a bug in deros, not in your models: {_in_words(error)}\n")
+    if not debug:
+        sys.stderr.write("deros: run 'deros --debug …' to see where, and please report it\n")
+    return 2
+
+
+def _in_words(error: Exception) -> str:
+    text = " ".join(str(error).split())
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -1,0 +1,50 @@
+"""``deros new``: start a model that checks clean."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from deros.cli.scaffolds import KINDS, scaffold
+
+
+@click.command()
+@click.argument("kind", type=click.Choice(KINDS))
+@click.argument("name")
+@click.option("--package", help="ROS package of its nodes.  [default: NAME in lower case]")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(file_okay=False, path_type=Path),
+    default=Path(),
+    help="Folder to write to; made if it is not there.  [default: the current folder]",
+)
+def new(kind: str, name: str, package: str | None, output: Path) -> None:
+    """Start a new model called NAME that checks clean.
+
+    A node is one file; a system comes with two nodes, rules with a system that they watch. Files
+    that are there already are never replaced: then nothing is written.
+    """
+    from deros.interfaces.names import check_node_name, check_package_name
+
+    package = package if package is not None else name.lower()
+    for word, text, fault in (
+        ("NAME", name, check_node_name(name)),
+        ("package", package, check_package_name(package)),
+    ):
+        if fault is not None:
+            raise click.UsageError(f"ROS 2 refuses '{text}' as {word}: it {fault}")
+    files = {output / path: text for path, text in scaffold(kind, name, package).items()}
+    if there := [str(path) for path in files if path.exists() or path.is_symlink()]:
+        raise click.UsageError(f"not replacing {', '.join(there)}")
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+        for path, text in files.items():
+            with path.open("x", encoding="utf-8") as file:
+                file.write(text)
+    except OSError as error:
+        raise click.ClickException(f"cannot write {error.filename}: {error.strerror}") from error
+    for path in files:
+        click.echo(f"wrote {path}")
+    click.echo(f"next: deros check {next(iter(files))}")

@@ -1,0 +1,44 @@
+"""Options and exit codes that several commands share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Severity
+
+CLEAN = 0
+FINDINGS = 1
+UNUSABLE = 2
+
+_UNREADABLE = frozenset({codes.UNREADABLE_FILE, codes.NOT_UTF8, codes.UNKNOWN_LANGUAGE})
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def interfaces_option(command: Command) -> Command:
+    """Add ``--interfaces PATH``, which may be given several times."""
+    option = click.option(
+        "--interfaces",
+        "interfaces",
+        multiple=True,
+        metavar="PATH",
+        type=click.Path(exists=True, file_okay=False, path_type=Path),
+        help="Folder with .msg, .srv and .action files of packages; may be given several times.",
+    )
+    return option(command)
+
+
+def exit_code(diagnostics: Iterable[Diagnostic], *, strict: bool = False) -> int:
+    """Return 2 if an input could not be read, else 1 if a finding fails the run, else 0."""
+    code = CLEAN
+    for diagnostic in diagnostics:
+        if diagnostic.code in _UNREADABLE:
+            return UNUSABLE
+        if diagnostic.is_error or (strict and diagnostic.severity is Severity.WARNING):
+            code = FINDINGS
+    return code

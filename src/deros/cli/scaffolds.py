@@ -1,0 +1,152 @@
+"""The models that ``deros new`` starts with: small, complete, and clean under ``deros check``."""
+
+from __future__ import annotations
+
+from string import Template
+
+_NODE = """\
+node $name : $package "What this node does"
+
+parameters
+  name max_speed : double = 0.5 [m/s] in [0.0, 2.0] "Fastest allowed speed"
+
+subscribes
+  topic odom : nav_msgs.Odometry
+
+publishes
+  topic cmd_vel : geometry_msgs.Twist
+"""
+
+_BASE_NODE = """\
+node ${name}_base : $package "Drives the wheels and measures the speed"
+
+subscribes
+  topic cmd_vel : geometry_msgs.Twist
+
+publishes
+  topic odom : nav_msgs.Odometry
+"""
+
+_PILOT_NODE = """\
+node ${name}_pilot : $package "Decides where to go"
+
+parameters
+  name cruise_speed : double = 0.3 [m/s] in [0.0, 1.0]
+
+subscribes
+  topic odom : nav_msgs.Odometry
+
+publishes
+  topic cmd_vel : geometry_msgs.Twist
+"""
+
+_SYSTEM = """\
+system $name
+
+imports
+  import "${name}_base.rnd"
+  import "${name}_pilot.rnd"
+
+topics
+  topic /odom
+  topic /cmd_vel
+
+subsystem Hardware {
+  node base : ${name}_base
+  wirings
+    connect cmd_vel to /cmd_vel
+    connect odom to /odom
+}
+
+subsystem Mission {
+  node pilot : ${name}_pilot
+  parameters
+    param cruise_speed = 0.4
+  wirings
+    connect odom to /odom
+    connect cmd_vel to /cmd_vel
+}
+"""
+
+_WATCHED_NODE = """\
+node ${name}_robot : $package "The robot that the rules watch"
+
+subscribes
+  topic stop_robot : std_msgs.Bool
+
+publishes
+  topic odom : nav_msgs.Odometry
+  topic resume : std_msgs.Bool
+"""
+
+_WATCHED_SYSTEM = """\
+system ${name}_system
+
+imports
+  import "${name}_robot.rnd"
+
+topics
+  topic /odom
+  topic /resume
+  external topic /stop_robot    // published by the safety node that the rules become
+
+subsystem Robot {
+  node robot : ${name}_robot
+  wirings
+    connect odom to /odom
+    connect resume to /resume
+    connect stop_robot to /stop_robot
+}
+"""
+
+_RULES = """\
+use "${name}.system" import ${name}_system
+
+// Published while the robot must stand still; ends when somebody resumes.
+action stop publishes true on /stop_robot : std_msgs.Bool reset_by resume;
+action resume;
+
+const max_speed = 0.5 m/s
+
+input speed = topic /odom.twist.twist.linear.x timeout 0.5 sec
+input resume_button = topic /resume.data timeout 1 sec
+
+entity drive {
+  too_fast: speed.abs() > max_speed for 2 sec;
+  blind: speed.missing();
+}
+
+entity operator {
+  resumes: resume_button;
+  away: resume_button.missing();
+}
+
+if drive.too_fast or drive.blind then { stop; log_state("stopped"); };
+if operator.resumes then { resume; };
+if operator.away for 10 sec then { log_state("nobody at the button"); };
+"""
+
+_SCAFFOLDS: dict[str, dict[str, str]] = {
+    "node": {"$name.rnd": _NODE},
+    "system": {
+        "$name.system": _SYSTEM,
+        "${name}_base.rnd": _BASE_NODE,
+        "${name}_pilot.rnd": _PILOT_NODE,
+    },
+    "rules": {
+        "$name.deros": _RULES,
+        "$name.system": _WATCHED_SYSTEM,
+        "${name}_robot.rnd": _WATCHED_NODE,
+    },
+}
+
+KINDS = tuple(_SCAFFOLDS)
+
+
+def scaffold(kind: str, name: str, package: str) -> dict[str, str]:
+    """Return file names and texts of a new model of one of :data:`KINDS`, the main file first."""
+
+    def filled(template: str) -> str:
+        return Template(template).substitute(name=name, package=package)
+
+    return {filled(path): filled(text) for path, text in _SCAFFOLDS[kind].items()}

@@ -1,0 +1,1 @@
+"""Checks: typed models in, diagnostics out. One family of checks per file."""

@@ -1,0 +1,54 @@
+"""All checks of a run: every file that the user named, and everything that those files import."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from deros.diagnostics import Diagnostic, in_file_order
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import LoadedFile, Repository
+from deros.metamodels.node import NodeType
+from deros.metamodels.rules import Rules
+from deros.metamodels.system import System
+
+
+def check(
+    named: Iterable[LoadedFile], repository: Repository, store: InterfaceStore
+) -> list[Diagnostic]:
+    """Return the findings of the files in ``named`` and of their imports, in file order.
+
+    A system that was named, or that rules use, is checked as a whole; one that only another system
+    imports is checked as it is written, because the importing system may feed its topics.
+    """
+    loaded = list({id(each): each for each in (*named, *repository.files)}.values())
+    named_files = {id(each) for each in named}
+    used_by_rules = {
+        id(use.system.source)
+        for each in loaded
+        if isinstance(each.model, Rules)
+        for use in each.model.uses
+        if use.system is not None
+    }
+    findings: list[Diagnostic] = []
+    for each in loaded:
+        findings.extend(each.diagnostics)
+        whole = id(each) in named_files or id(each.source) in used_by_rules
+        findings.extend(_check_model(each, whole, store))
+    return in_file_order(findings)
+
+
+def _check_model(loaded: LoadedFile, whole: bool, store: InterfaceStore) -> Iterator[Diagnostic]:
+    """Run the family that the model belongs to; each is imported only when a model asks for it."""
+    model = loaded.model
+    if isinstance(model, NodeType):
+        from deros.validators.node import check_node
+
+        yield from check_node(model, store)
+    elif isinstance(model, System):
+        from deros.validators.system import check_system, check_written
+
+        yield from check_system(model, store) if whole else check_written(model, store)
+    elif isinstance(model, Rules):
+        from deros.validators.rules import check_rules
+
+        yield from check_rules(model, store)

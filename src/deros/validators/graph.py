@@ -1,0 +1,160 @@
+"""The wiring of a system as a networkx graph: who talks to whom, over what, of which type.
+
+The graph is a plain :class:`networkx.MultiDiGraph`, so that all of networkx works on it::
+
+    flat = flatten(system)
+    graph = wiring_graph(flat)
+    networkx.descendants(graph, node_vertex("/sensors/imu"))
+
+**Vertices** are pairs ``(kind, full name)``; the kind is ``"node"``, ``"topic"``, ``"service"`` or
+``"action"``, so that a node and a topic of one name stay apart. Their attributes:
+
+======= =========== ===============================================================================
+kind    attribute   meaning
+======= =========== ===============================================================================
+node    ``node``    the :class:`~deros.metamodels.flatten.FlatNode`
+topic   ``topic``   its first declaration, a :class:`~deros.metamodels.flatten.FlatTopic`;
+                    ``None`` when no ``topics`` section declares it
+topic   ``untyped`` a tuple of :class:`UntypedEnd`: wirings through a parameter that no port claims;
+                    neither type nor direction of such an end is known, so it is no edge
+======= =========== ===============================================================================
+
+**Edges** run the way the data (or the request) flows: publisher to topic, topic to subscription,
+client to service, service to server. Their attributes:
+
+========= =========================================================================================
+``end``   the :class:`End`: the node and its port
+``port``  the port's name as its node description has it
+``type``  the port's :class:`~deros.interfaces.types.InterfaceType`
+``wired`` ``False`` for a port that no ``connect`` mentions: it talks on its own name all the same
+========= =========================================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import networkx as nx
+
+from deros.metamodels.node import PortKind
+
+if TYPE_CHECKING:
+    from deros.diagnostics import Span
+    from deros.interfaces.types import InterfaceType
+    from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, UntypedWiring
+
+VertexKind = Literal["node", "topic", "service", "action"]
+Vertex = tuple[VertexKind, str]
+
+CHANNEL: dict[PortKind, VertexKind] = {
+    PortKind.PUBLISHER: "topic",
+    PortKind.SUBSCRIPTION: "topic",
+    PortKind.CLIENT: "service",
+    PortKind.SERVICE: "service",
+    PortKind.ACTION_CLIENT: "action",
+    PortKind.ACTION: "action",
+}
+"""The kind of vertex that a port of each kind is connected to."""
+
+SOURCES = frozenset({PortKind.PUBLISHER, PortKind.CLIENT, PortKind.ACTION_CLIENT})
+"""The kinds of port whose edge leaves the node."""
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """One end of a channel: a port of a node of the running system."""
+
+    node: FlatNode
+    port: FlatPort
+
+    @property
+    def type(self) -> InterfaceType:
+        """The type that the node description gives the port."""
+        return self.port.port.type
+
+    @property
+    def wired(self) -> bool:
+        """Whether a ``connect`` mentions the port."""
+        return self.port.wiring is not None
+
+    @property
+    def span(self) -> Span:
+        """Where the system connects the port: the ``connect``, or the node's name without one."""
+        wiring = self.port.wiring
+        return wiring.span if wiring is not None else self.node.instance.name_span
+
+    @property
+    def name(self) -> str:
+        """Node and port for messages, as ``/base/odometry (odom)``."""
+        return f"{self.node.full_name} ({self.port.port.name})"
+
+
+@dataclass(frozen=True, slots=True)
+class UntypedEnd:
+    """A wiring through a string parameter that no port claims, with the node that it belongs to."""
+
+    node: FlatNode
+    wiring: UntypedWiring
+
+
+def node_vertex(full_name: str) -> Vertex:
+    """Return the vertex of the node called ``full_name``."""
+    return ("node", full_name)
+
+
+def topic_vertex(name: str) -> Vertex:
+    """Return the vertex of the topic with the graph name ``name``."""
+    return ("topic", name)
+
+
+def wiring_graph(flat: FlatSystem) -> nx.MultiDiGraph[Vertex]:
+    """Build the graph of a system in time linear in its size; see the module for what it holds.
+
+    Two nodes of one full name, which a check reports, share a vertex; their edges stay apart.
+    """
+    graph: nx.MultiDiGraph[Vertex] = nx.MultiDiGraph()
+    for topic in flat.topics:
+        vertex = topic_vertex(topic.name)
+        if vertex not in graph:
+            graph.add_node(vertex, topic=topic, untyped=())
+    for node in flat.nodes:
+        here = node_vertex(node.full_name)
+        if here not in graph:
+            graph.add_node(here, node=node)
+        for port in node.ports:
+            _connect(graph, here, End(node, port))
+        for wiring in node.untyped:
+            vertex = topic_vertex(wiring.topic)
+            if vertex not in graph:
+                graph.add_node(vertex, topic=None, untyped=())
+            graph.nodes[vertex]["untyped"] += (UntypedEnd(node, wiring),)
+    return graph
+
+
+def _connect(graph: nx.MultiDiGraph[Vertex], here: Vertex, end: End) -> None:
+    port = end.port.port
+    channel: Vertex = (CHANNEL[port.kind], end.port.topic)
+    if channel not in graph:
+        if channel[0] == "topic":
+            graph.add_node(channel, topic=None, untyped=())
+        else:
+            graph.add_node(channel)
+    source, target = (here, channel) if port.kind in SOURCES else (channel, here)
+    graph.add_edge(source, target, end=end, port=port.name, type=port.type, wired=end.wired)
+
+
+def channels(graph: nx.MultiDiGraph[Vertex]) -> Iterator[Vertex]:
+    """Yield the topics, services and actions: declared topics first, in the order written."""
+    return (vertex for vertex in graph if vertex[0] != "node")
+
+
+def publishers(graph: nx.MultiDiGraph[Vertex], channel: Vertex) -> list[End]:
+    """Return the ends that feed ``channel``: publishers of a topic, clients of a service."""
+    return [edge["end"] for edges in graph.pred[channel].values() for edge in edges.values()]
+
+
+def subscribers(graph: nx.MultiDiGraph[Vertex], channel: Vertex) -> list[End]:
+    """Return the ends that ``channel`` feeds: subscriptions of a topic, servers of a service."""
+    return [edge["end"] for edges in graph.succ[channel].values() for edge in edges.values()]

@@ -1,0 +1,76 @@
+"""The wording of hints that every family uses, and near matches among very many names."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
+
+from deros.interfaces import names
+
+_FEW = 300
+"""Up to so many names are compared with one by one; that takes microseconds each."""
+
+
+def did_you_mean(name: str, candidates: Iterable[str], otherwise: str = "") -> str:
+    """Return the hint that names the candidates nearly spelt as ``name``, or ``otherwise``."""
+    return names.did_you_mean(names.near(name, candidates)) or otherwise
+
+
+def one_of(candidates: Iterable[str], what: str) -> str:
+    """Return the hint that lists what there is, if that is few enough to read."""
+    listed = sorted(set(candidates))
+    return f"{what}: {', '.join(listed)}" if 0 < len(listed) <= 8 else ""
+
+
+class NameIndex:
+    """Near matches of one name among very many, in time that does not grow with their number.
+
+    Few candidates are compared one by one. Of many, those are found that differ in one place (a
+    character too many, too few, wrong, or two swapped), or only before their last ``/``.
+    """
+
+    def __init__(self, candidates: Mapping[str, object]) -> None:
+        """Hold the candidates; they are indexed when first asked about."""
+        self._candidates = candidates
+
+    def did_you_mean(self, name: str, otherwise: str = "") -> str:
+        """Return the hint for ``name``, or ``otherwise`` without a near match."""
+        return names.did_you_mean(self.near(name)) or otherwise
+
+    def near(self, name: str, n: int = 3) -> list[str]:
+        """Return up to ``n`` candidates that ``name`` was probably meant to be, best first."""
+        if len(self._candidates) <= _FEW:
+            return names.near(name, self._candidates, n)
+        found: dict[str, None] = {}
+        for variant in _variants(name):
+            found.update(dict.fromkeys(self._by_variant.get(variant, ())))
+        found.update(dict.fromkeys(self._by_last_part.get(_last_part(name), ())[:n]))
+        found.pop(name, None)
+        return names.near(name, list(found)[:_FEW], n) or list(found)[:n]
+
+    @cached_property
+    def _by_variant(self) -> dict[str, list[str]]:
+        index: dict[str, list[str]] = defaultdict(list)
+        for candidate in self._candidates:
+            for variant in _variants(candidate):
+                index[variant].append(candidate)
+        return index
+
+    @cached_property
+    def _by_last_part(self) -> dict[str, list[str]]:
+        index: dict[str, list[str]] = defaultdict(list)
+        for candidate in self._candidates:
+            index[_last_part(candidate)].append(candidate)
+        return index
+
+
+def _variants(name: str) -> Iterator[str]:
+    """Yield the name, and it short of any one character: names one edit apart share a variant."""
+    yield name
+    for position in range(len(name)):
+        yield name[:position] + name[position + 1 :]
+
+
+def _last_part(name: str) -> str:
+    return name.rpartition("/")[2]

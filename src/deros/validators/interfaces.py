@@ -1,0 +1,50 @@
+"""The finding for an interface type that cannot be found: its package or its name is unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Span, report
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceKind, InterfaceType
+from deros.validators.hints import did_you_mean
+
+_WORD: dict[InterfaceKind, str] = {"msg": "message", "srv": "service", "action": "action"}
+
+
+def type_finding(store: InterfaceStore, wanted: InterfaceType, span: Span) -> Iterator[Diagnostic]:
+    """Yield one finding if ``store`` does not know ``wanted``, with the names that nearly match."""
+    if store.exists(wanted):
+        return
+    if not store.has_package(wanted.package):
+        yield report(
+            codes.UNKNOWN_PACKAGE,
+            f"no interface package '{wanted.package}' is known",
+            span,
+            hint=did_you_mean(
+                wanted.package,
+                store.packages(),
+                "for interfaces of your own name their folder with --interfaces PATH, "
+                "or source the workspace that has them",
+            ),
+        )
+        return
+    word = _WORD[wanted.kind]
+    yield report(
+        codes.UNKNOWN_TYPE,
+        f"package '{wanted.package}' has no {word} type '{wanted.name}'",
+        span,
+        hint=did_you_mean(
+            wanted.name, store.names(wanted.package, wanted.kind), _elsewhere(store, wanted)
+        ),
+    )
+
+
+def _elsewhere(store: InterfaceStore, wanted: InterfaceType) -> str:
+    """Tell where a type of this name is: as another kind of interface, or in another package."""
+    for kind, word in _WORD.items():
+        if kind != wanted.kind and wanted.name in store.names(wanted.package, kind):
+            return f"'{wanted.short}' is a type of {word}, not of {_WORD[wanted.kind]}"
+    owners = sorted(p for p in store.packages() if wanted.name in store.names(p, wanted.kind))
+    return f"there is {' and '.join(f'{p}.{wanted.name}' for p in owners[:3])}" if owners else ""

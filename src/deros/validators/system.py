@@ -1,0 +1,34 @@
+"""Checks of system descriptions: what is written, instance by instance, and what it amounts to.
+
+A system that another one imports is checked as written (:func:`check_written`); its topics may well
+be fed by the importing system, so only a system that stands on its own is also checked as a whole,
+on the graph that it amounts to (:func:`check_system`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros.diagnostics import Diagnostic
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.flatten import flatten
+from deros.metamodels.system import System
+from deros.validators.graph import wiring_graph
+from deros.validators.system_names import check_names
+from deros.validators.system_nodes import check_instances
+from deros.validators.system_topics import check_topics
+
+
+def check_system(system: System, store: InterfaceStore) -> Iterator[Diagnostic]:
+    """Yield all findings of a system that stands on its own; linear in its size."""
+    flat = flatten(system)
+    yield from check_names(flat, store)
+    yield from check_instances(flat)
+    yield from check_topics(flat, wiring_graph(flat))
+
+
+def check_written(system: System, store: InterfaceStore) -> Iterator[Diagnostic]:
+    """Yield the findings of a system as it is written, whoever else may use its topics."""
+    flat = flatten(system)
+    yield from check_names(flat, store)
+    yield from check_instances(flat)

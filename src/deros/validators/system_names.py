@@ -1,0 +1,149 @@
+"""Names in a system description: legal in ROS 2, declared once, imported for a purpose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.interfaces.names import check_namespace, check_node_name, check_topic_name
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.flatten import FlatNode, FlatSystem, FlatTopic
+from deros.metamodels.system import NodeInstance, Subsystem, System
+from deros.validators.interfaces import type_finding
+
+
+def check_names(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
+    """Yield the findings about names that ``flat.system`` itself writes, not its imports."""
+    system = flat.system
+    yield from _refused(check_node_name(system.name), system.name, system.name_span)
+    yield from _members(system.members)
+    yield from _topics(flat, store)
+    yield from _unused_imports(system)
+    yield from _one_full_name(flat)
+
+
+def _refused(fault: str | None, name: str, span: Span | None) -> Iterator[Diagnostic]:
+    if fault is not None and span is not None:
+        yield report(
+            codes.INVALID_SYSTEM_NAME, f"ROS 2 refuses the name '{name}': it {fault}", span
+        )
+
+
+def _members(members: tuple[NodeInstance | Subsystem, ...]) -> Iterator[Diagnostic]:
+    seen: dict[str, Subsystem] = {}
+    for member in members:
+        if member.namespace is not None:
+            fault = check_namespace(member.namespace)
+            yield from _refused(fault, member.namespace, member.namespace_span)
+        yield from _refused(check_node_name(member.name), member.name, member.name_span)
+        if isinstance(member, NodeInstance):
+            for wiring in member.wirings:
+                fault = check_topic_name(wiring.target)
+                yield from _refused(fault, wiring.target, wiring.target_span)
+            continue
+        first = seen.setdefault(member.name, member)
+        if first is not member:
+            yield report(
+                codes.DUPLICATE_SUBSYSTEM,
+                f"a subsystem '{member.name}' stands here already",
+                member.name_span,
+                hint="give one of them another name, or put their nodes into one subsystem",
+                related=(Related(first.name_span, "the first one"),),
+            )
+        if member.system_name is not None and member.system is None:
+            yield report(
+                codes.UNKNOWN_SYSTEM,
+                f"no import defines a system '{member.system_name}'",
+                member.system_span or member.name_span,
+                hint="import the file that describes it",
+            )
+        yield from _members(member.members)
+
+
+def _topics(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
+    """Check the topics that this file declares: names, pinned types, each declared once."""
+    seen: dict[str, FlatTopic] = {}
+    for topic in flat.topics:
+        declaration = topic.declaration
+        if declaration.span.source is not flat.system.source:
+            continue
+        yield from _refused(
+            check_topic_name(declaration.name), declaration.name, declaration.name_span
+        )
+        if declaration.type is not None and declaration.type_span is not None:
+            yield from type_finding(store, declaration.type, declaration.type_span)
+        first = seen.setdefault(topic.name, topic)
+        if first is not topic:
+            yield report(
+                codes.DUPLICATE_TOPIC,
+                f"topic '{topic.name}' is declared twice",
+                declaration.name_span,
+                hint="keep one of the two declarations",
+                related=(Related(first.declaration.name_span, "the first declaration"),),
+            )
+
+
+def _unused_imports(system: System) -> Iterator[Diagnostic]:
+    used = set(_used_files(system.members))
+    defining = {t.source.path for t in system.node_types.values()}
+    defining.update(s.source.path for s in system.systems.values())
+    for line in system.imports:
+        # A file that defines nothing has a finding of its own; it is not also called unused.
+        files = defining.intersection(line.files)
+        if files and used.isdisjoint(files):
+            yield report(
+                codes.UNUSED_IMPORT,
+                f'nothing from "{line.path}" is used',
+                line.span,
+                hint="remove the import, or add the node that it was meant for",
+            )
+
+
+def _used_files(members: tuple[NodeInstance | Subsystem, ...]) -> Iterator[str]:
+    for member in members:
+        if isinstance(member, NodeInstance):
+            if member.type is not None:
+                yield member.type.source.path
+            continue
+        if member.system is not None:
+            yield member.system.source.path
+        yield from _used_files(member.members)
+
+
+def _one_full_name(flat: FlatSystem) -> Iterator[Diagnostic]:
+    seen: dict[str, FlatNode] = {}
+    for node in flat.nodes:
+        first = seen.setdefault(node.full_name, node)
+        if first is node or _is_matter_of_import(flat.system, first, node):
+            continue
+        yield report(
+            codes.DUPLICATE_NODE_NAME,
+            f"two nodes are called '{node.full_name}'",
+            _place(flat.system, node),
+            hint="rename one, or give it or its subsystem a namespace",
+            related=(Related(_place(flat.system, first), "the other one"),),
+        )
+
+
+def _is_matter_of_import(system: System, first: FlatNode, second: FlatNode) -> bool:
+    """Tell whether the two collide within one imported file, whose own check reports them."""
+    source = second.instance.span.source
+    return (
+        source is not system.source
+        and first.instance.span.source is source
+        and first.instance is not second.instance
+    )
+
+
+def _place(system: System, node: FlatNode) -> Span:
+    """Return where ``system`` brings the node in: itself, or by using an imported system."""
+    if node.instance.span.source is system.source:
+        return node.instance.name_span
+    members: tuple[NodeInstance | Subsystem, ...] = system.members
+    for name in node.path:
+        group = next(m for m in members if isinstance(m, Subsystem) and m.name == name)
+        if group.system_name is not None:
+            return group.name_span
+        members = group.members
+    return node.instance.name_span

@@ -1,0 +1,210 @@
+"""Each node instance against its type: ports, topics that it is wired to, parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, report
+from deros.metamodels.common import Value
+from deros.metamodels.flatten import FlatNode, FlatSystem, is_topic_parameter, resolve_name
+from deros.metamodels.node import NodeType, Parameter, ParameterType, PortKind
+from deros.metamodels.system import NodeInstance, ParameterSetting, Wiring
+from deros.validators.hints import NameIndex, did_you_mean, one_of
+from deros.validators.values import constraint_fault, type_fault
+
+_TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
+
+BUILT_IN_PARAMETERS: Mapping[str, ParameterType] = {
+    "use_sim_time": ParameterType.BOOL,
+    "start_type_description_service": ParameterType.BOOL,
+}
+"""Parameters that every ROS 2 node has without declaring them."""
+
+
+def check_instances(flat: FlatSystem) -> Iterator[Diagnostic]:
+    """Yield the findings about the node instances that ``flat.system``'s own file writes."""
+    declared = {topic.name: None for topic in flat.topics}
+    index = NameIndex(declared)
+    for node in flat.nodes:
+        if node.instance.span.source is flat.system.source:
+            yield from _settings(node)
+            yield from _wirings(node, declared, index)
+
+
+# Parameters -------------------------------------------------------------------------------------
+
+
+def _settings(node: FlatNode) -> Iterator[Diagnostic]:
+    seen: dict[str, ParameterSetting] = {}
+    for setting in node.instance.parameters:
+        first = seen.setdefault(setting.name, setting)
+        if first is not setting:
+            yield report(
+                codes.DUPLICATE_SETTING,
+                f"parameter '{setting.name}' of '{node.instance.name}' is set twice",
+                setting.name_span,
+                hint="keep one of the two values",
+                related=(Related(first.span, "the first value"),),
+            )
+        if node.type is not None:
+            yield from _setting(node.type, setting)
+    if node.type is not None and node.type.parameters:
+        yield from _without_value(node, node.type)
+
+
+def _setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[Diagnostic]:
+    parameter = node_type.parameter(setting.name)
+    if parameter is None:
+        kind = BUILT_IN_PARAMETERS.get(setting.name)
+        if kind is None and not setting.name.startswith("qos_overrides."):
+            names = [p.name for p in node_type.parameters]
+            yield report(
+                codes.UNKNOWN_PARAMETER,
+                f"node type '{node_type.name}' has no parameter '{setting.name}'",
+                setting.name_span,
+                hint=did_you_mean(setting.name, names, one_of(names, "its parameters")),
+                related=(Related(node_type.name_span, "the node type"),),
+            )
+        elif kind is not None and (fault := type_fault(kind, setting.value)) is not None:
+            yield report(
+                codes.WRONG_PARAMETER_VALUE,
+                f"parameter '{setting.name}' of every ROS 2 node is {kind.value}: {fault}",
+                setting.value_span,
+            )
+        return
+    yield from _value(parameter, setting)
+
+
+def _value(parameter: Parameter, setting: ParameterSetting) -> Iterator[Diagnostic]:
+    place = (Related(parameter.span, "declared here"),)
+    fault = type_fault(parameter.type, setting.value)
+    if fault is not None:
+        yield report(
+            codes.WRONG_PARAMETER_VALUE,
+            f"parameter '{parameter.name}' is {parameter.type.value}: {fault}",
+            setting.value_span,
+            hint=_value_hint(parameter.type, setting.value),
+            related=place,
+        )
+        return
+    fault = constraint_fault(parameter, setting.value)
+    if fault is not None:
+        yield report(
+            codes.PARAMETER_OUT_OF_RANGE,
+            f"value of parameter '{parameter.name}': {fault}",
+            setting.value_span,
+            related=place,
+        )
+
+
+def _value_hint(kind: ParameterType, value: Value) -> str:
+    """Say what would fit where the mistake is a common one: quotes, or a fraction."""
+    if kind is ParameterType.STRING and not isinstance(value, tuple):
+        return "put the text in quotes"
+    if isinstance(value, str) and kind is not ParameterType.STRING and not kind.is_array:
+        return "write the value without quotes"
+    if kind is ParameterType.INTEGER and isinstance(value, float):
+        return "an integer has no fraction"
+    return ""
+
+
+def _without_value(node: FlatNode, node_type: NodeType) -> Iterator[Diagnostic]:
+    given = {name for name, _ in node.parameters}
+    for parameter in node_type.parameters:
+        if parameter.default is None and parameter.name not in given:
+            yield report(
+                codes.PARAMETER_WITHOUT_VALUE,
+                f"parameter '{parameter.name}' of '{node.instance.name}' has neither a default "
+                "nor a value",
+                node.instance.name_span,
+                hint=f"add 'param {parameter.name} = …' to the node",
+                related=(Related(parameter.span, "declared here without a default"),),
+            )
+
+
+# Wirings ----------------------------------------------------------------------------------------
+
+
+def _wirings(
+    node: FlatNode, declared: Mapping[str, None], index: NameIndex
+) -> Iterator[Diagnostic]:
+    instance, node_type = node.instance, node.type
+    if node_type is None:
+        return
+    seen: dict[str, Wiring] = {}
+    for wiring in instance.wirings:
+        first = seen.setdefault(wiring.port.removeprefix("/"), wiring)
+        if first is not wiring:
+            yield report(
+                codes.DUPLICATE_SETTING,
+                f"'{wiring.port}' of '{instance.name}' is connected twice",
+                wiring.port_span,
+                hint="a port has one topic; remove one of the two connections",
+                related=(Related(first.span, "the first connection"),),
+            )
+        port = node_type.port(wiring.port)
+        if port is None and not is_topic_parameter(node_type, wiring.port):
+            yield _unknown_port(instance, node_type, wiring)
+            continue
+        if port is None:
+            yield from _conflict(node, wiring)
+        if port is None or port.kind in _TOPIC_KINDS:
+            target = resolve_name(wiring.target, node.namespace, instance.name)
+            if target not in declared:
+                yield report(
+                    codes.UNKNOWN_TOPIC,
+                    f"no topic '{target}' is declared",
+                    wiring.target_span,
+                    hint=index.did_you_mean(
+                        target, f"declare it: 'topic {wiring.target}' under 'topics'"
+                    ),
+                )
+    for untyped in node.untyped:
+        yield report(
+            codes.UNTYPED_WIRING,
+            f"no port of '{node_type.name}' takes its name from parameter '{untyped.wiring.port}': "
+            f"the type of '{untyped.topic}' is not known here",
+            untyped.wiring.span,
+            hint=f"add the port with 'via {untyped.wiring.port}' to the node description",
+            related=(Related(node_type.name_span, "the node type"),),
+        )
+
+
+def _unknown_port(instance: NodeInstance, node_type: NodeType, wiring: Wiring) -> Diagnostic:
+    parameter = node_type.parameter(wiring.port)
+    if parameter is not None:
+        message = (
+            f"parameter '{parameter.name}' is {parameter.type.value} and cannot hold a topic's name"
+        )
+        related = Related(parameter.span, "declared here")
+        hint = "connect a port, or a string parameter that holds the topic's name"
+    else:
+        message = f"node type '{node_type.name}' has no port '{wiring.port}'"
+        related = Related(node_type.name_span, f"the type of '{instance.name}'")
+        names = [port.name for port in node_type.ports]
+        names += [p.name for p in node_type.parameters if p.type is ParameterType.STRING]
+        hint = did_you_mean(
+            wiring.port, names, one_of((p.name for p in node_type.ports), "its ports")
+        )
+    return report(codes.UNKNOWN_PORT, message, wiring.port_span, hint, (related,))
+
+
+def _conflict(node: FlatNode, wiring: Wiring) -> Iterator[Diagnostic]:
+    """Compare the topic that a parameter is wired to with the value that ``param`` gives it."""
+    setting = next((p for p in node.instance.parameters if p.name == wiring.port), None)
+    if setting is None or not isinstance(setting.value, str):
+        return
+
+    def full(name: str) -> str:
+        return resolve_name(name, node.namespace, node.instance.name)
+
+    if full(setting.value) != full(wiring.target):
+        yield report(
+            codes.TOPIC_PARAMETER_CONFLICT,
+            f"parameter '{setting.name}' says \"{setting.value}\", "
+            f"but is connected to '{wiring.target}'",
+            setting.value_span,
+            hint="the wiring alone is enough: remove the param",
+            related=(Related(wiring.span, "connected here"),),
+        )

@@ -1,0 +1,290 @@
+"""Topics, services and actions as a whole: types that meet, ends that are missing."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from deros import codes
+from deros.codes import Code
+from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.metamodels.flatten import FlatSystem, FlatTopic, resolve_name
+from deros.metamodels.node import PortKind
+from deros.validators.graph import End, Vertex, channels, publishers, subscribers
+from deros.validators.hints import NameIndex
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+    from deros.interfaces.types import InterfaceType
+
+_SEEKS_A_PARTNER = {
+    PortKind.PUBLISHER: "publisher",
+    PortKind.SUBSCRIPTION: "subscription",
+    PortKind.CLIENT: "client",
+    PortKind.ACTION_CLIENT: "action client",
+}
+"""Ports for which no wiring is worth a word; a server is reached under its own name as it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Channel:
+    """A topic, service or action with its ends; ``open`` when the model cannot know them all."""
+
+    vertex: Vertex
+    declared: FlatTopic | None
+    sources: list[End]
+    sinks: list[End]
+    open: bool
+
+    @property
+    def name(self) -> str:
+        return self.vertex[1]
+
+    @property
+    def type(self) -> InterfaceType:
+        """The type of the first end; only for channels that have one."""
+        return (self.sources or self.sinks)[0].type
+
+    @property
+    def span(self) -> Span:
+        if self.declared is not None:
+            return self.declared.declaration.name_span
+        return (self.sources or self.sinks)[0].span
+
+
+def check_topics(flat: FlatSystem, graph: nx.MultiDiGraph[Vertex]) -> Iterator[Diagnostic]:
+    """Yield the findings about whole topics, services and actions, and about unwired ports."""
+    guessed = _targets_of_unknown_ports(flat)
+    found = [_channel(graph, vertex, guessed) for vertex in channels(graph)]
+    for channel in found:
+        yield from _types(channel)
+    topics = [channel for channel in found if channel.vertex[0] == "topic"]
+    pairs = _misspelt_pairs(topics)
+    misspelt = {channel.name for pair in pairs for channel in pair}
+    for fed, read in pairs:
+        yield _misspelling(fed, read)
+    yield from _missing_ends(topics, misspelt)
+    for channel in found:
+        if channel.vertex[0] != "topic":
+            yield from _missing_server(channel)
+    yield from _unwired(flat, {channel.vertex: channel for channel in found})
+
+
+def _channel(graph: nx.MultiDiGraph[Vertex], vertex: Vertex, guessed: set[str]) -> _Channel:
+    attributes = graph.nodes[vertex]
+    declared: FlatTopic | None = attributes.get("topic")
+    if vertex[0] != "topic":
+        # A service has no declaration of its own; an external topic of its name speaks for it.
+        declared = graph.nodes.get(("topic", vertex[1]), {}).get("topic")
+    is_open = (
+        (declared is not None and declared.declaration.external)
+        or bool(attributes.get("untyped"))
+        or vertex[1] in guessed
+    )
+    return _Channel(
+        vertex, declared, publishers(graph, vertex), subscribers(graph, vertex), is_open
+    )
+
+
+def _targets_of_unknown_ports(flat: FlatSystem) -> set[str]:
+    """Return the topics wired to ports that are not known, which other findings report.
+
+    Whether such a port publishes or subscribes cannot be told: nothing is said to be missing there.
+    """
+    targets: set[str] = set()
+    for node in flat.nodes:
+        for wiring in node.instance.wirings:
+            if node.type is None or node.type.port(wiring.port) is None:
+                targets.add(resolve_name(wiring.target, node.namespace, node.instance.name))
+    return targets
+
+
+# Types ------------------------------------------------------------------------------------------
+
+
+def _types(channel: _Channel) -> Iterator[Diagnostic]:
+    ends = channel.sources + channel.sinks
+    pinned = channel.declared.declaration.type if channel.declared is not None else None
+    if channel.vertex[0] == "topic" and pinned is not None and channel.declared is not None:
+        place = channel.declared.declaration.type_span
+        for end in ends:
+            if end.type != pinned:
+                yield report(
+                    codes.PINNED_TYPE_VIOLATED,
+                    f"'{channel.name}' is pinned to {pinned.short}, "
+                    f"but {end.name} has {end.type.short}",
+                    end.span,
+                    related=(
+                        *((Related(place, "pinned here"),) if place is not None else ()),
+                        Related(end.port.port.type_span, f"{end.port.port.name} is declared here"),
+                    ),
+                )
+        return
+    if not ends:
+        return
+    reference = ends[0]
+    for end in ends:
+        if end.type != reference.type:
+            yield report(
+                codes.TYPE_MISMATCH,
+                f"'{channel.name}' joins two types: {end.name} has {end.type.short}, "
+                f"{reference.name} has {reference.type.short}",
+                end.span,
+                hint="connect one of them to another topic, or make their types agree",
+                related=(
+                    Related(end.port.port.type_span, f"{end.type.short} is declared here"),
+                    Related(reference.span, "the other end is connected here"),
+                    Related(
+                        reference.port.port.type_span, f"{reference.type.short} is declared here"
+                    ),
+                ),
+            )
+
+
+# Missing ends -----------------------------------------------------------------------------------
+
+
+def _missing_ends(topics: Iterable[_Channel], misspelt: set[str]) -> Iterator[Diagnostic]:
+    lonely = [t for t in topics if t.declared is not None and not t.open and t.name not in misspelt]
+    fed: dict[InterfaceType, str] = {}
+    for topic in lonely:
+        if topic.sources and not topic.sinks:
+            fed.setdefault(topic.type, topic.name)
+    for topic in lonely:
+        if not topic.sources and not topic.sinks:
+            yield report(
+                codes.UNUSED_TOPIC,
+                f"nobody publishes or subscribes '{topic.name}'",
+                topic.span,
+                hint="remove the declaration, or connect ports to it",
+            )
+        elif not topic.sources:
+            other = fed.get(topic.type)
+            yield _one_sided(
+                codes.NO_PUBLISHER,
+                f"nobody publishes '{topic.name}', "
+                f"which {_names(topic.sinks)} subscribe{_s(topic.sinks)}",
+                topic,
+                topic.sinks,
+                f"'{other}' has the same type and nobody subscribes it; " if other else "",
+            )
+        elif not topic.sinks:
+            yield _one_sided(
+                codes.NO_SUBSCRIBER,
+                f"nobody subscribes '{topic.name}', which {_names(topic.sources)} "
+                f"publish{'es' if len(topic.sources) == 1 else ''}",
+                topic,
+                topic.sources,
+                "",
+            )
+
+
+def _one_sided(code: Code, message: str, topic: _Channel, ends: list[End], hint: str) -> Diagnostic:
+    direction = "fed from" if code is codes.NO_PUBLISHER else "read"
+    return report(
+        code,
+        message,
+        topic.span,
+        hint=f"{hint}if it is {direction} outside the model, declare it 'external topic'",
+        related=tuple(Related(end.span, f"connected here: {end.name}") for end in ends[:3]),
+    )
+
+
+def _names(ends: list[End]) -> str:
+    """Name up to two ends and count the rest."""
+    shown = [end.node.full_name for end in ends[:2]]
+    if len(ends) > 2:
+        return f"{', '.join(shown)} and {len(ends) - 2} more"
+    return " and ".join(shown)
+
+
+def _s(ends: list[End]) -> str:
+    return "s" if len(ends) == 1 else ""
+
+
+def _missing_server(channel: _Channel) -> Iterator[Diagnostic]:
+    if channel.sinks or channel.open:
+        return
+    for end in channel.sources:
+        if end.wired:
+            yield report(
+                codes.SERVICE_WITHOUT_SERVER,
+                f"no node serves the {channel.vertex[0]} '{channel.name}' that {end.name} calls",
+                end.span,
+                hint="connect a server to that name; if it is outside the model, "
+                f"declare 'external topic {channel.name}'",
+                related=(Related(end.port.port.span, "the client is declared here"),),
+            )
+
+
+# Misspellings -----------------------------------------------------------------------------------
+
+
+def _misspelt_pairs(topics: Iterable[_Channel]) -> list[tuple[_Channel, _Channel]]:
+    """Pair topics that are only published with ones of the same type that are only subscribed.
+
+    Two belong together when their names nearly match: then it is likelier that one name is wrong
+    than that two connections are missing.
+    """
+    fed: dict[InterfaceType, dict[str, _Channel]] = defaultdict(dict)
+    read: dict[InterfaceType, dict[str, _Channel]] = defaultdict(dict)
+    for topic in topics:
+        if topic.open or bool(topic.sources) == bool(topic.sinks):
+            continue
+        (fed if topic.sources else read)[topic.type][topic.name] = topic
+    pairs: list[tuple[_Channel, _Channel]] = []
+    for kind, readers in read.items():
+        candidates = fed.get(kind, {})
+        index = NameIndex(candidates)
+        taken: set[str] = set()
+        for name, reader in readers.items():
+            for match in index.near(name):
+                if match not in taken:
+                    taken.add(match)
+                    pairs.append((candidates[match], reader))
+                    break
+    return pairs
+
+
+def _misspelling(fed: _Channel, read: _Channel) -> Diagnostic:
+    return report(
+        codes.LIKELY_MISSPELLING,
+        f"'{read.name}' is only subscribed and '{fed.name}' only published, "
+        f"both {fed.type.short}: probably one topic",
+        read.span,
+        hint=f"connect {_names(read.sinks)} to '{fed.name}', or the other way round",
+        related=(
+            Related(fed.span, f"'{fed.name}'"),
+            Related(fed.sources[0].span, f"published by {fed.sources[0].name}"),
+            Related(read.sinks[0].span, f"subscribed by {read.sinks[0].name}"),
+        ),
+    )
+
+
+# Unwired ports ----------------------------------------------------------------------------------
+
+
+def _unwired(flat: FlatSystem, by_vertex: dict[Vertex, _Channel]) -> Iterator[Diagnostic]:
+    for node in flat.nodes:
+        for port in node.ports:
+            if port.wiring is not None or port.port.kind not in _SEEKS_A_PARTNER:
+                continue
+            word = _SEEKS_A_PARTNER[port.port.kind]
+            yield report(
+                codes.UNWIRED_PORT,
+                f"{word} '{port.port.name}' of '{node.instance.name}' is not connected",
+                node.instance.name_span,
+                hint=_unwired_hint(port.port.name, port.topic, word, by_vertex),
+                related=(Related(port.port.span, f"the {word} is declared here"),),
+            )
+
+
+def _unwired_hint(name: str, topic: str, word: str, by_vertex: dict[Vertex, _Channel]) -> str:
+    channel = by_vertex.get(("topic", topic))
+    if channel is not None and channel.declared is not None:
+        return f"'{topic}' is declared and has its name: add 'connect {name} to {topic}'"
+    what = "talks on" if word in ("publisher", "subscription") else "calls"
+    return f"it {what} its own name, '{topic}', unless a 'connect {name} to …' says otherwise"
