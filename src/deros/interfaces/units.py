@@ -294,12 +294,13 @@ _PINT_BASES = {
 def _ask_pint(word: str) -> Unit | None:
     """Look a word up in pint; its root units keep the radian that its base units drop."""
     registry = _pint_registry()
-    if word not in registry:
+    try:
+        one = registry.Quantity(Fraction(1), word).to_root_units()
+        two = registry.Quantity(Fraction(2), word).to_root_units()
+    except Exception:  # pint has no common base for what its own parser and units raise
         return None
-    factor, root = registry.get_root_units(word, check_nonmult=True)
-    if factor is None:  # a logarithmic unit or one with an offset of its own
+    # A logarithmic unit, or one with an offset, does not double.
+    if not isinstance(one.magnitude, Fraction) or two.magnitude != 2 * one.magnitude:
         return None
-    exponents = sorted(
-        (_PINT_BASES.get(base, base), Fraction(power)) for base, power in root._units.items()
-    )
-    return Unit(word, tuple(exponents), Fraction(factor))
+    exponents = sorted((_PINT_BASES.get(base, base), Fraction(p)) for base, p in one.unit_items())
+    return Unit(word, tuple(exponents), one.magnitude)

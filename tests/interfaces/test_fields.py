@@ -1,0 +1,108 @@
+"""Following field paths."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.interfaces.fields import FieldError, ResolvedField, format_path, leaves, resolve
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import FieldType, InterfaceType
+
+STORE = InterfaceStore(prefixes=())
+ODOMETRY = InterfaceType("nav_msgs", "msg", "Odometry")
+
+
+def message(name: str) -> InterfaceType:
+    """Return the message type ``package/Name``."""
+    package, _, short = name.partition("/")
+    return InterfaceType(package, "msg", short)
+
+
+@pytest.mark.parametrize(
+    ("kind", "path", "type_text", "parent"),
+    [
+        ("nav_msgs/Odometry", ("twist", "twist", "linear", "x"), "float64", "Vector3"),
+        ("nav_msgs/Odometry", ("pose", "covariance"), "float64[36]", "PoseWithCovariance"),
+        ("nav_msgs/Odometry", ("pose", "covariance", 35), "float64", "PoseWithCovariance"),
+        ("sensor_msgs/JointState", ("position", 2), "float64", "JointState"),
+        ("sensor_msgs/JointState", ("name", 0), "string", "JointState"),
+        (
+            "diagnostic_msgs/DiagnosticArray",
+            ("status", 7, "level"),
+            "byte",
+            "DiagnosticStatus",
+        ),
+        ("shape_msgs/SolidPrimitive", ("dimensions", 2), "float64", "SolidPrimitive"),
+    ],
+)
+def test_a_path_leads_to_a_field(
+    kind: str, path: tuple[str | int, ...], type_text: str, parent: str
+) -> None:
+    """Fields, nested ones and elements of arrays have a type and the message they stand in."""
+    found = resolve(STORE, message(kind), path)
+    assert isinstance(found, ResolvedField)
+    assert str(found.type) == type_text
+    assert found.parent is not None
+    assert found.parent.type.name == parent
+    assert found.name in path
+
+
+def test_the_empty_path_is_the_message_itself() -> None:
+    """``topic /odom`` without a field means the whole message."""
+    assert resolve(STORE, ODOMETRY, ()) == ResolvedField(FieldType(ODOMETRY), None, "")
+
+
+@pytest.mark.parametrize(
+    ("kind", "path", "position", "fragment", "candidates"),
+    [
+        ("nav_msgs/Odometry", ("twist", "twsit"), 1, "has no field 'twsit'", ("twist",)),
+        ("std_msgs/Bool", ("zzz",), 0, "std_msgs.Bool has no field", ("data",)),
+        ("std_msgs/Bool", ("data", "x"), 1, "'data' (bool) has no fields", ()),
+        ("std_msgs/Bool", ("data", 0), 1, "is no array", ()),
+        ("std_msgs/Bool", (0,), 0, "the message (std_msgs/msg/Bool) is no array", ()),
+        ("sensor_msgs/LaserScan", ("ranges", "x"), 1, "an index is needed", ()),
+        ("sensor_msgs/Imu", ("orientation_covariance", 9), 1, "has 9 elements, 0 to 8", ()),
+        ("shape_msgs/SolidPrimitive", ("dimensions", 3), 1, "has at most 3 elements", ()),
+        ("sensor_msgs/JointState", ("position", -1), 1, "counts from 0", ()),
+        ("no_such/Thing", ("x",), 0, "no_such.Thing is not known", ()),
+    ],
+)
+def test_a_path_that_leads_nowhere_says_where_it_breaks(
+    kind: str,
+    path: tuple[str | int, ...],
+    position: int,
+    fragment: str,
+    candidates: tuple[str, ...],
+) -> None:
+    """The error has the index of the part that does not fit, the reason, and what was meant."""
+    found = resolve(STORE, message(kind), path)
+    assert isinstance(found, FieldError)
+    assert found.position == position
+    assert fragment in found.message
+    assert found.candidates == candidates
+
+
+def test_leaves_are_the_primitive_fields_in_order(tmp_path: Path) -> None:
+    """Nested messages are entered; arrays and unknown messages are leaves."""
+    folder = tmp_path / "my_msgs/msg"
+    folder.mkdir(parents=True)
+    (folder / "Thing.msg").write_text("geometry_msgs/Point p\nfloat32[] r\nGone gone\n")
+    store = InterfaceStore([tmp_path], prefixes=())
+    found = [
+        (format_path(path), str(kind)) for path, kind in leaves(store, message("my_msgs/Thing"))
+    ]
+    assert found == [
+        ("p.x", "float64"),
+        ("p.y", "float64"),
+        ("p.z", "float64"),
+        ("r", "float32[]"),
+        ("gone", "my_msgs/msg/Gone"),
+    ]
+
+
+def test_a_path_is_spelled_as_in_the_languages() -> None:
+    """Indices stand in brackets, also at the start and in a row."""
+    assert format_path(("a", 0, 1, "b", "c")) == "a[0][1].b.c"
+    assert format_path((3, "x")) == "[3].x"

@@ -1,0 +1,141 @@
+"""Near matches, and the names that ROS 2 accepts."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from deros.interfaces.names import (
+    check_namespace,
+    check_node_name,
+    check_package_name,
+    check_parameter_name,
+    check_topic_name,
+    did_you_mean,
+    near,
+)
+
+names = st.text(alphabet="aB1_/~.- {ü", max_size=12)
+
+
+def test_near_finds_what_was_meant_best_first() -> None:
+    """Misspelt letters and case are seen through; the name itself is no suggestion."""
+    assert near("lineer", ["angular", "linear", "x"]) == ["linear"]
+    assert near("bool", ["Bool", "Boot", "Int8"])[0] == "Bool"
+    assert near("speed", ["speed", "speeds"]) == ["speeds"]
+    assert near("x", ["yyyy"]) == []
+    assert len(near("aaaa", [f"aaa{i}" for i in range(9)])) == 3
+
+
+@pytest.mark.parametrize(
+    ("matches", "text"),
+    [
+        ([], ""),
+        (["a"], "did you mean 'a'?"),
+        (["a", "b"], "did you mean 'a' or 'b'?"),
+        (["a", "b", "c"], "did you mean 'a', 'b' or 'c'?"),
+    ],
+)
+def test_hints_are_worded_as_a_question(matches: list[str], text: str) -> None:
+    """No matches give no hint."""
+    assert did_you_mean(matches) == text
+
+
+@given(names)
+def test_node_names_are_those_of_rmw(name: str) -> None:
+    """Our rule for node names is that of ROS 2 itself."""
+    validation = pytest.importorskip("rclpy.validate_node_name")
+    assert (check_node_name(name) is None) == _accepted(validation.validate_node_name, name)
+
+
+@given(names)
+def test_topic_names_are_those_of_rcl(name: str) -> None:
+    """Our rule for topic names is that of ROS 2 itself, substitutions in braces left aside."""
+    validation = pytest.importorskip("rclpy.validate_topic_name")
+    assert (check_topic_name(name) is None) == (
+        _accepted(validation.validate_topic_name, name) and "{" not in name
+    )
+
+
+@given(names)
+def test_namespaces_are_those_of_rmw(name: str) -> None:
+    """Our rule for absolute namespaces is that of ROS 2 itself."""
+    validation = pytest.importorskip("rclpy.validate_namespace")
+    absolute = f"/{name}"
+    assert (check_namespace(absolute) is None) == _accepted(validation.validate_namespace, absolute)
+
+
+def _accepted(validate: object, name: str) -> bool:
+    """Ask one of rclpy's validators, which raise for a name that they refuse."""
+    try:
+        validate(name)  # type: ignore[operator]
+    except (ValueError, TypeError):
+        return False
+    except Exception as error:  # rclpy's own exceptions have no common base but Exception
+        assert type(error).__module__ == "rclpy.exceptions"  # noqa: PT017 (any other is a failure)
+        return False
+    return True
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("", "is empty"),
+        ("a-b", "contains '-'"),
+        ("a/", "ends with '/'"),
+        ("/", "ends with '/'"),
+        ("a//b", "empty part"),
+        ("a/1b", "starts with a digit"),
+        ("~x", "without '/' behind it"),
+        ("a/~", "elsewhere than at its start"),
+        ("/" + "a" * 300, "longer than"),
+    ],
+)
+def test_a_refused_topic_name_has_a_reason(name: str, reason: str) -> None:
+    """The reason completes the sentence 'the name …'."""
+    told = check_topic_name(name)
+    assert told is not None
+    assert reason in told
+
+
+@pytest.mark.parametrize("name", ["/scan", "scan", "~/reset", "a/b_1", "~", "_x"])
+def test_accepted_topic_names(name: str) -> None:
+    """Absolute, relative and private names pass."""
+    assert check_topic_name(name) is None
+
+
+@pytest.mark.parametrize("name", ["std_msgs", "a1", "my_robot_2"])
+def test_accepted_package_names(name: str) -> None:
+    """REP 144 names pass."""
+    assert check_package_name(name) is None
+
+
+@pytest.mark.parametrize("name", ["", "a", "Upper", "a-b", "1ab", "a__b", "ab_", "_ab"])
+def test_refused_package_names(name: str) -> None:
+    """Names that REP 144 or rosidl refuse have a reason."""
+    assert check_package_name(name)
+
+
+@pytest.mark.parametrize("name", ["", "a b", "a..b", ".a", "a.1", "a-b"])
+def test_refused_parameter_names(name: str) -> None:
+    """Names that a parameter file or the command line cannot give have a reason."""
+    assert check_parameter_name(name)
+
+
+def test_nested_parameter_names_pass() -> None:
+    """Parts are joined by dots."""
+    assert check_parameter_name("pid.gains.p") is None
+
+
+@pytest.mark.parametrize("name", ["/", "/a/b", "front", "a/b"])
+def test_accepted_namespaces(name: str) -> None:
+    """A namespace may be the root, absolute or relative."""
+    assert check_namespace(name) is None
+
+
+def test_an_empty_namespace_is_refused() -> None:
+    """A namespace that is written has a name."""
+    assert check_namespace("") == "is empty"
+    assert check_node_name("1a") == "starts with a digit"
+    assert "longer" in (check_node_name("a" * 256) or "")

@@ -1,0 +1,273 @@
+"""Reading units and converting values."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pint
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from deros.interfaces import units
+from deros.interfaces.units import Unit, UnitRegistry
+
+REGISTRY = UnitRegistry()
+PINT: Any = pint.UnitRegistry(non_int_type=Fraction)
+TABLE = json.loads(Path(units.__file__).with_suffix(".json").read_text(encoding="utf-8"))
+WORDS = sorted(
+    [*TABLE["bases"], *TABLE["units"], "ms", "us", "ns", "km", "cm", "mm", "kg", "mV", "kPa"]
+)
+OWN_WORDS = {
+    "Nm": "N*m",
+    "T": "tesla",
+    "h": "hour",
+    "t": "tonne",
+    "sec": "s",
+    "secs": "s",
+    "msec": "ms",
+}
+OWN_WORDS |= {"usec": "us", "°C": "degC", "C": "coulomb", "rev": "revolution"}
+
+words = st.sampled_from(WORDS)
+decimals = st.decimals(
+    allow_nan=False, allow_infinity=False, min_value=-(10**9), max_value=10**9, places=9
+)
+
+
+def unit(text: str) -> Unit:
+    """Read a unit that must be known."""
+    found = REGISTRY.parse(text)
+    assert found is not None, text
+    return found
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_the_table_agrees_with_pint(word: str) -> None:
+    """Each word of the table is what pint says it is, an angle kept as an angle."""
+    theirs = PINT.Quantity(Fraction(1), OWN_WORDS.get(word, word)).to_root_units()
+    ours = unit(word)
+    assert math.isclose(theirs.magnitude, ours.factor + ours.offset, rel_tol=1e-12)
+    names = {"meter": "m", "gram": "g", "second": "s", "ampere": "A", "kelvin": "K"}
+    names |= {"mole": "mol", "candela": "cd", "radian": "rad"}
+    dimension = {names.get(base, base): power for base, power in theirs.unit_items()}
+    assert dimension == dict(ours.exponents)
+
+
+@pytest.mark.parametrize(
+    ("text", "dimension"),
+    [
+        ("m/s", "length/time"),
+        ("m/s^2", "length/time^2"),
+        ("m/s**2", "length/time^2"),
+        ("m·s⁻²", "length/time^2"),
+        (" m / ( s * s ) ", "length/time^2"),
+        ("rad/s", "angle/time"),
+        ("1/s", "1/time"),
+        ("1", "number"),
+        ("%", "number"),
+        ("m/m", "number"),
+        ("N*m", "mass*length^2/time^2"),
+        ("furlong", "length"),
+    ],
+)
+def test_units_have_a_dimension(text: str, dimension: str) -> None:
+    """Products, quotients and powers are read in the usual spellings."""
+    assert unit(text).dimension == dimension
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "m//s",
+        "m/",
+        "/s",
+        "m s",
+        "(m",
+        "m)",
+        "no_such",
+        "m^",
+        "m^9999",
+        "2 m",
+        "m^1.5",
+        "**",
+        "dB",
+    ],
+)
+def test_what_is_no_unit_is_none(text: str) -> None:
+    """An unknown or malformed unit is an answer, not a failure."""
+    assert REGISTRY.parse(text) is None
+
+
+@given(st.text(max_size=8))
+def test_no_text_raises(text: str) -> None:
+    """Whatever is asked for, the registry answers."""
+    found = REGISTRY.parse(text)
+    assert found is None or found.factor > 0
+
+
+def test_deep_nesting_is_refused() -> None:
+    """Parentheses without end are no unit, and no stack overflow."""
+    assert REGISTRY.parse("(" * 5000 + "m" + ")" * 5000) is None
+
+
+@pytest.mark.parametrize(
+    ("value", "text", "nanoseconds"),
+    [
+        ("0.1", "sec", 100_000_000),
+        ("0.4", "s", 400_000_000),
+        ("4", "sec", 4_000_000_000),
+        ("1.5", "min", 90_000_000_000),
+        ("2", "h", 7_200_000_000_000),
+        ("250", "ms", 250_000_000),
+        ("0.000000001", "s", 1),
+        ("0", "s", 0),
+        ("0.0000000001", "s", None),
+        ("-1", "s", None),
+        ("1", "m", None),
+        ("1", "1/s", None),
+        ("1e12", "s", None),
+        ("1e999999", "s", None),
+        ("NaN", "s", None),
+    ],
+)
+def test_durations_are_exact(value: str, text: str, nanoseconds: int | None) -> None:
+    """A duration is a whole number of nanoseconds of 64 bits, or none at all."""
+    assert REGISTRY.duration_ns(Decimal(value), unit(text)) == nanoseconds
+
+
+def test_angles_are_a_dimension_of_their_own() -> None:
+    """An angle is neither a ratio nor, per second, a frequency."""
+    assert not REGISTRY.compatible(unit("rad"), unit("1"))
+    assert not REGISTRY.compatible(unit("rad/s"), unit("Hz"))
+    assert not REGISTRY.compatible(unit("rad"), unit("m/s"))
+    assert REGISTRY.compatible(unit("rad"), unit("deg"))
+    assert REGISTRY.compatible(unit("rpm"), unit("deg/s"))
+
+
+@pytest.mark.parametrize(
+    ("value", "source", "target", "result"),
+    [
+        ("0.4", "sec", "ns", 400_000_000.0),
+        ("10", "deg", "rad", math.radians(10)),
+        ("180", "deg", "rad", math.pi),
+        ("3.6", "km/h", "m/s", 1.0),
+        ("20", "%", "1", 0.2),
+        ("25", "degC", "K", 298.15),
+        ("25", "degC", "degF", 77.0),
+        ("1", "degC/s", "K/s", 1.0),
+        ("1", "bar", "kPa", 100.0),
+        ("1e999999", "m", "cm", math.inf),
+        ("-1e999999", "m", "cm", -math.inf),
+        ("1e308", "km", "mm", math.inf),
+        ("0e999999", "km", "mm", 0.0),
+    ],
+)
+def test_conversions_round_once(value: str, source: str, target: str, result: float) -> None:
+    """A converted value is the double nearest to the exact one."""
+    assert REGISTRY.convert(Decimal(value), unit(source), unit(target)) == result
+
+
+def test_infinity_and_nan_stay_what_they_are() -> None:
+    """Conversion is for numbers; the others pass."""
+    assert REGISTRY.convert(-math.inf, unit("m"), unit("cm")) == -math.inf
+    assert math.isnan(REGISTRY.convert(math.nan, unit("m"), unit("cm")))
+
+
+@given(words, words, decimals)
+def test_conversions_round_trip(source: str, target: str, value: Decimal) -> None:
+    """There and back again is the same value, up to the rounding of one double."""
+    a, b = unit(source), unit(target)
+    if not REGISTRY.compatible(a, b):
+        return
+    there = REGISTRY.convert(value, a, b)
+    back = REGISTRY.convert(there, b, a)
+    slack = max(abs(float(value)), abs(float((b.offset - a.offset) / a.factor)), 1e-300)
+    assert math.isclose(back, float(value), rel_tol=1e-15, abs_tol=4e-16 * slack)
+
+
+@given(words, words, decimals)
+def test_factor_and_convert_agree(source: str, target: str, value: Decimal) -> None:
+    """The factor and offset of two units do what ``convert`` does."""
+    a, b = unit(source), unit(target)
+    if not REGISTRY.compatible(a, b):
+        return
+    factor, offset = REGISTRY.factor(a, b)
+    converted = REGISTRY.convert(value, a, b)
+    slack = abs(float(value) * factor) + abs(offset)
+    assert math.isclose(float(value) * factor + offset, converted, rel_tol=0, abs_tol=1e-15 * slack)
+
+
+@given(words, decimals)
+def test_a_unit_converts_to_itself_unchanged(word: str, value: Decimal) -> None:
+    """A value in the field's own unit is not touched by conversion."""
+    assert REGISTRY.convert(value, unit(word), unit(word)) == float(value)
+    assert REGISTRY.factor(unit(word), unit(word)) == (1.0, 0.0)
+
+
+def test_a_program_defines_its_own_units() -> None:
+    """They may build on each other in any order, stand in compounds, and hide known ones."""
+    registry = UnitRegistry(
+        {
+            "lap": (Decimal("2"), "round"),
+            "round": (Decimal("400"), "m"),
+            "knot": (Decimal("0.5"), "m/s"),
+        }
+    )
+    lap, metre = registry.parse("lap/min"), registry.parse("m/s")
+    assert lap is not None
+    assert metre is not None
+    assert registry.convert(Decimal("0.6"), lap, metre) == 8.0
+    knot = registry.parse("knot")
+    assert knot is not None
+    assert registry.convert(3, knot, metre) == 1.5
+    assert REGISTRY.convert(3, unit("knot"), metre) != 1.5
+
+
+@pytest.mark.parametrize(
+    "definitions",
+    [
+        {"x": (Decimal(1), "x")},
+        {"x": (Decimal(1), "y"), "y": (Decimal(1), "x")},
+        {"x": (Decimal(0), "m")},
+        {"x": (Decimal(-1), "m")},
+        {"x": (math.inf, "m")},
+        {"x": (Decimal(1), "no_such_unit")},
+        {"x": (Decimal(1), "u0")} | {f"u{i}": (Decimal(1), f"u{i + 1}") for i in range(5000)},
+    ],
+)
+def test_a_senseless_definition_is_unknown(
+    definitions: dict[str, tuple[Decimal | float, str]],
+) -> None:
+    """Circles, factors that are not positive, and unknown bases give no unit."""
+    assert UnitRegistry(definitions).parse("x") is None
+
+
+def test_near_matches_are_suggested() -> None:
+    """A misspelt unit is met with known ones, the program's own included."""
+    assert "metre" in REGISTRY.suggest("metres")
+    assert UnitRegistry({"furlongs": (Decimal(1), "m")}).suggest("furlungs") == ["furlongs"]
+
+
+def test_pint_is_loaded_only_for_words_outside_the_table() -> None:
+    """Common units and their compounds do not load pint."""
+    program = (
+        "import sys; from deros.interfaces.units import UnitRegistry\n"
+        "r = UnitRegistry()\n"
+        "assert all(map(r.parse, ['km/h', 'N*m', 'deg/s', 'lx', 'mV', '%', 'rpm']))\n"
+        "print('pint' in sys.modules)\n"
+        "assert r.parse('furlong')\n"
+        "print('pint' in sys.modules)\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert result.stdout == "False\nTrue\n"
