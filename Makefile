@@ -1,0 +1,66 @@
+# Needs Python 3.10 or later, make, and a network to the package index. Everything else goes to .venv.
+
+PYTHON ?= python3
+JOBS ?= 2
+
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+DOCS_READY := $(VENV)/.ready-docs
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+# Runs a command and, however it ends, leaves none of its descendants behind.
+ALONE := $(BIN)/python tools/supervise.py
+CHECKED := src tests tools benchmarks
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+
+.PHONY: help
+help:  ## Show this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+.PHONY: demo
+demo: $(READY)  ## Generate the feeding robot, start it, play its fifteen test cases
+	@$(ALONE) $(BIN)/python examples/feeding_robot/demo.py
+
+.PHONY: test
+test: $(READY)  ## Run all tests, those on the real middleware included
+	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) --dist worksteal
+
+.PHONY: lint
+lint: $(READY)  ## Check format, style, types and the layering of the packages
+	$(BIN)/ruff format --check $(CHECKED)
+	$(BIN)/ruff check $(CHECKED)
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+.PHONY: docs
+docs: $(DOCS_READY)  ## Build the documentation into site/; a warning is an error
+	$(BIN)/mkdocs build --quiet --strict
+
+.PHONY: bench
+bench: $(READY)  ## Measure; prints ratios against a floor measured in the same run
+	@for each in benchmarks/*.py; do echo "== $$each"; $(ALONE) $(BIN)/python $$each || exit 1; done
+
+.PHONY: golden
+golden: $(READY)  ## Refresh the expectations in tests/golden and tests/cases, to be reviewed as a diff
+	$(BIN)/python tests/cases/refresh.py
+	DEROS_UPDATE_GOLDEN=1 $(BIN)/python -m pytest -q tests/generators -k golden
+
+.PHONY: clean
+clean:  ## Remove the environment and everything built
+	rm -rf $(VENV) build dist site .demo .tmp .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
+	  { echo "deros needs Python 3.10 or later; name one with: make PYTHON=python3.12 …" >&2; exit 1; }
+	@echo "setting up $(VENV) (once; about 300 MB, most of it ROS 2 Jazzy)"
+	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 1; }
+
+$(READY): pyproject.toml | $(BIN)/python
+	@$(PIP) install --editable '.[dev]'
+	@touch $@
+
+$(DOCS_READY): pyproject.toml | $(READY)
+	@$(PIP) install --editable '.[docs]'
+	@touch $@

@@ -1,0 +1,11 @@
+"""What all tests share: the repository's root on the path, so that they find ``tests.support``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+if str(ROOT) not in sys.path:
+    sys.path.insert(0, str(ROOT))

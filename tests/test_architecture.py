@@ -1,0 +1,77 @@
+"""The rooms import downward only, and each heavy library has one home."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCE = ROOT / "src" / "deros"
+
+HOMES = {
+    "textx": {"metamodels"},
+    "arpeggio": {"metamodels"},
+    "networkx": {"validators"},
+    "pint": {"interfaces"},
+    "rosbags": {"interfaces"},
+    "jinja2": {"generators"},
+    "click": {"cli"},
+    "rich": {"cli"},
+    "rclpy": set[str](),
+}
+"""The rooms that may import a library; generated code is text, so ``rclpy`` has none."""
+
+
+def _modules() -> list[Path]:
+    return sorted(SOURCE.rglob("*.py"))
+
+
+def _imported(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            yield node.module
+
+
+def test_rooms_import_downward_only() -> None:
+    """The contract in pyproject.toml holds for every import of every module."""
+    command = [str(Path(sys.executable).with_name("lint-imports")), "--no-cache"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("library", HOMES)
+def test_each_library_has_one_home(library: str) -> None:
+    """No room but its home imports a library, not even lazily."""
+    strangers = {
+        str(path.relative_to(SOURCE))
+        for path in _modules()
+        if path.relative_to(SOURCE).parts[0] not in HOMES[library]
+        and any(name.split(".")[0] == library for name in _imported(path))
+    }
+    assert strangers == set()
+
+
+def test_importing_deros_loads_nothing_heavy() -> None:
+    """``import deros`` and the overview of commands load no third-party library but click."""
+    script = (
+        "import sys; import deros, deros.codes, deros.diagnostics, deros.cli.main;"
+        "print(*sorted({name.split('.')[0] for name in sys.modules}))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    loaded = set(done.stdout.split())
+    assert loaded.isdisjoint(set(HOMES) - {"click"})
+
+
+def test_modules_stay_readable() -> None:
+    """No module grows beyond what one sitting can review."""
+    lengths = {str(p.relative_to(SOURCE)): len(p.read_text().splitlines()) for p in _modules()}
+    assert {name: lines for name, lines in lengths.items() if lines > 450} == {}

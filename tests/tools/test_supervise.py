@@ -1,0 +1,68 @@
+"""``tools/supervise.py`` leaves nothing behind, whichever way its command ends."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SUPERVISE = Path(__file__).resolve().parents[2] / "tools" / "supervise.py"
+
+# Starts a daemon in a session of its own, says its pid, and then does as its argument says.
+PARENT = """
+import os, subprocess, sys, time
+child = subprocess.Popen(["sleep", "600"], start_new_session=True, stdout=subprocess.DEVNULL)
+print(child.pid, os.getpid(), flush=True)
+exec(sys.argv[1])
+"""
+
+
+def _start(then: str) -> tuple[subprocess.Popen[str], int, int]:
+    command = [sys.executable, str(SUPERVISE), sys.executable, "-c", PARENT, then]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    daemon, parent = map(int, process.stdout.readline().split())
+    return process, daemon, parent
+
+
+def _gone(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    return False
+
+
+@pytest.mark.parametrize(("then", "code"), [("sys.exit(7)", 7), ("os.kill(os.getpid(), 9)", 137)])
+def test_orphans_of_a_finished_command_are_stopped(then: str, code: int) -> None:
+    """The command's exit code is passed on, and its orphan daemon does not outlive it."""
+    process, daemon, _ = _start(then)
+    assert process.wait(timeout=30) == code
+    assert _gone(daemon)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signals_reach_the_command(number: signal.Signals) -> None:
+    """A signal to the supervisor ends the command and all that it started."""
+    process, daemon, parent = _start("time.sleep(600)")
+    process.send_signal(number)
+    assert process.wait(timeout=30) != 0
+    assert _gone(daemon)
+    assert _gone(parent)
+
+
+def test_a_killed_supervisor_takes_its_command_along() -> None:
+    """SIGKILL cannot be caught, but the kernel tells the command."""
+    process, daemon, parent = _start("time.sleep(600)")
+    watched = os.pidfd_open(parent)
+    process.kill()
+    process.wait(timeout=30)
+    ended, _, _ = select.select([watched], [], [], 30)
+    os.close(watched)
+    os.kill(daemon, signal.SIGKILL)
+    assert ended
