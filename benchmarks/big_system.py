@@ -1,0 +1,115 @@
+"""Write a big, clean system description: a fleet of carts, ten nodes each, wired in a chain.
+
+Every node is nine lines, as in hand-written systems: the instance with two parameters and two
+wirings, and its share of the declared topics. The node types stand in three ``.rnd`` files.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+NODES_PER_CART = 10
+
+DRIVER = """\
+node driver : cart_sensors "Reads one sensor and publishes its distance"
+parameters
+  name rate : double = 20.0 [Hz] in [1.0, 100.0]
+  name frame_id : string = "sensor_link"
+publishes
+  topic distance : sensor_msgs.Range qos best_effort depth 5
+subscribes
+  topic trigger : std_msgs.Bool
+"""
+
+FILTER = """\
+node smoother : cart_filters "Smooths what the stage before it publishes"
+parameters
+  name window : int = 5 in [1, 50]
+  name mode : string = "mean" one_of ["mean", "median"]
+publishes
+  topic smoothed : sensor_msgs.Range
+subscribes
+  topic raw : sensor_msgs.Range qos best_effort
+"""
+
+BRAKE = """\
+node brake : cart_brakes "Brakes when the way ahead is too short"
+parameters
+  name threshold : double = 0.8 [m]
+  name label : string = "front"
+publishes
+  topic braking : std_msgs.Bool
+subscribes
+  topic ahead : sensor_msgs.Range
+"""
+
+
+def _cart(number: int) -> tuple[list[str], list[str]]:
+    """Return the topic lines and the subsystem lines of one cart."""
+    base = f"/cart_{number}"
+    topics = [f"  topic {base}/braking"]
+    topics += [f"  topic {base}/stage_{stage}" for stage in range(NODES_PER_CART - 1)]
+    lines = [
+        f"subsystem cart_{number} {{",
+        f"  node driver_{number} : driver",
+        "  parameters",
+        "    param rate = 25.0",
+        f'    param frame_id = "cart_{number}_link"',
+        "  wirings",
+        f"    connect trigger to {base}/braking",
+        f"    connect distance to {base}/stage_0",
+    ]
+    for stage in range(1, NODES_PER_CART - 1):
+        lines += [
+            f"  node smoother_{number}_{stage} : smoother",
+            "  parameters",
+            f"    param window = {stage + 2}",
+            '    param mode = "median"',
+            "  wirings",
+            f"    connect raw to {base}/stage_{stage - 1}",
+            f"    connect smoothed to {base}/stage_{stage}",
+        ]
+    lines += [
+        f"  node brake_{number} : brake",
+        "  parameters",
+        "    param threshold = 1.25",
+        f'    param label = "cart {number}"',
+        "  wirings",
+        f"    connect ahead to {base}/stage_{NODES_PER_CART - 2}",
+        f"    connect braking to {base}/braking",
+        "}",
+        "",
+    ]
+    return topics, lines
+
+
+def write(directory: Path, nodes: int) -> Path:
+    """Write the model files for about ``nodes`` nodes into ``directory``; return the system's path."""
+    for name, text in (("driver", DRIVER), ("smoother", FILTER), ("brake", BRAKE)):
+        (directory / f"{name}.rnd").write_text(text, encoding="utf-8")
+    carts = [_cart(number) for number in range(max(1, nodes // NODES_PER_CART))]
+    lines = ["system Fleet", "imports"]
+    lines += [f'  import "{name}.rnd"' for name in ("driver", "smoother", "brake")]
+    lines.append("topics")
+    for topics, _ in carts:
+        lines += topics
+    for _, subsystem in carts:
+        lines += subsystem
+    path = directory / "fleet.system"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def main() -> None:
+    """Write a system of the size asked for into a directory."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("directory", type=Path)
+    parser.add_argument("--nodes", type=int, default=1000)
+    arguments = parser.parse_args()
+    arguments.directory.mkdir(parents=True, exist_ok=True)
+    print(write(arguments.directory, arguments.nodes))
+
+
+if __name__ == "__main__":
+    main()

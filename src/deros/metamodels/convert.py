@@ -1,0 +1,207 @@
+"""What the three converters from textX objects to typed models share."""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+from typing import TYPE_CHECKING, Any
+
+from deros import codes
+from deros.codes import Code
+from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
+from deros.interfaces.types import InterfaceKind, InterfaceType
+from deros.interfaces.units import UnitRegistry
+from deros.metamodels.common import Interval, Name, QosProfile, Scalar, Value
+
+if TYPE_CHECKING:
+    from deros.metamodels.languages import Token
+
+_ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{4}|.)", re.DOTALL)
+_ESCAPES = {'"': '"', "\\": "\\", "/": "/", "n": "\n", "t": "\t", "r": "\r"}
+_INTEGER = re.compile(r"[+-]?\d+\Z")
+_EXPONENT = re.compile(r"[eE]([+-]?\d+)\Z")
+_MOST_DIGITS = 400
+_TIME_UNITS = UnitRegistry()
+_KINDS: dict[str, InterfaceKind] = {"msg": "msg", "srv": "srv", "action": "action"}
+
+
+class Converter:
+    """Turns the textX objects of one file into frozen models, collecting what it finds wrong."""
+
+    def __init__(self, source: SourceFile) -> None:
+        self.source = source
+        self.diagnostics: list[Diagnostic] = []
+
+    def report(
+        self, code: Code, message: str, span: Span, hint: str = "", *related: Related
+    ) -> None:
+        """Collect a diagnostic."""
+        self.diagnostics.append(report(code, message, span, hint, related))
+
+    def span(self, found: Any) -> Span:
+        """Return the place of a textX object."""
+        return Span(self.source, found._tx_position, found._tx_position_end)
+
+    def token_span(self, token: Token) -> Span:
+        """Return the place of a token."""
+        return Span(self.source, token.start, token.start + len(token))
+
+    def name(self, token: Token) -> Name:
+        """Return a token as a name with its place."""
+        return Name(str(token), self.token_span(token))
+
+    # Texts, numbers, values ------------------------------------------------------------------
+
+    def text(self, token: Token | None) -> str:
+        """Return what a quoted text says, or an empty text when there is none."""
+        if token is None:
+            return ""
+        inner = token[1:-1]
+        if "\\" not in inner:
+            return inner
+        return _ESCAPE.sub(lambda found: self._escape(found, token), inner)
+
+    def _escape(self, found: re.Match[str], token: Token) -> str:
+        what = found.group(1)
+        if len(what) == 5:
+            return chr(int(what[1:], 16))
+        if what not in _ESCAPES:
+            start = token.start + 1 + found.start()
+            span = Span(self.source, start, start + len(found.group()))
+            hint = r"a backslash itself is written '\\'"
+            self.report(codes.SYNTAX_ERROR, f"unknown escape '{found.group()}'", span, hint)
+        return _ESCAPES.get(what, what)
+
+    def decimal(self, token: Token) -> Decimal:
+        """Return a number exactly; one beyond any physical quantity is reported and reads as 0."""
+        exponent = _EXPONENT.search(token)
+        if len(token) > _MOST_DIGITS or (exponent and len(exponent[1].lstrip("+-0")) > 3):
+            return self._out_of_range(token)
+        value = Decimal(token)
+        return value if math.isfinite(float(value)) else self._out_of_range(token)
+
+    def _out_of_range(self, token: Token) -> Decimal:
+        self.report(codes.SYNTAX_ERROR, "number out of range", self.token_span(token))
+        return Decimal(0)
+
+    def integer(self, token: Token) -> int:
+        """Return a whole number."""
+        return int(self.decimal(token))
+
+    def scalar(self, token: Token) -> Scalar:
+        """Return a value as its text says: bool, int, float or str."""
+        if token[0] == '"':
+            return self.text(token)
+        if token == "true" or token == "false":
+            return token == "true"
+        value = self.decimal(token)
+        return int(value) if _INTEGER.match(token) else float(value)
+
+    def value(self, found: Any) -> Value:
+        """Return a scalar, or a tuple of them for an array."""
+        if isinstance(found, str):
+            return self.scalar(found)  # type: ignore[arg-type]
+        return tuple(self.scalar(item) for item in found.items)
+
+    def value_span(self, found: Any) -> Span:
+        """Return the place of a scalar or an array."""
+        return self.token_span(found) if isinstance(found, str) else self.span(found)  # type: ignore[arg-type]
+
+    def interval(self, found: Any) -> Interval:
+        """Return a range of numbers."""
+        return Interval(
+            float(self.decimal(found.lower)),
+            float(self.decimal(found.upper)),
+            found.opening == "[",
+            found.closing == "]",
+        )
+
+    # Types, units, durations, QoS -------------------------------------------------------------
+
+    def interface(self, token: Token, kind: InterfaceKind) -> InterfaceType:
+        """Return the type that a text such as ``std_msgs.Bool`` names."""
+        package, *middle, name = token.replace("/", ".").split(".")
+        return InterfaceType(package, _KINDS[middle[0]] if middle else kind, name)
+
+    def unit(self, token: Token | None) -> str | None:
+        """Return a unit as written, without the blanks in it."""
+        return "".join(token.split()) if token is not None else None
+
+    def duration_ns(self, found: Any) -> int:
+        """Return a duration in nanoseconds, or 0 after reporting why it is none."""
+        if found.unit is None:
+            hint = f"write '{found.value} sec' or '{found.value} ms'"
+            self.report(codes.UNKNOWN_UNIT, "a duration needs a unit", self.span(found), hint)
+            return 0
+        text = self.unit(found.unit) or ""
+        unit = _TIME_UNITS.parse(text)
+        second = _TIME_UNITS.parse("sec")
+        if unit is None or second is None or not _TIME_UNITS.compatible(unit, second):
+            message = f"'{text}' is no unit of time"
+            hint = "units of time are ns, us, ms, sec, min and h"
+            self.report(codes.UNKNOWN_UNIT, message, self.token_span(found.unit), hint)
+            return 0
+        duration = _TIME_UNITS.duration_ns(self.decimal(found.value), unit)
+        if duration is None:
+            message = "a duration is a whole number of nanoseconds, and not negative"
+            self.report(codes.BAD_DURATION, message, self.span(found))
+            return 0
+        return duration
+
+    def qos(self, found: Any) -> QosProfile:
+        """Return a QoS profile; a policy given twice is reported, the first one counts."""
+        settings: dict[str, Any] = {}
+        for policy in found.policies:
+            for field, value in self._policy(policy):
+                if field in settings:
+                    message = f"the QoS policy '{field.removesuffix('_ns')}' is given twice"
+                    self.report(codes.SYNTAX_ERROR, message, self.span(policy))
+                settings.setdefault(field, value)
+        return QosProfile(**settings, span=self.span(found))
+
+    def _policy(self, policy: Any) -> list[tuple[str, Any]]:
+        kind = type(policy).__name__
+        if kind == "QosDepth":
+            return [("depth", self.integer(policy.depth))]
+        if kind == "QosTime":
+            return [(f"{policy.policy}_ns", self.duration_ns(policy.time))]
+        if kind == "QosLiveliness":
+            settings: list[tuple[str, Any]] = [("liveliness", str(policy.kind))]
+            if policy.lease is not None:
+                settings.append(("lease_ns", self.duration_ns(policy.lease)))
+            return settings
+        word = str(policy.word)
+        if word == "keep_all":
+            return [("keep_all", True)]
+        return [(_QOS_FIELDS.get(word, "preset"), word)]
+
+
+_QOS_FIELDS = {
+    "reliable": "reliability",
+    "best_effort": "reliability",
+    "volatile": "durability",
+    "transient_local": "durability",
+}
+
+
+class Sections:
+    """Notices the second of two sections, or of two attributes, that may be given only once."""
+
+    def __init__(self, converter: Converter) -> None:
+        self._converter = converter
+        self._first: dict[str, Span] = {}
+
+    def once(self, what: str, span: Span) -> bool:
+        """Tell whether ``what`` comes for the first time; report it when it does not."""
+        first = self._first.setdefault(what, span)
+        if first is span:
+            return True
+        self._converter.report(
+            codes.DUPLICATE_SECTION,
+            f"'{what}' is given twice",
+            span,
+            "put both into one",
+            Related(first, "first given here"),
+        )
+        return False

@@ -1,0 +1,202 @@
+"""From the textX objects of a node description to a :class:`~deros.metamodels.node.NodeType`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from deros import codes
+from deros.interfaces.names import did_you_mean, near
+from deros.interfaces.types import InterfaceKind
+from deros.metamodels.common import Scalar, Value
+from deros.metamodels.convert import Converter, Sections
+from deros.metamodels.node import (
+    FieldUnit,
+    NodeType,
+    Parameter,
+    ParameterType,
+    Port,
+    PortKind,
+    Timer,
+)
+
+_PARAMETER_TYPES = {each.value: each for each in ParameterType} | {
+    "int": ParameterType.INTEGER,
+    "int[]": ParameterType.INTEGER_ARRAY,
+    "float": ParameterType.DOUBLE,
+    "float[]": ParameterType.DOUBLE_ARRAY,
+}
+_INTERFACE_KINDS: dict[PortKind, InterfaceKind] = {
+    PortKind.PUBLISHER: "msg",
+    PortKind.SUBSCRIPTION: "msg",
+    PortKind.SERVICE: "srv",
+    PortKind.CLIENT: "srv",
+    PortKind.ACTION: "action",
+    PortKind.ACTION_CLIENT: "action",
+}
+_WORDS = {
+    "ParameterUnit": "unit",
+    "Within": "in",
+    "OneOf": "one_of",
+    "Size": "size",
+    "ReadOnly": "read_only",
+    "Description": "description",
+    "Via": "via",
+    "Qos": "qos",
+    "FieldUnits": "field units",
+}
+
+
+def as_double(value: Value, kind: ParameterType) -> Value:
+    """Return ``value`` as a double where a double is wanted and a whole number is written."""
+    if kind is ParameterType.DOUBLE and type(value) is int:
+        return float(value)
+    if kind is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
+        return tuple(float(item) if type(item) is int else item for item in value)
+    return value
+
+
+class NodeConverter(Converter):
+    """Converts one node description."""
+
+    def node_type(self, model: Any) -> NodeType:
+        """Return the node type that the file describes."""
+        parameters: list[Parameter] = []
+        ports: list[Port] = []
+        timers: list[Timer] = []
+        executable: str | None = None
+        lifecycle = False
+        sections = Sections(self)
+        for part in model.parts:
+            kind = type(part).__name__
+            if kind == "Executable":
+                if sections.once("executable", self.span(part)):
+                    executable = self.text(part.program)
+                continue
+            sections.once(str(part.keyword), self.token_span(part.keyword))
+            if kind == "Lifecycle":
+                lifecycle = True
+            elif kind == "Parameters":
+                parameters += map(self._parameter, part.parameters)
+            elif kind == "Timers":
+                timers += map(self._timer, part.timers)
+            else:
+                port_kind = PortKind(str(part.keyword))
+                ports += (self._port(port, port_kind) for port in part.ports)
+        return NodeType(
+            name=str(model.name),
+            package=str(model.package),
+            source=self.source,
+            span=self.span(model),
+            name_span=self.token_span(model.name),
+            package_span=self.token_span(model.package),
+            description=self.text(model.description),
+            executable=executable,
+            lifecycle=lifecycle,
+            parameters=tuple(parameters),
+            ports=tuple(ports),
+            timers=tuple(timers),
+        )
+
+    def _parameter(self, found: Any) -> Parameter:
+        kind = self._parameter_type(found)
+        settings: dict[str, Any] = {}
+        if found.default is not None:
+            settings["default_span"] = self.value_span(found.default)
+        attributes = Sections(self)
+        for attribute in found.attributes:
+            what = type(attribute).__name__
+            if not attributes.once(_WORDS[what], self.span(attribute)):
+                continue
+            if what == "ParameterUnit":
+                settings |= {
+                    "unit": self.unit(attribute.unit),
+                    "unit_span": self.token_span(attribute.unit),
+                }
+            elif what == "Within":
+                settings |= {
+                    "interval": self.interval(attribute.interval),
+                    "interval_span": self.span(attribute.interval),
+                }
+            elif what == "OneOf":
+                settings["choices"] = self._choices(attribute.values, kind)
+            elif what == "Size":
+                settings["size"] = self.integer(attribute.size)
+            elif what == "ReadOnly":
+                settings["read_only"] = True
+            else:
+                settings["description"] = self.text(attribute.text)
+        default = None if found.default is None else as_double(self.value(found.default), kind)
+        return Parameter(
+            str(found.name),
+            kind,
+            default,
+            self.span(found),
+            self.token_span(found.name),
+            **settings,
+        )
+
+    def _parameter_type(self, found: Any) -> ParameterType:
+        text = "".join(found.type.split())
+        kind = _PARAMETER_TYPES.get(text)
+        if kind is None:
+            hint = did_you_mean(near(text, _PARAMETER_TYPES))
+            message = f"unknown parameter type '{text}'"
+            hint = hint or f"the types are {', '.join(_PARAMETER_TYPES)}"
+            self.report(codes.SYNTAX_ERROR, message, self.token_span(found.type), hint)
+            return ParameterType.STRING
+        return kind
+
+    def _choices(self, array: Any, kind: ParameterType) -> tuple[Scalar, ...]:
+        values = tuple(self.scalar(item) for item in array.items)
+        if kind in (ParameterType.DOUBLE, ParameterType.DOUBLE_ARRAY):
+            return tuple(float(value) if type(value) is int else value for value in values)
+        return values
+
+    def _port(self, found: Any, kind: PortKind) -> Port:
+        settings: dict[str, Any] = {}
+        attributes = Sections(self)
+        for attribute in found.attributes:
+            what = type(attribute).__name__
+            if not attributes.once(_WORDS[what], self.span(attribute)):
+                continue
+            if what == "FieldUnits":
+                settings["units"] = tuple(map(self._field_unit, attribute.fields))
+            elif what == "Via":
+                settings |= {
+                    "via": str(attribute.parameter),
+                    "via_span": self.token_span(attribute.parameter),
+                }
+            elif what == "Qos":
+                settings["qos"] = self.qos(attribute)
+            else:
+                settings["description"] = self.text(attribute.text)
+        return Port(
+            kind,
+            str(found.name),
+            self.interface(found.type, _INTERFACE_KINDS[kind]),
+            self.span(found),
+            self.token_span(found.name),
+            self.token_span(found.type),
+            **settings,
+        )
+
+    def _field_unit(self, found: Any) -> FieldUnit:
+        return FieldUnit(
+            "".join(found.path.split()),
+            self.unit(found.unit) or "",
+            self.token_span(found.path),
+            self.token_span(found.unit),
+        )
+
+    def _timer(self, found: Any) -> Timer:
+        period = self.duration_ns(found.period)
+        if period == 0 and not self.diagnostics:
+            message = "a timer's period is longer than nothing"
+            self.report(codes.BAD_DURATION, message, self.span(found.period))
+        return Timer(
+            str(found.name),
+            period,
+            self.span(found),
+            self.token_span(found.name),
+            self.text(found.description),
+        )

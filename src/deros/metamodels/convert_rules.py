@@ -1,0 +1,286 @@
+"""From the textX objects of a DeRoS program to :class:`~deros.metamodels.rules.Rules`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any, cast
+
+from deros import codes
+from deros.diagnostics import SourceFile, Span
+from deros.metamodels.common import Name
+from deros.metamodels.convert import Converter, Sections
+from deros.metamodels.convert_system import unknown
+from deros.metamodels.reading import MAX_DEPTH, too_deep
+from deros.metamodels.rules import (
+    Action,
+    ActionCall,
+    And,
+    Behaviour,
+    Binding,
+    Boolean,
+    Call,
+    Comparison,
+    ComparisonOperator,
+    Condition,
+    Constant,
+    Entity,
+    For,
+    Input,
+    Membership,
+    NamePath,
+    Negative,
+    Not,
+    Number,
+    Or,
+    Rule,
+    Rules,
+    String,
+    Term,
+    TopicPath,
+    Truth,
+    UnitDefinition,
+    Use,
+)
+
+if TYPE_CHECKING:
+    from deros.metamodels.languages import Token
+    from deros.metamodels.scoping import FileIndex, Reference
+    from deros.metamodels.system import System
+
+_STEP = re.compile(r"[A-Za-z_]\w*|\d+")
+_ATTRIBUTES = {
+    "Binding": "publishes",
+    "ResetBy": "reset_by",
+    "Latched": "latched",
+    "Description": "description",
+}
+
+
+class RulesConverter(Converter):
+    """Converts one DeRoS program; each ``use`` statement has an index of its own file."""
+
+    def __init__(self, source: SourceFile, indexes: Mapping[int, FileIndex]) -> None:
+        """Hold the indexes by the position of their ``use`` statement."""
+        super().__init__(source)
+        self._indexes = indexes
+
+    def rules(self, model: Any) -> Rules:
+        """Return the program that the file holds."""
+        groups: dict[str, list[Any]] = {}
+        convert = {
+            "Use": self._use,
+            "UnitDefinition": self._unit,
+            "Action": self._action,
+            "Constant": self._constant,
+            "Input": self._input,
+            "Entity": self._entity,
+            "Behaviour": self._behaviour,
+        }
+        for statement in model.statements:
+            kind = type(statement).__name__
+            groups.setdefault(kind, []).append(convert[kind](statement))
+        return Rules(
+            name=PurePath(self.source.path).stem,
+            source=self.source,
+            uses=tuple(groups.get("Use", ())),
+            units=tuple(groups.get("UnitDefinition", ())),
+            actions=tuple(groups.get("Action", ())),
+            constants=tuple(groups.get("Constant", ())),
+            inputs=tuple(groups.get("Input", ())),
+            entities=tuple(groups.get("Entity", ())),
+            behaviours=tuple(groups.get("Behaviour", ())),
+        )
+
+    # Declarations -----------------------------------------------------------------------------
+
+    def _use(self, found: Any) -> Use:
+        index = self._indexes[found._tx_position]
+        reference: Reference[System] = found.system
+        system = next(iter(index.systems.get(reference.name, ())), None)
+        span = self.token_span(reference.name)
+        if system is None and index.complete:
+            self.report(
+                codes.UNKNOWN_USED_SYSTEM,
+                *unknown(reference.name, "system", index.systems, span),
+            )
+        return Use(
+            self.text(found.path),
+            self.name(reference.name),
+            system,
+            self.span(found),
+            self.token_span(found.path),
+        )
+
+    def _unit(self, found: Any) -> UnitDefinition:
+        return UnitDefinition(self.name(found.name), self._number(found.factor), self.span(found))
+
+    def _constant(self, found: Any) -> Constant:
+        return Constant(self.name(found.name), self._term(found.value), self.span(found))
+
+    def _input(self, found: Any) -> Input:
+        term = self._topic_path(found.term)
+        if found.term.calls:
+            message = "an input names a field; a function is applied where the input is used"
+            self.report(codes.SYNTAX_ERROR, message, self.span(found.term.calls[0]))
+        return Input(
+            self.name(found.name),
+            term,
+            self.span(found),
+            None if found.timeout is None else self._number(found.timeout),
+            self.text(found.description),
+        )
+
+    def _action(self, found: Any) -> Action:
+        settings: dict[str, Any] = {}
+        attributes = Sections(self)
+        for attribute in found.attributes:
+            what = _ATTRIBUTES[type(attribute).__name__]
+            if not attributes.once(what, self.span(attribute)):
+                continue
+            if what == "publishes":
+                settings["binding"] = Binding(
+                    self._term(attribute.value),
+                    self.name(attribute.topic),
+                    self.interface(attribute.type, "msg"),
+                    self.token_span(attribute.type),
+                    self.span(attribute),
+                )
+            elif what == "reset_by":
+                settings["reset_by"] = self.name(attribute.action)
+            elif what == "latched":
+                settings["latched"] = True
+            else:
+                settings["description"] = self.text(attribute.text)
+        parameters = tuple(self.name(each.name) for each in found.parameters)
+        return Action(self.name(found.name), parameters, self.span(found), **settings)
+
+    def _entity(self, found: Any) -> Entity:
+        rules = tuple(
+            Rule(
+                self.name(rule.name),
+                self._condition(rule.condition),
+                self.span(rule),
+                self.text(rule.description),
+            )
+            for rule in found.rules
+        )
+        return Entity(self.name(found.name), rules, self.span(found), self.text(found.description))
+
+    def _behaviour(self, found: Any) -> Behaviour:
+        body = tuple(
+            self._behaviour(item)
+            if type(item).__name__ == "Behaviour"
+            else ActionCall(self.name(item.action), self._terms(item.arguments), self.span(item))
+            for item in found.body
+        )
+        name = None if found.name is None else self.name(found.name)
+        return Behaviour(self._condition(found.condition), body, self.span(found), name)
+
+    # Conditions -------------------------------------------------------------------------------
+
+    def _condition(self, found: Any) -> Condition:
+        operand = self._disjunction(found.operand)
+        if found.duration is None:
+            return operand
+        return For(operand, self._number(found.duration), self.span(found))
+
+    def _disjunction(self, found: Any) -> Condition:
+        operands = tuple(map(self._conjunction, found.operands))
+        return operands[0] if len(operands) == 1 else Or(operands, self.span(found))
+
+    def _conjunction(self, found: Any) -> Condition:
+        operands = tuple(map(self._negation, found.operands))
+        return operands[0] if len(operands) == 1 else And(operands, self.span(found))
+
+    def _negation(self, found: Any) -> Condition:
+        condition = self._predicate(found.operand)
+        if len(found.nots) > MAX_DEPTH:
+            self.diagnostics.append(too_deep(self.span(found)))
+            return condition
+        for keyword in reversed(found.nots):
+            span = Span(self.source, keyword.start, found._tx_position_end)
+            condition = Not(condition, span)
+        return condition
+
+    def _predicate(self, found: Any) -> Condition:
+        if type(found).__name__ == "Parenthesis":
+            return self._condition(found.condition)
+        left = self._term(found.left)
+        span = self.span(found)
+        if found.interval is not None:
+            interval = found.interval
+            return Membership(
+                left,
+                found.negated,
+                self._term(interval.lower),
+                self._term(interval.upper),
+                interval.opening == "[",
+                interval.closing == "]",
+                span,
+                self.span(interval),
+            )
+        if found.operator is None:
+            return Truth(left, span)
+        operator = "=" if found.operator == "==" else str(found.operator)
+        return Comparison(left, cast(ComparisonOperator, operator), self._term(found.right), span)
+
+    # Terms ------------------------------------------------------------------------------------
+
+    def _terms(self, found: Any) -> tuple[Term, ...]:
+        return tuple(map(self._term, found))
+
+    def _term(self, found: Any) -> Term:
+        kind = type(found).__name__
+        if kind == "Quantity":
+            return self._number(found)
+        if kind == "Literal":
+            text: Token = found.text
+            if text[0] == '"':
+                return String(self.text(text), self.token_span(text))
+            return Boolean(text == "true", self.token_span(text))
+        if kind == "Negative":
+            return Negative(self._term(found.operand), self.span(found))
+        if kind == "TopicTerm":
+            return self._calls(self._topic_path(found), found)
+        return self._calls(self._named(found), found)
+
+    def _number(self, found: Any) -> Number:
+        return Number(
+            self.decimal(found.value),
+            self.span(found),
+            self.unit(found.unit),
+            None if found.unit is None else self.token_span(found.unit),
+        )
+
+    def _named(self, found: Any) -> Term:
+        name = self.name(found.name)
+        if found.arguments is not None:
+            arguments = self._terms(found.arguments.arguments)
+            end: int = found.arguments._tx_position_end
+            return Call(name, None, arguments, Span(self.source, name.span.start, end))
+        return NamePath(name, *self._path(name, found))
+
+    def _topic_path(self, found: Any) -> TopicPath:
+        name = self.name(found.topic)
+        path, span = self._path(name, found)
+        return TopicPath(name, path, Span(self.source, found._tx_position, span.end))
+
+    def _path(self, name: Name, found: Any) -> tuple[tuple[str | int, ...], Span]:
+        """Return the steps after a name, and the place of the name with them."""
+        if found.path is None:
+            return (), name.span
+        steps = _STEP.findall(found.path)
+        span = Span(self.source, name.span.start, found.path.end)
+        return tuple(int(step) if step.isdecimal() else step for step in steps), span
+
+    def _calls(self, term: Term, found: Any) -> Term:
+        if len(found.calls) > MAX_DEPTH:
+            self.diagnostics.append(too_deep(self.span(found)))
+            return term
+        for call in found.calls:
+            span = Span(self.source, term.span.start, call._tx_position_end)
+            arguments = self._terms(call.arguments.arguments)
+            term = Call(self.name(call.function), term, arguments, span)
+        return term

@@ -1,0 +1,217 @@
+"""From the textX objects of a system description to a :class:`~deros.metamodels.system.System`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from deros import codes
+from deros.diagnostics import Related, SourceFile, Span
+from deros.interfaces.names import did_you_mean, near
+from deros.metamodels.convert import Converter, Sections
+from deros.metamodels.convert_node import as_double
+from deros.metamodels.node import NodeType
+from deros.metamodels.system import (
+    Import,
+    NodeInstance,
+    ParameterSetting,
+    Respawn,
+    Subsystem,
+    System,
+    Topic,
+    Wiring,
+)
+
+if TYPE_CHECKING:
+    from deros.metamodels.scoping import FileIndex, Reference
+
+_WORDS = {"Namespace": "namespace", "Respawn": "respawn", "LogLevel": "log_level", "Qos": "qos"}
+
+
+class SystemConverter(Converter):
+    """Converts one system description; ``index`` is what its imports define."""
+
+    def __init__(self, source: SourceFile, index: FileIndex) -> None:
+        super().__init__(source)
+        self._index = index
+
+    def system(self, model: Any, imports: Iterable[Import]) -> System:
+        """Return the system that the file describes."""
+        topics: list[Topic] = []
+        members: list[NodeInstance | Subsystem] = []
+        self._parts(model.parts, topics, members)
+        return System(
+            name=str(model.name),
+            source=self.source,
+            span=self.span(model),
+            name_span=self.token_span(model.name),
+            imports=tuple(imports),
+            topics=tuple(topics),
+            members=tuple(members),
+            node_types={name: found[0] for name, found in self._index.node_types.items()},
+            systems={name: found[0] for name, found in self._index.systems.items()},
+            description=self.text(model.description),
+        )
+
+    def _parts(
+        self, parts: Any, topics: list[Topic], members: list[NodeInstance | Subsystem]
+    ) -> None:
+        sections = Sections(self)
+        for part in parts:
+            kind = type(part).__name__
+            if kind == "NodeInstance":
+                members.append(self._node(part))
+            elif kind == "Subsystem":
+                members.append(self._subsystem(part))
+            else:
+                sections.once(str(part.keyword), self.token_span(part.keyword))
+                if kind == "DeclaredTopics":
+                    topics += map(self._topic, part.topics)
+
+    def _topic(self, found: Any) -> Topic:
+        settings: dict[str, Any] = {}
+        if found.type is not None:
+            settings = {
+                "type": self.interface(found.type, "msg"),
+                "type_span": self.token_span(found.type),
+            }
+        if found.attributes:
+            attributes = Sections(self)
+            for attribute in found.attributes:
+                what = _WORDS.get(type(attribute).__name__, "description")
+                if not attributes.once(what, self.span(attribute)):
+                    continue
+                if what == "qos":
+                    settings["qos"] = self.qos(attribute)
+                else:
+                    settings["description"] = self.text(attribute.text)
+        return Topic(
+            str(found.name),
+            self.span(found),
+            self.token_span(found.name),
+            external=found.external,
+            **settings,
+        )
+
+    def _subsystem(self, found: Any) -> Subsystem:
+        topics: list[Topic] = []
+        members: list[NodeInstance | Subsystem] = []
+        settings = self._modifiers(found.modifiers)
+        reference: Reference[System] | None = found.system
+        if reference is not None:
+            self._check_known(reference, "system", self._index.systems)
+            settings |= {
+                "system_name": str(reference.name),
+                "system_span": self.token_span(reference.name),
+                "system": reference.target,
+            }
+            if found.parts:
+                message = f"'{found.name}' uses a system and has parts of its own"
+                hint = "put the parts into a subsystem of their own"
+                self.report(codes.SYNTAX_ERROR, message, self.token_span(found.name), hint)
+        self._parts(found.parts, topics, members)
+        return Subsystem(
+            str(found.name),
+            self.span(found),
+            self.token_span(found.name),
+            topics=tuple(topics),
+            members=tuple(members),
+            **settings,
+        )
+
+    def _node(self, found: Any) -> NodeInstance:
+        reference: Reference[NodeType] = found.type
+        self._check_known(reference, "node type", self._index.node_types)
+        node_type = reference.target
+        parameters: list[ParameterSetting] = []
+        wirings: list[Wiring] = []
+        sections = Sections(self)
+        for section in found.sections:
+            sections.once(str(section.keyword), self.token_span(section.keyword))
+            if type(section).__name__ == "Settings":
+                parameters += (self._setting(each, node_type) for each in section.settings)
+            else:
+                wirings += map(self._wiring, section.wirings)
+        return NodeInstance(
+            str(found.name),
+            str(reference.name),
+            node_type,
+            self.span(found),
+            self.token_span(found.name),
+            self.token_span(reference.name),
+            parameters=tuple(parameters),
+            wirings=tuple(wirings),
+            **(self._modifiers(found.modifiers) if found.modifiers else {}),
+        )
+
+    def _setting(self, found: Any, node_type: NodeType | None) -> ParameterSetting:
+        value = self.value(found.value)
+        parameter = node_type.parameter(found.name) if node_type is not None else None
+        return ParameterSetting(
+            str(found.name),
+            value if parameter is None else as_double(value, parameter.type),
+            self.span(found),
+            self.token_span(found.name),
+            self.value_span(found.value),
+        )
+
+    def _wiring(self, found: Any) -> Wiring:
+        return Wiring(
+            str(found.port),
+            str(found.target),
+            self.span(found),
+            self.token_span(found.port),
+            self.token_span(found.target),
+        )
+
+    def _modifiers(self, modifiers: Any) -> dict[str, Any]:
+        settings: dict[str, Any] = {}
+        once = Sections(self)
+        for modifier in modifiers:
+            what = _WORDS.get(type(modifier).__name__, "description")
+            if not once.once(what, self.span(modifier)):
+                continue
+            if what == "namespace":
+                settings |= {
+                    "namespace": str(modifier.namespace),
+                    "namespace_span": self.token_span(modifier.namespace),
+                }
+            elif what == "respawn":
+                delay = 0 if modifier.delay is None else self.duration_ns(modifier.delay)
+                most = None if modifier.max is None else self.integer(modifier.max)
+                settings["respawn"] = Respawn(delay, most)
+            elif what == "log_level":
+                settings["log_level"] = str(modifier.level)
+            else:
+                settings["description"] = self.text(modifier.text)
+        return settings
+
+    def _check_known(
+        self, reference: Reference[Any], what: str, known: dict[str, tuple[Any, ...]]
+    ) -> None:
+        found = reference.candidates
+        if len(found) == 1:
+            return
+        span = self.token_span(reference.name)
+        if found:
+            files = " and ".join(f"'{each.source.path}'" for each in found)
+            message = f"the {what} '{reference.name}' is defined in {files}"
+            places = (Related(each.name_span, "defined here") for each in found)
+            hint = "import only one of them, or rename one"
+            self.report(codes.AMBIGUOUS_NODE_TYPE, message, span, hint, *places)
+        elif self._index.complete:
+            code = codes.UNKNOWN_SYSTEM if what == "system" else codes.UNKNOWN_NODE_TYPE
+            self.report(code, *unknown(reference.name, what, known, span))
+
+
+def unknown(name: str, what: str, known: Iterable[str], span: Span) -> tuple[str, Span, str]:
+    """Word the finding that no import defines ``name``: message, place and hint."""
+    names = list(known)
+    hint = did_you_mean(near(name, names))
+    if not hint:
+        hint = (
+            f"the imports define {', '.join(names)}"
+            if names
+            else "import the file that defines it"
+        )
+    return f"no import defines the {what} '{name}'", span, hint

@@ -1,0 +1,257 @@
+"""Loading models: each file once per run, with everything that it imports."""
+
+from __future__ import annotations
+
+import gc
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from textx.exceptions import TextXSyntaxError
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
+from deros.metamodels.convert_node import NodeConverter
+from deros.metamodels.convert_rules import RulesConverter
+from deros.metamodels.convert_system import SystemConverter
+from deros.metamodels.imports import find_files
+from deros.metamodels.languages import LANGUAGES, Language, Token, language_of, quick_metamodel
+from deros.metamodels.node import NodeType
+from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, too_deep
+from deros.metamodels.rules import Rules
+from deros.metamodels.scoping import FileIndex, attach_index
+from deros.metamodels.syntax import explain
+from deros.metamodels.system import Import, System
+
+_FRAMES_TO_PARSE = 20_000
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedFile:
+    """One model file as it was loaded.
+
+    Attributes:
+        path: as the user named it, or as the import that led to it resolves.
+        language: ``None`` when the suffix belongs to none of the three.
+        source: ``None`` when the file could not be read.
+        model: ``None`` when there is a syntax error, or nothing could be read.
+        diagnostics: what is wrong with reading, syntax and references of this file alone.
+    """
+
+    path: str
+    language: Language | None
+    source: SourceFile | None
+    model: NodeType | System | Rules | None
+    diagnostics: tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Open:
+    """A file that is being loaded, and the import in it that is being followed."""
+
+    key: str
+    path: str
+    follows: Span
+
+
+class Repository:
+    """The models of one run: a file is read, parsed and converted the first time it is asked for."""
+
+    def __init__(self) -> None:
+        self._files: dict[str, LoadedFile] = {}
+        self._open: list[_Open] = []
+
+    @property
+    def files(self) -> list[LoadedFile]:
+        """Every file loaded so far: those asked for and those that they import, imports first."""
+        return list(self._files.values())
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """The findings of all files loaded so far."""
+        return [each for loaded in self._files.values() for each in loaded.diagnostics]
+
+    def load(self, path: str | Path) -> LoadedFile:
+        """Load the model in the file ``path`` and everything that it imports.
+
+        A fault of the file is a diagnostic of the result, never an exception.
+        """
+        shown = str(path)
+        key = os.path.realpath(shown)
+        if key not in self._files:
+            try:
+                source = read(Path(path), shown)
+            except Unreadable as unreadable:
+                found = (unreadable.diagnostic,)
+                self._files[key] = LoadedFile(shown, language_of(shown), None, None, found)
+            else:
+                self._files[key] = self._convert(key, source)
+        return self._files[key]
+
+    def load_text(self, path: str | Path, text: str) -> LoadedFile:
+        """Load ``text`` as the content of the file ``path``, whatever the disk holds.
+
+        It replaces what was loaded for ``path`` before; imports in it come from the disk as usual.
+        """
+        key = os.path.realpath(str(path))
+        self._files.pop(key, None)
+        self._files[key] = self._convert(key, SourceFile(str(path), text))
+        return self._files[key]
+
+    def _convert(self, key: str, source: SourceFile) -> LoadedFile:
+        language = language_of(source.path)
+        if language is None:
+            message = (
+                f"'{source.path}' is no model: the name ends in none of {', '.join(LANGUAGES)}"
+            )
+            found = report(codes.UNKNOWN_LANGUAGE, message, Span(source, 0, 0))
+            return LoadedFile(source.path, None, source, None, (found,))
+        loading = _Loading(self, key, source)
+        try:
+            with _room_to_parse():
+                model = _LOADERS[language](loading)
+        except Unreadable as unreadable:
+            return LoadedFile(source.path, language, source, None, (unreadable.diagnostic,))
+        except TextXSyntaxError as error:
+            found = explain(error, source)
+            return LoadedFile(source.path, language, source, None, (found,))
+        return LoadedFile(source.path, language, source, model, tuple(loading.diagnostics))
+
+    def follow(self, importer: _Open, path: str) -> LoadedFile | Diagnostic:
+        """Load the file ``path`` for an import; a cycle of imports is a diagnostic."""
+        key = os.path.realpath(path)
+        chain = [*self._open, importer]
+        keys = [each.key for each in chain]
+        if key in keys:
+            return _cycle(chain[keys.index(key) :])
+        if len(chain) > MAX_DEPTH:
+            return too_deep(importer.follows)
+        self._open.append(importer)
+        try:
+            return self.load(path)
+        finally:
+            self._open.pop()
+
+
+class _Loading:
+    """The loading of one file's text: parsing, following its imports, converting."""
+
+    def __init__(self, repository: Repository, key: str, source: SourceFile) -> None:
+        self._repository = repository
+        self._key = key
+        self._source = source
+        self.diagnostics: list[Diagnostic] = []
+
+    def node_type(self) -> NodeType:
+        """Load a node description."""
+        converter = NodeConverter(self._source)
+        result = converter.node_type(self._parse("rosnode"))
+        self.diagnostics += converter.diagnostics
+        return result
+
+    def system(self) -> System:
+        """Load a system description."""
+        index = FileIndex()
+        imports: list[Import] = []
+
+        def follow_imports(model: Any) -> None:
+            statements = [
+                each
+                for part in model.parts
+                if type(part).__name__ == "Imports"
+                for each in part.imports
+            ]
+            imports.extend(self._import(each, index, (".rnd", ".system")) for each in statements)
+            attach_index(model, index)
+
+        model = self._parse("rossystem", follow_imports)
+        converter = SystemConverter(self._source, index)
+        result = converter.system(model, imports)
+        self.diagnostics += converter.diagnostics
+        return result
+
+    def rules(self) -> Rules:
+        """Load a DeRoS program."""
+        indexes: dict[int, FileIndex] = {}
+
+        def follow_uses(model: Any) -> None:
+            for statement in model.statements:
+                if type(statement).__name__ == "Use":
+                    index = indexes[statement._tx_position] = FileIndex()
+                    self._import(statement, index, (".system",))
+
+        model = self._parse("deros", follow_uses)
+        converter = RulesConverter(self._source, indexes)
+        result = converter.rules(model)
+        self.diagnostics += converter.diagnostics
+        return result
+
+    def _parse(self, language: Language, before_references: Any = None) -> Any:
+        text = prepare(self._source)
+        return quick_metamodel(language).model_from_str(
+            text, pre_ref_resolution_callback=before_references
+        )
+
+    def _import(self, statement: Any, index: FileIndex, suffixes: tuple[str, ...]) -> Import:
+        """Follow one import or use; what the file defines goes into ``index``."""
+        token: Token = statement.path
+        span = Span(self._source, token.start, token.end)
+        pattern = str(token[1:-1])
+        found = find_files(self._source.path, pattern, span, suffixes)
+        if isinstance(found, Diagnostic):
+            self.diagnostics.append(found)
+            index.complete = False
+            found = ()
+        importer = _Open(self._key, self._source.path, span)
+        for path in found:
+            loaded = self._repository.follow(importer, path)
+            if isinstance(loaded, Diagnostic):
+                self.diagnostics.append(loaded)
+                index.complete = False
+            elif isinstance(loaded.model, NodeType):
+                index.add_node_type(loaded.model)
+            elif isinstance(loaded.model, System):
+                index.add_system(loaded.model)
+            else:
+                index.complete = False
+        whole = Span(self._source, statement._tx_position, statement._tx_position_end)
+        return Import(pattern, tuple(found), whole)
+
+
+_LOADERS: dict[Language, Any] = {
+    "rosnode": _Loading.node_type,
+    "rossystem": _Loading.system,
+    "deros": _Loading.rules,
+}
+
+
+def _cycle(chain: list[_Open]) -> Diagnostic:
+    """Make the diagnostic of an import that leads back to the first file of ``chain``."""
+    names = " → ".join(f"'{each.path}'" for each in [*chain, chain[0]])
+    *before, last = chain
+    related = tuple(Related(each.follows, "imported from here") for each in before)
+    message = f"the import leads back to its own beginning: {names}"
+    return report(codes.CYCLIC_IMPORT, message, last.follows, "", related)
+
+
+@contextmanager
+def _room_to_parse() -> Iterator[None]:
+    """Let the parser recurse as deep as models may nest, and build without garbage collection.
+
+    A parse makes objects by the hundred thousand and hardly any garbage: collections would only
+    walk the growing model again and again.
+    """
+    limit = sys.getrecursionlimit()
+    collects = gc.isenabled()
+    gc.disable()
+    sys.setrecursionlimit(max(limit, _FRAMES_TO_PARSE))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(limit)
+        if collects:
+            gc.enable()
