@@ -1,0 +1,1 @@
+"""The target ``python`` of node descriptions: an ament_python package, by the generation gap."""

@@ -1,0 +1,161 @@
+"""Node descriptions to an ament_python package."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from deros import codes
+from deros.diagnostics import report
+from deros.generators.names import python_identifier
+from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
+from deros.generators.rosnode_python.imports import base_imports, user_imports
+from deros.generators.rosnode_python.source import call, expression, mark_long_lines
+from deros.generators.rosnode_python.view import PackageView, package_view
+from deros.generators.templates import environment
+from deros.metamodels.node import NodeType, PortKind
+
+_MAINTAINER = re.compile(r"\s*([^<>]*?)\s*<([^<>\s]+@[^<>\s]+)>\s*")
+
+
+def generate(model: NodeType, context: Context, options: Options) -> Files:
+    """Return the package of ``model``, with the other nodes of that package described beside it.
+
+    A package is built as a whole: its setup.py names the program of every node. So the node
+    descriptions of the same package in the same folder are always generated together.
+
+    Raises:
+        GenerationError: if the node, or one beside it, cannot be made.
+    """
+    _refuse_legacy(model)
+    return package_files([model, *_beside(model, context)], options)
+
+
+def package_files(models: Sequence[NodeType], options: Options) -> dict[str, File]:
+    """Return the files of the package that ``models``, all of one package, make up.
+
+    Args:
+        models: one or more nodes; their order does not matter.
+        options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder.
+
+    Raises:
+        GenerationError: if names collide, or a construct has no counterpart in rclpy.
+        ValueError: if an option cannot be read.
+    """
+    ordered = tuple(sorted(models, key=lambda model: model.name))
+    for model in ordered:
+        _check_supported(model)
+    package = package_view(ordered, _maintainer(options), options.get("copyright", ""))
+    files = _package_level(package)
+    for node in package.nodes:
+        root = f"{package.name}/{package.name}"
+        base = _render("base.py", package=package, node=node, imports=base_imports(node))
+        user = _render("node.py", package=package, node=node, imports=user_imports(package, node))
+        files[f"{root}/{node.base_module}.py"] = File(base)
+        files[f"{root}/{node.module}.py"] = File(user, Owner.USER)
+        launch = _render("launch.py", package=package, node=node)
+        files[f"{package.name}/launch/{node.name}.launch.py"] = File(launch)
+        if node.parameters:
+            config = _render("config.yaml", package=package, node=node)
+            files[f"{package.name}/config/{node.name}.yaml"] = File(config)
+    return files
+
+
+def _package_level(package: PackageView) -> dict[str, File]:
+    templates = {
+        "package.xml": "package.xml",
+        "setup.py": "setup.py",
+        "setup.cfg": "setup.cfg",
+        "test/test_flake8.py": "test_flake8.py",
+        "test/test_pep257.py": "test_pep257.py",
+    }
+    if package.copyright:
+        templates["test/test_copyright.py"] = "test_copyright.py"
+    files = {
+        f"{package.name}/{path}": File(_render(template, package=package))
+        for path, template in templates.items()
+    }
+    files[f"{package.name}/resource/{package.name}"] = File("")
+    files[f"{package.name}/{package.name}/__init__.py"] = File("")
+    return files
+
+
+def _render(template: str, **names: object) -> str:
+    loaded = environment("deros.generators.rosnode_python").get_template(f"{template}.j2")
+    text = loaded.render(names, call=call, expression=expression)
+    return mark_long_lines(text) if template.endswith(".py") else text
+
+
+# What belongs together ----------------------------------------------------------------------------
+
+
+def _beside(model: NodeType, context: Context) -> list[NodeType]:
+    """Return the other nodes of the model's package that are described in its folder.
+
+    Nodes with a program of their own need no skeleton; files that do not load are no nodes.
+    """
+    found: list[NodeType] = []
+    own = Path(model.source.path)
+    for path in sorted(own.parent.glob("*.rnd")):
+        if path.name == own.name:
+            continue
+        other = context.repository.load(path).model
+        if (
+            isinstance(other, NodeType)
+            and other.package == model.package
+            and other.name != model.name
+            and other.executable is None
+        ):
+            found.append(other)
+    return found
+
+
+# What the target refuses --------------------------------------------------------------------------
+
+
+def _refuse_legacy(model: NodeType) -> None:
+    if model.executable is None:
+        return
+    raise GenerationError(
+        [
+            report(
+                codes.UNSUPPORTED_BY_TARGET,
+                f"node {model.name!r} runs the existing program {model.executable!r}: "
+                "there is no skeleton to generate",
+                model.name_span,
+                hint="remove the line 'executable' to have the node generated",
+            )
+        ]
+    )
+
+
+def _check_supported(model: NodeType) -> None:
+    found = []
+    if python_identifier(model.package) != model.package:
+        message = f"package name {model.package!r} is no Python module name"
+        found.append(report(codes.UNSUPPORTED_BY_TARGET, message, model.package_span))
+    for parameter in model.parameters:
+        if parameter.name in ("use_sim_time", "start_type_description_service"):
+            message = f"parameter {parameter.name!r} is declared by every ROS 2 node itself"
+            hint = "remove it; it can be set all the same"
+            span = parameter.name_span
+            found.append(report(codes.UNSUPPORTED_BY_TARGET, message, span, hint))
+    for port in model.ports:
+        action = port.kind in (PortKind.ACTION, PortKind.ACTION_CLIENT)
+        if action and port.qos is not None:
+            message = f"an action has five services and topics, {port.name!r} gives one QoS profile"
+            hint = "leave the QoS of actions to ROS 2"
+            found.append(report(codes.UNSUPPORTED_BY_TARGET, message, port.span, hint))
+    if found:
+        raise GenerationError(found)
+
+
+def _maintainer(options: Options) -> tuple[str, str]:
+    text = options.get("maintainer")
+    if text is None:
+        return "maintainer", "maintainer@example.com"
+    match = _MAINTAINER.fullmatch(text)
+    if match is None:
+        raise ValueError(f"maintainer {text!r} does not read 'Name <address>'")
+    return match[1] or match[2], match[2]

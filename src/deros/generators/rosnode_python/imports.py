@@ -1,0 +1,88 @@
+"""Which modules the generated files import, each name only where it is used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from deros.generators.rosnode_python.source import import_lines
+from deros.generators.rosnode_python.view import NodeView, PackageView, PortView, interface_imports
+
+
+def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
+    """Return the import statements of the base class: standard library, then the rest."""
+    standard: dict[str, set[str]] = {"typing": {"Any"}}
+    if node.has_handlers:
+        standard["abc"] = {"ABC", "abstractmethod"}
+    if node.parameters:
+        standard["dataclasses"] = {"dataclass"}
+    if node.checked or node.action_clients or node.gated:
+        standard["typing"].add("Callable")
+
+    rest: dict[str, set[str]] = interface_imports(
+        dict(node.interfaces), (kind for kind, _ in node.interfaces)
+    )
+    add = _Adder(rest)
+    if node.lifecycle:
+        add("rclpy.lifecycle", "LifecycleNode")
+        if node.gated:
+            add("rclpy.lifecycle.managed_entity", "SimpleManagedEntity")
+    else:
+        add("rclpy.node", "Node")
+    _parameter_imports(node, add)
+    if node.actions:
+        add("rclpy.action", "ActionServer", "CancelResponse", "GoalResponse")
+        add("rclpy.action.server", "ServerGoalHandle")
+        add("rclpy.callback_groups", "ReentrantCallbackGroup")
+    if node.action_clients:
+        add("rclpy.action", "ActionClient")
+    if node.clients or node.action_clients:
+        add("rclpy.task", "Future")
+    if node.timers:
+        add("rclpy.clock", "Clock", "ClockType")
+    for port in _ports(node):
+        for module, name in port.qos_imports:
+            add(module, name)
+    return import_lines(standard), import_lines(rest)
+
+
+def user_imports(package: PackageView, node: NodeView) -> list[str]:
+    """Return the import statements of the user's module."""
+    handled = {port.type for port in (*node.subscriptions, *node.services, *node.actions)}
+    used = [kind for kind, name in node.interfaces if name in handled]
+    rest: dict[str, set[str]] = interface_imports(dict(node.interfaces), used)
+    add = _Adder(rest)
+    add("rclpy")
+    add("rclpy.executors", "ExternalShutdownException")
+    if node.actions:
+        add("rclpy.action.server", "ServerGoalHandle")
+        add("rclpy.executors", "MultiThreadedExecutor")
+    add(f"{package.name}.{node.base_module}", node.base_class)
+    return import_lines(rest)
+
+
+def _parameter_imports(node: NodeView, add: _Adder) -> None:
+    if not node.parameters:
+        return
+    add("rclpy.parameter", "Parameter")
+    if any(p.described for p in node.parameters):
+        add(
+            "rcl_interfaces.msg",
+            "ParameterDescriptor",
+            *(r for p in node.parameters for r in p.ranges),
+        )
+    if node.checked:
+        add("rcl_interfaces.msg", "SetParametersResult")
+
+
+def _ports(node: NodeView) -> Iterable[PortView]:
+    return (*node.publishers, *node.subscriptions, *node.services, *node.clients)
+
+
+class _Adder:
+    """Collects names to import by module."""
+
+    def __init__(self, imports: dict[str, set[str]]) -> None:
+        self._imports = imports
+
+    def __call__(self, module: str, *names: str) -> None:
+        self._imports.setdefault(module, set()).update(names)
