@@ -1,0 +1,280 @@
+"""Actions of the rules: their declarations, what bound ones publish, and the calls of them."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from fractions import Fraction
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, Severity
+from deros.interfaces.names import did_you_mean, near
+from deros.interfaces.types import FLOAT_TYPES, FieldType, MessageDefinition
+from deros.metamodels import rules
+from deros.metamodels.common import Name
+from deros.metamodels.flatten import resolve_name
+from deros.monitor import ir
+from deros.monitor.bounds import rounded, type_bounds
+from deros.monitor.resolved import (
+    Fixed,
+    MessageConstant,
+    Plain,
+    Quantity,
+    family,
+    family_of,
+)
+from deros.monitor.scope import Scope
+from deros.monitor.terms import Terms
+
+LOG_STATE = "log_state"
+"""The action that is built in: it writes a text to the log."""
+
+# Words of C++ that Python would take as names: rules are to generate for every target.
+_CPP_WORDS = frozenset(
+    re.findall(
+        r"\w+",
+        """
+        alignas alignof asm auto bool case catch char const constexpr default delete do double enum
+        explicit export extern float friend goto inline int long mutable namespace new noexcept
+        nullptr operator private protected public register short signed sizeof static struct switch
+        template this throw typedef typename union unsigned using virtual void volatile
+        """,
+    )
+)
+
+
+class Actions:
+    """The declared actions of one program, by name; faults go to the scope."""
+
+    def __init__(self, scope: Scope, terms: Terms, declared: tuple[rules.Action, ...]) -> None:
+        """Check the declarations."""
+        self._scope = scope
+        self._terms = terms
+        self._declared: dict[str, rules.Action] = {}
+        self._bindings: dict[str, ir.Binding | None] = {}
+        self._triggered_by: dict[str, list[int]] = {}
+        scope.check_duplicates((each.name for each in declared), "action")
+        for each in declared:
+            self._check(each)
+            if self._declared.setdefault(each.name.text, each) is each and each.binding:
+                self._bindings[each.name.text] = self._bind(each.binding)
+        for each in declared:
+            self._check_reset(each)
+        self._indices = {name: index for index, name in enumerate(self._declared)}
+
+    def _check(self, action: rules.Action) -> None:
+        if action.name.text == LOG_STATE:
+            message = f"'{LOG_STATE}' is built in and cannot be declared"
+            self._scope.fault(codes.DUPLICATE_RULE_NAME, message, action.name.span)
+        for name in (action.name, *action.parameters):
+            if keyword.iskeyword(name.text) or name.text in _CPP_WORDS:
+                message = f"'{name}' is a word of the languages that code is generated in"
+                hint = f"call it '{name}_' or the like"
+                self._scope.fault(codes.INVALID_RULES_NAME, message, name.span, hint)
+        self._scope.check_duplicates(action.parameters, f"parameter of '{action.name}'")
+
+    def _check_reset(self, action: rules.Action) -> None:
+        reset = action.reset_by
+        if reset is None:
+            return
+        if action.latched:
+            message = f"'{action.name}' is latched: nothing but '~/reset' resets it"
+            hint = "keep either 'latched' or 'reset_by'"
+            self._scope.fault(codes.LATCHED_AND_RESET_BY, message, reset.span, hint)
+        if reset.text not in self._declared:
+            hint = did_you_mean(near(reset.text, self._declared))
+            message = f"no action '{reset}' is declared"
+            self._scope.fault(codes.UNKNOWN_RESET, message, reset.span, hint)
+
+    # Bindings -----------------------------------------------------------------------------------
+
+    def _bind(self, binding: rules.Binding) -> ir.Binding | None:
+        topic = resolve_name(binding.topic.text, "/")
+        known = self._scope.topics.get(topic)
+        if known is not None and known.type is not None and known.type != binding.type:
+            self._scope.fault(
+                codes.ACTION_TYPE_MISMATCH,
+                f"the action publishes {binding.type.short}, '{topic}' is of type"
+                f" {known.type.short}",
+                binding.type_span,
+                related=(Related(known.place, "the topic"),),
+            )
+        definition = self._scope.store.message(binding.type)
+        if definition is None:
+            self._unknown_type(binding)
+            return None
+        value = self._terms.resolve(binding.value, definition)
+        if value is None:
+            return None
+        if not isinstance(value, (Quantity, Plain, MessageConstant)):
+            message = "an action publishes a constant"
+            self._scope.fault(codes.ACTION_VALUE, message, binding.value.span)
+            return None
+        return self._carried(binding, topic, definition, value)
+
+    def _unknown_type(self, binding: rules.Binding) -> None:
+        store, kind = self._scope.store, binding.type
+        if store.has_package(kind.package):
+            message = f"package '{kind.package}' has no message type '{kind.name}'"
+            hint = did_you_mean(near(kind.name, store.names(kind.package, "msg")))
+            self._scope.fault(codes.UNKNOWN_TYPE, message, binding.type_span, hint)
+            return
+        hint = did_you_mean(near(kind.package, store.packages()))
+        message = f"no interface package '{kind.package}' is known"
+        self._scope.fault(
+            codes.UNKNOWN_PACKAGE,
+            message,
+            binding.type_span,
+            hint or "name the folder that has it with --interfaces PATH",
+        )
+
+    def _carried(
+        self,
+        binding: rules.Binding,
+        topic: str,
+        definition: MessageDefinition,
+        value: Fixed,
+    ) -> ir.Binding | None:
+        """Put the value into the first field of the message that can hold it."""
+        for name, kind in definition.fields:
+            if isinstance(kind.base, str) and not kind.is_array:
+                scalar = self._scalar(binding, topic, name, kind, value)
+                if scalar is not None:
+                    self._check_distinct(binding, definition, name, kind, scalar)
+                    return ir.Binding(topic, binding.type, (name,), scalar)
+        fields = ", ".join(f"{name} ({kind})" for name, kind in definition.fields)
+        self._scope.fault(
+            codes.ACTION_VALUE,
+            f"no field of {binding.type.short} can hold '{binding.value.span.text}'",
+            binding.value.span,
+            f"its fields: {fields}" if fields else "it has no fields",
+        )
+        return None
+
+    def _scalar(
+        self, binding: rules.Binding, topic: str, name: str, kind: FieldType, value: Fixed
+    ) -> ir.Scalar | None:
+        """Return the value as this field holds it, or ``None`` if it cannot."""
+        if not isinstance(value, Quantity):
+            scalar = value.value if isinstance(value, Plain) else value.constant.value
+            if isinstance(value, MessageConstant) and value.constant.type != kind.base:
+                return None
+            return scalar if family_of(scalar) == family(kind) else None
+        if family(kind) != "number":
+            return None
+        unit = self._scope.unit_of(topic, binding.type, (name,))
+        if unit and value.unit and not self._scope.units.compatible(value.unit, unit):
+            return None
+        number = value.in_unit(unit)
+        if kind.base in FLOAT_TYPES:
+            return rounded(number)
+        least, greatest = type_bounds(kind)
+        fits = number.denominator == 1 and least <= number <= greatest
+        return int(number) if fits else None
+
+    def _check_distinct(
+        self,
+        binding: rules.Binding,
+        definition: MessageDefinition,
+        name: str,
+        kind: FieldType,
+        scalar: ir.Scalar,
+    ) -> None:
+        """Warn of an active message that equals the inactive one."""
+        if family(kind) == "boolean":
+            return
+        inactive = definition.defaults.get(name, "" if family(kind) == "text" else 0)
+        if scalar == inactive:
+            self._scope.diagnostics.append(
+                Diagnostic(
+                    codes.ACTION_VALUE,
+                    f"'{binding.value.span.text}' is what the topic carries while the action"
+                    " is not active, too",
+                    binding.value.span,
+                    "publish a value that the default of the field differs from",
+                    severity=Severity.WARNING,
+                )
+            )
+
+    # Calls --------------------------------------------------------------------------------------
+
+    def trigger(self, call: rules.ActionCall, behaviour: int) -> ir.Trigger | None:
+        """Return the run of an action in the body of the behaviour with this index."""
+        name = call.action.text
+        arguments = tuple(self._argument(each) for each in call.arguments)
+        self._triggered_by.setdefault(name, []).append(behaviour)
+        if name == LOG_STATE:
+            if len(arguments) != 1 or not isinstance(arguments[0], (str, type(None))):
+                message = f"'{LOG_STATE}' takes one text"
+                hint = f"write '{LOG_STATE}(\"what happened\");'"
+                self._scope.fault(codes.WRONG_ACTION_ARGUMENTS, message, call.span, hint)
+                return None
+        elif name not in self._declared:
+            self._unknown(call.action)
+            return None
+        else:
+            wanted = self._declared[name].parameters
+            if len(wanted) != len(arguments):
+                shown = f"{name}({', '.join(map(str, wanted))})" if wanted else name
+                message = f"'{shown}' takes {_counted(len(wanted))}, {len(arguments)} given"
+                place = (Related(self._declared[name].span, "declared here"),)
+                self._scope.fault(codes.WRONG_ACTION_ARGUMENTS, message, call.span, related=place)
+                return None
+        known = tuple(each for each in arguments if each is not None)
+        if len(known) < len(arguments):
+            return None
+        index = self._indices.get(name, len(self._declared))
+        return ir.Trigger(index, known, call.span)
+
+    def _unknown(self, name: Name) -> None:
+        hint = did_you_mean(near(name.text, [*self._declared, LOG_STATE]))
+        hint = hint or f"declare it: 'action {name};'"
+        message = f"no action '{name}' is declared"
+        self._scope.fault(codes.UNKNOWN_NAME, message, name.span, hint)
+
+    def _argument(self, term: rules.Term) -> ir.Scalar | None:
+        found = self._terms.resolve(term)
+        match found:
+            case None:
+                return None
+            case Plain(value=value):
+                return value
+            case Quantity():
+                return _as_written(found)
+        message = f"an argument is a constant, '{term.span.text}' is read from a topic"
+        self._scope.fault(codes.WRONG_ACTION_ARGUMENTS, message, term.span)
+        return None
+
+    def program_actions(self) -> tuple[ir.Action, ...]:
+        """Return the actions of the program: those declared, and ``log_state`` if it is used."""
+        actions = [
+            ir.Action(
+                index,
+                name,
+                tuple(each.text for each in declared.parameters),
+                self._bindings.get(name),
+                self._indices.get(declared.reset_by.text) if declared.reset_by else None,
+                declared.latched,
+                self._triggers(name),
+                declared.span,
+            )
+            for index, (name, declared) in enumerate(self._declared.items())
+        ]
+        if LOG_STATE in self._triggered_by:
+            index, by = len(actions), self._triggers(LOG_STATE)
+            actions.append(ir.Action(index, LOG_STATE, ("text",), None, None, False, by))
+        return tuple(actions)
+
+    def _triggers(self, name: str) -> tuple[int, ...]:
+        return tuple(dict.fromkeys(self._triggered_by.get(name, ())))
+
+
+def _as_written(quantity: Quantity) -> int | float:
+    number: Fraction = quantity.in_unit(None)
+    if quantity.whole and number.denominator == 1:
+        return int(number)
+    return rounded(number)
+
+
+def _counted(number: int) -> str:
+    return {0: "no argument", 1: "1 argument"}.get(number, f"{number} arguments")

@@ -1,0 +1,72 @@
+"""Exact numbers around comparisons: what a type can hold, what an operator and a bound let through.
+
+An end is an exact fraction, or a float for the infinities.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+from deros.interfaces.types import INTEGER_RANGES, FieldType
+from deros.monitor import ir
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """The numbers that satisfy a condition: those between two ends, or (``outside``) all others."""
+
+    lower: Fraction | float
+    upper: Fraction | float
+    lower_closed: bool = True
+    upper_closed: bool = True
+    outside: bool = False
+
+
+def type_bounds(kind: FieldType) -> tuple[Fraction | float, Fraction | float]:
+    """Return the least and greatest value of a primitive type."""
+    if isinstance(kind.base, str) and kind.base in INTEGER_RANGES:
+        least, greatest = INTEGER_RANGES[kind.base]
+        return Fraction(least), Fraction(greatest)
+    return -math.inf, math.inf
+
+
+def rounded(value: Fraction) -> float:
+    """Return the nearest double; infinity beyond their range."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
+def integer_bound(operator: ir.Operator, number: Fraction) -> tuple[ir.Operator, int | float]:
+    """Return the comparison of an integer that means the same, with an integer if there is one.
+
+    ``x > 2.5`` is ``x > 2``, ``x >= 2.5`` is ``x >= 3``; ``x = 2.5`` is never true.
+    """
+    if number.denominator == 1:
+        return operator, int(number)
+    if operator in (">", "<="):
+        return operator, math.floor(number)
+    if operator in (">=", "<"):
+        return operator, math.ceil(number)
+    nearest = rounded(number)
+    return operator, nearest if not nearest.is_integer() else 0.5
+
+
+def bounds_of(operator: ir.Operator, number: Fraction | float) -> Bounds:
+    """Return the numbers that compare so with ``number``; infinities are numbers."""
+    match operator:
+        case "=" | "!=":
+            return Bounds(number, number, outside=operator == "!=")
+        case "<" | "<=":
+            return Bounds(-math.inf, number, upper_closed=operator == "<=")
+        case _:
+            return Bounds(number, math.inf, lower_closed=operator == ">=")
+
+
+def exact(value: ir.Scalar) -> Fraction | float:
+    """Return a number without rounding; infinities stay floats."""
+    assert isinstance(value, (int, float))
+    return Fraction(value) if math.isfinite(value) else float(value)

@@ -1,0 +1,173 @@
+"""From the rules as written to the program of a monitor, or to what is wrong with them.
+
+Names, field paths, types and units are resolved here, once; engine and generators read the result.
+Every fault is reported, as far as one does not follow from another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros import codes
+from deros.diagnostics import Diagnostic, has_errors
+from deros.interfaces.names import did_you_mean, near
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels import rules
+from deros.monitor import ir
+from deros.monitor.actions import Actions
+from deros.monitor.comparisons import Comparisons
+from deros.monitor.conditions import Conditions
+from deros.monitor.resolved import ResolvedComparison
+from deros.monitor.scope import Scope
+from deros.monitor.terms import Terms
+from deros.monitor.topics import SystemTopics
+
+
+@dataclass(frozen=True, slots=True)
+class BuildResult:
+    """What became of the rules.
+
+    Attributes:
+        program: ``None`` when there is an error, here or, with a used system that could not be
+            loaded, among the diagnostics of the loader.
+        diagnostics: in the order found.
+        comparisons: the comparisons that could be resolved, for further checks.
+        topics: what the used systems tell of their topics.
+    """
+
+    program: ir.Program | None
+    diagnostics: tuple[Diagnostic, ...]
+    comparisons: tuple[ResolvedComparison, ...]
+    topics: SystemTopics
+
+
+def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
+    """Resolve everything that the rules name, and give them the form that a monitor runs."""
+    builder = _Builder(program, store)
+    built = builder.build()
+    scope = builder.scope
+    sound = scope.systems_known and not has_errors(scope.diagnostics)
+    return BuildResult(
+        built if sound else None,
+        tuple(scope.diagnostics),
+        tuple(builder.comparisons.found),
+        scope.topics,
+    )
+
+
+class _Builder:
+    """Builds one program. What has a fault is left out, and makes the result useless as a whole."""
+
+    def __init__(self, program: rules.Rules, store: InterfaceStore) -> None:
+        self._program = program
+        self.scope = Scope(program, store)
+        terms = Terms(self.scope, [each.name.text for each in program.entities])
+        for name in self.scope.constants:
+            terms.constant(name)
+        self.comparisons = Comparisons(self.scope, terms)
+        self._conditions = Conditions(self.scope, self.comparisons)
+        self._actions = Actions(self.scope, terms, program.actions)
+        self._rule_index: dict[str, dict[str, int]] = {}
+        self._behaviours = 0
+
+    def build(self) -> ir.Program:
+        """Build rules, then behaviours, in the order in which the monitor evaluates them."""
+        built_rules = tuple(self._rules())
+        self._name_behaviours()
+        behaviours = tuple(
+            built
+            for each in self._program.behaviours
+            if (built := self._behaviour(each, None)) is not None
+        )
+        return ir.Program(
+            self._program.name,
+            tuple(self.scope.leaves),
+            self.scope.program_inputs(),
+            built_rules,
+            behaviours,
+            self._actions.program_actions(),
+        )
+
+    # Rules --------------------------------------------------------------------------------------
+
+    def _rules(self) -> Iterator[ir.Rule]:
+        entities = self._program.entities
+        self.scope.check_duplicates((each.name for each in entities), "entity")
+        index = 0
+        for entity in entities:
+            name = entity.name.text
+            self.scope.check_duplicates(
+                (each.name for each in entity.rules), f"rule of entity '{name}'"
+            )
+            known = self._rule_index.setdefault(name, {})
+            for rule in entity.rules:
+                known.setdefault(rule.name.text, index)
+                condition = self._conditions.of_rule(rule.condition)
+                if condition is not None:
+                    yield ir.Rule(index, name, rule.name.text, condition, rule.span)
+                index += 1
+
+    def _verdict(self, term: rules.NamePath) -> ir.RuleRef | None:
+        """Resolve ``entity.rule``."""
+        name = term.name.text
+        known = self._rule_index.get(name)
+        if known is None:
+            owners = [
+                f"{entity}.{name}"
+                for entity in self._rule_index
+                if name in self._rule_index[entity]
+            ]
+            hint = did_you_mean(owners or near(name, self._rule_index))
+            self.scope.fault(codes.UNKNOWN_NAME, f"no entity '{name}'", term.name.span, hint)
+            return None
+        rule = str(term.path[0]) if term.path else ""
+        if len(term.path) == 1 and rule in known:
+            return ir.RuleRef(known[rule])
+        hint = did_you_mean(f"{name}.{each}" for each in near(rule, known) or list(known)[:3])
+        message = f"entity '{name}' has no rule '{'.'.join(map(str, term.path))}'"
+        if not term.path:
+            message = f"'{name}' is an entity, its rules are the conditions"
+        self.scope.fault(codes.UNKNOWN_NAME, message, term.span, hint)
+        return None
+
+    # Behaviours ---------------------------------------------------------------------------------
+
+    def _name_behaviours(self) -> None:
+        """Check that no two behaviours have one name, given or numbered."""
+        everyone = [each for top in self._program.behaviours for each in _with_nested(top)]
+        numbered = {f"behaviour_{i}": i for i, each in enumerate(everyone, 1) if not each.name}
+        given = [each.name for each in everyone if each.name]
+        self.scope.check_duplicates(given, "behaviour")
+        for name in given:
+            if name.text in numbered:
+                message = (
+                    f"'{name}' is the name of the behaviour that is number {numbered[name.text]}"
+                    " in the file and has no name of its own"
+                )
+                self.scope.fault(codes.DUPLICATE_RULE_NAME, message, name.span)
+
+    def _behaviour(self, written: rules.Behaviour, parent: int | None) -> ir.Behaviour | None:
+        index = self._behaviours
+        self._behaviours += 1
+        condition = self._conditions.of_behaviour(written.condition, self._verdict)
+        body: list[ir.Trigger | ir.Behaviour] = []
+        for item in written.body:
+            built = (
+                self._behaviour(item, index)
+                if isinstance(item, rules.Behaviour)
+                else self._actions.trigger(item, index)
+            )
+            if built is not None:
+                body.append(built)
+        if condition is None:
+            return None
+        name = written.name.text if written.name else f"behaviour_{index + 1}"
+        return ir.Behaviour(index, name, condition, tuple(body), parent, written.span)
+
+
+def _with_nested(behaviour: rules.Behaviour) -> Iterator[rules.Behaviour]:
+    yield behaviour
+    for item in behaviour.body:
+        if isinstance(item, rules.Behaviour):
+            yield from _with_nested(item)

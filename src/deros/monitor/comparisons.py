@@ -1,0 +1,365 @@
+"""Comparisons of the rules, their types and units checked, resolved into those of the monitor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+
+from deros import codes
+from deros.diagnostics import Span
+from deros.metamodels import rules
+from deros.monitor import ir
+from deros.monitor.bounds import Bounds, bounds_of, exact, integer_bound, rounded
+from deros.monitor.resolved import (
+    AgeOf,
+    Fixed,
+    MessageConstant,
+    MissingOf,
+    Part,
+    Plain,
+    Quantity,
+    Resolved,
+    ResolvedComparison,
+    Value,
+    family,
+    family_of,
+    is_float,
+)
+from deros.monitor.scope import Scope
+from deros.monitor.terms import Terms, describe
+
+_MIRRORED: dict[ir.Operator, ir.Operator] = {
+    "=": "=",
+    "!=": "!=",
+    "<": ">",
+    "<=": ">=",
+    ">": "<",
+    ">=": "<=",
+}
+_EQUALITY = frozenset({"=", "!="})
+_FIXED = (Quantity, Plain, MessageConstant)
+
+
+class Comparisons:
+    """Builds the conditions that hold no other ones. ``None`` means that a fault has been reported.
+
+    ``found`` collects every comparison with its types, for the checks of value ranges.
+    """
+
+    def __init__(self, scope: Scope, terms: Terms) -> None:
+        """Remember where names are looked up."""
+        self._scope = scope
+        self._terms = terms
+        self.found: list[ResolvedComparison] = []
+
+    def build(
+        self, condition: rules.Comparison | rules.Membership | rules.Truth
+    ) -> ir.Condition | None:
+        """Return a comparison, an interval or a boolean term of a rule."""
+        match condition:
+            case rules.Truth():
+                return self._truth(condition)
+            case rules.Comparison():
+                return self._comparison(condition)
+            case rules.Membership():
+                return self._membership(condition)
+
+    # A term alone -------------------------------------------------------------------------------
+
+    def _truth(self, truth: rules.Truth) -> ir.Condition | None:
+        operand = self._terms.resolve(truth.operand)
+        match operand:
+            case None:
+                return None
+            case MissingOf():
+                return ir.Missing(self._scope.use(operand.input))
+            case Value() if family(operand.type) == "boolean":
+                return ir.Truth(operand.expression)
+            case Plain(value=bool(value)):
+                return ir.Truth(ir.Const(value))
+        written = truth.operand.span.text
+        message = f"'{written}' is {describe(operand)}, no condition by itself"
+        hint = f"compare it: '{written} > ...'" if not isinstance(operand, Part) else ""
+        self._scope.fault(codes.WRONG_OPERAND, message, truth.span, hint)
+        return None
+
+    # Comparisons --------------------------------------------------------------------------------
+
+    def _comparison(self, node: rules.Comparison) -> ir.Condition | None:
+        first, second = self._both(node.left, node.right)
+        if first is None or second is None:
+            return None
+        left, right = node.left, node.right
+        operator: ir.Operator = node.operator
+        if isinstance(first, _FIXED):
+            if isinstance(second, _FIXED):
+                message = "neither side is read from a topic"
+                self._scope.fault(codes.WRONG_OPERAND, message, node.span)
+                return None
+            first, second, left, right = second, first, right, left
+            operator = _MIRRORED[operator]
+        match first, second:
+            case (AgeOf(), _) | (_, AgeOf()):
+                return self._age(node, first, operator, second)
+            case (MissingOf(), Plain(value=bool(value))) if operator in _EQUALITY:
+                missing = ir.Missing(self._scope.use(first.input))
+                return missing if value is (operator == "=") else ir.Not(missing)
+            case (Value(), Value()):
+                return self._between_values(node, first, operator, second)
+            case (Value(), Quantity() | Plain() | MessageConstant()):
+                return self._with_constant(node, first, left, operator, second, right)
+        self._no_value(first if not isinstance(first, Value) else second, node.span)
+        return None
+
+    def _both(self, left: rules.Term, right: rules.Term) -> tuple[Resolved | None, Resolved | None]:
+        """Resolve both sides; the one that may name a message's constant, after the other."""
+        if self._terms.is_open(left) and not self._terms.is_open(right):
+            second = self._terms.resolve(right)
+            message = second.message if isinstance(second, Value) else None
+            # With the other side unknown, so are the names that it would explain.
+            return (None, None) if second is None else (self._terms.resolve(left, message), second)
+        first = self._terms.resolve(left)
+        if first is None and self._terms.is_open(right):
+            return None, None
+        message = first.message if isinstance(first, Value) else None
+        return first, self._terms.resolve(right, message)
+
+    def _no_value(self, found: Resolved, span: Span) -> None:
+        if isinstance(found, Part):
+            message = f"a number is needed here, this is {describe(found)}"
+            hint = "" if found.type.is_array else "name one of its fields, or apply a function"
+            self._scope.fault(codes.NOT_A_NUMBER_FIELD, message, span, hint)
+        else:
+            message = f"{describe(found)} cannot be compared with this"
+            self._scope.fault(codes.WRONG_OPERAND, message, span)
+
+    def _with_constant(
+        self,
+        node: rules.Comparison,
+        value: Value,
+        left: rules.Term,
+        operator: ir.Operator,
+        constant: Fixed,
+        right: rules.Term,
+    ) -> ir.Condition | None:
+        kind = family(value.type)
+        if isinstance(constant, Quantity):
+            if not self._is_number(value, left) or not self._convertible(constant, value, right):
+                return None
+            return self._with_number(node, value, operator, constant.in_unit(value.unit))
+        scalar: ir.Scalar
+        if isinstance(constant, Plain):
+            scalar, named = constant.value, f"the {family_of(constant.value)} '{right.span.text}'"
+        else:
+            scalar, named = constant.constant.value, f"the constant '{constant.constant.name}'"
+        if family_of(scalar) != kind:
+            message = f"'{left.span.text}' is {describe(value)}, it cannot be {named}"
+            self._scope.fault(codes.WRONG_OPERAND, message, node.span)
+            return None
+        if operator not in _EQUALITY:
+            self._not_ordered(node, operator, named)
+            return None
+        if kind == "number" and isinstance(scalar, (int, float)):
+            return self._with_number(node, value, operator, Fraction(scalar))
+        return ir.Compare(value.expression, operator, ir.Const(scalar))
+
+    def _not_ordered(self, node: rules.Comparison, operator: str, what: str) -> None:
+        message = f"{what} can be compared with = and != only, not {operator}"
+        self._scope.fault(codes.WRONG_OPERAND, message, node.span)
+
+    def _is_number(self, value: Value, term: rules.Term) -> bool:
+        if family(value.type) == "number":
+            return True
+        message = f"a number is needed, '{term.span.text}' is {describe(value)}"
+        self._scope.fault(codes.NOT_A_NUMBER_FIELD, message, term.span)
+        return False
+
+    def _convertible(self, found: Quantity | Value, value: Value, term: rules.Term) -> bool:
+        if found.unit is None or value.unit is None:
+            return True
+        return self._terms.compatible(found.unit, value.unit, term)
+
+    def _with_number(
+        self, node: rules.Comparison, value: Value, operator: ir.Operator, number: Fraction
+    ) -> ir.Condition:
+        """Compare with an exact number, which for an integer is brought to an integer first."""
+        bound: int | float
+        if value.is_integer:
+            operator, bound = integer_bound(operator, number)
+        else:
+            bound = rounded(number)
+        self._note(node, value, bounds_of(operator, exact(bound)), operator in _EQUALITY)
+        return ir.Compare(value.expression, operator, ir.Const(bound))
+
+    def _between_values(
+        self, node: rules.Comparison, left: Value, operator: ir.Operator, right: Value
+    ) -> ir.Condition | None:
+        kind = family(left.type)
+        if kind != family(right.type):
+            message = (
+                f"'{node.left.span.text}' is {describe(left)},"
+                f" '{node.right.span.text}' is {describe(right)}"
+            )
+            self._scope.fault(codes.WRONG_OPERAND, message, node.span)
+            return None
+        if kind != "number" and operator not in _EQUALITY:
+            self._not_ordered(node, operator, f"a {kind}")
+            return None
+        if not self._convertible(right, left, node.right):
+            return None
+        if kind == "number":
+            equality = operator in _EQUALITY
+            self._note(node, left, None, equality, is_float(right.type))
+        return ir.Compare(left.expression, operator, self._scaled(right, left))
+
+    def _scaled(self, value: Value, wanted: Value) -> ir.ValueExpression:
+        """Return the value in the unit of ``wanted``."""
+        if value.unit is None or wanted.unit is None:
+            return value.expression
+        factor, offset = self._scope.units.factor(value.unit, wanted.unit)
+        if (factor, offset) == (1.0, 0.0):
+            return value.expression
+        return ir.Scale(value.expression, factor, offset)
+
+    def _note(
+        self,
+        node: rules.Comparison | rules.Membership,
+        value: Value,
+        bounds: Bounds | None,
+        equality: bool,
+        other_is_float: bool = False,
+    ) -> None:
+        floating = is_float(value.type) or other_is_float
+        self.found.append(ResolvedComparison(node, value, bounds, equality and floating))
+
+    # Intervals ----------------------------------------------------------------------------------
+
+    def _membership(self, node: rules.Membership) -> ir.Condition | None:
+        operand = self._terms.resolve(node.operand)
+        ends = [self._terms.resolve(node.lower), self._terms.resolve(node.upper)]
+        lower, upper = ends
+        if operand is None or lower is None or upper is None:
+            return None
+        if isinstance(operand, AgeOf):
+            return self._age_within(node, operand, lower, upper)
+        if isinstance(operand, (Part, MissingOf)):
+            self._no_value(operand, node.operand.span)
+            return None
+        if not isinstance(operand, Value):
+            message = f"'{node.operand.span.text}' is not read from a topic"
+            self._scope.fault(codes.WRONG_OPERAND, message, node.operand.span)
+            return None
+        if not self._is_number(operand, node.operand):
+            return None
+        if not self._is_end(lower, operand, node.lower) or not self._is_end(
+            upper, operand, node.upper
+        ):
+            return None
+        if isinstance(lower, Quantity) and isinstance(upper, Quantity):
+            least, greatest = lower.in_unit(operand.unit), upper.in_unit(operand.unit)
+            if self._is_empty(node, least, greatest):
+                return None
+        within = self._within(node, operand, lower, upper)
+        return ir.Not(within) if node.negated else within
+
+    def _is_end(self, end: Resolved, operand: Value, term: rules.Term) -> bool:
+        if isinstance(end, Quantity):
+            return self._convertible(end, operand, term)
+        if isinstance(end, Value) and family(end.type) == "number":
+            return self._convertible(end, operand, term)
+        message = f"the end of an interval is a number, '{term.span.text}' is {describe(end)}"
+        self._scope.fault(codes.WRONG_OPERAND, message, term.span)
+        return False
+
+    def _is_empty(self, node: rules.Membership, least: Fraction, greatest: Fraction) -> bool:
+        closed = node.lower_closed and node.upper_closed
+        if least < greatest or (least == greatest and closed):
+            return False
+        wrong = "runs backwards" if least > greatest else "is empty"
+        message = f"the interval {node.interval_span.text} {wrong}: no value lies in it"
+        hint = "write the lesser end first" if least > greatest else ""
+        self._scope.fault(codes.EMPTY_INTERVAL, message, node.interval_span, hint)
+        return True
+
+    def _within(
+        self, node: rules.Membership, operand: Value, lower: Resolved, upper: Resolved
+    ) -> ir.Within:
+        least, lower_closed = self._end(operand, lower, node.lower_closed, math.ceil)
+        greatest, upper_closed = self._end(operand, upper, node.upper_closed, math.floor)
+        bounds = None
+        if isinstance(least, ir.Const) and isinstance(greatest, ir.Const):
+            ends = [exact(each.value) for each in (least, greatest)]
+            bounds = Bounds(ends[0], ends[1], lower_closed, upper_closed, node.negated)
+        self._note(node, operand, bounds, equality=False)
+        return ir.Within(operand.expression, least, greatest, lower_closed, upper_closed)
+
+    def _end(
+        self,
+        operand: Value,
+        end: Resolved,
+        closed: bool,
+        inwards: Callable[[Fraction], int],
+    ) -> tuple[ir.ValueExpression, bool]:
+        if isinstance(end, Value):
+            return self._scaled(end, operand), closed
+        assert isinstance(end, Quantity)
+        number = end.in_unit(operand.unit)
+        if not operand.is_integer:
+            return ir.Const(rounded(number)), closed
+        if number.denominator == 1:
+            return ir.Const(int(number)), closed
+        return ir.Const(inwards(number)), True
+
+    # Age ----------------------------------------------------------------------------------------
+
+    def _age(
+        self, node: rules.Comparison, left: Resolved, operator: ir.Operator, right: Resolved
+    ) -> ir.Condition | None:
+        if not isinstance(left, AgeOf):
+            left, right, operator = right, left, _MIRRORED[operator]
+        assert isinstance(left, AgeOf)
+        if operator in _EQUALITY:
+            message = f"an age passes every value in a nanosecond, '{operator}' never helps"
+            hint = "compare it with <, <=, > or >="
+            self._scope.fault(codes.WRONG_OPERAND, message, node.span, hint)
+            return None
+        bound_ns = self._age_bound(right, node.span)
+        if bound_ns is None:
+            return None
+        return ir.Age(self._scope.use(left.input), operator, bound_ns)
+
+    def _age_within(
+        self, node: rules.Membership, age: AgeOf, lower: Resolved, upper: Resolved
+    ) -> ir.Condition | None:
+        least = self._age_bound(lower, node.lower.span)
+        greatest = self._age_bound(upper, node.upper.span)
+        if least is None or greatest is None:
+            return None
+        if self._is_empty(node, Fraction(least), Fraction(greatest)):
+            return None
+        owner = self._scope.use(age.input)
+        within = ir.And(
+            (
+                ir.Age(owner, ">=" if node.lower_closed else ">", least),
+                ir.Age(owner, "<=" if node.upper_closed else "<", greatest),
+            )
+        )
+        return ir.Not(within) if node.negated else within
+
+    def _age_bound(self, bound: Resolved, span: Span) -> int | None:
+        if not isinstance(bound, Quantity):
+            message = "'age()' is compared with a constant only"
+            self._scope.fault(codes.AGE_NOT_CONSTANT, message, span)
+            return None
+        second = self._scope.units.parse("s")
+        if bound.unit and second and not self._scope.units.compatible(bound.unit, second):
+            message = f"an age is a time, '{bound.unit}' is a unit of {bound.unit.dimension}"
+            self._scope.fault(codes.INCOMPATIBLE_UNITS, message, span)
+            return None
+        nanoseconds = bound.in_unit(second) * 10**9
+        if nanoseconds.denominator != 1 or not 0 <= nanoseconds < 2**63:
+            wrong = "negative" if nanoseconds < 0 else "no whole number of nanoseconds in 292 years"
+            self._scope.fault(codes.BAD_DURATION, f"the bound of an age is {wrong}", span)
+            return None
+        return int(nanoseconds)

@@ -1,0 +1,67 @@
+"""Conditions of the rules, resolved into those of the monitor: and, or, not, for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from deros import codes
+from deros.metamodels import rules
+from deros.monitor import ir
+from deros.monitor.comparisons import Comparisons
+from deros.monitor.scope import Scope
+
+_Leaf = rules.Comparison | rules.Membership | rules.Truth
+
+
+class Conditions:
+    """Builds conditions within a scope. ``None`` means that a fault has been reported."""
+
+    def __init__(self, scope: Scope, comparisons: Comparisons) -> None:
+        """Remember who builds what stands between the logical operators."""
+        self._scope = scope
+        self._comparisons = comparisons
+        self._durations = 0
+
+    def of_rule(self, condition: rules.Condition) -> ir.Condition | None:
+        """Return the condition of an entity's rule."""
+        return self._build(condition, self._comparisons.build)
+
+    def of_behaviour(
+        self, condition: rules.Condition, verdict: Callable[[rules.NamePath], ir.RuleRef | None]
+    ) -> ir.Condition | None:
+        """Return the condition of a behaviour; ``verdict`` resolves ``entity.rule``."""
+
+        def leaf(each: _Leaf) -> ir.Condition | None:
+            if isinstance(each, rules.Truth) and isinstance(each.operand, rules.NamePath):
+                return verdict(each.operand)
+            message = "the condition of a behaviour is made of rules only"
+            hint = "make it a rule of an entity, and name it here as 'entity.rule'"
+            self._scope.fault(codes.WRONG_OPERAND, message, each.span, hint)
+            return None
+
+        return self._build(condition, leaf)
+
+    def _build(
+        self,
+        condition: rules.Condition,
+        leaf: Callable[[_Leaf], ir.Condition | None],
+    ) -> ir.Condition | None:
+        match condition:
+            case rules.Not():
+                inner = self._build(condition.operand, leaf)
+                return inner and ir.Not(inner)
+            case rules.And() | rules.Or():
+                built = [self._build(each, leaf) for each in condition.operands]
+                operands = tuple(each for each in built if each is not None)
+                if len(operands) < len(built):
+                    return None
+                return ir.And(operands) if isinstance(condition, rules.And) else ir.Or(operands)
+            case rules.For():
+                inner = self._build(condition.operand, leaf)
+                duration_ns = self._scope.duration_ns(condition.duration)
+                if inner is None or duration_ns is None:
+                    return None
+                self._durations += 1
+                return ir.For(self._durations - 1, inner, duration_ns, condition.span)
+            case _:
+                return leaf(condition)

@@ -1,0 +1,298 @@
+"""The names of a DeRoS program: units, constants, inputs and the topics of the used systems.
+
+A scope also hands out the inputs and leaves that the program turns out to read.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Iterable
+from decimal import Decimal
+from fractions import Fraction
+
+from deros import codes
+from deros.codes import Code
+from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
+from deros.interfaces.names import did_you_mean, near
+from deros.interfaces.rep103 import unit_of
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.interfaces.units import Unit, UnitRegistry
+from deros.metamodels import rules
+from deros.metamodels.common import Name
+from deros.metamodels.flatten import resolve_name
+from deros.monitor import ir
+from deros.monitor.resolved import DeclaredInput
+from deros.monitor.topics import SystemTopics
+
+_MAX_DURATION_NS = 2**63 - 1
+_PATH_PART = re.compile(r"\s*(?:\.\s*)?([A-Za-z_]\w*|\[\s*\d+\s*\])")
+
+
+class Scope:
+    """What the names of one program mean; every fault found on the way is in ``diagnostics``."""
+
+    def __init__(self, program: rules.Rules, store: InterfaceStore) -> None:
+        """Read the declarations that terms refer to."""
+        self.store = store
+        self.diagnostics: list[Diagnostic] = []
+        self.leaves: list[ir.Leaf] = []
+        self.used_inputs: list[DeclaredInput] = []
+        self._leaf_of: dict[tuple[int, tuple[str | int, ...]], int] = {}
+        self._anonymous: dict[tuple[str, tuple[str | int, ...]], DeclaredInput | None] = {}
+        # A system that could not be loaded has been reported by the loader; what it would have told
+        # is then not missing here.
+        self.systems_known = all(use.system is not None for use in program.uses)
+        self._uses = program.uses
+        self.topics = SystemTopics(use.system for use in program.uses if use.system)
+        self.units = self._read_units(program.units)
+        constants = [each.name for each in program.constants]
+        inputs = [each.name for each in program.inputs]
+        self.check_duplicates([*constants, *inputs], "constant or input")
+        self.constants: dict[str, rules.Constant] = {}
+        for constant in program.constants:
+            self.constants.setdefault(constant.name.text, constant)
+        self.inputs: dict[str, DeclaredInput | None] = {}
+        for each in program.inputs:
+            self.inputs.setdefault(each.name.text, self._declare(each))
+
+    # Faults -------------------------------------------------------------------------------------
+
+    def fault(
+        self,
+        code: Code,
+        message: str,
+        span: Span,
+        hint: str = "",
+        related: tuple[Related, ...] = (),
+    ) -> None:
+        """Note a finding."""
+        self.diagnostics.append(report(code, message, span, hint, related))
+
+    def check_duplicates(self, names: Iterable[Name], what: str) -> None:
+        """Report every name that stands for a second thing of one kind."""
+        first: dict[str, Name] = {}
+        for name in names:
+            earlier = first.setdefault(name.text, name)
+            if earlier is not name:
+                self.fault(
+                    codes.DUPLICATE_RULE_NAME,
+                    f"{what} '{name}' is declared twice",
+                    name.span,
+                    related=(Related(earlier.span, "first declared here"),),
+                )
+
+    # Units and durations ------------------------------------------------------------------------
+
+    def _read_units(self, definitions: tuple[rules.UnitDefinition, ...]) -> UnitRegistry:
+        self.check_duplicates((each.name for each in definitions), "unit")
+        registry = UnitRegistry(
+            {each.name.text: (each.factor.value, each.factor.unit or "1") for each in definitions}
+        )
+        for each in definitions:
+            if registry.parse(each.name.text) is not None:
+                continue
+            unit = each.factor.unit
+            if each.factor.value <= 0:
+                message = f"unit '{each.name}' must be a positive multiple"
+            elif unit and registry.parse(unit) is None and not _defines(definitions, unit):
+                self._unknown_unit(registry, unit, each.factor.unit_span or each.factor.span)
+                continue
+            else:
+                message = f"unit '{each.name}' is defined by itself or by an unknown unit"
+            self.fault(codes.UNKNOWN_UNIT, message, each.factor.span)
+        return registry
+
+    def unit(self, text: str, span: Span) -> Unit | None:
+        """Return the unit that ``text`` means; report an unknown one."""
+        found = self.units.parse(text)
+        if found is None:
+            self._unknown_unit(self.units, text, span)
+        return found
+
+    def _unknown_unit(self, registry: UnitRegistry, text: str, span: Span) -> None:
+        hint = did_you_mean(registry.suggest(text)) or (
+            f"'unit {text} = ...' in the rules defines it" if text.isidentifier() else ""
+        )
+        self.fault(codes.UNKNOWN_UNIT, f"unknown unit '{text}'", span, hint)
+
+    def duration_ns(self, number: rules.Number) -> int | None:
+        """Return a duration in nanoseconds; report what is none."""
+        written = f"{number.value:f}" if abs(number.value.adjusted()) < 30 else str(number.value)
+        if number.unit is None:
+            self.fault(
+                codes.BAD_DURATION,
+                f"the duration {written} has no unit",
+                number.span,
+                f"write '{written} sec'",
+            )
+            return None
+        unit = self.unit(number.unit, number.unit_span or number.span)
+        if unit is None:
+            return None
+        if unit.exponents != (("s", Fraction(1)),):
+            message = f"a duration is needed, '{number.unit}' is a unit of {unit.dimension}"
+            self.fault(codes.INCOMPATIBLE_UNITS, message, number.unit_span or number.span)
+            return None
+        nanoseconds = self.units.duration_ns(number.value, unit)
+        if nanoseconds is None:
+            wrong = _why_no_duration(number.value, unit)
+            message = f"the duration {written} {number.unit} {wrong}"
+            self.fault(codes.BAD_DURATION, message, number.span)
+        return nanoseconds
+
+    def unit_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> Unit | None:
+        """Return a field's unit: as a node description annotates it, else as REP 103 has it."""
+        known = self.topics.get(topic)
+        text = (known.unit_of(path) if known else None) or unit_of(self.store, kind, path)
+        return self.units.parse(text) if text else None
+
+    # Topics and inputs --------------------------------------------------------------------------
+
+    def _declare(self, each: rules.Input) -> DeclaredInput | None:
+        timeout_ns = self.duration_ns(each.timeout) if each.timeout else None
+        if timeout_ns == 0 and each.timeout:
+            self.fault(
+                codes.BAD_DURATION,
+                "a timeout of 0 makes the input missing always",
+                each.timeout.span,
+            )
+        declared = self._input(each.name.text, each.term, timeout_ns, each.span)
+        return None if each.timeout and not timeout_ns else declared
+
+    def anonymous(self, term: rules.TopicPath) -> DeclaredInput | None:
+        """Return the input that a topic term in a rule stands for: one for all equal terms."""
+        key = (term.topic.text, term.path)
+        if key not in self._anonymous:
+            name = term.topic.text
+            if term.path:
+                name += ("" if isinstance(term.path[0], int) else ".") + format_path(term.path)
+            self._anonymous[key] = self._input(name, term, None, term.span)
+        return self._anonymous[key]
+
+    def _input(
+        self, name: str, term: rules.TopicPath, timeout_ns: int | None, span: Span
+    ) -> DeclaredInput | None:
+        topic = resolve_name(term.topic.text, "/")
+        kind = self.topic_type(term.topic, topic)
+        if (
+            kind is None
+            or self.field(kind, term.path, term.topic.span, term.span, len(term.path)) is None
+        ):
+            return None
+        return DeclaredInput(name, topic, kind, term.path, timeout_ns, span)
+
+    def topic_type(self, name: Name, topic: str) -> InterfaceType | None:
+        """Return the type of a topic of the used systems; report what they lack."""
+        known = self.topics.get(topic)
+        if known is None:
+            if self.systems_known:
+                hint = did_you_mean(near(topic, self.topics.names))
+                message = f"no used system has a topic '{topic}'"
+                if not self._uses:
+                    hint = "'use \"FILE.system\" import NAME' names the system that has it"
+                self.fault(codes.RULE_TOPIC_NOT_IN_SYSTEM, message, name.span, hint)
+            return None
+        kind = known.type
+        if kind is None:
+            self.fault(
+                codes.RULE_TYPE_UNKNOWN,
+                f"the system does not tell the type of '{topic}'",
+                name.span,
+                f"pin it in the system: 'topic {topic} : PACKAGE.TYPE'",
+                (Related(known.place, "the topic"),),
+            )
+        elif self.store.message(kind) is None:
+            self.fault(
+                codes.RULE_TYPE_UNKNOWN,
+                f"'{topic}' is of type {kind.short}, whose definition is not found",
+                name.span,
+                "name the folder that has it with --interfaces PATH",
+                (Related(known.place, "the topic"),),
+            )
+            return None
+        return kind
+
+    def field(
+        self, kind: InterfaceType, path: FieldPath, before: Span, span: Span, written: int
+    ) -> ResolvedField | None:
+        """Resolve a field path of ``kind``; report what leads nowhere at the part that does.
+
+        The last ``written`` parts stand in the term ``span``, behind its part ``before``.
+        """
+        found = resolve(self.store, kind, path)
+        if not isinstance(found, FieldError):
+            return found
+        hint = did_you_mean(found.candidates[:3])
+        if len(found.candidates) > 3:
+            hint = f"its fields: {', '.join(found.candidates)}"
+        place = part_span(before, span, found.position - len(path) + written)
+        self.fault(codes.UNKNOWN_FIELD, found.message, place, hint)
+        return None
+
+    # What the program reads ---------------------------------------------------------------------
+
+    def use(self, each: DeclaredInput) -> int:
+        """Return the input's index in the program, giving it one at its first use."""
+        if each.index is None:
+            each.index = len(self.used_inputs)
+            self.used_inputs.append(each)
+        return each.index
+
+    def read(
+        self, each: DeclaredInput, path: FieldPath, kind: FieldType, nan_is_unknown: bool = True
+    ) -> ir.Read:
+        """Return the reading of one leaf, adding it to the program at its first use."""
+        owner = self.use(each)
+        key = (owner, tuple(path))
+        index = self._leaf_of.setdefault(key, len(self.leaves))
+        if index == len(self.leaves):
+            self.leaves.append(ir.Leaf(index, owner, tuple(path), kind, nan_is_unknown))
+        elif nan_is_unknown and not self.leaves[index].nan_is_unknown:
+            self.leaves[index] = dataclasses.replace(self.leaves[index], nan_is_unknown=True)
+        return ir.Read(index)
+
+    def program_inputs(self) -> tuple[ir.Input, ...]:
+        """Return the inputs of the program, in the order of their first use."""
+        return tuple(
+            ir.Input(
+                index,
+                each.name,
+                each.topic,
+                each.type,
+                tuple(each.path),
+                tuple(leaf.index for leaf in self.leaves if leaf.input == index),
+                each.timeout_ns,
+                each.span,
+            )
+            for index, each in enumerate(self.used_inputs)
+        )
+
+
+def part_span(before: Span, whole: Span, position: int) -> Span:
+    """Return the place of one part of the path that follows ``before`` within ``whole``.
+
+    Where comments stand between the parts, the whole term is the place.
+    """
+    text, offset = whole.source.text, before.end
+    match = None
+    for _ in range(position + 1):
+        match = _PATH_PART.match(text, offset, whole.end)
+        if match is None:
+            return whole
+        offset = match.end()
+    return Span(whole.source, match.start(1), match.end(1)) if match else whole
+
+
+def _defines(definitions: tuple[rules.UnitDefinition, ...], unit: str) -> bool:
+    return any(re.search(rf"\b{re.escape(each.name.text)}\b", unit) for each in definitions)
+
+
+def _why_no_duration(value: Decimal, unit: Unit) -> str:
+    if value < 0:
+        return "is negative"
+    if abs(value.adjusted()) < 40 and Fraction(value) * unit.factor * 10**9 <= _MAX_DURATION_NS:
+        return "is no whole number of nanoseconds"
+    return "is longer than 292 years" if value.adjusted() > 0 else "is shorter than a nanosecond"

@@ -1,0 +1,367 @@
+"""Terms of the rules, resolved: numbers, names, field paths and functions of the table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from fractions import Fraction
+
+from deros import codes
+from deros.diagnostics import Span
+from deros.interfaces.fields import FieldPath, ResolvedField, format_path
+from deros.interfaces.names import did_you_mean, near
+from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
+from deros.interfaces.units import Unit
+from deros.metamodels import rules
+from deros.monitor import ir, shapes
+from deros.monitor.bounds import rounded, type_bounds
+from deros.monitor.functions import FUNCTIONS, Argument, Function, Result, UnitRule
+from deros.monitor.resolved import (
+    AgeOf,
+    DeclaredInput,
+    MessageConstant,
+    MissingOf,
+    Part,
+    Plain,
+    Quantity,
+    Resolved,
+    Value,
+    family,
+    is_written_whole,
+)
+from deros.monitor.scope import Scope
+
+_MAX_EXPONENT = 400  # beyond it lies no double, and the exact value would be too long to handle
+_RESULT_TYPES = {Result.FLOAT: FieldType("float64"), Result.INTEGER: FieldType("uint64")}
+
+
+class Terms:
+    """Resolves terms within a scope. ``None`` means that a fault has been reported."""
+
+    def __init__(self, scope: Scope, entities: Iterable[str] = ()) -> None:
+        """Remember the scope, and the names of entities, for hints."""
+        self._scope = scope
+        self._entities = frozenset(entities)
+        self._constants: dict[str, Resolved | None] = {}
+        self._open_constants: set[str] = set()
+        self._states = 0
+
+    def resolve(
+        self, term: rules.Term, message: MessageDefinition | None = None
+    ) -> Resolved | None:
+        """Return what ``term`` is; constants of ``message`` may be used by name."""
+        match term:
+            case rules.Number():
+                return self._number(term)
+            case rules.Boolean() | rules.String():
+                return Plain(term.value)
+            case rules.Negative():
+                return self._negative(term, message)
+            case rules.TopicPath():
+                found = self._scope.anonymous(term)
+                return found and self._located(found, found.path, term.topic.span, term.span)
+            case rules.NamePath():
+                return self._name(term, message)
+            case rules.Call():
+                return self._call(term)
+
+    def is_open(self, term: rules.Term) -> bool:
+        """Tell whether ``term`` is a name that only a message's own constants can explain."""
+        while isinstance(term, rules.Negative):
+            term = term.operand
+        return (
+            isinstance(term, rules.NamePath)
+            and not term.path
+            and term.name.text not in self._scope.constants
+            and term.name.text not in self._scope.inputs
+        )
+
+    # Constants ----------------------------------------------------------------------------------
+
+    def _number(self, number: rules.Number) -> Quantity | None:
+        if abs(number.value.adjusted()) > _MAX_EXPONENT and number.value:
+            message = f"{number.value} is beyond the range of floating-point numbers"
+            self._scope.fault(codes.WRONG_OPERAND, message, number.span)
+            return None
+        unit = None
+        if number.unit is not None:
+            unit = self._scope.unit(number.unit, number.unit_span or number.span)
+            if unit is None:
+                return None
+        return Quantity(Fraction(number.value), unit, unit, is_written_whole(number.value))
+
+    def _negative(self, term: rules.Negative, message: MessageDefinition | None) -> Quantity | None:
+        operand = self.resolve(term.operand, message)
+        if isinstance(operand, Quantity):
+            return Quantity(-operand.value, operand.unit, operand.shown_in, operand.whole)
+        if operand is not None:
+            wrong = f"'-' stands before numbers and constants only, not '{term.operand.span.text}'"
+            self._scope.fault(codes.WRONG_OPERAND, wrong, term.span)
+        return None
+
+    def _name(self, term: rules.NamePath, message: MessageDefinition | None) -> Resolved | None:
+        name = term.name.text
+        if name in self._scope.constants:
+            if not term.path:
+                return self.constant(name)
+            self._scope.fault(codes.UNKNOWN_FIELD, f"constant '{name}' has no fields", term.span)
+            return None
+        if name in self._scope.inputs:
+            found = self._scope.inputs[name]
+            if found is None:
+                return None
+            return self._located(found, (*found.path, *term.path), term.name.span, term.span)
+        own = message.constants if message else ()
+        if not term.path:
+            for constant in own:
+                if constant.name == name:
+                    return MessageConstant(constant)
+        hint = did_you_mean(
+            near(name, [*self._scope.constants, *self._scope.inputs, *(each.name for each in own)])
+        )
+        if name in self._entities:
+            hint = "the rules of entities are combined in the conditions of behaviours"
+        self._scope.fault(codes.UNKNOWN_NAME, f"unknown name '{name}'", term.name.span, hint)
+        return None
+
+    def constant(self, name: str) -> Resolved | None:
+        """Return the value of a declared constant."""
+        if name not in self._constants:
+            declared = self._scope.constants[name]
+            if name in self._open_constants:
+                message = f"constant '{name}' is defined by itself"
+                self._scope.fault(codes.UNKNOWN_NAME, message, declared.value.span)
+                return None
+            self._open_constants.add(name)
+            found = self.resolve(declared.value)
+            if found is not None and not isinstance(found, (Quantity, Plain)):
+                message = f"constant '{name}' is no number, boolean or text"
+                hint = f"'input {name} = ...' names a value read from a topic"
+                self._scope.fault(codes.WRONG_OPERAND, message, declared.value.span, hint)
+                found = None
+            self._constants[name] = found
+        return self._constants[name]
+
+    # Fields -------------------------------------------------------------------------------------
+
+    def _located(
+        self, owner: DeclaredInput, path: FieldPath, before: Span, span: Span
+    ) -> Value | Part | None:
+        """Return what stands at ``path`` of an input's message."""
+        tail = len(path) - len(owner.path)
+        found = self._scope.field(owner.type, path, before, span, tail)
+        if found is None:
+            return None
+        if found.type.is_array or isinstance(found.type.base, InterfaceType):
+            return Part(owner, path, found.type, found.parent)
+        return self._value(owner, path, found)
+
+    def _value(self, owner: DeclaredInput, path: FieldPath, found: ResolvedField) -> Value:
+        return Value(
+            self._scope.read(owner, path, found.type),
+            found.type,
+            self._scope.unit_of(owner.topic, owner.type, path),
+            owner,
+            type_bounds(found.type),
+            found.parent,
+        )
+
+    # Functions ----------------------------------------------------------------------------------
+
+    def _call(self, call: rules.Call) -> Resolved | None:
+        name = call.function.text
+        row = FUNCTIONS.get(name)
+        if row is None:
+            hint = did_you_mean(near(name, FUNCTIONS)) or f"there are {', '.join(FUNCTIONS)}"
+            message = f"there is no function '{name}()'"
+            self._scope.fault(codes.UNKNOWN_FUNCTION, message, call.function.span, hint)
+            return None
+        if row.argument is Argument.CONSTANT:
+            return self._conversion(call, row)
+        if call.receiver is None:
+            wanted = call.arguments[0].span.text if call.arguments else "INPUT"
+            message = f"'{name}()' is written behind what it is applied to"
+            hint = f"write '{wanted}.{name}()'"
+            self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span, hint)
+            return None
+        operand = self.resolve(call.receiver)
+        parameters = self._parameters(call, row)
+        if operand is None or parameters is None:
+            return None
+        if row.argument is Argument.INPUT:
+            return self._of_input(call, row, operand)
+        if row.argument is Argument.NUMBER:
+            if isinstance(operand, Value) and family(operand.type) == "number":
+                return self._of_number(row, operand)
+        elif isinstance(operand, Part) and shapes.fits(self._scope.store, row, operand.type):
+            return self._of_part(row, operand, parameters)
+        self._misapplied(call, row, operand)
+        return None
+
+    def _misapplied(self, call: rules.Call, row: Function, operand: Resolved) -> None:
+        receiver = call.receiver.span.text if call.receiver else ""
+        message = f"'{row.name}()' needs {row.argument.value}, '{receiver}' is {describe(operand)}"
+        hint = ""
+        if isinstance(operand, Part) and not operand.type.is_array:
+            inner = shapes.fitting_fields(self._scope.store, row, operand.type)
+            hint = did_you_mean(f"{receiver}.{format_path(path)}" for path in inner[:3])
+        self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span, hint)
+
+    def _conversion(self, call: rules.Call, row: Function) -> Quantity | None:
+        if call.receiver is not None or len(call.arguments) != 1:
+            message = f"'{row.name}' converts one constant"
+            hint = f"write '{row.name}(10 deg)'" if row.unit == "rad" else "write 'toDeg(0.2 rad)'"
+            self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span, hint)
+            return None
+        argument = call.arguments[0]
+        operand = self.resolve(argument)
+        if operand is None:
+            return None
+        if not isinstance(operand, Quantity):
+            message = (
+                f"'{row.name}' converts constants, '{argument.span.text}' is {describe(operand)}"
+            )
+            hint = "the units of fields are converted where they are compared"
+            self._scope.fault(
+                codes.WRONG_FUNCTION_ARGUMENT,
+                message,
+                argument.span,
+                hint if isinstance(operand, Value) else "",
+            )
+            return None
+        target = self._scope.units.parse(row.unit)
+        # A plain number is in the unit that the function converts from (paper, section 4.3).
+        source = operand.unit or self._scope.units.parse("deg" if row.unit == "rad" else "rad")
+        if source is None or target is None or not self.compatible(source, target, argument):
+            return None
+        return Quantity(operand.value, source, target, whole=False)
+
+    def compatible(self, found: Unit, wanted: Unit, term: rules.Term) -> bool:
+        """Tell whether a term's unit converts to the wanted one; report it where it does not."""
+        if self._scope.units.compatible(found, wanted):
+            return True
+        message = (
+            f"'{term.span.text}' is in {found.text} ({found.dimension}),"
+            f" {wanted.text} ({wanted.dimension}) is needed"
+        )
+        self._scope.fault(codes.INCOMPATIBLE_UNITS, message, term.span)
+        return False
+
+    def _parameters(self, call: rules.Call, row: Function) -> tuple[ir.Const, ...] | None:
+        if len(call.arguments) != len(row.parameters):
+            names = ", ".join(name for name, _ in row.parameters)
+            message = f"'{row.name}({names})' is called with {len(call.arguments)} arguments"
+            self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span)
+            return None
+        found: list[ir.Const] = []
+        for argument, (name, unit) in zip(call.arguments, row.parameters, strict=True):
+            value = self.resolve(argument)
+            wanted = self._scope.units.parse(unit)
+            if isinstance(value, Quantity) and wanted is not None:
+                if value.unit is None or self.compatible(value.unit, wanted, argument):
+                    found.append(ir.Const(rounded(value.in_unit(wanted))))
+            elif value is not None:
+                message = f"'{name}' of '{row.name}()' must be a constant number"
+                self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, argument.span)
+        return tuple(found) if len(found) == len(row.parameters) else None
+
+    def _of_input(
+        self, call: rules.Call, row: Function, operand: Resolved
+    ) -> AgeOf | MissingOf | None:
+        read = isinstance(operand, Value) and isinstance(operand.expression, ir.Read)
+        if not read and not isinstance(operand, Part):
+            self._misapplied(call, row, operand)
+            return None
+        assert isinstance(operand, (Value, Part))
+        owner = operand.input
+        if row.result is Result.DURATION:
+            return AgeOf(owner)
+        if owner.timeout_ns is None:
+            self._scope.fault(
+                codes.MISSING_NEEDS_TIMEOUT,
+                f"'{owner.name}' has no timeout, so it is never missing",
+                call.span,
+                "declare it with one: 'input NAME = topic ... timeout 0.5 sec'",
+            )
+            return None
+        return MissingOf(owner)
+
+    def _of_number(self, row: Function, operand: Value) -> Value:
+        state = None
+        if row.stateful:
+            state = self._states
+            self._states += 1
+        owner = self._scope.use(operand.input)
+        applied = ir.Apply(row.name, (operand.expression,), owner, state)
+        kind = _RESULT_TYPES.get(row.result, operand.type)
+        unit = self._unit(row, operand.unit)
+        return Value(applied, kind, unit, operand.input, _bounds(row, kind))
+
+    def _of_part(self, row: Function, part: Part, parameters: tuple[ir.Const, ...]) -> Value:
+        arguments: list[ir.ValueExpression] = []
+        for name in row.leaves:
+            path = (*part.path, name) if name else part.path
+            kind = shapes.leaf_type(self._scope.store, part.type, name)
+            if kind is None:  # a plane vector has no z
+                arguments.append(ir.Const(0.0))
+                continue
+            # Only the beams of a scan may be NaN; its angles and limits may not.
+            nan_is_unknown = row.nan_is_unknown or not kind.is_array
+            arguments.append(self._scope.read(part.input, path, kind, nan_is_unknown))
+        owner = self._scope.use(part.input)
+        applied = ir.Apply(row.name, (*arguments, *parameters), owner)
+        first = (*part.path, row.leaves[0]) if row.leaves[0] else part.path
+        unit = self._unit(row, self._scope.unit_of(part.input.topic, part.input.type, first))
+        kind = _RESULT_TYPES.get(row.result, part.type.element)
+        bounds = _bounds(row, kind)
+        if row.argument is Argument.ARRAY and part.type.size is not None:
+            least = part.type.size if part.type.array == "fixed" else 0
+            bounds = Fraction(least), Fraction(part.type.size)
+        return Value(applied, kind, unit, part.input, bounds)
+
+    def _unit(self, row: Function, operand: Unit | None) -> Unit | None:
+        match row.unit_rule:
+            case UnitRule.FIXED:
+                return self._scope.units.parse(row.unit)
+            case UnitRule.SAME:
+                return operand
+            case UnitRule.PER_SECOND:
+                return operand and self._scope.units.parse(f"{operand.text}/s")
+            case UnitRule.NONE:
+                return self._scope.units.parse("1")
+
+
+def _bounds(row: Function, kind: FieldType) -> tuple[Fraction | float, Fraction | float]:
+    """Return what bounds the result: the function where it does, else the type."""
+    if row.bounds == (-math.inf, math.inf):
+        return type_bounds(kind)
+    least, greatest = row.bounds
+    return (
+        Fraction(least) if math.isfinite(least) else least,
+        Fraction(greatest) if math.isfinite(greatest) else greatest,
+    )
+
+
+def describe(found: Resolved) -> str:
+    """Return what a term is, as a diagnostic says it."""
+    match found:
+        case Quantity():
+            return "a constant number"
+        case Plain():
+            return "a constant"
+        case MessageConstant():
+            return "a constant of the message"
+        case Value(type=kind):
+            return f"{'an' if str(kind).startswith('i') else 'a'} {kind}"
+        case Part(type=kind):
+            return f"an array ({_short(kind)})" if kind.is_array else f"a {_short(kind)}"
+        case AgeOf():
+            return "an age"
+        case MissingOf():
+            return "a condition"
+
+
+def _short(kind: FieldType) -> str:
+    if isinstance(kind.base, InterfaceType):
+        return str(kind).replace(str(kind.base), kind.base.short)
+    return str(kind)

@@ -1,0 +1,114 @@
+"""What the used systems tell of a topic: that it exists, its type, its ends, its units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from deros.diagnostics import Span
+from deros.interfaces.fields import FieldPath, format_path
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.flatten import FlatPort, FlatTopic, UntypedWiring, flatten
+from deros.metamodels.node import PortKind
+from deros.metamodels.system import System
+
+_INDEX = re.compile(r"\[\d+\]")
+
+
+@dataclass(slots=True)
+class KnownTopic:
+    """One topic of the used systems.
+
+    Attributes:
+        name: its graph name.
+        declarations: where the systems declare it.
+        publishers: the ports that publish on it.
+        subscriptions: the ports that subscribe to it.
+        untyped: the wirings to it through parameters that no port claims: their type, and whether
+            the node publishes or subscribes, is not known.
+    """
+
+    name: str
+    declarations: list[FlatTopic] = field(default_factory=list)
+    publishers: list[FlatPort] = field(default_factory=list)
+    subscriptions: list[FlatPort] = field(default_factory=list)
+    untyped: list[UntypedWiring] = field(default_factory=list)
+
+    @property
+    def external(self) -> bool:
+        """Whether the topic is fed or read from outside the model."""
+        return any(each.declaration.external for each in self.declarations)
+
+    @property
+    def type(self) -> InterfaceType | None:
+        """The pinned type, else the publishers', else the subscriptions', else ``None``."""
+        pinned = (each.declaration.type for each in self.declarations)
+        ends = (flat.port.type for flat in (*self.publishers, *self.subscriptions))
+        return next((kind for kind in (*pinned, *ends) if kind is not None), None)
+
+    @property
+    def place(self) -> Span:
+        """Where the systems speak of the topic first."""
+        if self.declarations:
+            return self.declarations[0].declaration.name_span
+        for flat in (*self.publishers, *self.subscriptions):
+            return flat.wiring.target_span if flat.wiring else flat.port.name_span
+        return self.untyped[0].wiring.target_span
+
+    def unit_of(self, path: FieldPath) -> str | None:
+        """Return the unit that a node description annotates for a field, or ``None``.
+
+        What the publishers say goes before what the subscriptions say.
+        """
+        wanted = _without_indices(format_path(path))
+        for flat in (*self.publishers, *self.subscriptions):
+            for each in flat.port.units:
+                if _without_indices(each.path) == wanted:
+                    return each.unit
+        return None
+
+
+class SystemTopics:
+    """The topics of all used systems, by graph name.
+
+    ``complete`` is false when a part of a system could not be found, so that a topic which seems to
+    lack something may well have it.
+    """
+
+    def __init__(self, systems: Iterable[System]) -> None:
+        """Flatten each system once, however often it is used."""
+        self.complete = True
+        self._topics: dict[str, KnownTopic] = {}
+        for system in {id(each): each for each in systems}.values():
+            self._add(system)
+
+    def get(self, name: str) -> KnownTopic | None:
+        """Return what is known of the topic with the graph name ``name``, or ``None``."""
+        return self._topics.get(name)
+
+    @property
+    def names(self) -> Iterable[str]:
+        """All graph names, in the order of their first mention."""
+        return self._topics.keys()
+
+    def _add(self, system: System) -> None:
+        flat = flatten(system)
+        for declared in flat.topics:
+            self._topic(declared.name).declarations.append(declared)
+        for node in flat.nodes:
+            self.complete &= node.type is not None
+            for port in node.ports:
+                if port.port.kind is PortKind.PUBLISHER:
+                    self._topic(port.topic).publishers.append(port)
+                elif port.port.kind is PortKind.SUBSCRIPTION:
+                    self._topic(port.topic).subscriptions.append(port)
+            for untyped in node.untyped:
+                self._topic(untyped.topic).untyped.append(untyped)
+
+    def _topic(self, name: str) -> KnownTopic:
+        return self._topics.setdefault(name, KnownTopic(name))
+
+
+def _without_indices(path: str) -> str:
+    return _INDEX.sub("", path)
