@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
+from deros.interfaces.names import near
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceKind, InterfaceType
 from deros.validators.hints import did_you_mean
@@ -24,7 +26,7 @@ def type_finding(store: InterfaceStore, wanted: InterfaceType, span: Span) -> It
             span,
             hint=did_you_mean(
                 wanted.package,
-                store.packages(),
+                _like(wanted.package, store.packages()),
                 "for interfaces of your own name their folder with --interfaces PATH, "
                 "or source the workspace that has them",
             ),
@@ -39,6 +41,16 @@ def type_finding(store: InterfaceStore, wanted: InterfaceType, span: Span) -> It
             wanted.name, store.names(wanted.package, wanted.kind), _elsewhere(store, wanted)
         ),
     )
+
+
+def _like(package: str, known: Iterable[str]) -> list[str]:
+    """Leave out packages that resemble ``package`` in nothing but an ending such as ``_msgs``."""
+    stem = _stem(package)
+    return [each for each in known if _stem(each) == stem or near(stem, [_stem(each)])]
+
+
+def _stem(package: str) -> str:
+    return re.sub(r"_(msgs|srvs|interfaces)$", "", package)
 
 
 def _elsewhere(store: InterfaceStore, wanted: InterfaceType) -> str:

@@ -17,7 +17,9 @@ def check_names(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]
     """Yield the findings about names that ``flat.system`` itself writes, not its imports."""
     system = flat.system
     yield from _refused(check_node_name(system.name), system.name, system.name_span)
-    yield from _members(system.members)
+    # The name of a declared topic is checked where it is declared, not again at every wiring.
+    known = frozenset(topic.declaration.name for topic in flat.topics)
+    yield from _members(system.members, known)
     yield from _topics(flat, store)
     yield from _unused_imports(system)
     yield from _one_full_name(flat)
@@ -30,7 +32,9 @@ def _refused(fault: str | None, name: str, span: Span | None) -> Iterator[Diagno
         )
 
 
-def _members(members: tuple[NodeInstance | Subsystem, ...]) -> Iterator[Diagnostic]:
+def _members(
+    members: tuple[NodeInstance | Subsystem, ...], known: frozenset[str]
+) -> Iterator[Diagnostic]:
     seen: dict[str, Subsystem] = {}
     for member in members:
         if member.namespace is not None:
@@ -39,8 +43,9 @@ def _members(members: tuple[NodeInstance | Subsystem, ...]) -> Iterator[Diagnost
         yield from _refused(check_node_name(member.name), member.name, member.name_span)
         if isinstance(member, NodeInstance):
             for wiring in member.wirings:
-                fault = check_topic_name(wiring.target)
-                yield from _refused(fault, wiring.target, wiring.target_span)
+                if wiring.target not in known:
+                    fault = check_topic_name(wiring.target)
+                    yield from _refused(fault, wiring.target, wiring.target_span)
             continue
         first = seen.setdefault(member.name, member)
         if first is not member:
@@ -51,14 +56,7 @@ def _members(members: tuple[NodeInstance | Subsystem, ...]) -> Iterator[Diagnost
                 hint="give one of them another name, or put their nodes into one subsystem",
                 related=(Related(first.name_span, "the first one"),),
             )
-        if member.system_name is not None and member.system is None:
-            yield report(
-                codes.UNKNOWN_SYSTEM,
-                f"no import defines a system '{member.system_name}'",
-                member.system_span or member.name_span,
-                hint="import the file that describes it",
-            )
-        yield from _members(member.members)
+        yield from _members(member.members, known)
 
 
 def _topics(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
@@ -86,6 +84,8 @@ def _topics(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
 
 def _unused_imports(system: System) -> Iterator[Diagnostic]:
     used = set(_used_files(system.members))
+    if None in used:
+        return  # the node whose type is not known may be the one that an import is there for
     defining = {t.source.path for t in system.node_types.values()}
     defining.update(s.source.path for s in system.systems.values())
     for line in system.imports:
@@ -100,14 +100,14 @@ def _unused_imports(system: System) -> Iterator[Diagnostic]:
             )
 
 
-def _used_files(members: tuple[NodeInstance | Subsystem, ...]) -> Iterator[str]:
+def _used_files(members: tuple[NodeInstance | Subsystem, ...]) -> Iterator[str | None]:
+    """Yield the files that the members' types come from, ``None`` for a type that is not known."""
     for member in members:
         if isinstance(member, NodeInstance):
-            if member.type is not None:
-                yield member.type.source.path
+            yield member.type.source.path if member.type is not None else None
             continue
-        if member.system is not None:
-            yield member.system.source.path
+        if member.system_name is not None:
+            yield member.system.source.path if member.system is not None else None
         yield from _used_files(member.members)
 
 

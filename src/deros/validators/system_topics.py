@@ -49,7 +49,13 @@ class _Channel:
         return (self.sources or self.sinks)[0].type
 
     @property
+    def undeclared(self) -> bool:
+        """Whether a wiring names a topic that nobody declares, which is a finding of its own."""
+        return self.declared is None and any(end.wired for end in (*self.sources, *self.sinks))
+
+    @property
     def span(self) -> Span:
+        """Where it is declared, else its first connection."""
         if self.declared is not None:
             return self.declared.declaration.name_span
         return (self.sources or self.sinks)[0].span
@@ -232,7 +238,7 @@ def _misspelt_pairs(topics: Iterable[_Channel]) -> list[tuple[_Channel, _Channel
     fed: dict[InterfaceType, dict[str, _Channel]] = defaultdict(dict)
     read: dict[InterfaceType, dict[str, _Channel]] = defaultdict(dict)
     for topic in topics:
-        if topic.open or bool(topic.sources) == bool(topic.sinks):
+        if topic.open or topic.undeclared or bool(topic.sources) == bool(topic.sinks):
             continue
         (fed if topic.sources else read)[topic.type][topic.name] = topic
     pairs: list[tuple[_Channel, _Channel]] = []

@@ -1,0 +1,68 @@
+"""Every bad model under ``tests/cases`` gives exactly the findings that it carries."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from deros.codes import ALL_CODES
+from tests.support import cases
+
+ROOT = Path(__file__).resolve().parents[2]
+HEADINGS = ["What it does", "Why it is bad", "Example", "Use instead"]
+
+
+@pytest.mark.parametrize("name", cases.all_cases())
+def test_case(name: str) -> None:
+    """Each expectation is met by one finding, and no finding is left over."""
+    findings, files = cases.run(name)
+    left = list(findings)
+    missing = []
+    for expected in (e for file in files for e in cases.expectations(file)):
+        match = next((finding for finding in left if expected.met_by(finding)), None)
+        if match is None:
+            missing.append(expected)
+        else:
+            left.remove(match)
+    surprising = [f"{d.span.file}:{d.span.line}: {d.code.name} {cases.words(d)}" for d in left]
+    assert (missing, surprising) == ([], [])
+
+
+@pytest.mark.parametrize("code", ALL_CODES)
+def test_every_code_has_a_case(code: str) -> None:
+    """A code is expected by some case, or, for generation, named by a test of the generators."""
+    if code.startswith("DRS4"):
+        tests = (ROOT / "tests").rglob("test_*.py")
+        name = next(n for n, c in _constants().items() if c == code)
+        assert any(re.search(rf"\b({code}|{name})\b", test.read_text()) for test in tests)
+        return
+    files = [
+        *cases.all_cases(),
+        *(f"support/{p.name}" for p in (cases.DIRECTORY / "support").iterdir()),
+    ]
+    assert any(code == expected.code for file in files for expected in cases.expectations(file))
+
+
+def _constants() -> dict[str, str]:
+    import deros.codes
+
+    return {n: c.name for n, c in vars(deros.codes).items() if isinstance(c, deros.codes.Code)}
+
+
+@pytest.mark.parametrize("code", ALL_CODES)
+def test_every_code_has_a_page(code: str) -> None:
+    """The page bears the code's title, and says what, why, an example and what to use instead."""
+    text = (ROOT / "docs" / "diagnostics" / f"{code}.md").read_text(encoding="utf-8")
+    assert text.startswith(f"# {code}: {ALL_CODES[code].title}\n")
+    assert re.findall(r"^## (.*)$", text, re.MULTILINE) == HEADINGS
+    sections = re.split(r"^## .*$", text, flags=re.MULTILINE)[1:]
+    assert all(len(section.strip()) > 30 for section in sections)
+
+
+def test_the_list_of_codes_is_complete() -> None:
+    """The index of the diagnostics names each code, its title and its severity, once, in order."""
+    text = (ROOT / "docs" / "diagnostics" / "index.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^\| \[(DRS\d+)\]\(\1\.md\) \| (.*?) \| (\w+) \|$", text, re.MULTILINE)
+    assert listed == [(c.name, c.title, c.severity.value) for c in ALL_CODES.values()]
