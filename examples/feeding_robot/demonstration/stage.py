@@ -1,0 +1,251 @@
+"""The player's end of the running system: it watches every topic, and moves the world's levers.
+
+All waiting is for messages. One thread spins ROS and feeds the listeners; the thread that plays a
+case waits on the state that these messages add up to.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import rclpy
+from geometry_msgs.msg import Vector3
+from nav_msgs.msg import Odometry
+from rclpy.clock import Clock, ClockType
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import Imu, LaserScan
+from std_msgs.msg import Bool, Float64, UInt8, UInt64
+from std_srvs.srv import Trigger
+
+from demonstration.pace import Pace
+from demonstration.referee import Event, RobotState, nearest_ahead
+
+MANUAL, LEARN, AUTOMATIC = 0, 1, 2
+"""The positions of the mode switch."""
+
+VIEW = math.radians(30.0)
+"""Half the angle ahead, in rad, that the rules look at."""
+
+CONTACTS = {
+    "stop_button": "/panel/stop_button",
+    "front_bumper": "/contact/front_bumper",
+    "rear_bumper": "/contact/rear_bumper",
+    "feeding_arm": "/contact/feeding_arm",
+}
+"""What the PLC reports as, and the topic that presses it."""
+
+_LATCHED = QoSProfile(
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+
+Values = dict[str, Any]
+Listener = Callable[[Event], None]
+
+
+class OverdueError(Exception):
+    """Something that the player waited for did not happen in time."""
+
+
+def _data(name: str) -> Callable[[Any], Values]:
+    return lambda message: {name: message.data}
+
+
+def _attitude(message: Imu) -> Values:
+    q = message.orientation
+    roll = math.atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y))
+    pitch = math.asin(max(-1.0, min(1.0, 2 * (q.w * q.y - q.z * q.x))))
+    return {"roll": roll, "pitch": pitch}
+
+
+def _nearest(message: LaserScan) -> Values:
+    return {
+        "nearest": nearest_ahead(message.ranges, message.angle_min, message.angle_increment, VIEW)
+    }
+
+
+_WATCHED: tuple[tuple[str, type, Callable[[Any], Values]], ...] = (
+    ("/odometry", Odometry, lambda message: {"speed": message.twist.twist.linear.x}),
+    ("/imu", Imu, _attitude),
+    ("/scan", LaserScan, _nearest),
+    ("/plc/mode", UInt8, _data("mode")),
+    ("/plc/stop_button", Bool, _data("stop_button")),
+    ("/plc/front_bumper", Bool, _data("front_bumper")),
+    ("/plc/rear_bumper", Bool, _data("rear_bumper")),
+    ("/plc/feeding_arm", Bool, _data("feeding_arm")),
+    ("/plc/engine_running", Bool, _data("engine_running")),
+    ("/plc/keep_alive", UInt64, _data("plc_keep_alive")),
+    ("/machine/engine_enable", Bool, _data("engine_enabled")),
+    ("/controller/keep_alive", UInt64, _data("controller_keep_alive")),
+    ("/safety/heartbeat", UInt64, _data("heartbeat")),
+    ("/safety/low_speed", Bool, _data("low_speed")),
+    ("/safety/stop", Bool, _data("stop")),
+    ("/safety/motor_stop", Bool, _data("motor_stop")),
+    ("/safety/controller_ok", Bool, _data("controller_ok")),
+)
+
+
+class Stage:
+    """Watches the system and acts on its surroundings; use it as a context manager.
+
+    Args:
+        safety_node: finds the process of the safety node.
+        simulated: whether the player sets the pace of time (see :class:`Pace`) or real time counts.
+    """
+
+    def __init__(self, safety_node: Callable[[], int], simulated: bool = False) -> None:
+        """Join the system's ROS domain, which the environment names."""
+        self.state = RobotState()
+        self.now = 0
+        self._safety_node = safety_node
+        self._listeners: list[Listener] = []
+        self._changed = threading.Condition()
+        self._done = threading.Event()
+        self._context = rclpy.Context()
+        self._context.init()
+        self._node = Node("player", context=self._context)
+        self._levers: dict[str, Any] = {}
+        steps = self._node.create_publisher(Float64, "/world/step", 10)
+        self._pace = (
+            Pace(lambda seconds: steps.publish(Float64(data=seconds))) if simulated else None
+        )
+        for topic, kind, values in _WATCHED:
+            self._node.create_subscription(kind, topic, self._receiver(values), 50)
+        if self._pace is not None:
+            steady = Clock(clock_type=ClockType.STEADY_TIME)
+            self._node.create_timer(0.25, self._pace.remind, clock=steady)
+        self._reset = self._node.create_client(Trigger, "/safety/reset")
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._spinner = threading.Thread(target=self._spin, name="player", daemon=True)
+
+    def __enter__(self) -> Stage:
+        """Start to listen."""
+        self._spinner.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Leave the domain."""
+        self._done.set()
+        self._spinner.join()
+        self._executor.shutdown()
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+    def _spin(self) -> None:
+        while not self._done.is_set():
+            self._executor.spin_once(timeout_sec=0.1)
+
+    def _receiver(self, values: Callable[[Any], Values]) -> Callable[[Any, dict[str, int]], None]:
+        def receive(message: Any, info: dict[str, int]) -> None:
+            sent, received = info["source_timestamp"], info["received_timestamp"]
+            if self._pace is not None:
+                sent = received = self._pace.now
+            with self._changed:
+                for name, value in values(message).items():
+                    self._take(Event(name, value, sent, received))
+                self._changed.notify_all()
+
+        return receive
+
+    def _take(self, event: Event) -> None:
+        self.state = replace(self.state, **{event.name: event.value})
+        self.now = max(self.now, event.received)
+        for listener in self._listeners:
+            listener(event)
+        if self._pace is not None:
+            self._pace.seen(event.name)
+
+    def listen(self, listener: Listener) -> None:
+        """Hand every further event to ``listener``, in the thread that receives it."""
+        with self._changed:
+            self._listeners.append(listener)
+
+    def unlisten(self, listener: Listener) -> None:
+        """Stop handing events to ``listener``."""
+        with self._changed:
+            self._listeners.remove(listener)
+
+    def wait(
+        self, what: str, condition: Callable[[RobotState], bool], within: float = 20.0
+    ) -> None:
+        """Wait until the state meets ``condition``.
+
+        Raises:
+            OverdueError: if it does not within so many seconds of real time.
+        """
+        if not self.watch(lambda: condition(self.state), within):
+            raise OverdueError(f"waited {within:g} s for {what}")
+
+    def watch(self, condition: Callable[[], bool], within: float) -> bool:
+        """Wait until ``condition`` holds after some message; return whether it did in time."""
+        with self._changed:
+            return self._changed.wait_for(condition, within)
+
+    def forget(self, **values: None) -> None:
+        """Set values back to unknown, so that only a new message counts."""
+        with self._changed:
+            self.state = replace(self.state, **values)
+
+    # The levers ---------------------------------------------------------------------------------
+
+    def _pull(self, topic: str, message: Any) -> None:
+        if topic not in self._levers:
+            self._levers[topic] = self._node.create_publisher(type(message), topic, _LATCHED)
+        self._levers[topic].publish(message)
+
+    def obstacle(self, distance: float) -> None:
+        """Put an obstacle so many metres ahead; infinity takes it away."""
+        self._pull("/world/obstacle", Float64(data=distance))
+
+    def hold_pedal(self, position: float) -> None:
+        """Hold the pedal by hand; NaN lets it go."""
+        self._pull("/world/pedal_override", Float64(data=position))
+
+    def level_ground(self) -> None:
+        """Put the robot on level ground."""
+        self._pull("/world/slope", Vector3())
+
+    def touch(self, contact: str, pressed: bool = True) -> None:
+        """Press or release one of :data:`CONTACTS`."""
+        self._pull(CONTACTS[contact], Bool(data=pressed))
+
+    def switch_mode(self, mode: int) -> None:
+        """Turn the mode switch."""
+        self._pull("/panel/mode", UInt8(data=mode))
+
+    def turn_key(self, turned: bool) -> None:
+        """Turn the ignition key, or let it go."""
+        self._pull("/panel/ignition", Bool(data=turned))
+
+    def order(self, drive: bool) -> None:
+        """Tell the mission to drive, or to stand."""
+        self._pull("/mission/order", Bool(data=drive))
+
+    def kill_safety_node(self) -> None:
+        """Kill the process of the safety node, as a crash would."""
+        os.kill(self._safety_node(), signal.SIGKILL)
+
+    def reset_safety(self, within: float = 20.0) -> bool:
+        """Call the safety node's reset service once; return whether it was granted.
+
+        Raises:
+            OverdueError: if there is no such service or no answer in time.
+        """
+        if not self._reset.wait_for_service(timeout_sec=within):
+            raise OverdueError(f"waited {within:g} s for the service /safety/reset")
+        answered = threading.Event()
+        future = self._reset.call_async(Trigger.Request())
+        future.add_done_callback(lambda _: answered.set())
+        if not answered.wait(within):
+            raise OverdueError(f"waited {within:g} s for an answer of /safety/reset")
+        return bool(future.result().success)

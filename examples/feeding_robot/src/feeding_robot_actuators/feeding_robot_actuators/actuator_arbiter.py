@@ -1,0 +1,77 @@
+"""Decides between what the mission wants and what the safety node demands."""
+
+from __future__ import annotations
+
+import rclpy
+from feeding_robot_actuators.actuator_arbiter_base import ActuatorArbiterBase
+from feeding_robot_actuators.arbitration import Arbiter, Limits
+from geometry_msgs.msg import Twist
+from rclpy.clock import Clock, ClockType
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import Bool, Float64, UInt8, UInt64
+
+
+class ActuatorArbiter(ActuatorArbiterBase):
+    """Moves the pedal at a fixed rate, and at once when a safety action changes."""
+
+    def __init__(self) -> None:
+        """Hold the robot until everybody has been heard."""
+        super().__init__()
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        limits = Limits(
+            self.parameters.top_speed,
+            self.parameters.low_speed_limit,
+            self.parameters.command_timeout,
+            self.parameters.heartbeat_timeout,
+        )
+        now = self._now()
+        self._arbiter = Arbiter(limits, heartbeat_at=now, command_at=now)
+
+    def on_command(self, msg: Twist) -> None:
+        """Take a command of the mission."""
+        self._arbiter.command(msg.linear.x, msg.angular.z, self._now())
+
+    def on_mode(self, msg: UInt8) -> None:
+        """Follow the mode switch."""
+        self._arbiter.mode = msg.data
+
+    def on_low_speed(self, msg: Bool) -> None:
+        """Obey the safety node."""
+        self._arbiter.low_speed = msg.data
+        self._move()
+
+    def on_stop(self, msg: Bool) -> None:
+        """Obey the safety node."""
+        self._arbiter.stop = msg.data
+        self._move()
+
+    def on_safety_heartbeat(self, _msg: UInt64) -> None:
+        """Note that the safety node lives."""
+        self._arbiter.heartbeat_at = self._now()
+
+    def on_control(self) -> None:
+        """Move the pedal, whether or not anything was heard."""
+        self._move()
+
+    def _move(self) -> None:
+        pedal, steering = self._arbiter.decide(self._now())
+        self.publish_pedal(Float64(data=pedal))
+        self.publish_steering(Float64(data=steering))
+
+    def _now(self) -> float:
+        return float(self._steady.now().nanoseconds) / 1e9
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node until SIGINT or SIGTERM."""
+    try:
+        rclpy.init(args=args)
+        rclpy.spin(ActuatorArbiter())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
