@@ -52,7 +52,8 @@ class FlatNode:
     Attributes:
         path: the subsystems that hold it, outermost first.
         parameters: what the system sets, wirings through parameters included.
-        remappings: pairs of the port's own name and the graph name it is connected to.
+        remappings: pairs of a port's own name and the graph name it is connected to, one for each
+            name. A port ``via`` a parameter has none: its wiring sets the parameter.
     """
 
     instance: NodeInstance
@@ -130,23 +131,29 @@ def _flat_node(instance: NodeInstance, namespace: str, path: tuple[str, ...]) ->
     by_port: dict[str, Wiring] = {}
     by_parameter: dict[str, Wiring] = {}
     for wiring in instance.wirings:
+        parameter = None
         port = node_type.port(wiring.port) if node_type else None
         if port is not None:
             by_port.setdefault(port.name, wiring)
-        elif node_type and is_topic_parameter(node_type, wiring.port):
-            by_parameter.setdefault(wiring.port, wiring)
-            settings[wiring.port] = full(wiring.target)
+            parameter = port.via
+        elif node_type is not None:
+            parameter = wiring.port
+        if parameter and node_type and is_topic_parameter(node_type, parameter):
+            by_parameter.setdefault(parameter, wiring)
+    # The wiring wins over a `param` for the same parameter; contradicting it is reported elsewhere.
+    settings.update((name, full(wiring.target)) for name, wiring in by_parameter.items())
 
     flat_ports: list[FlatPort] = []
-    remappings: list[tuple[str, str]] = []
+    remappings: dict[str, str] = {}
     claimed: set[str] = set()
     for port in node_type.ports if node_type else ():
-        found = by_port.get(port.name)
-        if found is not None:
-            remappings.append((port.name, full(found.target)))
-        elif port.via is not None:
+        found = by_parameter.get(port.via) if port.via is not None else None
+        if found is not None and port.via is not None:
             claimed.add(port.via)
-            found = by_parameter.get(port.via)
+        else:
+            found = by_port.get(port.name)
+            if found is not None:
+                remappings[port.name] = full(found.target)
         if found is not None:
             topic = full(found.target)
         else:
@@ -166,7 +173,7 @@ def _flat_node(instance: NodeInstance, namespace: str, path: tuple[str, ...]) ->
         tuple(flat_ports),
         untyped,
         tuple(settings.items()),
-        tuple(remappings),
+        tuple(remappings.items()),
     )
 
 

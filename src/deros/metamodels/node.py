@@ -130,6 +130,10 @@ class NodeType:
         return (port for port in self.ports if port.kind is kind)
 
     def port(self, name: str) -> Port | None:
-        """Return the port that a wiring means by ``name``: with or without its leading ``/``."""
+        """Return the port that a wiring means by ``name``: with or without its leading ``/``.
+
+        A port of exactly that name comes first, because ``x`` and ``/x`` are two names to ROS 2.
+        """
         wanted = name.removeprefix("/")
-        return next((p for p in self.ports if p.name.removeprefix("/") == wanted), None)
+        alike = [port for port in self.ports if port.name.removeprefix("/") == wanted]
+        return next((port for port in alike if port.name == name), alike[0] if alike else None)
