@@ -1,0 +1,1 @@
+"""System descriptions to a launch file for ros2 launch."""

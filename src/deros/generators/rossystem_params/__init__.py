@@ -1,0 +1,1 @@
+"""System descriptions to a YAML file of parameters."""

@@ -1,0 +1,1 @@
+"""System descriptions to one Python file that runs the system without ROS 2's launch."""

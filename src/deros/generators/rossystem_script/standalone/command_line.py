@@ -1,0 +1,55 @@
+"""The command that runs a node: its names, parameters and remappings as ROS 2 reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import re
+
+from .node import Node, Value
+
+
+def yaml(value: Value) -> str:
+    """Write a value as ROS 2 reads it from YAML: doubles as doubles, every string quoted."""
+    if isinstance(value, bool):
+        return 'true' if value else 'false'
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return _yaml_float(value)
+    if isinstance(value, str):
+        return _yaml_string(value)
+    return f'[{", ".join(yaml(element) for element in value)}]'
+
+
+def _yaml_float(value: float) -> str:
+    if value != value:
+        return '.nan'
+    if value in (float('inf'), float('-inf')):
+        return '.inf' if value > 0 else '-.inf'
+    mantissa, exponent, power = repr(value).partition('e')
+    return f'{mantissa if "." in mantissa else mantissa + ".0"}{exponent}{power}'
+
+
+# YAML allows no control characters, and would fold the line ends of Unicode.
+_TO_ESCAPE = re.compile('["\\\\\x00-\x1f\x7f-\x9f\u2028\u2029\ufeff]')
+
+
+def _yaml_string(value: str) -> str:
+    def escape(match: re.Match[str]) -> str:
+        return '\\' + match[0] if match[0] in '"\\' else f'\\u{ord(match[0]):04x}'
+
+    return '"' + _TO_ESCAPE.sub(escape, value) + '"'
+
+
+def command_line(node: Node, program: Sequence[str]) -> list[str]:
+    """Return the command that runs a node, as a shell would take it apart."""
+    line = [*program, '--ros-args', '-r', f'__node:={node.name}', '-r', f'__ns:={node.namespace}']
+    for name, value in node.parameters.items():
+        line += ['-p', f'{name}:={yaml(value)}']
+    for port, target in node.remappings.items():
+        line += ['-r', f'{port}:={target}']
+    if node.log_level is not None:
+        # The node's own logger: a level for the whole process would let the middleware talk too.
+        logger = node.full_name.strip('/').replace('/', '.')
+        line += ['--log-level', f'{logger}:={node.log_level}']
+    return line

@@ -1,0 +1,118 @@
+"""What ends the nodes when the script itself is killed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import contextlib
+import ctypes
+import os
+import select
+import signal
+import sys
+
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
+
+
+def _linux_prctl() -> Callable[[int, int], int] | None:
+    if not sys.platform.startswith('linux'):
+        return None
+    call: Callable[[int, int], int] = ctypes.CDLL(None, use_errno=True).prctl
+    return call
+
+
+PRCTL = _linux_prctl()
+PR_SET_PDEATHSIG = 1
+PR_SET_CHILD_SUBREAPER = 36
+
+
+def signal_group(group: int, number: int) -> bool:
+    """Send a signal to a process group (0 sends nothing); tell whether there is such a group."""
+    try:
+        os.killpg(group, number)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
+class Guard:
+    """
+    A process beside the script that ends the nodes if the script dies without having done so.
+
+    It is told of each process group through a pipe, whose end of file says that the script is
+    gone. A second pipe is held open by the nodes and all that they start: its end of file says
+    that they are gone, too.
+    """
+
+    def __init__(self, patience: float) -> None:
+        """Start the guard, which gives the nodes so many seconds from one signal to the next."""
+        notes, self._notes = os.pipe()
+        alive, self._alive = os.pipe()
+        self.pid = os.fork()
+        if self.pid == 0:
+            try:
+                _watch(notes, alive, patience)
+            finally:
+                os._exit(0)
+        os.close(notes)
+        os.close(alive)
+        self.lost = False
+
+    @property
+    def inherited(self) -> tuple[int, ...]:
+        """Name the descriptors that the nodes have to keep open."""
+        return (self._alive,)
+
+    def enrol(self) -> None:
+        """Put the calling process, a new group's first, under guard before it runs its program."""
+        if not self.lost:
+            os.write(self._notes, b'%d\n' % os.getpid())
+        if PRCTL is not None:
+            PRCTL(PR_SET_PDEATHSIG, signal.SIGINT)
+
+    def release(self, group: int) -> None:
+        """Let a group go that has ended."""
+        with contextlib.suppress(OSError):
+            os.write(self._notes, b'-%d\n' % group)
+
+    def release_latest(self) -> None:
+        """Let the group go that was enrolled last: its program could not be run."""
+        with contextlib.suppress(OSError):
+            os.write(self._notes, b'0\n')
+
+    def close(self) -> None:
+        """End the guard, and with it what is still enrolled."""
+        os.close(self._notes)
+        os.close(self._alive)
+        with contextlib.suppress(ChildProcessError):
+            os.waitpid(self.pid, 0)
+
+
+def _watch(notes: int, alive: int, patience: float) -> None:
+    os.setsid()
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for standard in (0, 1, 2):
+        os.dup2(nothing, standard)
+    low, high = sorted((notes, alive))
+    os.closerange(3, low)
+    os.closerange(low + 1, high)
+    os.closerange(high + 1, os.sysconf('SC_OPEN_MAX'))
+    groups: list[int] = []
+    with open(notes, 'rb') as lines:
+        for line in lines:
+            number = int(line)
+            if number > 0:
+                groups.append(number)
+            elif number < 0:
+                groups.remove(-number)
+            else:
+                groups.pop()
+    for stop_signal in STOP_SIGNALS if groups else ():
+        # Where the kernel has passed on the script's end as a SIGINT, a second one would disturb
+        # a node in the middle of its orderly end.
+        if PRCTL is None or stop_signal is not signal.SIGINT:
+            for group in groups:
+                signal_group(group, stop_signal)
+        if select.select([alive], [], [], patience)[0]:
+            return

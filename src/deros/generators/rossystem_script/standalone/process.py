@@ -1,0 +1,110 @@
+"""One node at run time."""
+
+from __future__ import annotations
+
+import contextlib
+import enum
+import os
+import signal
+import subprocess
+
+from .guard import Guard, signal_group
+from .node import Node
+
+PIPE_CAPACITY = 1 << 16  # bytes, of Linux; a line that is longer goes out in pieces
+
+
+class State(enum.Enum):
+    """Where a node is in its life."""
+
+    WAITING = 'waiting'  # for the moment of its start
+    RUNNING = 'running'
+    STOPPING = 'stopping'
+    ENDED = 'ended'  # for good
+
+
+class Process:
+    """A node's program and its process group, from start to start again."""
+
+    def __init__(self, node: Node, label: str, command: list[str]) -> None:
+        """Prepare to run the command; nothing is started yet."""
+        self.node = node
+        self.label = label
+        self.command = command
+        self.state = State.WAITING
+        self.due: float | None = 0.0  # monotonic time to go on; None: when something happens
+        self.restarts = 0
+        self.signals_sent = 0
+        self.group = 0
+        self.exit_code: int | None = None  # the program's own; others of its group may live on
+        self.pipe: int | None = None
+        self._unfinished = b''
+
+    def start(self, environment: dict[str, str], guard: Guard) -> int:
+        """
+        Start the program as the first of a new session and return where its output is read.
+
+        Raises OSError when it cannot be run.
+        """
+        read, write = os.pipe()
+        try:
+            started = subprocess.Popen(
+                self.command,
+                stdin=subprocess.DEVNULL,
+                stdout=write,
+                stderr=write,
+                env=environment,
+                start_new_session=True,
+                pass_fds=guard.inherited,
+                preexec_fn=guard.enrol,
+            )
+        except BaseException:
+            os.close(read)
+            raise
+        finally:
+            os.close(write)
+        started.returncode = 0  # it is reaped together with all the others, not through Popen
+        os.set_blocking(read, False)
+        self.group, self.pipe = started.pid, read
+        self.state, self.due, self.exit_code, self.signals_sent = State.RUNNING, None, None, 0
+        return read
+
+    def gone(self) -> bool:
+        """Tell whether the program has ended and nothing of its group is left."""
+        return self.exit_code is not None and not signal_group(self.group, 0)
+
+    def read(self) -> tuple[list[bytes], bool]:
+        """Return the lines that have come, without their ends, and whether more may follow."""
+        assert self.pipe is not None
+        try:
+            data = os.read(self.pipe, PIPE_CAPACITY)
+        except BlockingIOError:
+            return [], True
+        *lines, self._unfinished = (self._unfinished + data).split(b'\n')
+        if not data or len(self._unfinished) >= PIPE_CAPACITY:
+            lines += self._finish()
+        return lines, bool(data)
+
+    def close(self) -> list[bytes]:
+        """Close the pipe and return the lines that were still in it."""
+        if self.pipe is None:
+            return []
+        lines, _ = self.read()
+        os.close(self.pipe)
+        self.pipe = None
+        return lines + self._finish()
+
+    def _finish(self) -> list[bytes]:
+        line, self._unfinished = self._unfinished, b''
+        return [line] if line else []
+
+
+def describe(exit_code: int) -> str:
+    """Say in words how a program ended."""
+    if exit_code == 0:
+        return 'ended'
+    if exit_code > 0:
+        return f'exited with code {exit_code}'
+    with contextlib.suppress(ValueError):
+        return f'was killed by {signal.Signals(-exit_code).name}'
+    return f'was killed by signal {-exit_code}'

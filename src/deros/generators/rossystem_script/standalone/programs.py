@@ -1,0 +1,91 @@
+"""Where the programs of packages are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+import contextlib
+import itertools
+import os
+from pathlib import Path
+import re
+import sys
+
+
+class Programs:
+    """
+    Finds the programs of packages, as ros2 run does, and the environment that they need.
+
+    A given folder may be an install space of colcon, merged or with a folder for each package, or
+    hold the sources of Python packages, which are run as they stand; then comes AMENT_PREFIX_PATH.
+    """
+
+    def __init__(self, folders: Sequence[Path], environment: Mapping[str, str]) -> None:
+        """Look into the folders first, then where the environment says."""
+        self._environment = environment
+        given = [folder.absolute() for folder in folders]
+        below = [entry for folder in given for entry in _folders(folder)]
+        self._prefixes = [folder for folder in [*given, *below] if (folder / 'lib').is_dir()]
+        self._sources = [folder for folder in [*given, *below] if (folder / 'setup.py').is_file()]
+        named = environment.get('AMENT_PREFIX_PATH', '').split(os.pathsep)
+        self._ambient = [Path(entry) for entry in named if entry]
+
+    def find(self, package: str, executable: str) -> list[str] | None:
+        """Return the start of the command line, or None when there is no such program."""
+        for prefix in [*self._prefixes, *self._ambient]:
+            folder = prefix / 'lib' / package
+            for path in itertools.chain([folder / executable], _nested(folder, executable)):
+                if path.is_file() and os.access(path, os.X_OK):
+                    return [str(path)]
+        for source in self._sources:
+            entry = _entry_point(source, package, executable)
+            if entry is not None:
+                module, function = entry
+                code = f'import sys; from {module} import {function}; sys.exit({function}())'
+                return [sys.executable, '-c', code]
+        return None
+
+    def environment(self) -> dict[str, str]:
+        """Return the environment of the nodes: ours, with the given folders in front."""
+        python = [path for prefix in self._prefixes for path in _python_folders(prefix)]
+        in_front = {
+            'AMENT_PREFIX_PATH': self._prefixes,
+            'PATH': [prefix / 'bin' for prefix in self._prefixes],
+            'LD_LIBRARY_PATH': [prefix / 'lib' for prefix in self._prefixes],
+            'PYTHONPATH': [*self._sources, *python],
+        }
+        made = dict(self._environment)
+        for name, paths in in_front.items():
+            entries = [str(path) for path in paths if path.is_dir()]
+            if entries:
+                made[name] = os.pathsep.join([*entries, *filter(None, [made.get(name)])])
+        # Through a pipe Python would hold back its output until a block of it is full.
+        made.setdefault('PYTHONUNBUFFERED', '1')
+        return made
+
+
+def _folders(folder: Path) -> list[Path]:
+    return sorted(entry for entry in folder.iterdir() if entry.is_dir()) if folder.is_dir() else []
+
+
+def _nested(folder: Path, executable: str) -> Iterator[Path]:
+    if folder.is_dir():
+        yield from sorted(folder.rglob(Path(executable).name))
+
+
+def _python_folders(prefix: Path) -> list[Path]:
+    version = f'python{sys.version_info.major}.{sys.version_info.minor}'
+    site = prefix / 'lib' / version / 'site-packages'
+    return [site, prefix / 'local' / 'lib' / version / 'dist-packages']
+
+
+def _entry_point(source: Path, package: str, executable: str) -> tuple[str, str] | None:
+    """Read from a source package which function its setup.py or setup.cfg makes a program of."""
+    if source.name != package and not (source / package).is_dir():
+        return None
+    pattern = re.compile(rf'(?<![\w.-]){re.escape(executable)}\s*=\s*([\w.]+)\s*:\s*(\w+)')
+    for name in ('setup.py', 'setup.cfg'):
+        with contextlib.suppress(OSError):
+            found = pattern.search((source / name).read_text(encoding='utf-8'))
+            if found is not None:
+                return found[1], found[2]
+    return None

@@ -1,0 +1,281 @@
+"""What starts the nodes, watches them, and stops them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+import contextlib
+import itertools
+import os
+import selectors
+import signal
+import sys
+import time
+
+from .guard import Guard, PR_SET_CHILD_SUBREAPER, PRCTL, signal_group, STOP_SIGNALS
+from .output import Output
+from .process import describe, Process, State
+
+COLOURS = (36, 33, 32, 35, 34, 96, 93, 92, 95, 94)  # of ANSI terminals, for the nodes in turn
+BOLD = 1
+
+# A node that was told to stop has done so when it ends by itself or by the signal it was sent.
+STOPPED_BY = {
+    signal.SIGINT: {0, -signal.SIGINT, 128 + signal.SIGINT},
+    signal.SIGTERM: {-signal.SIGTERM, 128 + signal.SIGTERM},
+    signal.SIGKILL: set[int](),
+}
+
+
+class Supervisor:
+    """
+    Runs processes until the last has ended.
+
+    There is one thread, which waits for the next of these: output of a node, a reader that takes
+    ours, a signal (SIGCHLD among them), and the moment at which something is due.
+    """
+
+    def __init__(
+        self,
+        system: str,
+        processes: Sequence[Process],
+        environment: dict[str, str],
+        patience: float = 5.0,
+        keep_going: bool = False,
+    ) -> None:
+        """
+        Prepare to run the processes.
+
+        The patience is the time in seconds that nodes have from one stop signal to the next; to
+        keep going is to leave the others alone when a node fails.
+        """
+        self._system = system
+        self._processes = processes
+        self._environment = environment
+        self._patience = patience
+        self._keep_going = keep_going
+        self._selector = selectors.PollSelector()
+        sys.stdout.flush()
+        self._output = Output(sys.stdout.fileno(), self._selector)
+        self._held_back: list[Process] = []  # whose output waits until ours is read
+        in_colour = sys.stdout.isatty() and not os.environ.get('NO_COLOR')
+        if in_colour:
+            environment.setdefault('RCUTILS_COLORIZED_OUTPUT', '1')
+        self._prefix = _prefix(system, BOLD if in_colour else None)
+        self._prefixes = {
+            process.label: _prefix(process.label, colour if in_colour else None)
+            for process, colour in zip(processes, itertools.cycle(COLOURS), strict=False)
+        }
+        self._stopping = False
+        self._failed = False
+
+    def run(self) -> int:
+        """Start the processes and return 0 when all have ended well, 1 when one has failed."""
+        if PRCTL is not None:
+            # What a node leaves behind becomes our child, so that its end is told to us.
+            PRCTL(PR_SET_CHILD_SUBREAPER, 1)
+        self._guard = Guard(self._patience)
+        try:
+            with self._signals():
+                self._loop()
+                self._output.drain(self._patience)
+        finally:
+            self._guard.close()
+        return 1 if self._failed else 0
+
+    # What is waited for ---------------------------------------------------------------------
+
+    def _loop(self) -> None:
+        while any(process.state is not State.ENDED for process in self._processes):
+            moments = [process.due for process in self._processes if process.due is not None]
+            timeout = max(0.0, min(moments) - time.monotonic()) if moments else None
+            for key, _ in self._selector.select(timeout):
+                # What was done for an earlier one may have closed this one.
+                if self._selector.get_map().get(key.fd) is key:
+                    key.data()
+            if self._output.broken and not self._stopping:
+                self._stop('nobody reads the output any more')
+            if self._stopping or not self._output.full:
+                self._take_up_again()
+            self._next_due()
+
+    @contextlib.contextmanager
+    def _signals(self) -> Iterator[None]:
+        """Turn signals into bytes in a pipe that the selector watches."""
+        read, write = os.pipe()
+        os.set_blocking(read, False)
+        os.set_blocking(write, False)
+        watched = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD)
+        before = {number: signal.signal(number, lambda *_: None) for number in watched}
+        wakeup = signal.set_wakeup_fd(write, warn_on_full_buffer=False)
+        self._selector.register(read, selectors.EVENT_READ, lambda: self._on_signals(read))
+        try:
+            yield
+        finally:
+            self._selector.unregister(read)
+            signal.set_wakeup_fd(wakeup)
+            for number, handler in before.items():
+                signal.signal(number, handler)
+            os.close(read)
+            os.close(write)
+
+    def _on_signals(self, pipe: int) -> None:
+        for number in os.read(pipe, 4096):
+            if number == signal.SIGCHLD:
+                continue
+            if self._stopping:
+                self._hurry()
+            else:
+                self._stop(f'received {signal.Signals(number).name}')
+        self._reap()
+
+    def _reap(self) -> None:
+        """Learn how programs ended, and see which process groups are empty now."""
+        running = {process.group: process for process in self._processes if process.group}
+        with contextlib.suppress(ChildProcessError):
+            while True:
+                pid, status = os.waitpid(-1, os.WNOHANG)
+                if pid == 0:
+                    break
+                if pid == self._guard.pid:
+                    self._guard.lost = True
+                if pid in running:
+                    running[pid].exit_code = os.waitstatus_to_exitcode(status)
+        for process in running.values():
+            if process.gone():
+                self._ended(process)
+            elif process.exit_code is not None and process.state is State.RUNNING:
+                self._stop_process(process)  # its program has ended and left others behind
+
+    def _next_due(self) -> None:
+        """Do what is due, but start one node at most: no signal is to wait for a thousand."""
+        now = time.monotonic()
+        for process in self._processes:
+            if process.due is None or process.due > now:
+                continue
+            if process.state is State.WAITING:
+                self._start(process)
+                return
+            self._next_signal(process)
+
+    # The life of a node ---------------------------------------------------------------------
+
+    def _start(self, process: Process) -> None:
+        try:
+            pipe = process.start(self._environment, self._guard)
+        except OSError as error:
+            self._guard.release_latest()
+            self._say(f'{process.label} cannot be started: {error}')
+            self._failure(process)
+            return
+        self._say(f'{process.label} started, process {process.group}')
+        self._listen(process, pipe)
+
+    def _listen(self, process: Process, pipe: int) -> None:
+        def on_output() -> None:
+            if self._output.full and not self._stopping:
+                self._selector.unregister(pipe)
+                self._held_back.append(process)
+                return
+            lines, more = process.read()
+            self._pass_on(process, lines)
+            if not more:
+                self._selector.unregister(pipe)
+
+        self._selector.register(pipe, selectors.EVENT_READ, on_output)
+
+    def _take_up_again(self) -> None:
+        for process in self._held_back:
+            if process.pipe is not None:
+                self._listen(process, process.pipe)
+        self._held_back.clear()
+
+    def _ended(self, process: Process) -> None:
+        """Decide what follows the end of a node: nothing, a new start, or the end of all."""
+        self._guard.release(process.group)
+        if process.pipe is not None:
+            with contextlib.suppress(KeyError):  # after its end of file, or while it is held back
+                self._selector.unregister(process.pipe)
+            self._held_back = [held for held in self._held_back if held is not process]
+        self._pass_on(process, process.close())
+        assert process.exit_code is not None
+        told_to = process.state is State.STOPPING
+        process.state, process.due, process.group = State.ENDED, None, 0
+        how = describe(process.exit_code)
+        if self._stopping and told_to:
+            sent = STOP_SIGNALS[: process.signals_sent]
+            well = any(process.exit_code in STOPPED_BY[number] for number in sent)
+            self._failed |= not well
+            self._say(f'{process.label} stopped' if well else f'{process.label} {how}')
+        elif self._may_restart(process):
+            self._say(f'{process.label} {how}; {self._restart(process)}')
+        else:
+            self._say(f'{process.label} {how}')
+            if process.exit_code != 0:
+                self._failure(process)
+
+    def _may_restart(self, process: Process) -> bool:
+        most = process.node.respawn_max
+        wanted = process.node.respawn_delay is not None
+        return wanted and not self._stopping and (most is None or process.restarts < most)
+
+    def _restart(self, process: Process) -> str:
+        delay = process.node.respawn_delay or 0.0
+        most = process.node.respawn_max
+        process.restarts += 1
+        process.state = State.WAITING
+        process.due = time.monotonic() + delay
+        return f'restart {process.restarts}{"" if most is None else f" of {most}"} in {delay:g} s'
+
+    def _failure(self, process: Process) -> None:
+        process.state, process.due = State.ENDED, None
+        self._failed = True
+        if not self._keep_going and not self._stopping:
+            self._stop(f'{process.label} has failed')
+
+    # The end --------------------------------------------------------------------------------
+
+    def _stop(self, reason: str) -> None:
+        self._stopping = True
+        self._say(f'stopping: {reason}')
+        for process in self._processes:
+            if process.state is State.WAITING:
+                process.state, process.due = State.ENDED, None
+            elif process.state is State.RUNNING:
+                self._stop_process(process)
+
+    def _stop_process(self, process: Process) -> None:
+        process.state, process.signals_sent = State.STOPPING, 0
+        self._next_signal(process)
+
+    def _next_signal(self, process: Process) -> None:
+        """Send a node's process group the next stop signal."""
+        if process.signals_sent == len(STOP_SIGNALS):
+            self._say(f'{process.label} cannot be killed, process {process.group} is left behind')
+            self._failure(process)
+            return
+        number = STOP_SIGNALS[process.signals_sent]
+        if process.signals_sent > 0:
+            self._say(f'{process.label} is still running, sending {number.name}')
+        process.signals_sent += 1
+        process.due = time.monotonic() + self._patience
+        signal_group(process.group, number)
+
+    def _hurry(self) -> None:
+        for process in self._processes:
+            if process.state is State.STOPPING and process.signals_sent < len(STOP_SIGNALS):
+                process.due = 0.0
+
+    # What is said ---------------------------------------------------------------------------
+
+    def _pass_on(self, process: Process, lines: Sequence[bytes]) -> None:
+        if lines and not (self._output.full and self._stopping):
+            prefix = self._prefixes[process.label]
+            self._output.write(b''.join(b'%s%s\n' % (prefix, line) for line in lines))
+
+    def _say(self, text: str) -> None:
+        self._output.write(self._prefix + text.encode() + b'\n')
+
+
+def _prefix(label: str, colour: int | None) -> bytes:
+    text = f'[{label}]' if colour is None else f'\033[{colour}m[{label}]\033[0m'
+    return f'{text} '.encode()
