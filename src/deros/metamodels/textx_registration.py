@@ -4,6 +4,6 @@ textX recognises a generator by its class, so a look-alike will not do; no other
 """
 
 from textx.exceptions import TextXError
-from textx.registration import GeneratorDesc, GeneratorParam
+from textx.registration import GeneratorDesc, GeneratorParam, LanguageDesc
 
-__all__ = ["GeneratorDesc", "GeneratorParam", "TextXError"]
+__all__ = ["GeneratorDesc", "GeneratorParam", "LanguageDesc", "TextXError"]
