@@ -1,0 +1,125 @@
+"""Node descriptions as text: what is printed here, the loader reads back as the same model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros.metamodels.common import Interval, QosProfile, Scalar, Value
+from deros.metamodels.node import NodeType, Parameter, Port, PortKind, Timer
+
+_KEYWORDS = {
+    PortKind.PUBLISHER: "topic",
+    PortKind.SUBSCRIPTION: "topic",
+    PortKind.SERVICE: "service",
+    PortKind.CLIENT: "client",
+    PortKind.ACTION: "action",
+    PortKind.ACTION_CLIENT: "action",
+}
+_ESCAPES = {code: f"\\u{code:04x}" for code in (*range(0x20), 0x7F, 0x85, 0x2028, 0x2029)}
+_ESCAPES |= {
+    ord("\n"): "\\n",
+    ord("\t"): "\\t",
+    ord("\r"): "\\r",
+    ord('"'): '\\"',
+    ord("\\"): r"\\",
+}
+
+
+def node_description(node: NodeType) -> str:
+    """Return the ``.rnd`` text of a node type.
+
+    Ports of one kind share a section, so a model whose kinds are interleaved comes back with its
+    ports sorted by kind; all else comes back as it was.
+    """
+    return "\n".join(_lines(node)) + "\n"
+
+
+def _lines(node: NodeType) -> Iterator[str]:
+    yield _joined(f"node {node.name} : {node.package}", _text(node.description))
+    if node.executable is not None:
+        yield f"executable {_text(node.executable, always=True)}"
+    if node.lifecycle:
+        yield "lifecycle"
+    if node.parameters:
+        yield "parameters"
+        yield from (f"  {_parameter(parameter)}" for parameter in node.parameters)
+    for kind in dict.fromkeys(port.kind for port in node.ports):
+        yield kind.value
+        yield from (f"  {_port(port)}" for port in node.ports_of(kind))
+    if node.timers:
+        yield "timers"
+        yield from (f"  {_timer(timer)}" for timer in node.timers)
+
+
+def _parameter(parameter: Parameter) -> str:
+    head = f"name {parameter.name} : {parameter.type.value}"
+    if parameter.default is not None:
+        head += f" = {_value(parameter.default)}"
+    return _joined(
+        head,
+        f"[{parameter.unit}]" if parameter.unit is not None else "",
+        f"in {_interval(parameter.interval)}" if parameter.interval is not None else "",
+        f"one_of {_value(parameter.choices)}" if parameter.choices is not None else "",
+        f"size {parameter.size}" if parameter.size is not None else "",
+        "read_only" if parameter.read_only else "",
+        _text(parameter.description),
+    )
+
+
+def _port(port: Port) -> str:
+    units = " ".join(f"{unit.path} [{unit.unit}]" for unit in port.units)
+    return _joined(
+        f"{_KEYWORDS[port.kind]} {port.name} : {port.type.short}",
+        f"{{ {units} }}" if units else "",
+        f"via {port.via}" if port.via is not None else "",
+        _qos(port.qos) if port.qos is not None else "",
+        _text(port.description),
+    )
+
+
+def _qos(profile: QosProfile) -> str:
+    policies = [
+        profile.preset,
+        profile.reliability,
+        profile.durability,
+        "keep_all" if profile.keep_all else None,
+        f"depth {profile.depth}" if profile.depth is not None else None,
+        f"deadline {profile.deadline_ns} ns" if profile.deadline_ns is not None else None,
+        f"lifespan {profile.lifespan_ns} ns" if profile.lifespan_ns is not None else None,
+        f"liveliness {profile.liveliness}" if profile.liveliness is not None else None,
+        f"lease {profile.lease_ns} ns" if profile.lease_ns is not None else None,
+    ]
+    stated = [policy for policy in policies if policy is not None]
+    return _joined("qos", *stated) if stated else ""
+
+
+def _timer(timer: Timer) -> str:
+    head = f"timer {timer.name} every {timer.period_ns} ns"
+    return _joined(head, _text(timer.description))
+
+
+def _interval(interval: Interval) -> str:
+    opening = "[" if interval.lower_closed else "("
+    closing = "]" if interval.upper_closed else ")"
+    return f"{opening}{interval.lower!r}, {interval.upper!r}{closing}"
+
+
+def _value(value: Value) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(_scalar, value))}]"
+    return _scalar(value)
+
+
+def _scalar(value: Scalar) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return _text(value, always=True) if isinstance(value, str) else repr(value)
+
+
+def _text(text: str, always: bool = False) -> str:
+    """Return a quoted text; an empty one only where it is ``always`` needed."""
+    return f'"{text.translate(_ESCAPES)}"' if text or always else ""
+
+
+def _joined(*parts: str) -> str:
+    return " ".join(part for part in parts if part)
