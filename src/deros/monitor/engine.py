@@ -4,8 +4,8 @@ It interprets the intermediate form directly and aims at being right at a glance
 monitor is held to give the same events at the same nanosecond. In short:
 
 * The monitor is driven by messages and by deadlines. The start is no event.
-* An event is: the deadlines of one instant, or one message, or a backward step of the clock. At each
-  event all rules are evaluated, then all behaviours, top to bottom; then resets are settled.
+* An event is: the deadlines of one instant, or one message, or a backward step of the clock. At
+  each, all rules are evaluated, then all behaviours, top to bottom; then resets are settled.
 * Deadlines that are due when a call comes are settled first, in time order, with the old values.
 * A call with an earlier time than the one before shows a backward step of the clock.
 

@@ -31,7 +31,7 @@ from deros.monitor.ir import (
 )
 from deros.monitor.state import State, Verdict
 
-_COMPARE: Mapping[Operator, Callable[[Any, Any], bool]] = {
+COMPARE: Mapping[Operator, Callable[[Any, Any], bool]] = {
     "=": operator.eq,
     "!=": operator.ne,
     "<": operator.lt,
@@ -48,7 +48,7 @@ def is_nan(value: object) -> bool:
 
 # The types of operands agree by construction (deros.monitor.build), which Any stands for here.
 def evaluate_value(value: ValueExpression, state: State) -> Any:
-    """Return a value as of now, ``None`` for unknown; a NaN that computing yields is unknown too."""
+    """Return a value as of now, ``None`` for unknown; so is a NaN that computing yields."""
     match value:
         case Const():
             return value.value
@@ -82,7 +82,7 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             right = evaluate_value(condition.right, state)
             if left is None or right is None:
                 return None
-            return bool(_COMPARE[condition.operator](left, right))
+            return bool(COMPARE[condition.operator](left, right))
         case Within():
             return _within(condition, state)
         case Missing():
@@ -91,7 +91,7 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             counted_ns = state.inputs[condition.input].counted_ns
             if counted_ns is None:
                 return None
-            return _COMPARE[condition.operator](t_ns - counted_ns, condition.bound_ns)
+            return COMPARE[condition.operator](t_ns - counted_ns, condition.bound_ns)
         case Not():
             verdict = evaluate_condition(condition.operand, state, t_ns)
             return None if verdict is None else not verdict

@@ -1,0 +1,198 @@
+"""What the emitted monitor remembers: which attribute holds what, and what it is called."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from deros.generators.monitor_python.names import Names
+from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
+from deros.monitor import walk
+from deros.monitor.functions import FUNCTIONS, Result
+from deros.monitor.ir import (
+    Age,
+    Apply,
+    Condition,
+    Const,
+    For,
+    Missing,
+    Not,
+    Program,
+    Read,
+    RuleRef,
+    Scale,
+    ValueExpression,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """One remembered value: the attribute is ``_name``, a local copy of it ``name``.
+
+    ``unknown`` is how *unknown* is written: ``NAN`` for numbers, with which every comparison is
+    false, and ``None`` for all else.
+    """
+
+    name: str
+    unknown: str
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """The names of all that a program's monitor remembers.
+
+    Attributes:
+        names: of them all, and of the methods.
+        values: what the conditions read of the inputs' messages, and every function of them.
+        last: of a function with a memory, what the message before gave, and when it came.
+        timeouts: of an input with a timeout, when it passes.
+        missing: of an input that a ``missing()`` asks for, whether it is.
+        counted: of an input that an ``age()`` asks for, when its last counted message came.
+        dues: of each ``For``, when it becomes true.
+        verdicts: of each rule.
+        three_valued: the rules whose falsehood matters, not only their truth.
+        holds: of each behaviour.
+        active: of each action that can be reset.
+        ran: of each action that resets another, whether it ran in the present event.
+        forget: of each input with values, the method that makes them unknown.
+    """
+
+    names: Names
+    values: dict[ValueExpression, Slot] = field(default_factory=dict)
+    last: dict[ValueExpression, tuple[str, str]] = field(default_factory=dict)
+    timeouts: dict[int, str] = field(default_factory=dict)
+    missing: dict[int, str] = field(default_factory=dict)
+    counted: dict[int, str] = field(default_factory=dict)
+    dues: dict[int, str] = field(default_factory=dict)
+    verdicts: dict[int, str] = field(default_factory=dict)
+    three_valued: frozenset[int] = frozenset()
+    holds: dict[int, str] = field(default_factory=dict)
+    active: dict[int, str] = field(default_factory=dict)
+    ran: dict[int, str] = field(default_factory=dict)
+    forget: dict[int, str] = field(default_factory=dict)
+
+
+def lay_out_memory(program: Program) -> Layout:
+    """Name all that the monitor of a program remembers, in the program's order."""
+    layout = Layout(Names(), three_valued=frozenset(_three_valued(program)))
+    conditions = tuple(walk.conditions(program))
+    for value in walk.values(conditions):
+        if isinstance(value, Apply):
+            _name_value(program, value, layout)
+    for condition in conditions:
+        for value in terminals(condition):
+            _name_value(program, value, layout)
+    _name_inputs(program, layout)
+    _name_verdicts(program, layout)
+    _name_actions(program, layout)
+    return layout
+
+
+def slots_of(layout: Layout, program: Program, index: int) -> list[Slot]:
+    """Return the slots that hold values of one input."""
+    return [slot for value, slot in layout.values.items() if input_of(program, value) == index]
+
+
+def input_of(program: Program, value: ValueExpression) -> int:
+    """Return the input that a leaf or a function belongs to."""
+    if isinstance(value, Apply):
+        return value.input
+    assert isinstance(value, Read)
+    return program.leaves[value.leaf].input
+
+
+def _name_inputs(program: Program, layout: Layout) -> None:
+    for each in program.inputs:
+        if each.timeout_ns is not None:
+            layout.timeouts[each.index] = layout.names.new(each.name, "timeout")
+        if slots_of(layout, program, each.index):
+            layout.forget[each.index] = layout.names.new("forget", each.name)
+    for condition in walk.conditions(program):
+        match condition:
+            case Missing(input=index) if index not in layout.missing:
+                layout.missing[index] = layout.names.new(program.inputs[index].name, "missing")
+            case Age(input=index) if index not in layout.counted:
+                layout.counted[index] = layout.names.new(program.inputs[index].name, "counted")
+            case _:
+                pass
+
+
+def _name_verdicts(program: Program, layout: Layout) -> None:
+    for rule in program.rules:
+        layout.verdicts[rule.index] = layout.names.new(rule.entity, rule.name)
+        for part in walk.parts(rule.condition):
+            if isinstance(part, For):
+                layout.dues[part.index] = layout.names.new(rule.entity, rule.name, "due")
+    for behaviour in walk.behaviours(program):
+        layout.holds[behaviour.index] = layout.names.new(behaviour.name)
+        for part in walk.parts(behaviour.condition):
+            if isinstance(part, For):
+                layout.dues[part.index] = layout.names.new(behaviour.name, "due")
+
+
+def _name_actions(program: Program, layout: Layout) -> None:
+    for action in program.actions:
+        if action.latched or action.reset_by is not None:
+            layout.active[action.index] = layout.names.new(action.name, "active")
+    for action in program.actions:
+        if action.reset_by is not None and action.reset_by not in layout.ran:
+            reset_by = program.actions[action.reset_by]
+            layout.ran[reset_by.index] = layout.names.new(reset_by.name, "ran")
+
+
+def _name_value(program: Program, value: ValueExpression, layout: Layout) -> None:
+    if value in layout.values:
+        return
+    slot = layout.values[value] = _slot(program, value, layout.names)
+    if isinstance(value, Apply) and value.state is not None:
+        names = (layout.names.new(slot.name, "last"), layout.names.new(slot.name, "last_t"))
+        layout.last[value] = names
+
+
+def terminals(condition: Condition) -> list[ValueExpression]:
+    """Return the leaves and outermost functions that a condition itself compares."""
+
+    def strip(value: ValueExpression) -> ValueExpression:
+        return strip(value.operand) if isinstance(value, Scale) else value
+
+    stripped = (strip(each) for each in operands(condition))
+    return [each for each in stripped if not isinstance(each, Const)]
+
+
+def operands(condition: Condition) -> tuple[ValueExpression, ...]:
+    """Return the values that a condition itself (not its parts) is about."""
+    names = ("left", "right", "lower", "upper", "operand")
+    found = (getattr(condition, name, None) for name in names)
+    return tuple(each for each in found if isinstance(each, Const | Read | Apply | Scale))
+
+
+def _slot(program: Program, value: ValueExpression, names: Names) -> Slot:
+    if isinstance(value, Apply):
+        unknown = "None" if FUNCTIONS[value.function].result is Result.BOOLEAN else "NAN"
+        return Slot(names.new(program.inputs[value.input].name, value.function), unknown)
+    assert isinstance(value, Read)
+    leaf = program.leaves[value.leaf]
+    each = program.inputs[leaf.input]
+    rest = leaf.path[len(each.path) :] if leaf.path[: len(each.path)] == each.path else leaf.path
+    number = leaf.type.base in INTEGER_RANGES or leaf.type.base in FLOAT_TYPES
+    return Slot(names.new(each.name, *rest), "NAN" if number else "None")
+
+
+def _three_valued(program: Program) -> set[int]:
+    """Return the rules of which some behaviour asks whether they are false."""
+    found: set[int] = set()
+
+    def ask(condition: Condition, for_truth: bool, for_falsehood: bool) -> None:
+        match condition:
+            case RuleRef(rule=rule) if for_falsehood:
+                found.add(rule)
+            case Not(operand=operand):
+                ask(operand, for_falsehood, for_truth)
+            case For(operand=operand):
+                ask(operand, True, for_falsehood)
+            case _:
+                for operand in getattr(condition, "operands", ()):
+                    ask(operand, for_truth, for_falsehood)
+
+    for behaviour in walk.behaviours(program):
+        ask(behaviour.condition, True, False)
+    return found

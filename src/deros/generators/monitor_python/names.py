@@ -1,0 +1,49 @@
+"""Identifiers of the emitted module: telling names, never a keyword, never the same twice."""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+
+from deros.generators.names import python_identifier
+from deros.monitor.functions import FUNCTIONS
+
+MODULE_NAMES = frozenset(
+    {"Callable", "Event", "Monitor", "NAN", "NEVER", "NamedTuple", "Sequence", "math"}
+)
+METHOD_NAMES = frozenset({"act", "advance", "catch_up", "earliest", "evaluate", "reset", "restart"})
+LOCAL_NAMES = frozenset(
+    {"changed", "due", "emit", "now", "self", "settled", "started", "t", "verdict"}
+)
+
+_FUNCTION_NAMES = {row.python_call for row in FUNCTIONS.values()} | {
+    row.guard.python_call for row in FUNCTIONS.values() if row.guard
+}
+RESERVED = (
+    MODULE_NAMES
+    | METHOD_NAMES
+    | LOCAL_NAMES
+    | _FUNCTION_NAMES
+    | frozenset(keyword.kwlist)
+    | frozenset(name for name in dir(builtins) if name.islower())
+)
+
+
+class Names:
+    """Hands out identifiers that differ from each other and from all reserved ones."""
+
+    def __init__(self, taken: frozenset[str] = RESERVED) -> None:
+        """Start with the names that are ``taken``."""
+        self._taken = set(taken)
+
+    def new(self, *parts: str | int) -> str:
+        """Return an identifier made of ``parts``; a number is added where it is taken already."""
+        words = (python_identifier(str(part)).strip("_") for part in parts)
+        base = "_".join(word for word in words if word) or "value"
+        if base[0].isdigit():
+            base = f"n{base}"
+        name, number = base, 2
+        while name in self._taken:
+            name, number = f"{base}_{number}", number + 1
+        self._taken.add(name)
+        return name

@@ -1,0 +1,131 @@
+"""The methods that evaluate rules: one for the rules of the same topics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from deros.generators.monitor_python.conditions import Conditions
+from deros.generators.monitor_python.layout import Layout, input_of, terminals
+from deros.generators.monitor_python.logic import lay_out, text
+from deros.generators.monitor_python.source import comment
+from deros.monitor import walk
+from deros.monitor.ir import Age, Condition, Const, For, Missing, Program, Rule, Truth
+
+
+@dataclass(frozen=True, slots=True)
+class Judge:
+    """A method that evaluates the rules that depend on the same topics.
+
+    Attributes:
+        method: its name, without the leading ``_``.
+        topics: on which its rules depend.
+        lines: of its body.
+    """
+
+    method: str
+    topics: tuple[str, ...]
+    lines: tuple[str, ...]
+
+    @property
+    def subject(self) -> str:
+        """What its rules are about, in a few words."""
+        if not self.topics:
+            return "constants"
+        return self.topics[0] if len(self.topics) == 1 else f"{len(self.topics)} topics together"
+
+
+def judges(program: Program, layout: Layout) -> tuple[Judge, ...]:
+    """Return the methods for all rules, in the order of their first rules."""
+    groups: dict[tuple[str, ...], list[Rule]] = {}
+    for rule in program.rules:
+        groups.setdefault(_topics(program, rule.condition), []).append(rule)
+    return tuple(
+        Judge(
+            layout.names.new("judge", *(topics if len(topics) == 1 else ())),
+            topics,
+            tuple(_lines(program, layout, rules)),
+        )
+        for topics, rules in groups.items()
+    )
+
+
+def _topics(program: Program, condition: Condition) -> tuple[str, ...]:
+    found = {program.inputs[index].topic for index in _inputs(program, condition)}
+    return tuple(topic for topic in program.topics if topic in found)
+
+
+def _inputs(program: Program, condition: Condition) -> set[int]:
+    found: set[int] = set()
+    for part in walk.parts(condition):
+        if isinstance(part, Missing | Age):
+            found.add(part.input)
+        found |= {input_of(program, value) for value in terminals(part)}
+    return found
+
+
+def _lines(program: Program, layout: Layout, rules: list[Rule]) -> list[str]:
+    conditions = Conditions(program, layout)
+    lines = [f"        {name} = self._{name}" for name in _remembered(layout, rules)]
+    lines.append("        changed = False")
+    for rule in rules:
+        lines.append("")
+        lines += comment(8, f"Rule {rule.full_name}", rule.span)
+        lines += interval_lines(conditions, layout, rule.condition)
+        lines += _verdict(conditions, rule, rule.index in layout.three_valued)
+        name = layout.verdicts[rule.index]
+        lines += [
+            f"        if verdict != self._{name}:",
+            f"            self._{name} = verdict",
+            "            changed = True",
+        ]
+    return lines
+
+
+def _remembered(layout: Layout, rules: list[Rule]) -> list[str]:
+    """Return the names that the rules read, in order, each once."""
+    names: dict[str, None] = {}
+    for rule in rules:
+        for part in walk.parts(rule.condition):
+            if isinstance(part, Missing):
+                names[layout.missing[part.input]] = None
+            elif isinstance(part, Age):
+                names[layout.counted[part.input]] = None
+            for value in terminals(part):
+                names[layout.values[value].name] = None
+    return list(names)
+
+
+def interval_lines(conditions: Conditions, layout: Layout, condition: Condition) -> list[str]:
+    """Return the statements that start and clear the intervals of a condition, inner ones first."""
+    lines: list[str] = []
+    for part in walk.parts(condition):
+        if isinstance(part, For):
+            due = layout.dues[part.index]
+            lines += [
+                f"        {due} = self._{due}",
+                *lay_out(8, "if ", conditions.true(part.operand), ":"),
+                f"            if {due} == NEVER:",
+                f"                {due} = self._{due} = t + {part.duration_ns}",
+                f"                if {due} < self._due:",
+                f"                    self._due = {due}",
+                "        else:",
+                f"            {due} = self._{due} = NEVER",
+            ]
+    return lines
+
+
+def _verdict(conditions: Conditions, rule: Rule, three_valued: bool) -> list[str]:
+    condition = rule.condition
+    true = conditions.true(condition)
+    if not three_valued:
+        return lay_out(8, "verdict = ", true)
+    if isinstance(condition, Truth) and not isinstance(condition.operand, Const):
+        return [f"        verdict = {text(true)}"]
+    return [
+        *lay_out(8, "if ", true, ":"),
+        "            verdict = True",
+        *lay_out(8, "elif ", conditions.false(condition), ":"),
+        "            verdict = False",
+        "        else:",
+        "            verdict = None",
+    ]

@@ -1,0 +1,182 @@
+"""The view of a program that the template of the Python monitor prints."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from deros.generators.monitor_python.behaviours import act_lines, latched_lines
+from deros.generators.monitor_python.handlers import Handler, handlers
+from deros.generators.monitor_python.layout import Layout, lay_out_memory, slots_of
+from deros.generators.monitor_python.rules import Judge, judges
+from deros.monitor import walk
+from deros.monitor.engine import age_changes
+from deros.monitor.evaluate import evaluate_condition
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import Age, Apply, Program
+from deros.monitor.state import State
+
+
+@dataclass(frozen=True, slots=True)
+class Forget:
+    """The method that makes an input's values unknown: pairs of an attribute and its value."""
+
+    method: str
+    input: str
+    unknown: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Timeout:
+    """An input's timeout: what is remembered of it, and what to do when it passes."""
+
+    name: str
+    duration_ns: int
+    missing: str | None
+    forget: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class MonitorView:
+    """All that the template prints.
+
+    Attributes:
+        name: of the program.
+        functions: definitions of the functions that the rules use.
+        uses_sequences: whether an array comes into a handler or a function.
+        slots: the names of the attributes, in order.
+        initial: pairs of attribute and value at the start, of what a clock step leaves alone.
+        restarted: the same of what it does not.
+        forgets, timeouts: of the inputs.
+        handlers: one per topic.
+        judges: the methods that evaluate rules, and by topic which of them a message calls.
+        act: the lines of all behaviours and resets.
+        ends: instants, as attributes or sums, that are deadlines while they lie ahead.
+        known_at_start: whether a verdict can be known before any message, so that the first event,
+            whichever it is, must evaluate all rules.
+        latched: the lines of ``reset()``.
+    """
+
+    name: str
+    functions: tuple[str, ...]
+    uses_sequences: bool
+    slots: tuple[str, ...]
+    initial: tuple[tuple[str, str], ...]
+    restarted: tuple[tuple[str, str], ...]
+    forgets: tuple[Forget, ...]
+    timeouts: tuple[Timeout, ...]
+    handlers: tuple[Handler, ...]
+    judges: tuple[Judge, ...]
+    act: tuple[str, ...]
+    ends: tuple[str, ...]
+    known_at_start: bool
+    latched: tuple[str, ...]
+
+
+def monitor_view(program: Program) -> MonitorView:
+    """Return the view of a program; the glue of a node finds the handlers' signatures in it."""
+    layout = lay_out_memory(program)
+    functions = _function_texts(layout)
+    methods = judges(program, layout)
+    made = handlers(program, layout, methods)
+    annotations = [each.annotation for handler in made for each in handler.parameters]
+    known_at_start = _known_at_start(program, layout)
+    initial = _initial(layout, known_at_start)
+    restarted = _restarted(layout)
+    forgets = _forgets(program, layout)
+    timeouts = _timeouts(program, layout)
+    attributes = [
+        *(name for name, _ in initial),
+        *(name for forget in forgets for name, _ in forget.unknown),
+        *(last_t for _, last_t in layout.last.values()),
+        *(timeout.name for timeout in timeouts),
+        *(name for name, _ in restarted),
+    ]
+    return MonitorView(
+        name=re.sub(r"[^\w .-]", "_", program.name),
+        functions=functions,
+        uses_sequences=any("Sequence" in each for each in (*functions, *annotations)),
+        slots=tuple(dict.fromkeys(attributes)),
+        initial=initial,
+        restarted=restarted,
+        forgets=forgets,
+        timeouts=timeouts,
+        handlers=made,
+        judges=methods,
+        act=tuple(act_lines(program, layout)),
+        ends=_ends(program, layout),
+        known_at_start=known_at_start,
+        latched=tuple(latched_lines(program, layout)),
+    )
+
+
+def _function_texts(layout: Layout) -> tuple[str, ...]:
+    texts: dict[str, None] = {}
+    for value in layout.values:
+        if isinstance(value, Apply):
+            row = FUNCTIONS[value.function]
+            if row.guard is not None:
+                texts[row.guard.python] = None
+            texts[row.python] = None
+    return tuple(each for each in texts if each)
+
+
+def _initial(layout: Layout, known_at_start: bool) -> tuple[tuple[str, str], ...]:
+    pairs = [
+        (name, "None" if rule in layout.three_valued else "False")
+        for rule, name in layout.verdicts.items()
+    ]
+    pairs += [(name, "False") for name in (*layout.holds.values(), *layout.active.values())]
+    pairs += [(last_t, "start") for _, last_t in layout.last.values()]
+    if known_at_start:
+        pairs.append(("started", "False"))
+    return tuple(pairs)
+
+
+def _restarted(layout: Layout) -> tuple[tuple[str, str], ...]:
+    pairs = [(name, "False") for name in layout.missing.values()]
+    pairs += [(name, "NAN") for name in layout.counted.values()]
+    pairs += [(name, "NEVER") for name in layout.dues.values()]
+    return tuple(pairs)
+
+
+def _forgets(program: Program, layout: Layout) -> tuple[Forget, ...]:
+    found: list[Forget] = []
+    for index, method in layout.forget.items():
+        unknown = [(slot.name, slot.unknown) for slot in slots_of(layout, program, index)]
+        for value, (last, _) in layout.last.items():
+            if isinstance(value, Apply) and value.input == index:
+                unknown.append((last, "NAN"))
+        found.append(Forget(method, program.inputs[index].name, tuple(unknown)))
+    return tuple(found)
+
+
+def _timeouts(program: Program, layout: Layout) -> tuple[Timeout, ...]:
+    return tuple(
+        Timeout(
+            layout.timeouts[each.index],
+            each.timeout_ns,
+            layout.missing.get(each.index),
+            layout.forget.get(each.index),
+        )
+        for each in program.inputs
+        if each.timeout_ns is not None
+    )
+
+
+def _ends(program: Program, layout: Layout) -> tuple[str, ...]:
+    ends = [f"self._{name}" for name in layout.dues.values()]
+    for condition in walk.conditions(program):
+        if isinstance(condition, Age):
+            counted = layout.counted[condition.input]
+            ends += [f"self._{counted} + {change}" for change in age_changes(condition)]
+    return tuple(dict.fromkeys(ends))
+
+
+def _known_at_start(program: Program, layout: Layout) -> bool:
+    state = State(program, 0, len(layout.holds))
+    for rule in program.rules:
+        verdict = evaluate_condition(rule.condition, state, 0)
+        if verdict or state.since or (verdict is False and rule.index in layout.three_valued):
+            return True
+    return False
