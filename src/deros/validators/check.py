@@ -22,24 +22,34 @@ def check(
     """
     loaded = list({id(each): each for each in (*named, *repository.files)}.values())
     named_files = {id(each) for each in named}
-    used_by_rules = {
-        id(use.system.source)
-        for each in loaded
-        if isinstance(each.model, Rules)
-        for use in each.model.uses
-        if use.system is not None
-    }
+    watching = _watching_rules(loaded)
     findings: list[Diagnostic] = []
     for each in loaded:
         findings.extend(each.diagnostics)
-        whole = id(each) in named_files or id(each.source) in used_by_rules
-        findings.extend(_check_model(each, whole, store))
+        watchers = watching.get(id(each.model), [])
+        whole = id(each) in named_files or bool(watchers)
+        findings.extend(_check_model(each.model, whole, watchers, store))
     return in_file_order(findings)
 
 
-def _check_model(loaded: LoadedFile, whole: bool, store: InterfaceStore) -> Iterator[Diagnostic]:
+def _watching_rules(loaded: Iterable[LoadedFile]) -> dict[int, list[Rules]]:
+    """Return the rules that use each system, by the system's identity."""
+    watching: dict[int, list[Rules]] = {}
+    for each in loaded:
+        if isinstance(each.model, Rules):
+            for use in each.model.uses:
+                if use.system is not None:
+                    watching.setdefault(id(use.system), []).append(each.model)
+    return watching
+
+
+def _check_model(
+    model: NodeType | System | Rules | None,
+    whole: bool,
+    watchers: list[Rules],
+    store: InterfaceStore,
+) -> Iterator[Diagnostic]:
     """Run the family that the model belongs to; each is imported only when a model asks for it."""
-    model = loaded.model
     if isinstance(model, NodeType):
         from deros.validators.node import check_node
 
@@ -47,7 +57,10 @@ def _check_model(loaded: LoadedFile, whole: bool, store: InterfaceStore) -> Iter
     elif isinstance(model, System):
         from deros.validators.system import check_system, check_written
 
-        yield from check_system(model, store) if whole else check_written(model, store)
+        if whole:
+            yield from check_system(model, store, watchers)
+        else:
+            yield from check_written(model, store)
     elif isinstance(model, Rules):
         from deros.validators.rules import check_rules
 

@@ -7,24 +7,31 @@ on the graph that it amounts to (:func:`check_system`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from deros.diagnostics import Diagnostic
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.flatten import flatten
+from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
 from deros.validators.graph import wiring_graph
+from deros.validators.rules_ends import ends_of
 from deros.validators.system_names import check_names
 from deros.validators.system_nodes import check_instances
 from deros.validators.system_topics import check_topics
 
 
-def check_system(system: System, store: InterfaceStore) -> Iterator[Diagnostic]:
-    """Yield all findings of a system that stands on its own; linear in its size."""
+def check_system(
+    system: System, store: InterfaceStore, watchers: Iterable[Rules] = ()
+) -> Iterator[Diagnostic]:
+    """Yield all findings of a system that stands on its own; linear in its size.
+
+    ``watchers`` are rules that use the system: the topics that they read or feed are not one-sided.
+    """
     flat = flatten(system)
     yield from check_names(flat, store)
     yield from check_instances(flat)
-    yield from check_topics(flat, wiring_graph(flat))
+    yield from check_topics(flat, wiring_graph(flat), ends_of(watchers))
 
 
 def check_written(system: System, store: InterfaceStore) -> Iterator[Diagnostic]:

@@ -14,6 +14,7 @@ from deros.metamodels.flatten import FlatSystem, FlatTopic, resolve_name
 from deros.metamodels.node import PortKind
 from deros.validators.graph import End, Vertex, channels, publishers, subscribers
 from deros.validators.hints import NameIndex
+from deros.validators.rules_ends import RulesEnds
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -61,13 +62,19 @@ class _Channel:
         return (self.sources or self.sinks)[0].span
 
 
-def check_topics(flat: FlatSystem, graph: nx.MultiDiGraph[Vertex]) -> Iterator[Diagnostic]:
-    """Yield the findings about whole topics, services and actions, and about unwired ports."""
+def check_topics(
+    flat: FlatSystem, graph: nx.MultiDiGraph[Vertex], rules: RulesEnds
+) -> Iterator[Diagnostic]:
+    """Yield the findings about whole topics, services and actions, and about unwired ports.
+
+    What ``rules`` read or feed lacks no end there, whether or not the system names the safety node.
+    """
     guessed = _targets_of_unknown_ports(flat)
     found = [_channel(graph, vertex, guessed) for vertex in channels(graph)]
     for channel in found:
         yield from _types(channel)
     topics = [channel for channel in found if channel.vertex[0] == "topic"]
+    topics = [channel for channel in topics if not _ends_in_rules(channel, rules)]
     pairs = _misspelt_pairs(topics)
     misspelt = {channel.name for pair in pairs for channel in pair}
     for fed, read in pairs:
@@ -106,6 +113,13 @@ def _targets_of_unknown_ports(flat: FlatSystem) -> set[str]:
             if node.type is None or node.type.port(wiring.port) is None:
                 targets.add(resolve_name(wiring.target, node.namespace, node.instance.name))
     return targets
+
+
+def _ends_in_rules(topic: _Channel, rules: RulesEnds) -> bool:
+    """Tell whether the safety node is the end that a topic would lack."""
+    return (topic.name in rules.read and (bool(topic.sources) or not topic.sinks)) or (
+        topic.name in rules.fed and not topic.sources
+    )
 
 
 # Types ------------------------------------------------------------------------------------------
