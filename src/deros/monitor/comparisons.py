@@ -101,7 +101,7 @@ class Comparisons:
             operator = _MIRRORED[operator]
         match first, second:
             case (AgeOf(), _) | (_, AgeOf()):
-                return self._age(node, first, operator, second)
+                return self._age(node, (left, first), operator, (right, second))
             case (MissingOf(), Plain(value=bool(value))) if operator in _EQUALITY:
                 missing = ir.Missing(self._scope.use(first.input))
                 return missing if value is (operator == "=") else ir.Not(missing)
@@ -176,9 +176,10 @@ class Comparisons:
         return False
 
     def _convertible(self, found: Quantity | Value, value: Value, term: rules.Term) -> bool:
-        if found.unit is None or value.unit is None:
+        unit = found.shown_in if isinstance(found, Quantity) else found.unit
+        if unit is None or value.unit is None:
             return True
-        return self._terms.compatible(found.unit, value.unit, term)
+        return self._terms.compatible(unit, value.unit, term)
 
     def _with_number(
         self, node: rules.Comparison, value: Value, operator: ir.Operator, number: Fraction
@@ -314,20 +315,25 @@ class Comparisons:
     # Age ----------------------------------------------------------------------------------------
 
     def _age(
-        self, node: rules.Comparison, left: Resolved, operator: ir.Operator, right: Resolved
+        self,
+        node: rules.Comparison,
+        first: tuple[rules.Term, Resolved],
+        operator: ir.Operator,
+        second: tuple[rules.Term, Resolved],
     ) -> ir.Condition | None:
-        if not isinstance(left, AgeOf):
-            left, right, operator = right, left, _MIRRORED[operator]
-        assert isinstance(left, AgeOf)
+        if not isinstance(first[1], AgeOf):
+            first, second, operator = second, first, _MIRRORED[operator]
+        age, (term, bound) = first[1], second
+        assert isinstance(age, AgeOf)
         if operator in _EQUALITY:
             message = f"an age passes every value in a nanosecond, '{operator}' never helps"
             hint = "compare it with <, <=, > or >="
             self._scope.fault(codes.WRONG_OPERAND, message, node.span, hint)
             return None
-        bound_ns = self._age_bound(right, node.span)
+        bound_ns = self._age_bound(bound, term.span)
         if bound_ns is None:
             return None
-        return ir.Age(self._scope.use(left.input), operator, bound_ns)
+        return ir.Age(self._scope.use(age.input), operator, bound_ns)
 
     def _age_within(
         self, node: rules.Membership, age: AgeOf, lower: Resolved, upper: Resolved

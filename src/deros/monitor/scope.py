@@ -46,7 +46,8 @@ class Scope:
         # is then not missing here.
         self.systems_known = all(use.system is not None for use in program.uses)
         self._uses = program.uses
-        self.topics = SystemTopics(use.system for use in program.uses if use.system)
+        systems = [use.system for use in program.uses if use.system]
+        self.topics = SystemTopics(systems, self.systems_known)
         self.units = self._read_units(program.units)
         constants = [each.name for each in program.constants]
         inputs = [each.name for each in program.inputs]

@@ -240,10 +240,8 @@ class Terms:
         """Tell whether a term's unit converts to the wanted one; report it where it does not."""
         if self._scope.units.compatible(found, wanted):
             return True
-        message = (
-            f"'{term.span.text}' is in {found.text} ({found.dimension}),"
-            f" {wanted.text} ({wanted.dimension}) is needed"
-        )
+        need = "a plain number" if wanted.text == "1" else f"{wanted.text} ({wanted.dimension})"
+        message = f"'{term.span.text}' is in {found.text} ({found.dimension}), {need} is needed"
         self._scope.fault(codes.INCOMPATIBLE_UNITS, message, term.span)
         return False
 

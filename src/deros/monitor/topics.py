@@ -72,13 +72,13 @@ class KnownTopic:
 class SystemTopics:
     """The topics of all used systems, by graph name.
 
-    ``complete`` is false when a part of a system could not be found, so that a topic which seems to
-    lack something may well have it.
+    ``complete`` is false when a system or a part of one could not be loaded, so that a topic which
+    seems to lack something may well have it.
     """
 
-    def __init__(self, systems: Iterable[System]) -> None:
+    def __init__(self, systems: Iterable[System], complete: bool = True) -> None:
         """Flatten each system once, however often it is used."""
-        self.complete = True
+        self.complete = complete
         self._topics: dict[str, KnownTopic] = {}
         for system in {id(each): each for each in systems}.values():
             self._add(system)

@@ -1,0 +1,24 @@
+"""Checks of safety rules: what keeps them from being built, and what is suspect in sound ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros.diagnostics import Diagnostic
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.rules import Rules
+from deros.monitor.build import build
+from deros.validators.rules_ranges import check_ranges
+from deros.validators.rules_timeouts import check_timeouts
+from deros.validators.rules_topics import check_topics
+from deros.validators.rules_usage import check_usage
+
+
+def check_rules(rules: Rules, store: InterfaceStore) -> Iterator[Diagnostic]:
+    """Yield every finding about the rules; the system that they use is checked for itself."""
+    result = build(rules, store)
+    yield from result.diagnostics
+    yield from check_usage(rules)
+    yield from check_timeouts(rules)
+    yield from check_topics(rules, result.topics)
+    yield from check_ranges(rules, result.comparisons)

@@ -1,0 +1,76 @@
+"""Topics that nobody feeds, and action topics that nobody reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, report
+from deros.interfaces.names import did_you_mean, near
+from deros.metamodels.common import Name
+from deros.metamodels.flatten import resolve_name
+from deros.metamodels.rules import Rules, TopicPath
+from deros.monitor.topics import SystemTopics
+from deros.validators.rules_walk import all_terms, rules_of, terms_of
+
+
+def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
+    """Yield the findings about who is at the other end of the rules' topics.
+
+    External topics have their other end outside the model; the safety node itself publishes the
+    topics of bound actions. A system with unknown parts proves nothing.
+    """
+    if not topics.complete:
+        return
+    read: dict[str, Name] = {}
+    for name in _topics_read(rules):
+        read.setdefault(resolve_name(name.text, "/"), name)
+    bound = {
+        resolve_name(action.binding.topic.text, "/"): action.binding.topic
+        for action in reversed(rules.actions)
+        if action.binding
+    }
+    for topic, name in read.items():
+        if topic not in bound:
+            yield from _unfed(topic, name, topics)
+    for topic, name in bound.items():
+        if topic not in read:
+            yield from _unread(topic, name, topics)
+
+
+def _topics_read(rules: Rules) -> Iterator[Name]:
+    for each in rules.inputs:
+        yield each.term.topic
+    for _, rule in rules_of(rules):
+        for term in terms_of(rule.condition):
+            for inner in all_terms(term):
+                if isinstance(inner, TopicPath):
+                    yield inner.topic
+
+
+def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
+    known = topics.get(topic)
+    if known is None or known.publishers or known.external or known.untyped:
+        return
+    fed = [each for each in topics.names if (one := topics.get(each)) and one.publishers]
+    yield report(
+        codes.RULE_TOPIC_NOT_PUBLISHED,
+        f"nobody in the system publishes '{topic}'",
+        name.span,
+        did_you_mean(near(topic, fed)) or f"if it comes from outside: 'external topic {topic}'",
+        (Related(known.place, "the topic"),),
+    )
+
+
+def _unread(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
+    known = topics.get(topic)
+    if known is not None and (known.subscriptions or known.external or known.untyped):
+        return
+    heard = [each for each in topics.names if (one := topics.get(each)) and one.subscriptions]
+    yield report(
+        codes.ACTION_TOPIC_NOT_IN_SYSTEM,
+        f"nobody in the system subscribes to '{topic}'",
+        name.span,
+        did_you_mean(near(topic, heard)) or f"if it is read outside: 'external topic {topic}'",
+        (Related(known.place, "the topic"),) if known else (),
+    )

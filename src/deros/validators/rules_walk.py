@@ -1,0 +1,74 @@
+"""Ways through rules as written: every term of a condition, every behaviour."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros.metamodels.rules import (
+    And,
+    Behaviour,
+    Call,
+    Comparison,
+    Condition,
+    For,
+    Membership,
+    Negative,
+    Not,
+    Or,
+    Rule,
+    Rules,
+    Term,
+)
+
+
+def rules_of(rules: Rules) -> Iterator[tuple[str, Rule]]:
+    """Yield every rule of every entity with its full name, ``entity.rule``."""
+    for entity in rules.entities:
+        for rule in entity.rules:
+            yield f"{entity.name}.{rule.name}", rule
+
+
+def behaviours_of(rules: Rules) -> Iterator[Behaviour]:
+    """Yield all behaviours, outer before inner, top to bottom."""
+
+    def descend(behaviour: Behaviour) -> Iterator[Behaviour]:
+        yield behaviour
+        for item in behaviour.body:
+            if isinstance(item, Behaviour):
+                yield from descend(item)
+
+    for behaviour in rules.behaviours:
+        yield from descend(behaviour)
+
+
+def terms_of(condition: Condition) -> Iterator[Term]:
+    """Yield the terms that stand in a condition, without those inside them."""
+    match condition:
+        case Comparison():
+            yield condition.left
+            yield condition.right
+        case Membership():
+            yield condition.operand
+            yield condition.lower
+            yield condition.upper
+        case And() | Or():
+            for operand in condition.operands:
+                yield from terms_of(operand)
+        case Not() | For():
+            yield from terms_of(condition.operand)
+        case _:
+            yield condition.operand
+
+
+def all_terms(term: Term) -> Iterator[Term]:
+    """Yield a term and every term inside it."""
+    yield term
+    match term:
+        case Negative():
+            yield from all_terms(term.operand)
+        case Call():
+            for inner in (term.receiver, *term.arguments):
+                if inner is not None:
+                    yield from all_terms(inner)
+        case _:
+            pass
