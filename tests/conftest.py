@@ -9,3 +9,8 @@ ROOT = Path(__file__).resolve().parent.parent
 
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
+
+pytest_plugins = ("tests.support.golden", "tests.support.ros")
+
+collect_ignore = ["golden"]
+"""Generated packages bring tests of their own, to be run where they are built."""

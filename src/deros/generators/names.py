@@ -21,10 +21,7 @@ def python_identifier(name: str) -> str:
     becomes ``_``: ``/fmInformation/imu`` is ``fmInformation_imu``. Keywords get a ``_`` at the end,
     names that start with a digit one at the front.
     """
-    text = _NOT_IN_IDENTIFIERS.sub("_", name.removeprefix("~").removeprefix("/")) or "_"
-    if text[0].isdigit():
-        text = f"_{text}"
-    return f"{text}_" if keyword.iskeyword(text) else text
+    return _legal(_NOT_IN_IDENTIFIERS.sub("_", name.removeprefix("~").removeprefix("/")) or "_")
 
 
 def camel_case(name: str) -> str:
@@ -34,7 +31,13 @@ def camel_case(name: str) -> str:
     """
     words = [word for word in python_identifier(name).split("_") if word]
     text = "".join(word[0].upper() + word[1:] for word in words) or "_"
-    return f"_{text}" if text[0].isdigit() else text
+    return _legal(text)
+
+
+def _legal(text: str) -> str:
+    if text[0].isdigit():
+        return f"_{text}"
+    return f"{text}_" if keyword.iskeyword(text) else text
 
 
 @dataclass(frozen=True, slots=True)

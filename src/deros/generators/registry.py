@@ -112,12 +112,12 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
             directory = Path(output_path) if output_path else Path(filename).parent
             written = write(files, directory, overwrite=overwrite)
         except GenerationError as error:
-            raise TextXError(_hooks.render(error.diagnostics)) from error
+            raise TextXError(_hooks.render(error.diagnostics).rstrip()) from error
         except (WriteError, ValueError) as error:
             raise TextXError(str(error)) from error
         warnings = [*found, *written.diagnostics]
         if warnings:
-            sys.stderr.write(_hooks.render(warnings) + "\n")
+            sys.stderr.write(_hooks.render(warnings).rstrip() + "\n")
 
 
 def generator(

@@ -133,7 +133,13 @@ def _untouched(present: bytes) -> bool:
 
 def _checked(path: str) -> PurePosixPath:
     pure = PurePosixPath(path)
-    if not path or pure.is_absolute() or ".." in pure.parts or "\0" in path or str(pure) != path:
+    if (
+        not pure.name
+        or pure.is_absolute()
+        or ".." in pure.parts
+        or "\0" in path
+        or str(pure) != path
+    ):
         raise WriteError(
             f"refused to write {path!r}: it is no plain path below the output directory"
         )

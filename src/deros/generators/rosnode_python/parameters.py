@@ -49,8 +49,8 @@ class ParameterView:
         reading: the argument of ``Parameters`` that reads the value from the node.
         comment: what it is, wrapped, for the structure.
         ranges: the classes of ranges in its descriptor; ``described`` tells whether it has one.
-        yaml: value for the parameter file; empty when a file cannot hold it.
-        empty: whether the default is an empty sequence, which a file cannot hold either.
+        yaml: value for the parameter file; ``None`` where there is none to write, and ``yaml_note``
+            says why.
     """
 
     name: str
@@ -61,9 +61,9 @@ class ParameterView:
     comment: tuple[str, ...]
     described: bool
     ranges: tuple[str, ...]
-    empty: bool
     constraints: tuple[Constraint, ...]
-    yaml: str
+    yaml: str | None
+    yaml_note: str
 
 
 def parameter_views(model: NodeType) -> tuple[ParameterView, ...]:
@@ -96,9 +96,9 @@ def _view(parameter: Parameter, read_only: bool) -> ParameterView:
             for name in ("FloatingPointRange", "IntegerRange")
             if any(isinstance(argument, str) and name in argument for argument in descriptor)
         ),
-        empty=empty,
         constraints=constraints,
         yaml=_yaml(parameter),
+        yaml_note=_yaml_note(parameter),
     )
 
 
@@ -180,10 +180,20 @@ def _default(parameter: Parameter) -> str:
     return _scalar(parameter.default, parameter.type)
 
 
-def _yaml(parameter: Parameter) -> str:
-    # The parser of parameter files knows neither byte arrays nor the type of an empty sequence.
-    if parameter.default in (None, ()) or parameter.type is ParameterType.BYTE_ARRAY:
-        return ""
+def _yaml_note(parameter: Parameter) -> str:
+    """Say why the parameter file has no value; empty when it has one."""
+    if parameter.default is None:
+        return "has no default: a value must be given"
+    if parameter.default == ():
+        return "empty, which a parameter file cannot say"
+    if parameter.type is ParameterType.BYTE_ARRAY:
+        return "bytes, which a parameter file cannot hold"
+    return ""
+
+
+def _yaml(parameter: Parameter) -> str | None:
+    if _yaml_note(parameter):
+        return None
     if isinstance(parameter.default, tuple):
         return f"[{', '.join(_yaml_scalar(v, parameter.type) for v in parameter.default)}]"
     assert parameter.default is not None

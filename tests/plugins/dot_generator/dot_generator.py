@@ -1,0 +1,22 @@
+"""A generator from outside: all that it takes is this function and one entry point."""
+
+from __future__ import annotations
+
+from deros.generators.protocol import Context, File, Files, Option, Options
+from deros.generators.registry import generator
+from deros.metamodels.flatten import flatten
+from deros.metamodels.node import PortKind
+from deros.metamodels.system import System
+
+
+@generator("rossystem", "dot", (Option("rank-dir", "direction of the graph: LR, TB, RL or BT"),))
+def dot(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
+    """The nodes and topics of a system as a Graphviz graph."""
+    lines = [f"digraph {model.name} {{", f"  rankdir={options.get('rank-dir', 'LR')};"]
+    for node in flatten(model).nodes:
+        for end in node.ports:
+            ends = (node.full_name, end.topic)
+            if end.port.kind is PortKind.SUBSCRIPTION:
+                ends = (end.topic, node.full_name)
+            lines.append('  "{}" -> "{}";'.format(*ends))
+    return {f"{model.name}.dot": File("\n".join([*lines, "}", ""]))}

@@ -1,0 +1,127 @@
+"""Real ROS 2 in tests: domains of their own, processes that surely end, and a peer to talk to.
+
+Nothing here waits for a time: every wait is for an event, with a limit after which the test fails.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+LIMIT = 30.0
+"""Seconds after which an awaited event is taken not to come; discovery alone may need three."""
+
+_DOMAINS = range(1, 102)  # the ports of higher ones may be taken by outgoing connections
+
+
+@contextlib.contextmanager
+def own_domain() -> Iterator[int]:
+    """Hold a ROS_DOMAIN_ID that no other test process of this machine holds."""
+    folder = Path(tempfile.gettempdir()) / "deros-test-domains"
+    folder.mkdir(mode=0o777, exist_ok=True)
+    first = os.getpid() % len(_DOMAINS)
+    for number in [*_DOMAINS[first:], *_DOMAINS[:first]]:
+        with (folder / str(number)).open("w") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                continue
+            yield number
+            return
+    raise RuntimeError("all ROS domains are taken by other tests")
+
+
+@pytest.fixture
+def ros_env() -> Iterator[dict[str, str]]:
+    """Give the environment for ROS 2 processes of one test: loopback, in a domain of their own."""
+    with own_domain() as domain:
+        yield environment(domain)
+
+
+def environment(domain: int) -> dict[str, str]:
+    """Return this process's environment, confined to the loopback and to one domain."""
+    env = dict(os.environ)
+    env.setdefault("AMENT_PREFIX_PATH", sys.prefix)
+    env["ROS_DOMAIN_ID"] = str(domain)
+    env["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    env["PYTHONUNBUFFERED"] = "1"
+    return env
+
+
+@contextlib.contextmanager
+def running(command: Sequence[str], env: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
+    """Run a program with its output in one pipe; it is gone when the block ends."""
+    with subprocess.Popen(
+        command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as process:
+        try:
+            yield process
+        finally:
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+                try:
+                    process.wait(LIMIT)
+                except subprocess.TimeoutExpired:
+                    process.kill()
+
+
+class Peer:
+    """A node of the test itself, in the domain of ``env``, that spins only while it waits."""
+
+    def __init__(self, domain: int) -> None:
+        """Start the node; end it with :meth:`close`."""
+        import rclpy
+        from rclpy.context import Context
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.node import Node
+
+        self._context = Context()
+        rclpy.init(context=self._context, domain_id=domain)
+        self.node: Any = Node("test_peer", context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+
+    def until(self, condition: Callable[[], Any], limit: float = LIMIT) -> Any:
+        """Spin until ``condition()`` is true, and return what it returned.
+
+        Raises:
+            AssertionError: if that does not happen within ``limit`` seconds.
+        """
+        end = time.monotonic() + limit
+        while not (result := condition()):
+            assert time.monotonic() < end, "the awaited event did not come"
+            self._executor.spin_once(timeout_sec=0.05)
+        return result
+
+    def call(self, client: Any, request: Any) -> Any:
+        """Call a service once its server is there, and return the response."""
+        self.until(client.service_is_ready)
+        future = client.call_async(request)
+        self.until(future.done)
+        return future.result()
+
+    def close(self) -> None:
+        """Take the node out of the domain."""
+        self._executor.shutdown()
+        self.node.destroy_node()
+        self._context.try_shutdown()
+
+
+@pytest.fixture
+def ros_peer(ros_env: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> Iterator[Peer]:
+    """Give a node in the test's own process that shares the domain of ``ros_env``."""
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", ros_env["ROS_AUTOMATIC_DISCOVERY_RANGE"])
+    peer = Peer(int(ros_env["ROS_DOMAIN_ID"]))
+    yield peer
+    peer.close()
