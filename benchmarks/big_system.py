@@ -85,7 +85,7 @@ def _cart(number: int) -> tuple[list[str], list[str]]:
 
 
 def write(directory: Path, nodes: int) -> Path:
-    """Write the model files for about ``nodes`` nodes into ``directory``; return the system's path."""
+    """Write the models of about ``nodes`` nodes into ``directory``; return the system's path."""
     for name, text in (("driver", DRIVER), ("smoother", FILTER), ("brake", BRAKE)):
         (directory / f"{name}.rnd").write_text(text, encoding="utf-8")
     carts = [_cart(number) for number in range(max(1, nodes // NODES_PER_CART))]

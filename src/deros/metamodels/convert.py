@@ -156,7 +156,7 @@ class Converter:
             for field, value in self._policy(policy):
                 if field in settings:
                     message = f"the QoS policy '{field.removesuffix('_ns')}' is given twice"
-                    self.report(codes.SYNTAX_ERROR, message, self.span(policy))
+                    self.report(codes.DUPLICATE_SECTION, message, self.span(policy))
                 settings.setdefault(field, value)
         return QosProfile(**settings, span=self.span(found))
 

@@ -189,8 +189,9 @@ class NodeConverter(Converter):
         )
 
     def _timer(self, found: Any) -> Timer:
+        before = len(self.diagnostics)
         period = self.duration_ns(found.period)
-        if period == 0 and not self.diagnostics:
+        if period == 0 and len(self.diagnostics) == before:
             message = "a timer's period is longer than nothing"
             self.report(codes.BAD_DURATION, message, self.span(found.period))
         return Timer(

@@ -210,8 +210,6 @@ def unknown(name: str, what: str, known: Iterable[str], span: Span) -> tuple[str
     hint = did_you_mean(near(name, names))
     if not hint:
         hint = (
-            f"the imports define {', '.join(names)}"
-            if names
-            else "import the file that defines it"
+            f"the imports define {', '.join(names)}" if names else "import the file that defines it"
         )
     return f"no import defines the {what} '{name}'", span, hint

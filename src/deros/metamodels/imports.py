@@ -16,45 +16,43 @@ def find_files(
 ) -> tuple[str, ...] | Diagnostic:
     """Return the files that ``pattern``, a path or a glob, means in the file ``importer``.
 
-    Files found by a glob come sorted by name; those of other suffixes, and the importing file itself,
-    are not meant. A path that leads to no file of one of the ``suffixes`` is a diagnostic.
+    Files found by a glob come sorted by name; those of other suffixes, and the importing file
+    itself, are not meant. A path to no file, or to one of another suffix, is a diagnostic.
     """
     path = os.path.normpath(Path(importer).parent / pattern)
-    if glob.has_magic(pattern) and not os.path.lexists(path):
+    if glob.has_magic(pattern) and not Path(path).exists():
         importing = os.path.realpath(importer)
+        wanted = os.path.normpath(Path(glob.escape(str(Path(importer).parent))) / pattern)
         found = sorted(
             each
-            for each in glob.glob(path, recursive=True)
+            for each in glob.iglob(wanted, recursive=True)  # noqa: PTH207 - Path.glob keeps no `..`
             if each.endswith(suffixes) and os.path.realpath(each) != importing
         )
         if found:
             return tuple(map(shown_path, found))
-        message = f"no file matches '{pattern}'"
-        return report(codes.UNKNOWN_IMPORT, message, span)
+        return report(codes.UNKNOWN_IMPORT, f"no file matches '{pattern}'", span)
     if not pattern.endswith(suffixes):
-        message = (
-            f"'{pattern}' cannot be imported here: its name does not end in {' or '.join(suffixes)}"
-        )
+        wanted = " or ".join(suffixes)
+        message = f"'{pattern}' cannot be imported here: its name does not end in {wanted}"
         return report(codes.UNKNOWN_LANGUAGE, message, span)
-    if not os.path.isfile(path):
+    if not Path(path).is_file():
         message = f"there is no file '{pattern}'"
-        return report(codes.UNKNOWN_IMPORT, message, span, _hint(path, suffixes))
+        return report(codes.UNKNOWN_IMPORT, message, span, _hint(Path(path), suffixes))
     return (shown_path(path),)
 
 
 def shown_path(path: str) -> str:
-    """Return a path as diagnostics show it: relative to the current directory when it is below it."""
-    if os.path.isabs(path):
+    """Return a path as diagnostics show it: relative where it lies below the current directory."""
+    if Path(path).is_absolute():
         relative = os.path.relpath(path)
         if not relative.startswith(os.pardir):
             path = relative
     return PurePath(path).as_posix()
 
 
-def _hint(path: str, suffixes: tuple[str, ...]) -> str:
-    folder = os.path.dirname(path) or os.curdir
+def _hint(path: Path, suffixes: tuple[str, ...]) -> str:
     try:
-        names = [name for name in os.listdir(folder) if name.endswith(suffixes)]
+        names = sorted(each.name for each in path.parent.iterdir())
     except OSError:
-        return f"there is no folder '{shown_path(folder)}' either"
-    return did_you_mean(near(os.path.basename(path), sorted(names)))
+        return f"there is no folder '{shown_path(str(path.parent))}' either"
+    return did_you_mean(near(path.name, (name for name in names if name.endswith(suffixes))))

@@ -1,8 +1,8 @@
 """The textX metamodels of the three languages, each built once per process.
 
-The grammars (``*.tx`` beside this file) are the languages. What is changed on the way to a parser is
-how a token is handed over: as a :class:`Token`, a text that knows its place. textX itself keeps
-positions of objects only, and a grammar with an object for each name would take three times as long.
+The grammars (``*.tx`` beside this file) are the languages. What is changed on the way to a parser
+is how a token is handed over: as a :class:`Token`, a text that knows its place. textX itself keeps
+the positions of objects only, and a grammar with an object for each name would be far slower.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import functools
 from pathlib import Path
 from typing import Any, Literal
 
-from arpeggio import Match, ParsingExpression, RegExMatch, Terminal
+from arpeggio import ParsingExpression, RegExMatch, Terminal
 from textx import metamodel_from_file
 
 from deros.metamodels.scoping import SCOPE_PROVIDERS
@@ -58,8 +58,8 @@ def language_of(path: str) -> Language | None:
 def metamodel(language: Language) -> Any:
     """Return the textX metamodel of a language.
 
-    Its models hold :class:`Token` objects as attribute values, and
-    :class:`~deros.metamodels.scoping.Reference` objects where a model names an element of another file.
+    Its models hold :class:`Token` objects as attribute values, and a
+    :class:`~deros.metamodels.scoping.Reference` where a model names an element of another file.
     """
     result = metamodel_from_file(
         str(Path(__file__).with_name(f"{language}.tx")), auto_init_attributes=False, autokwd=True
@@ -90,6 +90,6 @@ def _yield_tokens(root: ParsingExpression) -> None:
         separator = getattr(expression, "sep", None)
         children = expression.nodes if separator is None else [*expression.nodes, separator]
         for child in children:
-            if id(child) not in seen and isinstance(child, ParsingExpression | Match):
+            if id(child) not in seen and isinstance(child, ParsingExpression):
                 seen.add(id(child))
                 pending.append(child)

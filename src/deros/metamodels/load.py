@@ -59,7 +59,7 @@ class _Open:
 
 
 class Repository:
-    """The models of one run: a file is read, parsed and converted the first time it is asked for."""
+    """The models of one run; each file is read, parsed and converted once."""
 
     def __init__(self) -> None:
         self._files: dict[str, LoadedFile] = {}

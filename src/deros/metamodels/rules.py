@@ -60,7 +60,7 @@ class TopicPath:
 
 @dataclass(frozen=True, slots=True)
 class NamePath:
-    """A name with what may follow it: an input, a constant, a message constant, an input's field."""
+    """A name and what may follow it: an input, a constant, a message constant, an input's field."""
 
     name: Name
     path: tuple[str | int, ...]

@@ -9,14 +9,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from deros.metamodels.languages import Token
     from deros.metamodels.node import NodeType
     from deros.metamodels.system import System
 
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
 T = TypeVar("T")
+N = TypeVar("N", bound=_Named)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,12 +51,18 @@ class FileIndex:
     complete: bool = True
 
     def add_node_type(self, node_type: NodeType) -> None:
-        """Make a node type known under its name."""
-        self.node_types[node_type.name] = (*self.node_types.get(node_type.name, ()), node_type)
+        """Make a node type known under its name; one file imported twice counts once."""
+        _add(self.node_types, node_type)
 
     def add_system(self, system: System) -> None:
-        """Make a system known under its name."""
-        self.systems[system.name] = (*self.systems.get(system.name, ()), system)
+        """Make a system known under its name; one file imported twice counts once."""
+        _add(self.systems, system)
+
+
+def _add(names: dict[str, tuple[N, ...]], element: N) -> None:
+    known = names.get(element.name, ())
+    if not any(element is each for each in known):
+        names[element.name] = (*known, element)
 
 
 _NO_IMPORTS = FileIndex()

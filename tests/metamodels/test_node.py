@@ -1,0 +1,237 @@
+"""Node descriptions: every extension, and what may be said only once."""
+
+from __future__ import annotations
+
+import pytest
+
+from deros import codes
+from deros.codes import Code
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.common import Interval, QosProfile
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType, Parameter, ParameterType, Port, PortKind
+
+
+def _node(body: str) -> NodeType:
+    loaded = Repository().load_text("a.rnd", f"node a : p {body}")
+    assert loaded.diagnostics == ()
+    assert isinstance(loaded.model, NodeType)
+    return loaded.model
+
+
+def _parameter(text: str) -> Parameter:
+    (parameter,) = _node(f"parameters name x : {text}").parameters
+    return parameter
+
+
+def _port(text: str, section: str = "publishes") -> Port:
+    (port,) = _node(f"{section} {text}").ports
+    return port
+
+
+def _findings(body: str) -> list[tuple[Code, str]]:
+    loaded = Repository().load_text("a.rnd", f"node a : p {body}")
+    return [(found.code, found.span.text) for found in loaded.diagnostics]
+
+
+def test_the_head() -> None:
+    """Description, executable and lifecycle stand after the package."""
+    node = _node('"Turns ticks into odometry" executable "odometry" lifecycle')
+    assert node.description == "Turns ticks into odometry"
+    assert node.executable_name == "odometry"
+    assert node.lifecycle
+
+
+def test_the_program_has_the_nodes_name_unless_told() -> None:
+    """Without ``executable`` the node's own name is the program's."""
+    assert _node("").executable is None
+    assert _node("").executable_name == "a"
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "default"),
+    [
+        ("bool = true", ParameterType.BOOL, True),
+        ("int = -3", ParameterType.INTEGER, -3),
+        ("integer = 3", ParameterType.INTEGER, 3),
+        ("double = 3", ParameterType.DOUBLE, 3.0),
+        ("float = 1e-3", ParameterType.DOUBLE, 0.001),
+        (r'string = "a\"b\\c\nd\u00e9"', ParameterType.STRING, 'a"b\\c\ndé'),
+        ("byte[] = [1, 2]", ParameterType.BYTE_ARRAY, (1, 2)),
+        ("bool[] = [true, false]", ParameterType.BOOL_ARRAY, (True, False)),
+        ("int[] = []", ParameterType.INTEGER_ARRAY, ()),
+        ("double [ ] = [1.0, 2]", ParameterType.DOUBLE_ARRAY, (1.0, 2.0)),
+        ('string[] = ["a", "b"]', ParameterType.STRING_ARRAY, ("a", "b")),
+        ("double", ParameterType.DOUBLE, None),
+    ],
+)
+def test_parameter_types_and_defaults(text: str, kind: ParameterType, default: object) -> None:
+    """Every ROS 2 type is read; a whole number for a double becomes one."""
+    parameter = _parameter(text)
+    assert parameter.type is kind
+    assert parameter.default == default
+    assert type(parameter.default) is type(default)
+
+
+def test_parameter_attributes_in_any_order() -> None:
+    """Unit, bounds, description and read_only may follow the default in any order."""
+    for text in (
+        'double = 0.52 [m] in [0.1, 2.0) "Distance" read_only',
+        'double = 0.52 read_only "Distance" in [0.1, 2.0) [m]',
+    ):
+        parameter = _parameter(text)
+        assert parameter.unit == "m"
+        assert parameter.interval == Interval(0.1, 2.0, True, False)
+        assert parameter.description == "Distance"
+        assert parameter.read_only
+
+
+def test_choices_and_size() -> None:
+    """``one_of`` lists values, ``size`` gives an array's length."""
+    assert _parameter('string = "a" one_of ["a", "b"]').choices == ("a", "b")
+    assert _parameter("double = 1 one_of [1, 2.5]").choices == (1.0, 2.5)
+    assert _parameter("double[] = [1.0] size 1").size == 1
+
+
+@pytest.mark.parametrize("spelling", ["std_msgs.Bool", "std_msgs/Bool", "std_msgs/msg/Bool"])
+def test_the_spellings_of_a_type(spelling: str) -> None:
+    """All three spellings are one type."""
+    assert _port(f"topic x : {spelling}").type == InterfaceType("std_msgs", "msg", "Bool")
+
+
+@pytest.mark.parametrize(
+    ("section", "keyword", "kind", "interface"),
+    [
+        ("publishes", "topic", PortKind.PUBLISHER, "msg"),
+        ("subscribes", "topic", PortKind.SUBSCRIPTION, "msg"),
+        ("services", "service", PortKind.SERVICE, "srv"),
+        ("clients", "client", PortKind.CLIENT, "srv"),
+        ("actions", "action", PortKind.ACTION, "action"),
+        ("action_clients", "action", PortKind.ACTION_CLIENT, "action"),
+    ],
+)
+def test_the_kinds_of_ports(section: str, keyword: str, kind: PortKind, interface: str) -> None:
+    """Each section has its kind of port and of type."""
+    port = _port(f"{keyword} ~/x : a_b.C", section)
+    assert (port.kind, port.name, port.type.kind) == (kind, "~/x", interface)
+
+
+def test_qos() -> None:
+    """Every QoS word is read, durations as nanoseconds."""
+    port = _port(
+        "topic x : a.B qos best_effort transient_local depth 5 deadline 100 ms "
+        "lifespan 0.5sec liveliness manual_by_topic lease 2 s"
+    )
+    assert port.qos == QosProfile(
+        reliability="best_effort",
+        durability="transient_local",
+        depth=5,
+        deadline_ns=100_000_000,
+        lifespan_ns=500_000_000,
+        liveliness="manual_by_topic",
+        lease_ns=2_000_000_000,
+    )
+    assert _port("topic x : a.B qos sensor_data").qos == QosProfile(preset="sensor_data")
+    assert _port("topic x : a.B qos reliable volatile keep_all").qos == QosProfile(
+        reliability="reliable", durability="volatile", keep_all=True
+    )
+
+
+def test_qos_presets_named_like_sections() -> None:
+    """``services`` and ``parameters`` are presets after ``qos``, unless they open a section."""
+    node = _node("publishes topic x : a.B qos services parameters name y : int")
+    assert node.ports[0].qos == QosProfile(preset="services")
+    assert [p.name for p in node.parameters] == ["y"]
+    node = _node("publishes topic x : a.B qos reliable services service y : a.C")
+    assert node.ports[0].qos == QosProfile(reliability="reliable")
+    assert [p.name for p in node.ports] == ["x", "y"]
+
+
+def test_field_units_and_via() -> None:
+    """Units of fields stand in braces; ``via`` names the parameter that holds the topic's name."""
+    port = _port(
+        "topic odom : nav_msgs.Odometry { twist.twist.linear.x [m/s], position[2] [ rad ] } "
+        'via odom_topic "Where we are"'
+    )
+    assert [(u.path, u.unit) for u in port.units] == [
+        ("twist.twist.linear.x", "m/s"),
+        ("position[2]", "rad"),
+    ]
+    assert (port.via, port.description) == ("odom_topic", "Where we are")
+
+
+def test_timers() -> None:
+    """A timer's period is whole nanoseconds."""
+    (timer,) = _node('timers timer control every 20 ms "The control loop"').timers
+    assert (timer.name, timer.period_ns, timer.description) == (
+        "control",
+        20_000_000,
+        "The control loop",
+    )
+
+
+def test_keywords_are_names_where_nothing_is_lost() -> None:
+    """Parameters, topics and timers may be called like keywords."""
+    node = _node(
+        "parameters name name : int name topic : int name parameters : int "
+        "name in : int = 1 in [0, 2] "
+        "publishes topic topic : a.B topic publishes : a.B "
+        "timers timer every every 1 sec timer timer every 2 sec"
+    )
+    assert [p.name for p in node.parameters] == ["name", "topic", "parameters", "in"]
+    assert [p.name for p in node.ports] == ["topic", "publishes"]
+    assert [t.name for t in node.timers] == ["every", "timer"]
+
+
+def test_layout_is_free_and_semicolons_are_optional() -> None:
+    """One line or many, with or without ``;``, is the same node."""
+    one = "parameters name x:int=3;name y:bool publishes topic z:a.B;topic w:a.B;"
+    many = (
+        "parameters\n name x\n :\n int = 3\n name y : bool\npublishes topic z : a.B\ntopic w : a.B"
+    )
+    assert _node(one) == _node(many)
+
+
+def test_spans_lie_on_the_words() -> None:
+    """The places of names, types, defaults and units are exactly their words."""
+    node = _node("parameters name x : double = 0.5 [m/s] publishes topic /t : a.B via x")
+    (parameter,) = node.parameters
+    (port,) = node.ports
+    assert parameter.name_span.text == "x"
+    assert parameter.default_span is not None
+    assert parameter.default_span.text == "0.5"
+    assert parameter.unit_span is not None
+    assert parameter.unit_span.text == "m/s"
+    assert parameter.span.text == "name x : double = 0.5 [m/s]"
+    assert (port.name_span.text, port.type_span.text) == ("/t", "a.B")
+    assert (node.name_span.text, node.package_span.text) == ("a", "p")
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "text"),
+    [
+        ("parameters name x : int parameters name y : int", codes.DUPLICATE_SECTION, "parameters"),
+        ("lifecycle lifecycle", codes.DUPLICATE_SECTION, "lifecycle"),
+        ("publishes topic x : a.B via c via d", codes.DUPLICATE_SECTION, "via d"),
+        ("parameters name x : int [m] [s]", codes.DUPLICATE_SECTION, "[s]"),
+        ("publishes topic x : a.B qos depth 1 depth 2", codes.DUPLICATE_SECTION, "depth 2"),
+        ("timers timer t every 20", codes.UNKNOWN_UNIT, "20"),
+        ("timers timer t every 20 parsec", codes.UNKNOWN_UNIT, "parsec"),
+        ("timers timer t every 20 m", codes.UNKNOWN_UNIT, "m"),
+        ("timers timer t every -20 ms", codes.BAD_DURATION, "-20 ms"),
+        ("timers timer t every 0.5 ns", codes.BAD_DURATION, "0.5 ns"),
+        ("timers timer t every 0 ms", codes.BAD_DURATION, "0 ms"),
+    ],
+)
+def test_findings(body: str, code: Code, text: str) -> None:
+    """What is given twice, and durations that are none, are findings at their place."""
+    assert _findings(body) == [(code, text)]
+
+
+def test_both_of_two_sections_count() -> None:
+    """The content of a repeated section is kept, so that nothing else goes missing for it."""
+    loaded = Repository().load_text(
+        "a.rnd", "node a : p parameters name x : int parameters name y : int"
+    )
+    assert isinstance(loaded.model, NodeType)
+    assert [p.name for p in loaded.model.parameters] == ["x", "y"]

@@ -1,0 +1,90 @@
+"""Syntax errors: the place is exact, and the words are the user's, not the parser's."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from deros import codes
+from deros.diagnostics import Diagnostic
+from deros.metamodels.load import Repository
+
+# Name of the file, its text with the faulty place between « and », a part of the message or hint.
+CASES = [
+    ("a.rnd", "«nodea» : p", "'node'"),
+    ("a.rnd", "node a «p»", "':'"),
+    ("a.rnd", "node a«»", "':'"),
+    ("a.rnd", "node «ä» : p", "a name"),
+    ("a.rnd", "node a : p «paramters» name x : bool", "did you mean 'parameters'"),
+    ("a.rnd", "node a : p parameters name x «double»", "':'"),
+    ("a.rnd", "node a : p parameters name x : «dobule»", "did you mean 'double'"),
+    ("a.rnd", 'node a : p parameters name x : string = «"»abc\n', "not closed"),
+    ("a.rnd", r'node a : p parameters name x : string = "a«\q»b"', "unknown escape"),
+    ("a.rnd", "node a : p publishes topic x : «Bool»", "a type such as std_msgs.Bool"),
+    ("a.rnd", "node a : p publishes topic x : a.B qos «fast»", "a QoS policy such as reliable"),
+    ("a.rnd", "node a : p\n«/*» never closed", "close it with '*/'"),
+    ("a.rnd", "node a : p«\u00a0»parameters", "U+00A0 (no-break space)"),
+    ("a.rnd", "node a : p parameters name x : double = «1e5000»", "out of range"),
+    ("a.system", "system A «topic» /x", "did you mean 'topics'"),
+    ("a.system", "system A node x : y wirings connect a «/b»", "'to'"),
+    ("a.system", "system A subsystem s { topics topic /x«»\n\n", "the file ends"),
+    ("a.system", "system A subsystem «{» }", "a name"),
+    ("a.deros", "action stop;\n«actoin» go;", "did you mean 'action'"),
+    ("a.deros", "if a.b «the» { stop; }", "did you mean 'then'"),
+    ("a.deros", "entity e { r «a» > 5; }", "':'"),
+    ("a.deros", "entity e { r: a in [1, 2«;» }", "']' or ')'"),
+    ("a.deros", "entity e { r: a «&» b; }", "expected"),
+    ("a.deros", "entity e { r: x > -«-»3; }", "a name"),
+    ("a.deros", "use «robot» import Robot", 'a text in "quotes"'),
+    ("a.deros", "const x = «;»", "a number"),
+    ("a.deros", "input x = topic /a.b«.»roll() timeout 3 sec", "a function is applied where"),
+]
+
+
+def _load(name: str, marked: str) -> tuple[tuple[Diagnostic, ...], tuple[int, int]]:
+    start = marked.index("«")
+    end = marked.index("»") - 1
+    text = marked.replace("«", "").replace("»", "")
+    return Repository().load_text(name, text).diagnostics, (start, end)
+
+
+@pytest.mark.parametrize(("name", "marked", "words"), CASES, ids=[case[1] for case in CASES])
+def test_place_and_words(name: str, marked: str, words: str) -> None:
+    """The error starts exactly where the text goes wrong, and names what belongs there."""
+    diagnostics, (start, end) = _load(name, marked)
+    (found,) = diagnostics
+    assert found.code is codes.SYNTAX_ERROR
+    assert found.span.start == start
+    assert found.span.end >= end
+    assert words in f"{found.message} | {found.hint}"
+
+
+@pytest.mark.parametrize(("name", "marked", "words"), CASES, ids=[case[1] for case in CASES])
+def test_no_word_of_the_machinery(name: str, marked: str, words: str) -> None:
+    """No message shows a regular expression, a rule of the grammar or a Python type."""
+    diagnostics, _ = _load(name, marked)
+    (found,) = diagnostics
+    shown = f"{found.message} {found.hint}".replace(words, "")
+    assert not re.search(r"\\b|\(\?|\[A-Z|EOF|NoMatch|__|\b[A-Z][a-z]+[A-Z]\w*", shown)
+
+
+def test_a_comment_mark_inside_a_text_is_text() -> None:
+    """``//`` and ``/*`` between quotes start no comment."""
+    loaded = Repository().load_text("a.rnd", 'node a : p "see http://x /* y" // real\n lifecycle')
+    assert loaded.diagnostics == ()
+    assert loaded.model is not None
+    assert loaded.model.description == "see http://x /* y"  # type: ignore[union-attr]
+
+
+def test_a_quote_inside_a_comment_is_comment() -> None:
+    """A quotation mark in a comment opens no text."""
+    text = 'node a /* don"t */ : // "\n p lifecycle'
+    assert Repository().load_text("a.rnd", text).diagnostics == ()
+
+
+def test_comments_do_not_move_positions() -> None:
+    """What stands after comments of one and of several lines keeps its line and column."""
+    text = "/* one\n two */ node a : p // three\n parameters /* x */ name x double"
+    (found,) = Repository().load_text("a.rnd", text).diagnostics
+    assert (found.span.line, found.span.column) == (3, 28)

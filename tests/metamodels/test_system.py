@@ -1,0 +1,174 @@
+"""System descriptions: topics, subsystems, nodes and their settings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.codes import Code
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.common import QosProfile
+from deros.metamodels.load import LoadedFile, Repository
+from deros.metamodels.system import NodeInstance, Respawn, Subsystem, System
+
+NODE = """\
+node camera : cameras
+parameters
+  name rate : double
+  name gains : double[]
+  name label : string
+publishes
+  topic /image : sensor_msgs.Image
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with one node description, ``camera.rnd``."""
+    (tmp_path / "camera.rnd").write_text(NODE, encoding="utf-8")
+    return tmp_path
+
+
+def _load(folder: Path, body: str) -> LoadedFile:
+    text = f'system S imports import "camera.rnd" {body}'
+    return Repository().load_text(folder / "s.system", text)
+
+
+def _system(folder: Path, body: str) -> System:
+    loaded = _load(folder, body)
+    assert loaded.diagnostics == ()
+    assert isinstance(loaded.model, System)
+    return loaded.model
+
+
+def _node(folder: Path, text: str) -> NodeInstance:
+    (node,) = _system(folder, f"node n : camera {text}").members
+    assert isinstance(node, NodeInstance)
+    return node
+
+
+def test_topics(folder: Path) -> None:
+    """A topic may be pinned to a type and a QoS, be external and have a description."""
+    plain, pinned, outside = _system(
+        folder,
+        "topics topic /image topic scan:sensor_msgs.LaserScan qos best_effort depth 5 "
+        'external topic /tf : tf2_msgs/TFMessage "From outside"',
+    ).topics
+    assert (plain.name, plain.type, plain.qos, plain.external) == ("/image", None, None, False)
+    assert pinned.type == InterfaceType("sensor_msgs", "msg", "LaserScan")
+    assert pinned.qos == QosProfile(reliability="best_effort", depth=5)
+    assert pinned.span.text == "topic scan:sensor_msgs.LaserScan qos best_effort depth 5"
+    assert outside.external
+    assert outside.description == "From outside"
+    assert outside.span.text.startswith("external topic /tf")
+
+
+def test_nodes_stand_in_a_system_or_in_subsystems(folder: Path) -> None:
+    """Subsystems nest, with topics, a namespace and a description of their own."""
+    outer, node = _system(
+        folder,
+        'subsystem a namespace /front "The front" '
+        "{ topics topic x subsystem b { node m : camera } } node n : camera",
+    ).members
+    assert isinstance(outer, Subsystem)
+    assert (outer.namespace, outer.description) == ("/front", "The front")
+    assert [topic.name for topic in outer.topics] == ["x"]
+    (inner,) = outer.members
+    assert isinstance(inner, Subsystem)
+    assert [member.name for member in inner.members] == ["m"]
+    assert node.name == "n"
+
+
+def test_what_follows_a_nodes_type(folder: Path) -> None:
+    """Namespace, respawn, log level and description come in any order."""
+    for text in (
+        'namespace /front respawn delay 1.5 sec max 3 log_level debug "Looks ahead"',
+        '"Looks ahead" log_level debug respawn delay 1500 ms max 3 namespace /front',
+    ):
+        node = _node(folder, text)
+        assert node.namespace == "/front"
+        assert node.respawn == Respawn(1_500_000_000, 3)
+        assert node.log_level == "debug"
+        assert node.description == "Looks ahead"
+    assert _node(folder, "respawn").respawn == Respawn()
+    assert _node(folder, "").respawn is None
+
+
+def test_settings_and_wirings(folder: Path) -> None:
+    """Values keep their kind, whole numbers become doubles where the parameter is one."""
+    node = _node(
+        folder,
+        "wirings connect /image to ~/image; connect image to pictures "
+        "parameters param rate = 5 param gains = [1, 2.5] "
+        'param label = "x" param other.part = true',
+    )
+    assert [(s.name, s.value) for s in node.parameters] == [
+        ("rate", 5.0),
+        ("gains", (1.0, 2.5)),
+        ("label", "x"),
+        ("other.part", True),
+    ]
+    assert isinstance(node.parameters[0].value, float)
+    assert [(w.port, w.target) for w in node.wirings] == [
+        ("/image", "~/image"),
+        ("image", "pictures"),
+    ]
+
+
+def test_spans_lie_on_the_words(folder: Path) -> None:
+    """The places of ports, targets, values and types are exactly their words."""
+    node = _node(folder, "parameters param gains = [1, 2] wirings connect /image to /x")
+    (setting,) = node.parameters
+    (wiring,) = node.wirings
+    assert (setting.name_span.text, setting.value_span.text) == ("gains", "[1, 2]")
+    assert (wiring.port_span.text, wiring.target_span.text) == ("/image", "/x")
+    assert wiring.span.text == "connect /image to /x"
+    assert (node.name_span.text, node.type_span.text) == ("n", "camera")
+
+
+def test_keywords_are_names_where_nothing_is_lost(folder: Path) -> None:
+    """Nodes, subsystems, parameters and ports may be called like keywords."""
+    (subsystem,) = _system(
+        folder,
+        "subsystem topics { node node : camera parameters param param = 1 param topic = 2 "
+        "wirings connect to to to connect connect to topic }",
+    ).members
+    assert isinstance(subsystem, Subsystem)
+    (node,) = subsystem.members
+    assert isinstance(node, NodeInstance)
+    assert [s.name for s in node.parameters] == ["param", "topic"]
+    assert [(w.port, w.target) for w in node.wirings] == [("to", "to"), ("connect", "topic")]
+
+
+def test_keywords_are_whole_words(folder: Path) -> None:
+    """``nodefoo`` is not ``node foo``."""
+    (found,) = _load(folder, "nodefoo : camera").diagnostics
+    assert (found.code, found.span.text) == (codes.SYNTAX_ERROR, "nodefoo")
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "text"),
+    [
+        ("topics topic /a topics topic /b", codes.DUPLICATE_SECTION, "topics"),
+        ("imports", codes.DUPLICATE_SECTION, "imports"),
+        ("node n : camera parameters parameters", codes.DUPLICATE_SECTION, "parameters"),
+        ("node n : camera wirings wirings", codes.DUPLICATE_SECTION, "wirings"),
+        ("node n : camera respawn respawn", codes.DUPLICATE_SECTION, "respawn"),
+        ("node n : camera respawn delay 1", codes.UNKNOWN_UNIT, "1"),
+        ("subsystem s : S { topics }", codes.UNKNOWN_SYSTEM, "S"),
+    ],
+)
+def test_findings(folder: Path, body: str, code: Code, text: str) -> None:
+    """What is given twice, and names that nothing defines, are findings at their place."""
+    found = _load(folder, body).diagnostics[0]
+    assert (found.code, found.span.text) == (code, text)
+
+
+def test_a_used_system_has_no_parts_of_its_own(tmp_path: Path) -> None:
+    """``subsystem a : Arm { … }`` says two things at once."""
+    (tmp_path / "arm.system").write_text("system Arm", encoding="utf-8")
+    text = 'system S imports import "arm.system" subsystem a : Arm { topics topic /x }'
+    (found,) = Repository().load_text(tmp_path / "s.system", text).diagnostics
+    assert (found.code, found.span.text) == (codes.SYNTAX_ERROR, "a")
