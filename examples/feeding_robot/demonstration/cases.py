@@ -123,12 +123,11 @@ def _await_reports(stage: Stage, mode: int) -> None:
 
 
 def play(case: Case, stage: Stage) -> Referee:
-    """Play one case and return the referee who watched it.
+    """Play one case from a prepared state and return the referee who watched it.
 
     Raises:
-        OverdueError: if the robot could not be brought into the state in which the case begins.
+        OverdueError: if the system has ended.
     """
-    prepare(stage, case.driving)
     referee = case.referee(stage.state)
     stage.listen(referee.feed)
     try:

@@ -93,7 +93,8 @@ class Chart:
             width = max(1.5, self.time(end) - left)
             self.parts.append(
                 f'<rect class="bar {css}" x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" '
-                f'height="14" rx="2"><title>{escape(label)}: {start:.2f} to {end:.2f}</title></rect>'
+                f'height="14" rx="2"><title>{escape(label)}: {start:.2f} to {end:.2f}</title>'
+                "</rect>"
             )
         self._label(label, "", top + 11)
         self.height = top + 14

@@ -59,7 +59,7 @@ def _figure(recording: Recording) -> str:
     chart.plot(
         "speed",
         "m/s",
-        150,
+        170,
         (-0.8, 1.4),
         [("speed", track("speed"))],
         limits=[
@@ -79,7 +79,7 @@ def _figure(recording: Recording) -> str:
             ("roll", track("roll", math.degrees(1.0))),
             ("pitch", track("pitch", math.degrees(1.0))),
         ],
-        limits=[(10, "10", "hard"), (8, "8", "soft"), (-8, "-8", "soft"), (-10, "-10", "hard")],
+        limits=[(10, "10", "hard"), (8, "", "soft"), (-8, "", "soft"), (-10, "-10", "hard")],
     )
     chart.plot(
         "way ahead",

@@ -107,6 +107,7 @@ class Stage:
         self.state = RobotState()
         self.now = 0
         self._safety_node = safety_node
+        self._abandoned = ""
         self._listeners: list[Listener] = []
         self._changed = threading.Condition()
         self._done = threading.Event()
@@ -181,15 +182,29 @@ class Stage:
         """Wait until the state meets ``condition``.
 
         Raises:
-            OverdueError: if it does not within so many seconds of real time.
+            OverdueError: if it does not within so many seconds of real time, or the stage has
+                been abandoned.
         """
         if not self.watch(lambda: condition(self.state), within):
             raise OverdueError(f"waited {within:g} s for {what}")
 
     def watch(self, condition: Callable[[], bool], within: float) -> bool:
-        """Wait until ``condition`` holds after some message; return whether it did in time."""
+        """Wait until ``condition`` holds after some message; return whether it did in time.
+
+        Raises:
+            OverdueError: if the stage has been abandoned.
+        """
         with self._changed:
-            return self._changed.wait_for(condition, within)
+            self._changed.wait_for(lambda: self._abandoned or condition(), within)
+            if self._abandoned:
+                raise OverdueError(self._abandoned)
+            return condition()
+
+    def abandon(self, reason: str) -> None:
+        """End all waiting, now and later: nothing will happen any more."""
+        with self._changed:
+            self._abandoned = reason
+            self._changed.notify_all()
 
     def forget(self, **values: None) -> None:
         """Set values back to unknown, so that only a new message counts."""

@@ -1,0 +1,71 @@
+"""Checks the models and generates every package of the robot into one folder.
+
+The files that belong to the user (the nodes' bodies and what they import) lie in ``src``; they are
+put in place first, and the generators leave them alone.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable
+from pathlib import Path, PurePosixPath
+
+from deros.diagnostics import Diagnostic, has_errors, in_file_order
+from deros.generators.protocol import Context, Files
+from deros.generators.registry import discover
+from deros.generators.writer import write
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import LoadedFile, Repository
+from deros.metamodels.node import NodeType
+from deros.validators.check import check
+
+
+class BuildError(Exception):
+    """The models do not check clean, or the environment lacks a generator."""
+
+
+def build(example: Path, folder: Path) -> list[str]:
+    """Generate the packages of all nodes and of the safety node; return their names.
+
+    Args:
+        example: the folder with the models, those of the nodes in ``nodes``, and ``src``.
+        folder: where the packages go; it may hold those of an earlier run.
+
+    Raises:
+        BuildError: if a model has an error.
+    """
+    repository = Repository()
+    context = Context(InterfaceStore(), repository)
+    rules = _load(repository, sorted(example.glob("*.deros")))
+    nodes = _load(repository, sorted((example / "nodes").glob("*.rnd")))
+    systems = _load(repository, sorted(example.glob("*.system")))
+    findings = check([*rules, *nodes, *systems], repository, context.store)
+    if has_errors(findings):
+        raise BuildError("\n".join(map(_line, in_file_order(findings))))
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copytree(
+        example / "src", folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__")
+    )
+    packages: list[str] = []
+    for file in [*rules, *nodes]:
+        if isinstance(file.model, NodeType) and file.model.package in packages:
+            continue  # the safety node's description: its rules have made the whole package
+        files = _generate(file, context)
+        write(files, folder, overwrite=True)
+        packages += sorted({PurePosixPath(path).parts[0] for path in files} - set(packages))
+    return packages
+
+
+def _load(repository: Repository, paths: Iterable[Path]) -> list[LoadedFile]:
+    return [repository.load(str(path)) for path in paths]
+
+
+def _generate(file: LoadedFile, context: Context) -> Files:
+    generator = discover().find(str(file.language), "python")
+    if generator is None:
+        raise BuildError(f"no generator makes Python of {file.path}")
+    return generator(file.model, context)
+
+
+def _line(finding: Diagnostic) -> str:
+    return f"{finding.span.file}:{finding.span.line}: {finding.message}"

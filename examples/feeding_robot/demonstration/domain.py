@@ -1,0 +1,39 @@
+"""A ROS domain of the demo's own, on the loopback alone."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+_DOMAINS = range(1, 102)  # the ports of higher ones may be taken by outgoing connections
+_LOCKS = Path(tempfile.gettempdir()) / "deros-test-domains"  # shared with the project's tests
+
+
+@contextlib.contextmanager
+def own_domain() -> Iterator[None]:
+    """Confine this process and its children to a domain that nobody else here uses.
+
+    A ``ROS_DOMAIN_ID`` that the environment gives is kept: whoever set it has chosen.
+
+    Raises:
+        RuntimeError: if all domains are taken.
+    """
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    if "ROS_DOMAIN_ID" in os.environ:
+        yield
+        return
+    _LOCKS.mkdir(mode=0o777, exist_ok=True)
+    for number in reversed(_DOMAINS):
+        with (_LOCKS / str(number)).open("w") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                continue
+            os.environ["ROS_DOMAIN_ID"] = str(number)
+            yield
+            return
+    raise RuntimeError("all ROS domains are in use")

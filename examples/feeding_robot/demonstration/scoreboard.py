@@ -1,0 +1,116 @@
+"""The table that is shown while the cases are played."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from demonstration.cases import Case
+from demonstration.picture import reaction_text
+from demonstration.recording import Result, percentile
+from demonstration.referee import describe
+
+
+class Scoreboard:
+    """Shows a row for each case: what is expected, what was observed, and how fast.
+
+    On a terminal the table is redrawn as it grows; elsewhere each result is a line of its own, and
+    the table comes at the end.
+    """
+
+    def __init__(self, console: Console, cases: Sequence[Case], repeat: int) -> None:
+        """Prepare the rows."""
+        self._console = console
+        self._cases = cases
+        self._repeat = repeat
+        self._running: Case | None = None
+        self._results: dict[int, list[Result]] = {case.number: [] for case in cases}
+        self._live = Live(console=console, auto_refresh=False, get_renderable=self.table)
+
+    def __enter__(self) -> Scoreboard:
+        """Begin to show."""
+        if self._console.is_terminal:
+            self._live.start(refresh=True)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Leave the table standing."""
+        if self._console.is_terminal:
+            self._live.stop()
+        else:
+            self._console.print(self.table())
+
+    def begin(self, case: Case) -> None:
+        """Mark the case that is being played."""
+        self._running = case
+        if self._console.is_terminal:
+            self._live.refresh()
+
+    def report(self, result: Result) -> None:
+        """Enter a result."""
+        self._running = None
+        self._results[result.number].append(result)
+        if self._console.is_terminal:
+            self._live.refresh()
+        else:
+            facts = (describe(result.observed), reaction_text(result), result.failure or "passed")
+            line = f"{result.number:>2}  {result.title}: {', '.join(facts)}"
+            self._console.print(line, soft_wrap=True, highlight=False)
+
+    @property
+    def results(self) -> list[Result]:
+        """All results, case by case."""
+        return [result for results in self._results.values() for result in results]
+
+    @property
+    def complete(self) -> bool:
+        """Whether every case has been played as often as it should and has passed."""
+        wanted = len(self._cases) * self._repeat
+        return len(self.results) == wanted and all(result.passed for result in self.results)
+
+    def table(self) -> Table:
+        """Return the table as it stands."""
+        table = Table(title="The fifteen test cases", title_justify="left")
+        for name in ("", "case", "expected", "observed", "reaction time", ""):
+            right = name in {"", "reaction time"}
+            table.add_column(name, justify="right" if right else "left", no_wrap=name != "case")
+        for case in self._cases:
+            table.add_row(str(case.number), case.title, describe(case.expected), *self._cells(case))
+        return table
+
+    def _cells(self, case: Case) -> tuple[Text, Text, Text]:
+        results = self._results[case.number]
+        if not results:
+            state = "running" if case is self._running else ""
+            return Text(), Text(), Text(state, style="cyan")
+        failed = [result for result in results if not result.passed]
+        shown = failed[-1] if failed else results[-1]
+        passed = len(results) - len(failed)
+        count = f" {passed}/{self._repeat}" if self._repeat > 1 else ""
+        verdict = Text(f"failed{count}" if failed else f"passed{count}")
+        verdict.stylize("bold red" if failed else "green")
+        return Text(describe(shown.observed)), Text(reaction_text(shown)), verdict
+
+
+def summary(results: Sequence[Result], monitored: frozenset[int]) -> str:
+    """Return one sentence on the safety node's reaction times in real time.
+
+    Args:
+        results: the results of any cases.
+        monitored: the numbers of the cases in which it is the safety node that reacts.
+    """
+    times = [
+        1e3 * result.reaction_time
+        for result in results
+        if result.reaction_time is not None and result.number in monitored
+    ]
+    if not times:
+        return "No reaction of the safety node was timed."
+    return (
+        f"Reaction time of the safety node over {len(times)} reactions: "
+        f"median {percentile(times, 0.5):.1f} ms, 99 % {percentile(times, 0.99):.1f} ms."
+    )

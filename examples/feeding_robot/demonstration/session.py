@@ -1,0 +1,119 @@
+"""One run of the demo: the system is started, the cases are played, the recordings handed back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from demonstration.cases import Case, play, prepare
+from demonstration.recording import Recording, Result
+from demonstration.referee import NOTHING
+from demonstration.robot import Robot
+from demonstration.stage import OverdueError, Stage
+
+Report = Callable[[Result], None]
+Begin = Callable[[Case], None]
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """Where the parts of a run are: the model, the generated packages, the folder for logs."""
+
+    system: Path
+    packages: Path
+    logs: Path
+
+    def on_simulated_time(self) -> Path:
+        """Write the same system with its safety node on simulated time; return the model's path.
+
+        Raises:
+            ValueError: if the model does not state the node's time.
+        """
+        text = self.system.read_text(encoding="utf-8")
+        real, simulated = "param use_sim_time = false", "param use_sim_time = true"
+        nodes = 'import "nodes/'
+        if text.count(real) != 1 or nodes not in text:
+            raise ValueError(f"{self.system} does not say '{real}' once")
+        text = text.replace(real, simulated)
+        text = text.replace(nodes, f'import "{self.system.parent.resolve().as_posix()}/nodes/')
+        path = self.logs / "on_simulated_time.system"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+
+def run(
+    workshop: Workshop, cases: Sequence[Case], repeat: int, begin: Begin, report: Report
+) -> list[Recording]:
+    """Play the cases ``repeat`` times, those on simulated time in a second start of the system.
+
+    Args:
+        workshop: the system to start.
+        cases: what to play.
+        repeat: how often; only the first round is recorded.
+        begin: called before each case.
+        report: called with the result of each case.
+    """
+    recordings = []
+    for simulated in (False, True):
+        chosen = [case for case in cases if case.simulated is simulated]
+        if chosen:
+            recordings.append(
+                _run(workshop, chosen * repeat, len(chosen), simulated, begin, report)
+            )
+    return recordings
+
+
+def _run(
+    workshop: Workshop,
+    cases: Sequence[Case],
+    recorded: int,
+    simulated: bool,
+    begin: Begin,
+    report: Report,
+) -> Recording:
+    recording = Recording(simulated)
+    system = workshop.on_simulated_time() if simulated else workshop.system
+    log = workshop.logs / ("simulated_time.log" if simulated else "real_time.log")
+    with (
+        Robot(system, workshop.packages, log) as robot,
+        Stage(lambda: robot.process_of("safety"), simulated) as stage,
+    ):
+        robot.on_end(stage.abandon)
+        stage.listen(recording.feed)
+        for index, case in enumerate(cases):
+            begin(case)
+            result = _play(case, stage, recording)
+            report(result)
+            if index < recorded:
+                recording.results.append(result)
+            if index == recorded - 1:
+                stage.unlisten(recording.feed)
+    return recording
+
+
+def _play(case: Case, stage: Stage, recording: Recording) -> Result:
+    observed, time = NOTHING, None
+    start = stage.now
+    try:
+        prepare(stage, case.driving)
+        start = stage.now
+        referee = play(case, stage)
+        observed, time, failure = (
+            frozenset(referee.observed),
+            referee.reaction_time,
+            referee.verdict,
+        )
+    except OverdueError as error:
+        failure = str(error)
+    return Result(
+        case.number,
+        case.title,
+        case.expected,
+        observed,
+        time,
+        failure,
+        recording.seconds(start),
+        recording.seconds(stage.now),
+        case.simulated,
+    )
