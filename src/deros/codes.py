@@ -1,8 +1,9 @@
 """The diagnostic codes, each declared once.
 
 The hundreds name the family: 0 reading and syntax, 1 node descriptions, 2 system descriptions,
-3 safety rules, 4 generation. Every code has a page of its name under ``docs/diagnostics/`` and a
-case under ``tests/cases/``; a code is never given a second meaning.
+3 safety rules, 4 generation, 5 traces. Every code has a page of its name under
+``docs/diagnostics/`` and a case under ``tests/cases/`` (generation and traces: a test); a code is
+never given a second meaning.
 """
 
 from __future__ import annotations
@@ -123,3 +124,10 @@ NAME_COLLISION = _declare(401, "two generated names collide")
 UNSUPPORTED_BY_TARGET = _declare(402, "construct that the target does not support")
 HAND_EDITED = _declare(403, "hand-edited file kept", _W)
 UNKNOWN_TARGET = _declare(404, "unknown generator")
+
+# Traces
+BAD_TRACE_LINE = _declare(501, "line of a trace that is no message")
+BAD_TRACE_TIME = _declare(502, "time that a trace cannot have")
+UNKNOWN_TRACE_FIELD = _declare(503, "unknown field in a trace's message")
+WRONG_TRACE_VALUE = _declare(504, "value that the field of a trace's message cannot hold")
+UNREAD_TRACE_TOPIC = _declare(505, "topic of a trace that the rules do not read", _W)

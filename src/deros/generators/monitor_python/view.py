@@ -50,6 +50,7 @@ class MonitorView:
         forgets, timeouts: of the inputs.
         handlers: one per topic.
         judges: the methods that evaluate rules, and by topic which of them a message calls.
+        behaviours: the name of each, and the attribute that tells whether its condition holds.
         act: the lines of all behaviours and resets.
         ends: instants, as attributes or sums, that are deadlines while they lie ahead.
         known_at_start: whether a verdict can be known before any message, so that the first event,
@@ -67,6 +68,7 @@ class MonitorView:
     timeouts: tuple[Timeout, ...]
     handlers: tuple[Handler, ...]
     judges: tuple[Judge, ...]
+    behaviours: tuple[tuple[str, str], ...]
     act: tuple[str, ...]
     ends: tuple[str, ...]
     known_at_start: bool
@@ -103,6 +105,9 @@ def monitor_view(program: Program) -> MonitorView:
         timeouts=timeouts,
         handlers=made,
         judges=methods,
+        behaviours=tuple(
+            (each.name, layout.holds[each.index]) for each in walk.behaviours(program)
+        ),
         act=tuple(act_lines(program, layout)),
         ends=_ends(program, layout),
         known_at_start=known_at_start,
