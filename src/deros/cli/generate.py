@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.options import FINDINGS, exit_code, interfaces_option
+from deros.cli.options import FINDINGS, UNUSABLE, exit_code, interfaces_option
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from deros.diagnostics import Diagnostic
     from deros.generators.registry import Generator, Registry
     from deros.generators.writer import WriteReport
+    from deros.metamodels.load import LoadedFile
 
 
 class _GenerateCommand(click.Command):
@@ -82,7 +83,10 @@ def generate(
     code = exit_code(findings)
     if code or loaded.language is None:
         ctx.exit(code or FINDINGS)
-    generator = _find(discover(), loaded.language, target)
+    generator = discover().find(loaded.language, target)
+    if generator is None:
+        _show([_unknown_target(discover(), loaded, target)])
+        ctx.exit(UNUSABLE)
     _know_options(generator, given)
     try:
         files = generator(loaded.model, Context(store, repository), given)
@@ -115,16 +119,20 @@ def _pairs(arguments: Sequence[str]) -> dict[str, str]:
     return pairs
 
 
-def _find(registry: Registry, language: str, target: str) -> Generator:
-    generator = registry.find(language, target)
-    if generator is None:
-        from deros.validators.hints import did_you_mean
+def _unknown_target(registry: Registry, loaded: LoadedFile, target: str) -> Diagnostic:
+    from deros import codes
+    from deros.diagnostics import SourceFile, Span
+    from deros.diagnostics import report as finding
+    from deros.validators.hints import did_you_mean
 
-        targets = registry.targets(language)
-        hint = did_you_mean(target, targets, f"it has {', '.join(targets)}" if targets else "")
-        why = "".join(f"\n{b.entry_point} of {b.distribution}: {b.reason}" for b in registry.broken)
-        raise click.UsageError(f"{language} has no target '{target}'; {hint}{why}")
-    return generator
+    assert loaded.language is not None
+    targets = registry.targets(loaded.language)
+    hint = did_you_mean(target, targets, f"it has {', '.join(targets)}" if targets else "")
+    for broken in registry.broken:
+        hint += f"; {broken.entry_point} of {broken.distribution} is unusable: {broken.reason}"
+    source = loaded.source or SourceFile(loaded.path, "")
+    message = f"no generator makes '{target}' from {loaded.language}"
+    return finding(codes.UNKNOWN_TARGET, message, Span(source, 0, 0), hint.removeprefix("; "))
 
 
 def _know_options(generator: Generator, given: dict[str, str]) -> None:

@@ -102,7 +102,7 @@ def run(arguments: list[str]) -> int:
     except (click.Abort, KeyboardInterrupt):
         sys.stderr.write("\nderos: interrupted\n")
         return INTERRUPTED
-    except BrokenPipeError:
+    except (BrokenPipeError, SystemExit):  # click turns the one into the other
         return _reader_gone()
     except Exception as error:  # the last resort: whatever it is, it is our bug
         return _bug(error, debug="--debug" in arguments)

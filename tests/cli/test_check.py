@@ -1,0 +1,99 @@
+"""``deros check``: what is checked together, in which order, and with which exit code."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.support.cli import deros
+
+GOOD = "node good : demo\npublishes\n  topic odom : nav_msgs.Odometry\n"
+BAD = "node bad : demo\nparameters\n  name rate : int = 0.5\n  name rate : int = 1\n"
+LONELY = """\
+system Lonely
+topics
+  topic /odom
+"""
+
+
+@pytest.fixture(autouse=True)
+def _in_own_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("good.rnd", GOOD), ("bad.rnd", BAD), ("lonely.system", LONELY)):
+        (tmp_path / name).write_text(text)
+
+
+def test_clean_models_exit_with_0() -> None:
+    """A run without findings says how much it looked at."""
+    outcome = deros("check", "good.rnd")
+    assert (outcome.code, outcome.out) == (0, "1 file checked, no findings\n")
+
+
+def test_errors_exit_with_1_and_are_reported_together() -> None:
+    """All findings of a run appear, in the order of the files' names and of their lines."""
+    outcome = deros("check", "good.rnd", "lonely.system", "bad.rnd")
+    assert outcome.code == 1
+    places = [line.split(": ")[0] for line in outcome.out.splitlines() if line[0] not in " 0123"]
+    assert places == ["bad.rnd:3:21", "bad.rnd:4:8", "lonely.system:3:9"]
+    assert outcome.out.endswith("\n2 errors and 1 warning in 3 files\n")
+
+
+def test_warnings_fail_only_under_strict() -> None:
+    """A warning is reported in any case; ``--strict`` lets it fail the run."""
+    assert deros("check", "lonely.system").code == 0
+    strict = deros("check", "--strict", "lonely.system")
+    assert strict.code == 1
+    assert "warning[DRS212]" in strict.out
+
+
+def test_remarks_never_fail() -> None:
+    """Information does not count, not even under ``--strict``."""
+    Path("old.rnd").write_text('node old : demo\nparameters\n  name topic_id : string = "x"\n')
+    Path("remark.system").write_text(
+        'system Remark\nimports import "old.rnd"\ntopics topic /x\n'
+        "node old : old wirings connect topic_id to /x\n"
+    )
+    outcome = deros("check", "--strict", "remark.system")
+    assert "info[DRS217]" in outcome.out
+    assert outcome.code == 0
+
+
+@pytest.mark.parametrize("name", ["nowhere.rnd", "model.txt", "latin.rnd", "folder.rnd"])
+def test_unreadable_input_exits_with_2(name: str) -> None:
+    """A missing file, an unknown suffix, bytes that are no text, a directory: one finding each."""
+    Path("model.txt").write_text(GOOD)
+    Path("latin.rnd").write_bytes(b"node caf\xe9 : demo")
+    Path("folder.rnd").mkdir()
+    outcome = deros("check", "--format", "json", name)
+    assert outcome.code == 2
+    assert [d["file"] for d in json.loads(outcome.out)] == [name]
+
+
+def test_the_other_files_are_checked_all_the_same() -> None:
+    """One unreadable file hides nothing of the rest."""
+    outcome = deros("check", "nowhere.rnd", "bad.rnd")
+    assert outcome.code == 2
+    assert "bad.rnd:3:21: error[DRS103]" in outcome.out
+
+
+def test_a_file_named_twice_is_checked_once() -> None:
+    """Repeats of a file, and a file both named and imported, give each finding once."""
+    Path("uses.system").write_text('system Uses\nimports import "bad.rnd"\nnode bad : bad\n')
+    outcome = deros("check", "bad.rnd", "./bad.rnd", "uses.system")
+    assert outcome.out.count("DRS103") == 1
+
+
+def test_interfaces_come_from_given_folders() -> None:
+    """A message type of one's own is known once its folder is named."""
+    Path("own.rnd").write_text("node own : demo\npublishes\n  topic state : own_msgs.State\n")
+    (Path("ws") / "own_msgs" / "msg").mkdir(parents=True)
+    (Path("ws") / "own_msgs" / "msg" / "State.msg").write_text("float64 charge\n")
+    assert "DRS101" in deros("check", "own.rnd").out
+    assert deros("check", "--interfaces", "ws", "own.rnd").code == 0
+
+
+def test_a_folder_of_interfaces_must_exist() -> None:
+    """A folder that is not there is a mistake on the command line."""
+    assert deros("check", "--interfaces", "nowhere", "good.rnd").code == 2

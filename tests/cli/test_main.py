@@ -1,0 +1,109 @@
+"""The command group: its overview, its exit codes, and what happens when all else fails."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from deros import __version__
+from deros.cli import main
+from tests.support.cli import deros
+
+DEROS = str(Path(sys.executable).with_name("deros"))
+
+
+def test_overview_names_every_command() -> None:
+    """``deros --help`` lists the commands with the first line of each one's own help."""
+    outcome = deros("--help")
+    assert outcome.code == 0
+    for name, (_, summary) in main.COMMANDS.items():
+        assert name in outcome.out
+        assert summary in outcome.out
+
+
+@pytest.mark.parametrize("name", main.COMMANDS)
+def test_every_command_answers_help(name: str) -> None:
+    """Each command is where the table says and explains itself."""
+    outcome = deros(name, "--help")
+    assert outcome.code == 0
+    assert outcome.out.startswith(f"Usage: deros {name}")
+
+
+def test_help_is_quick() -> None:
+    """The overview takes little longer than the interpreter's own start."""
+
+    def best(command: list[str]) -> float:
+        times = []
+        for _ in range(3):
+            start = time.perf_counter()
+            subprocess.run(command, check=True, capture_output=True)
+            times.append(time.perf_counter() - start)
+        return min(times)
+
+    # click alone costs a fifth of what is allowed; a library too many costs all of it.
+    assert best([DEROS, "--help"]) - best([sys.executable, "-c", ""]) < 0.2
+
+
+def test_version() -> None:
+    """The version is the package's."""
+    assert deros("--version").out == f"deros, version {__version__}\n"
+
+
+def test_unknown_command_is_a_usage_error_with_a_hint() -> None:
+    """A misspelt command is named together with the one that was meant."""
+    outcome = deros("chekc", "x.rnd")
+    assert outcome.code == 2
+    assert "did you mean 'check'?" in outcome.err
+
+
+@pytest.mark.parametrize("arguments", [[], ["check"], ["generate"], ["new"], ["check", "--nope"]])
+def test_usage_errors_exit_with_2(arguments: list[str]) -> None:
+    """What cannot be run is explained on standard error, without a traceback."""
+    outcome = deros(*arguments)
+    assert outcome.code == 2
+    assert "Usage: deros" in outcome.err
+    assert outcome.out == ""
+
+
+def test_a_bug_of_ours_is_called_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An unforeseen exception ends in one line and exit code 2; ``--debug`` adds the traceback."""
+
+    def broken(*_: object) -> None:
+        raise LookupError("no such thing")
+
+    monkeypatch.setattr("deros.cli.check.find", broken)
+    outcome = deros("check", "x.rnd")
+    assert outcome.code == 2
+    assert "bug in deros" in outcome.err
+    assert "LookupError: no such thing" in outcome.err
+    assert "Traceback" not in outcome.err
+    assert "Traceback" in deros("--debug", "check", "x.rnd").err
+
+
+def test_ctrl_c_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An interrupted run exits with 130."""
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("deros.cli.check.find", interrupted)
+    outcome = deros("check", "x.rnd")
+    assert outcome.code == 130
+    assert "Traceback" not in outcome.err
+
+
+def test_closed_pipe_is_no_traceback(tmp_path: Path) -> None:
+    """When the reader of our output leaves early, so do we, silently."""
+    bad = tmp_path / "bad.rnd"
+    bad.write_text(
+        "node a : demo\nparameters\n" + "".join(f"  name p{i} : int = 1.5\n" for i in range(3000))
+    )
+    command = f"{DEROS} check {bad} | head -n 1; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
+    assert done.returncode == 141
+    assert done.stdout.count("\n") == 1
+    assert done.stderr == ""
