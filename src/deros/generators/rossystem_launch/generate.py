@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.generators.protocol import Context, File, Files, Options
+from deros.generators.rosnode_python.source import mark_long_lines
 from deros.generators.rossystem.literals import comment, python_literal
 from deros.generators.rossystem.view import SystemView, system_view
 from deros.generators.templates import environment
@@ -26,7 +27,8 @@ def render(view: SystemView) -> str:
     made = environment("deros.generators.rossystem_launch")
     made.filters["python"] = python_literal
     made.filters["comment"] = comment
-    return made.get_template("launch.py.j2").render(system=view, imports="\n".join(_imports(view)))
+    text = made.get_template("launch.py.j2").render(system=view, imports="\n".join(_imports(view)))
+    return mark_long_lines(text)
 
 
 def _imports(view: SystemView) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from deros.generators.protocol import Context, File, Files, Options
+from deros.generators.rosnode_python.source import mark_long_lines
 from deros.generators.rossystem.literals import WIDTH, comment, python_literal
 from deros.generators.rossystem.view import SystemView, system_view
 from deros.generators.rossystem_script.assemble import runtime
@@ -27,7 +28,8 @@ def render(view: SystemView) -> str:
     made.filters["python"] = python_literal
     made.filters["comment"] = comment
     made.filters["rule"] = rule
-    return made.get_template("script.py.j2").render(system=view, runtime=runtime())
+    text = made.get_template("script.py.j2").render(system=view, runtime=runtime())
+    return mark_long_lines(text)
 
 
 def table(view: SystemView) -> tuple[Node, ...]:

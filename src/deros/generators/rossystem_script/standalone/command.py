@@ -87,6 +87,7 @@ def _parser(system: str, program: str | None) -> argparse.ArgumentParser:
     )
     parser.add_argument(
         '--package-path',
+        '--install',
         metavar='DIR',
         type=Path,
         action='append',
@@ -142,6 +143,6 @@ def _not_found(nodes: Sequence[Node]) -> str:
     ]
     advice = (
         'Build the packages and source their setup file, or name their install space with '
-        '--package-path.'
+        '--install.'
     )
     return '\n'.join(['Programs not found, so nothing was started:', *lines, advice])

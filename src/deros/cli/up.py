@@ -1,0 +1,113 @@
+"""``deros up``: run a system model directly, as the script made from it would."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from deros.cli.options import FINDINGS, exit_code, interfaces_option
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from deros.diagnostics import Diagnostic
+    from deros.metamodels.system import System
+
+
+@click.command(
+    epilog="Exit codes: 0 when every node has ended well, by itself or because it was told to; 1 "
+    "when the model has errors, or a node has failed or did not stop as told; 2 when nothing was "
+    "started, because an argument is wrong or a program is not found."
+)
+@click.argument("file", type=click.Path())
+@click.argument("arguments", nargs=-1)
+@click.option("--dry-run", is_flag=True, help="Print the commands that would be run.")
+@click.option(
+    "--install",
+    "--package-path",
+    multiple=True,
+    metavar="DIR",
+    type=click.Path(exists=True, file_okay=False),
+    help="Look for programs in this install space, or folder of Python packages as they were "
+    "generated, before those of AMENT_PREFIX_PATH; may be given several times.",
+)
+@click.option(
+    "--only",
+    multiple=True,
+    metavar="NODE",
+    help="Run this node or subsystem alone: a name, a full name, or a pattern such as '/front/*'; "
+    "may be given several times.",
+)
+@click.option(
+    "--except", "excluded", multiple=True, metavar="NODE", help="Leave a node or subsystem out."
+)
+@click.option("--keep-going", is_flag=True, help="Let the others run on when a node fails.")
+@click.option(
+    "--stop-timeout",
+    metavar="SECONDS",
+    default="5",
+    show_default=True,
+    help="Time to end after SIGINT, and again after SIGTERM.",
+)
+@interfaces_option
+@click.pass_context
+def up(
+    ctx: click.Context,
+    file: str,
+    arguments: tuple[str, ...],
+    dry_run: bool,
+    install: tuple[str, ...],
+    only: tuple[str, ...],
+    excluded: tuple[str, ...],
+    keep_going: bool,
+    stop_timeout: str,
+    interfaces: tuple[Path, ...],
+) -> None:
+    """Start every node of the system in FILE; stop them all on Ctrl-C.
+
+    The model is checked first, and nothing is started if an error is found. What then happens is
+    what the script of 'deros generate --target script' does; ARGUMENTS after -- are its own.
+    """
+    from deros.generators.protocol import GenerationError
+    from deros.generators.rossystem.view import system_view
+    from deros.generators.rossystem_script.generate import table
+    from deros.generators.rossystem_script.standalone.command import main
+
+    try:
+        view = system_view(_checked_system(ctx, file, interfaces))
+    except GenerationError as error:
+        _show(error.diagnostics)
+        ctx.exit(FINDINGS)
+    given = ["--stop-timeout", stop_timeout]
+    given += [word for folder in install for word in ("--package-path", folder)]
+    given += [word for name in only for word in ("--only", name)]
+    given += [word for name in excluded for word in ("--except", name)]
+    given += ["--dry-run"] * dry_run + ["--keep-going"] * keep_going
+    ctx.exit(main(view.name, table(view), [*given, *arguments], f"deros up {file}"))
+
+
+def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:
+    from deros.interfaces.store import InterfaceStore
+    from deros.metamodels.load import Repository
+    from deros.metamodels.system import System as SystemModel
+    from deros.validators.check import check
+
+    store, repository = InterfaceStore(interfaces), Repository()
+    loaded = repository.load(file)
+    findings = check([loaded], repository, store)
+    _show(findings)
+    code = exit_code(findings)
+    if code:
+        ctx.exit(code)
+    if not isinstance(loaded.model, SystemModel):
+        raise click.UsageError(f"'{file}' is no system description (*.system)")
+    return loaded.model
+
+
+def _show(diagnostics: Sequence[Diagnostic]) -> None:
+    from deros.cli.render import print_text
+
+    print_text(diagnostics, sys.stderr)

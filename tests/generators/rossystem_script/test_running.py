@@ -1,0 +1,380 @@
+"""The generated script with real processes: starting, passing on, restarting, stopping."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.support.stand_ins import Run, await_end, make_prefix, make_script
+
+Start = Callable[..., Run]
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Start]:
+    """Give a function that starts the script of a system with the stand-ins in its path."""
+    prefix = make_prefix(tmp_path / "prefix")
+    runs: list[Run] = []
+
+    def start_script(members: str, *arguments: str, nodes: str = "", **env: str) -> Run:
+        models = tmp_path / f"models{len(runs)}"
+        models.mkdir()
+        script = make_script(models, members, nodes)
+        given = {"PATH": os.environ["PATH"], "AMENT_PREFIX_PATH": str(prefix), **env}
+        # Isolated and without site-packages: the standard library has to be enough.
+        runs.append(Run([sys.executable, "-IS", script, *arguments], given))
+        return runs[-1]
+
+    yield start_script
+    for run in runs:
+        run.close()
+
+
+# Starting ---------------------------------------------------------------------------------------
+
+
+def test_every_node_is_told_its_names_parameters_remappings_and_log_level(start: Start) -> None:
+    """Names, namespace, typed parameters, remappings and the logger's level are ROS arguments."""
+    node = """
+        node listener : demo
+          executable "arguments"
+        parameters
+          name rate : double = 1.0
+          name mode.kind : string = "auto"
+        subscribes
+          topic in : std_msgs.Bool
+    """
+    run = start(
+        """
+        subsystem front namespace /front {
+          node ears : listener log_level debug
+          parameters param rate = 3  param mode.kind = "yes"
+          wirings connect in to /words
+        }
+        """,
+        nodes=node,
+    )
+    assert run.end() == 0
+    told = next(line for line in run.lines if line.startswith("[ears] "))
+    assert json.loads(told.removeprefix("[ears] ")) == [
+        *("--ros-args", "-r", "__node:=ears", "-r", "__ns:=/front"),
+        *("-p", "rate:=3.0", "-p", 'mode.kind:="yes"'),
+        *("-r", "in:=/words", "--log-level", "front.ears:=debug"),
+    ]
+
+
+def test_all_missing_programs_are_named_before_anything_starts(start: Start) -> None:
+    """Two of three programs are missing: both are named, the third is not started."""
+    nodes = "node ghost : demo --- node stranger : elsewhere"
+    run = start("node a : short node b : ghost node c : stranger", nodes=nodes)
+    assert run.end() == 2
+    text = "\n".join(run.lines)
+    assert "/b: package 'demo' has no program 'ghost'" in text
+    assert "/c: package 'elsewhere' has no program 'stranger'" in text
+    assert "started, process" not in text
+
+
+def test_dry_run_prints_the_commands_and_starts_nothing(start: Start, tmp_path: Path) -> None:
+    """The commands can be pasted into a shell, and none of them is run."""
+    run = start('subsystem arm "The arm" { node a : short }', "--dry-run")
+    assert run.end() == 0
+    program = tmp_path / "prefix" / "lib" / "demo" / "short"
+    assert run.lines == ["# /a (arm)", f"{program} --ros-args -r __node:=a -r __ns:=/"]
+
+
+def test_nodes_are_chosen_by_name_full_name_pattern_and_subsystem(start: Start) -> None:
+    """--only and --except take a name, a full name, a pattern or a subsystem with all below it."""
+    members = """
+        subsystem base {
+          subsystem wheels namespace /wheels { node left : short node right : short }
+        }
+        node eye : short
+    """
+
+    def shown(*arguments: str) -> list[str]:
+        run = start(members, "--dry-run", *arguments)
+        assert run.end() == 0
+        return [line.split()[1] for line in run.lines if line.startswith("#")]
+
+    assert shown("--only", "eye") == ["/eye"]
+    assert shown("--only", "/wheels/left", "--only", "eye") == ["/wheels/left", "/eye"]
+    assert shown("--only", "base", "--except", "*/left") == ["/wheels/right"]
+    assert shown("--except", "base/wheels") == ["/eye"]
+
+
+def test_choosing_a_node_that_is_not_there_names_those_that_are(start: Start) -> None:
+    """A name that fits nothing is a usage error, not an empty system."""
+    run = start("node eye : short", "--only", "ear")
+    assert run.end() == 2
+    assert "no node is called 'ear'; there are: /eye" in run.lines[-1]
+
+
+def test_a_program_that_cannot_be_run_is_a_failure(start: Start, tmp_path: Path) -> None:
+    """A program with a broken interpreter line ends the system with 1 and says why."""
+    run_later = tmp_path / "prefix" / "lib" / "demo" / "short"
+    run_later.write_text("#!/no/such/interpreter\n")
+    run = start("node a : steady node b : short")
+    assert run.end() == 1
+    assert any(line.startswith("[Robot] b cannot be started: ") for line in run.lines)
+    assert "[Robot] a stopped" in run.lines
+
+
+# Output -----------------------------------------------------------------------------------------
+
+
+def test_each_line_carries_the_name_of_its_node(start: Start) -> None:
+    """Lines are prefixed, the last one too when it has no end; equal names are told apart."""
+    run = start("node a : unfinished node b : short namespace /x node b : short namespace /y")
+    assert run.end() == 0
+    assert [line for line in run.lines if line.startswith("[a]")] == [
+        "[a] one",
+        "[a] two",
+        "[a] three",
+    ]
+    assert {"[/x/b] done", "[/y/b] done"} <= set(run.lines)
+
+
+def test_nodes_have_colours_on_a_terminal_only(start: Start, tmp_path: Path) -> None:
+    """A terminal gets coloured prefixes, unless NO_COLOR asks for none; a pipe gets none."""
+    script = make_script(tmp_path, "node a : short")
+    env = {"PATH": os.environ["PATH"], "AMENT_PREFIX_PATH": str(tmp_path / "prefix")}
+    command = [sys.executable, "-IS", str(script)]
+    assert b"\033[36m[a]\033[0m done" in _on_terminal(command, env)
+    assert b"\r\n[a] done" in _on_terminal(command, {**env, "NO_COLOR": "1"})
+    run = start("node a : short")
+    run.end()
+    assert "[a] done" in run.lines
+
+
+def _on_terminal(command: list[str], env: dict[str, str]) -> bytes:
+    pid, terminal = os.forkpty()
+    if pid == 0:
+        os.execvpe(command[0], command, env)
+    text = b""
+    try:
+        while data := os.read(terminal, 4096):
+            text += data
+    except OSError:  # how Linux reports the end of a terminal
+        pass
+    os.waitpid(pid, 0)
+    os.close(terminal)
+    return text
+
+
+def test_a_reader_that_takes_nothing_does_not_keep_the_system_from_stopping(start: Start) -> None:
+    """With the pipe full and nobody reading, SIGTERM still ends nodes and script."""
+    run = start("node a : noisy", "--stop-timeout", "0.2")
+    run.until("[a] x")
+    (pid,) = run.started().values()
+    run.signal(signal.SIGTERM)
+    assert await_end(pid)
+    assert await_end(run.process.pid)
+
+
+def test_a_reader_that_goes_away_ends_the_system(start: Start) -> None:
+    """As with ``script | head``: nobody sees the nodes any more, so they are stopped."""
+    run = start("node a : noisy", "--stop-timeout", "0.2")
+    run.until("[a] x")
+    assert run.process.stdout is not None
+    run.process.stdout.close()
+    assert await_end(run.process.pid)
+    assert await_end(run.started()["a"])
+
+
+# Stopping ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_told_to_stop_all_nodes_get_sigint_and_the_code_is_0(
+    start: Start, number: signal.Signals
+) -> None:
+    """Ctrl-C, SIGTERM and a closed terminal end in an orderly stop, which is no failure."""
+    run = start("node a : steady node b : steady")
+    run.until("[a] ready", "[b] ready")
+    run.signal(number)
+    assert run.end() == 0
+    assert f"[Robot] stopping: received {number.name}" in run.lines
+    assert {"[a] got SIGINT", "[Robot] a stopped", "[b] got SIGINT", "[Robot] b stopped"} <= set(
+        run.lines
+    )
+
+
+def test_a_node_that_needs_sigterm_has_stopped_well(start: Start) -> None:
+    """After SIGINT comes SIGTERM, and ending on it is still an orderly end."""
+    run = start("node a : slow", "--stop-timeout", "0.1")
+    run.until("[a] ready")
+    run.signal(signal.SIGINT)
+    assert run.end() == 0
+    assert run.lines[-3:] == [
+        "[Robot] a is still running, sending SIGTERM",
+        "[a] got SIGTERM",
+        "[Robot] a stopped",
+    ]
+
+
+def test_a_stubborn_node_is_killed_and_the_code_is_1(start: Start) -> None:
+    """The order is SIGINT, SIGTERM, SIGKILL; having to kill is a failure, but no other node's."""
+    run = start("node a : stubborn node b : steady", "--stop-timeout", "0.1")
+    run.until("[a] ready", "[b] ready")
+    run.signal(signal.SIGINT)
+    assert run.end() == 1
+    of_a = [line for line in run.lines if "[a]" in line or "] a " in line]
+    assert of_a[2:] == [
+        "[a] got SIGINT",
+        "[Robot] a is still running, sending SIGTERM",
+        "[a] got SIGTERM",
+        "[Robot] a is still running, sending SIGKILL",
+        "[Robot] a was killed by SIGKILL",
+    ]
+    assert "[Robot] b stopped" in run.lines
+
+
+def test_a_second_signal_hurries(start: Start) -> None:
+    """Each further Ctrl-C goes on to the next signal at once, whatever the patience."""
+    run = start("node a : stubborn", "--stop-timeout", "1000")
+    run.until("[a] ready")
+    run.signal(signal.SIGINT)
+    run.until("[a] got SIGINT")
+    run.signal(signal.SIGINT)
+    run.until("[a] got SIGTERM")
+    run.signal(signal.SIGINT)
+    assert run.end() == 1
+
+
+def test_the_failure_of_a_node_stops_the_others(start: Start) -> None:
+    """A node that exits with 3 takes the system down, which ends with 1."""
+    run = start("node a : steady node b : failing")
+    assert run.end() == 1
+    assert "[Robot] b exited with code 3" in run.lines
+    assert "[Robot] stopping: b has failed" in run.lines
+    assert "[Robot] a stopped" in run.lines
+
+
+def test_a_crash_is_named_by_its_signal(start: Start) -> None:
+    """A node that dies of SIGSEGV has failed."""
+    run = start("node a : crashing")
+    assert run.end() == 1
+    assert "[Robot] a was killed by SIGSEGV" in run.lines
+
+
+def test_keep_going_leaves_the_others_alone_when_a_node_fails(start: Start) -> None:
+    """The rest runs on until it is told to stop; the failure is in the code all the same."""
+    run = start("node a : steady node b : failing", "--keep-going")
+    run.until("[a] ready", "[Robot] b exited with code 3")
+    run.signal(signal.SIGINT)
+    assert run.end() == 1
+    assert "[Robot] stopping: received SIGINT" in run.lines
+
+
+def test_a_system_whose_nodes_all_end_well_ends_with_0(start: Start) -> None:
+    """The end of a node without failure stops nobody; the last one's end is the system's."""
+    run = start("node a : short node b : short")
+    assert run.end() == 0
+    assert {"[Robot] a ended", "[Robot] b ended"} <= set(run.lines)
+
+
+def test_a_node_has_ended_only_when_its_whole_group_has(start: Start) -> None:
+    """What a wrapper started is waited for, gets the next signal, and counts as the node's."""
+    run = start("node a : family", "--stop-timeout", "0.1")
+    run.until("[a] child ")
+    run.signal(signal.SIGINT)
+    assert run.end() == 0
+    assert run.lines[-2:] == ["[a] child got SIGTERM", "[Robot] a stopped"]
+
+
+def test_what_a_node_leaves_behind_is_stopped(start: Start) -> None:
+    """A program that ends by itself takes its children along, before the node counts as ended."""
+    run = start("node a : leaving node b : steady", "--stop-timeout", "1000")
+    run.until("[a] left behind", "[a] child got SIGINT", "[Robot] a ended", "[b] ready")
+    run.signal(signal.SIGINT)
+    assert run.end() == 0
+
+
+@pytest.mark.parametrize("program", ["steady", "stubborn", "family"])
+def test_nodes_end_when_the_script_itself_is_killed(start: Start, program: str) -> None:
+    """SIGKILL of the script leaves no node, no stubborn one and no grandchild behind."""
+    run = start(f"node a : {program}", "--stop-timeout", "0.1")
+    run.until("[a] child" if program == "family" else "[a] ready")
+    pids = [run.started()["a"], *map(int, re.findall(r"child (\d+)", "\n".join(run.lines)))]
+    guard = [int(pid) for pid in _children(run.process.pid) if int(pid) not in pids]
+    run.signal(signal.SIGKILL)
+    assert all(await_end(pid) for pid in pids)
+    assert len(guard) == 1
+    assert await_end(guard[0])
+
+
+def test_nodes_are_told_even_when_the_guard_is_killed_with_the_script(start: Start) -> None:
+    """The kernel passes the script's end on, so that killing all of its name stops the nodes."""
+    run = start("node a : steady")
+    run.until("[a] ready")
+    guard = next(int(pid) for pid in _children(run.process.pid) if int(pid) != run.started()["a"])
+    os.kill(guard, signal.SIGKILL)
+    run.signal(signal.SIGKILL)
+    assert await_end(run.started()["a"])
+
+
+def _children(pid: int) -> list[str]:
+    return Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+
+
+# Restarting -------------------------------------------------------------------------------------
+
+
+def test_a_node_is_restarted_as_often_as_respawn_says(start: Start) -> None:
+    """With max 2 it runs three times; then its failure is the system's."""
+    run = start("node a : failing respawn max 2 node b : steady")
+    assert run.end() == 1
+    assert run.lines.count("[a] giving up") == 3
+    assert "[Robot] a exited with code 3; restart 1 of 2 in 0 s" in run.lines
+    assert "[Robot] a exited with code 3; restart 2 of 2 in 0 s" in run.lines
+    assert "[Robot] stopping: a has failed" in run.lines
+
+
+def test_a_node_that_ends_well_is_restarted_too(start: Start) -> None:
+    """Respawn means that the node is to be there, however it ended; its last end is no failure."""
+    run = start("node a : short respawn max 1")
+    assert run.end() == 0
+    assert run.lines.count("[a] done") == 2
+
+
+def test_a_restart_waits_for_the_delay_and_leaves_the_others_alone(start: Start) -> None:
+    """The delay passes between end and new start, and another node never notices."""
+    run = start("node a : short respawn delay 300 ms max 1 node b : steady")
+    run.until("restart 1 of 1 in 0.3 s")
+    before = time.monotonic()
+    run.until("[Robot] a ended\n")
+    assert time.monotonic() - before > 0.29
+    run.until("[b] ready")
+    run.signal(signal.SIGINT)
+    assert run.end() == 0
+    assert run.lines.count("[b] ready") == 1
+
+
+def test_no_node_is_restarted_once_the_system_stops(start: Start) -> None:
+    """A node that waits for its restart does not start, and one that stops does not restart."""
+    run = start("node a : short respawn delay 1000 sec node b : steady respawn")
+    run.until("restart 1 in 1000 s", "[b] ready")
+    run.signal(signal.SIGINT)
+    assert run.end() == 0
+    assert run.lines.count("[a] done") == run.lines.count("[b] ready") == 1
+
+
+def test_restarted_nodes_leave_no_zombies(start: Start) -> None:
+    """Every process that ended is reaped while the system runs."""
+    run = start("node a : failing respawn max 5 node b : steady", "--keep-going")
+    run.until("restart 5 of 5", "[b] ready")
+    run.until("[a] giving up\n[Robot] a exited with code 3\n")
+    states = [
+        Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+        for pid in _children(run.process.pid)
+    ]
+    assert len(states) == 2  # node b and the guard
+    assert "Z" not in states
