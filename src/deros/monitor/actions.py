@@ -24,7 +24,7 @@ from deros.monitor.resolved import (
     family_of,
 )
 from deros.monitor.scope import Scope
-from deros.monitor.terms import Terms
+from deros.monitor.terms import Terms, counted
 
 LOG_STATE = "log_state"
 """The action that is built in: it writes a text to the log."""
@@ -53,7 +53,7 @@ class Actions:
         self._declared: dict[str, rules.Action] = {}
         self._bindings: dict[str, ir.Binding | None] = {}
         self._triggered_by: dict[str, list[int]] = {}
-        scope.check_duplicates((each.name for each in declared), "action")
+        scope.check_duplicates((each.name for each in declared), "action '{}'")
         for each in declared:
             self._check(each)
             if self._declared.setdefault(each.name.text, each) is each and each.binding:
@@ -71,7 +71,7 @@ class Actions:
                 message = f"'{name}' is a word of the languages that code is generated in"
                 hint = f"call it '{name}_' or the like"
                 self._scope.fault(codes.INVALID_RULES_NAME, message, name.span, hint)
-        self._scope.check_duplicates(action.parameters, f"parameter of '{action.name}'")
+        self._scope.check_duplicates(action.parameters, f"parameter '{{}}' of '{action.name}'")
 
     def _check_reset(self, action: rules.Action) -> None:
         reset = action.reset_by
@@ -191,7 +191,7 @@ class Actions:
                     f"'{binding.value.span.text}' is what the topic carries while the action"
                     " is not active, too",
                     binding.value.span,
-                    "publish a value that the default of the field differs from",
+                    "publish a value other than the default of the field",
                     severity=Severity.WARNING,
                 )
             )
@@ -216,7 +216,7 @@ class Actions:
             wanted = self._declared[name].parameters
             if len(wanted) != len(arguments):
                 shown = f"{name}({', '.join(map(str, wanted))})" if wanted else name
-                message = f"'{shown}' takes {_counted(len(wanted))}, {len(arguments)} given"
+                message = f"'{shown}' takes {counted(len(wanted))}, {len(arguments)} given"
                 place = (Related(self._declared[name].span, "declared here"),)
                 self._scope.fault(codes.WRONG_ACTION_ARGUMENTS, message, call.span, related=place)
                 return None
@@ -274,7 +274,3 @@ def _as_written(quantity: Quantity) -> int | float:
     if quantity.whole and number.denominator == 1:
         return int(number)
     return rounded(number)
-
-
-def _counted(number: int) -> str:
-    return {0: "no argument", 1: "1 argument"}.get(number, f"{number} arguments")

@@ -93,13 +93,11 @@ class _Builder:
 
     def _rules(self) -> Iterator[ir.Rule]:
         entities = self._program.entities
-        self.scope.check_duplicates((each.name for each in entities), "entity")
+        self.scope.check_duplicates((each.name for each in entities), "entity '{}'")
         index = 0
         for entity in entities:
             name = entity.name.text
-            self.scope.check_duplicates(
-                (each.name for each in entity.rules), f"rule of entity '{name}'"
-            )
+            self.scope.check_duplicates((each.name for each in entity.rules), f"rule '{name}.{{}}'")
             known = self._rule_index.setdefault(name, {})
             for rule in entity.rules:
                 known.setdefault(rule.name.text, index)
@@ -138,7 +136,7 @@ class _Builder:
         everyone = [each for top in self._program.behaviours for each in _with_nested(top)]
         numbered = {f"behaviour_{i}": i for i, each in enumerate(everyone, 1) if not each.name}
         given = [each.name for each in everyone if each.name]
-        self.scope.check_duplicates(given, "behaviour")
+        self.scope.check_duplicates(given, "behaviour '{}'")
         for name in given:
             if name.text in numbered:
                 message = (

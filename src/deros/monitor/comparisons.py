@@ -363,9 +363,4 @@ class Comparisons:
             message = f"an age is a time, '{bound.unit}' is a unit of {bound.unit.dimension}"
             self._scope.fault(codes.INCOMPATIBLE_UNITS, message, span)
             return None
-        nanoseconds = bound.in_unit(second) * 10**9
-        if nanoseconds.denominator != 1 or not 0 <= nanoseconds < 2**63:
-            wrong = "negative" if nanoseconds < 0 else "no whole number of nanoseconds in 292 years"
-            self._scope.fault(codes.BAD_DURATION, f"the bound of an age is {wrong}", span)
-            return None
-        return int(nanoseconds)
+        return self._scope.nanoseconds(bound.in_unit(second), span)

@@ -8,7 +8,6 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Iterable
-from decimal import Decimal
 from fractions import Fraction
 
 from deros import codes
@@ -27,7 +26,6 @@ from deros.monitor import ir
 from deros.monitor.resolved import DeclaredInput
 from deros.monitor.topics import SystemTopics
 
-_MAX_DURATION_NS = 2**63 - 1
 _PATH_PART = re.compile(r"\s*(?:\.\s*)?([A-Za-z_]\w*|\[\s*\d+\s*\])")
 
 
@@ -51,7 +49,7 @@ class Scope:
         self.units = self._read_units(program.units)
         constants = [each.name for each in program.constants]
         inputs = [each.name for each in program.inputs]
-        self.check_duplicates([*constants, *inputs], "constant or input")
+        self.check_duplicates([*constants, *inputs], "constant or input '{}'")
         self.constants: dict[str, rules.Constant] = {}
         for constant in program.constants:
             self.constants.setdefault(constant.name.text, constant)
@@ -73,14 +71,14 @@ class Scope:
         self.diagnostics.append(report(code, message, span, hint, related))
 
     def check_duplicates(self, names: Iterable[Name], what: str) -> None:
-        """Report every name that stands for a second thing of one kind."""
+        """Report every name that stands for a second thing; ``what`` has ``{}`` for the name."""
         first: dict[str, Name] = {}
         for name in names:
             earlier = first.setdefault(name.text, name)
             if earlier is not name:
                 self.fault(
                     codes.DUPLICATE_RULE_NAME,
-                    f"{what} '{name}' is declared twice",
+                    f"{what.format(name)} is declared twice",
                     name.span,
                     related=(Related(earlier.span, "first declared here"),),
                 )
@@ -88,7 +86,7 @@ class Scope:
     # Units and durations ------------------------------------------------------------------------
 
     def _read_units(self, definitions: tuple[rules.UnitDefinition, ...]) -> UnitRegistry:
-        self.check_duplicates((each.name for each in definitions), "unit")
+        self.check_duplicates((each.name for each in definitions), "unit '{}'")
         registry = UnitRegistry(
             {each.name.text: (each.factor.value, each.factor.unit or "1") for each in definitions}
         )
@@ -121,14 +119,10 @@ class Scope:
 
     def duration_ns(self, number: rules.Number) -> int | None:
         """Return a duration in nanoseconds; report what is none."""
-        written = f"{number.value:f}" if abs(number.value.adjusted()) < 30 else str(number.value)
         if number.unit is None:
-            self.fault(
-                codes.BAD_DURATION,
-                f"the duration {written} has no unit",
-                number.span,
-                f"write '{written} sec'",
-            )
+            message = f"the duration '{number.value}' has no unit"
+            hint = f"write '{number.value} sec'"
+            self.fault(codes.BAD_DURATION, message, number.span, hint)
             return None
         unit = self.unit(number.unit, number.unit_span or number.span)
         if unit is None:
@@ -137,12 +131,21 @@ class Scope:
             message = f"a duration is needed, '{number.unit}' is a unit of {unit.dimension}"
             self.fault(codes.INCOMPATIBLE_UNITS, message, number.unit_span or number.span)
             return None
-        nanoseconds = self.units.duration_ns(number.value, unit)
-        if nanoseconds is None:
-            wrong = _why_no_duration(number.value, unit)
-            message = f"the duration {written} {number.unit} {wrong}"
-            self.fault(codes.BAD_DURATION, message, number.span)
-        return nanoseconds
+        return self.nanoseconds(Fraction(number.value) * unit.factor, number.span)
+
+    def nanoseconds(self, seconds: Fraction, span: Span) -> int | None:
+        """Return seconds in whole nanoseconds; report what does not fit 64 bits of them."""
+        exact = seconds * 10**9
+        if exact < 0:
+            wrong = "is negative"
+        elif exact.denominator != 1:
+            wrong = "is no whole number of nanoseconds"
+        elif exact >= 2**63:
+            wrong = "is longer than 292 years"
+        else:
+            return int(exact)
+        self.fault(codes.BAD_DURATION, f"the duration '{span.text}' {wrong}", span)
+        return None
 
     def unit_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> Unit | None:
         """Return a field's unit: as a node description annotates it, else as REP 103 has it."""
@@ -289,11 +292,3 @@ def part_span(before: Span, whole: Span, position: int) -> Span:
 
 def _defines(definitions: tuple[rules.UnitDefinition, ...], unit: str) -> bool:
     return any(re.search(rf"\b{re.escape(each.name.text)}\b", unit) for each in definitions)
-
-
-def _why_no_duration(value: Decimal, unit: Unit) -> str:
-    if value < 0:
-        return "is negative"
-    if abs(value.adjusted()) < 40 and Fraction(value) * unit.factor * 10**9 <= _MAX_DURATION_NS:
-        return "is no whole number of nanoseconds"
-    return "is longer than 292 years" if value.adjusted() > 0 else "is shorter than a nanosecond"

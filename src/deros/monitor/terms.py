@@ -31,7 +31,6 @@ from deros.monitor.resolved import (
 )
 from deros.monitor.scope import Scope
 
-_MAX_EXPONENT = 400  # beyond it lies no double, and the exact value would be too long to handle
 _RESULT_TYPES = {Result.FLOAT: FieldType("float64"), Result.INTEGER: FieldType("uint64")}
 
 
@@ -79,10 +78,6 @@ class Terms:
     # Constants ----------------------------------------------------------------------------------
 
     def _number(self, number: rules.Number) -> Quantity | None:
-        if abs(number.value.adjusted()) > _MAX_EXPONENT and number.value:
-            message = f"{number.value} is beyond the range of floating-point numbers"
-            self._scope.fault(codes.WRONG_OPERAND, message, number.span)
-            return None
         unit = None
         if number.unit is not None:
             unit = self._scope.unit(number.unit, number.unit_span or number.span)
@@ -101,16 +96,16 @@ class Terms:
 
     def _name(self, term: rules.NamePath, message: MessageDefinition | None) -> Resolved | None:
         name = term.name.text
-        if name in self._scope.constants:
-            if not term.path:
-                return self.constant(name)
-            self._scope.fault(codes.UNKNOWN_FIELD, f"constant '{name}' has no fields", term.span)
-            return None
         if name in self._scope.inputs:
             found = self._scope.inputs[name]
             if found is None:
                 return None
             return self._located(found, (*found.path, *term.path), term.name.span, term.span)
+        if name in self._scope.constants:
+            if not term.path:
+                return self.constant(name)
+            self._scope.fault(codes.UNKNOWN_FIELD, f"constant '{name}' has no fields", term.span)
+            return None
         own = message.constants if message else ()
         if not term.path:
             for constant in own:
@@ -248,7 +243,8 @@ class Terms:
     def _parameters(self, call: rules.Call, row: Function) -> tuple[ir.Const, ...] | None:
         if len(call.arguments) != len(row.parameters):
             names = ", ".join(name for name, _ in row.parameters)
-            message = f"'{row.name}({names})' is called with {len(call.arguments)} arguments"
+            given = f"{len(call.arguments)} given"
+            message = f"'{row.name}({names})' takes {counted(len(row.parameters))}, {given}"
             self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span)
             return None
         found: list[ir.Const] = []
@@ -338,6 +334,11 @@ def _bounds(row: Function, kind: FieldType) -> tuple[Fraction | float, Fraction 
         Fraction(least) if math.isfinite(least) else least,
         Fraction(greatest) if math.isfinite(greatest) else greatest,
     )
+
+
+def counted(arguments: int) -> str:
+    """Return a number of arguments in words."""
+    return {0: "no argument", 1: "1 argument"}.get(arguments, f"{arguments} arguments")
 
 
 def describe(found: Resolved) -> str:

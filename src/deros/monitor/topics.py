@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
@@ -91,6 +91,10 @@ class SystemTopics:
     def names(self) -> Iterable[str]:
         """All graph names, in the order of their first mention."""
         return self._topics.keys()
+
+    def __iter__(self) -> Iterator[KnownTopic]:
+        """Yield all topics, in the order of their first mention."""
+        return iter(self._topics.values())
 
     def _add(self, system: System) -> None:
         flat = flatten(system)

@@ -8,9 +8,9 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.names import did_you_mean, near
 from deros.metamodels.common import Name
-from deros.metamodels.flatten import resolve_name
+from deros.metamodels.flatten import FlatPort, resolve_name
 from deros.metamodels.rules import Rules, TopicPath
-from deros.monitor.topics import SystemTopics
+from deros.monitor.topics import KnownTopic, SystemTopics
 from deros.validators.rules_walk import all_terms, rules_of, terms_of
 
 
@@ -50,9 +50,9 @@ def _topics_read(rules: Rules) -> Iterator[Name]:
 
 def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
     known = topics.get(topic)
-    if known is None or known.publishers or known.external or known.untyped:
+    if known is None or _has_end(known, known.publishers):
         return
-    fed = [each for each in topics.names if (one := topics.get(each)) and one.publishers]
+    fed = [each.name for each in topics if _has_end(each, each.publishers)]
     yield report(
         codes.RULE_TOPIC_NOT_PUBLISHED,
         f"nobody in the system publishes '{topic}'",
@@ -62,11 +62,16 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
     )
 
 
+def _has_end(topic: KnownTopic, ends: list[FlatPort]) -> bool:
+    """Tell whether somebody is, or may be, at this end of the topic."""
+    return bool(ends or topic.external or topic.untyped)
+
+
 def _unread(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
     known = topics.get(topic)
-    if known is not None and (known.subscriptions or known.external or known.untyped):
+    if known is not None and _has_end(known, known.subscriptions):
         return
-    heard = [each for each in topics.names if (one := topics.get(each)) and one.subscriptions]
+    heard = [each.name for each in topics if _has_end(each, each.subscriptions)]
     yield report(
         codes.ACTION_TOPIC_NOT_IN_SYSTEM,
         f"nobody in the system subscribes to '{topic}'",
