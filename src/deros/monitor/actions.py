@@ -90,6 +90,10 @@ class Actions:
 
     def _bind(self, binding: rules.Binding) -> ir.Binding | None:
         topic = resolve_name(binding.topic.text, "/")
+        definition = self._scope.store.message(binding.type)
+        if definition is None:
+            self._unknown_type(binding)
+            return None
         known = self._scope.topics.get(topic)
         if known is not None and known.type is not None and known.type != binding.type:
             self._scope.fault(
@@ -99,10 +103,6 @@ class Actions:
                 binding.type_span,
                 related=(Related(known.place, "the topic"),),
             )
-        definition = self._scope.store.message(binding.type)
-        if definition is None:
-            self._unknown_type(binding)
-            return None
         value = self._terms.resolve(binding.value, definition)
         if value is None:
             return None
