@@ -1,0 +1,302 @@
+"""The function table: what the functions compute, and that the texts of the targets agree."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import shutil
+import struct
+import subprocess
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import assume, example, given
+from hypothesis import strategies as st
+
+from deros.monitor import function_values as values
+from deros.monitor.functions import FUNCTIONS
+
+NUMBERS = st.floats(allow_nan=False)
+MODERATE = st.floats(-1e3, 1e3)
+ANGLES = st.floats(-7.0, 7.0)
+BEAMS = st.lists(st.floats(width=32), max_size=20)
+
+
+def _namespace() -> dict[str, Any]:
+    """Execute all Python texts as a generated module would hold them."""
+    found: dict[str, Any] = {"math": math, "Sequence": Sequence}
+    for row in FUNCTIONS.values():
+        exec(row.python, found)
+        if row.guard is not None:
+            exec(row.guard.python, found)
+    return found
+
+
+NAMESPACE = _namespace()
+
+
+def text_of(name: str) -> Callable[..., float | None]:
+    """Return what the Python text of a function calls."""
+    found: Callable[..., float | None] = eval(FUNCTIONS[name].python_call, NAMESPACE)
+    return found
+
+
+def same(a: float | None, b: float | None) -> bool:
+    """Tell whether two results are equal to the last bit, unknown and signed zero included."""
+    if a is None or b is None:
+        return a is b
+    return struct.pack("d", a) == struct.pack("d", b)
+
+
+def about(axis: tuple[float, float, float], angle: float) -> tuple[float, float, float, float]:
+    """Return the quaternion of a rotation."""
+    x, y, z = (each * math.sin(angle / 2.0) for each in axis)
+    return x, y, z, math.cos(angle / 2.0)
+
+
+# What the functions compute -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "axis"), [("roll", (1, 0, 0)), ("pitch", (0, 1, 0)), ("yaw", (0, 0, 1))]
+)
+@given(angle=st.floats(-1.5, 1.5), scale=st.floats(1e-3, 1e3))
+def test_angle_about_its_axis(
+    name: str, axis: tuple[float, float, float], angle: float, scale: float
+) -> None:
+    """A rotation about one axis is that angle, however long the quaternion is."""
+    evaluate = FUNCTIONS[name].evaluate
+    assert evaluate is not None
+    quaternion = (scale * each for each in about(axis, angle))
+    assert evaluate(*quaternion) == pytest.approx(angle, abs=1e-12)
+
+
+@given(direction=ANGLES, angle=st.floats(0.0, math.pi), turn=ANGLES)
+def test_tilt_is_the_angle_to_the_vertical(direction: float, angle: float, turn: float) -> None:
+    """A tilt about any level axis is that angle, whatever the yaw, and is acos(1 - 2(x² + y²))."""
+    x, y, _, w = about((math.cos(direction), math.sin(direction), 0.0), angle)
+    s, c = math.sin(turn / 2.0), math.cos(turn / 2.0)
+    turned = (c * x - s * y, c * y + s * x, s * w, c * w)
+    assert values.tilt(*turned) == pytest.approx(angle, abs=1e-12)
+    by_cosine = math.acos(max(-1.0, min(1.0, 1.0 - 2.0 * (turned[0] ** 2 + turned[1] ** 2))))
+    assert values.tilt(*turned) == pytest.approx(by_cosine, abs=1e-7)
+
+
+@pytest.mark.parametrize("name", ["roll", "pitch", "yaw", "tilt"])
+@pytest.mark.parametrize("quaternion", [(0.0, 0.0, 0.0, 0.0), (math.inf, 0.0, 0.0, 1.0)])
+def test_no_attitude(name: str, quaternion: tuple[float, ...]) -> None:
+    """A quaternion without a finite length above 0 tells no angle."""
+    evaluate = FUNCTIONS[name].evaluate
+    assert evaluate is not None
+    assert evaluate(*quaternion) is None
+
+
+def test_pitch_at_the_pole() -> None:
+    """Rounding past a sine of 1 still gives a quarter turn."""
+    half = math.sqrt(0.5)
+    assert values.pitch(0.0, half + 1e-16, 0.0, half) == pytest.approx(math.pi / 2.0)
+
+
+def test_rate() -> None:
+    """A change of 3 in half a second is 6 per second; one instant, or inf to inf, tells nothing."""
+    assert values.rate(5.0, 2.0, 500_000_000) == 6.0
+    assert values.rate(5.0, 2.0, 0) is None
+    assert values.rate(math.inf, math.inf, 1) is None
+    assert values.rate(math.inf, 1.0, 1) == math.inf
+
+
+def test_empty_array() -> None:
+    """An empty array has no least and no greatest element, and 0 elements."""
+    assert (values.least([]), values.greatest([]), values.count([])) == (None, None, 0)
+
+
+def scan(*ranges: float, start: float = -1.0, end: float = 1.0) -> float | None:
+    """Ask a scan of beams 0.5 rad apart from -1 rad on, valid from 0.1 to 10 m."""
+    return values.nearest(ranges, -1.0, 0.5, 0.1, 10.0, start, end)
+
+
+def test_nearest_of_a_sector() -> None:
+    """Only beams between the bearings count, those on the bounds included."""
+    assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.5, end=0.5) == 2.0
+    assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.6, end=-0.4) == 2.0
+    assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.4, end=-0.1) is None
+
+
+def test_nearest_through_the_back() -> None:
+    """A sector whose end is less than its start runs through the back, as angles beyond pi do."""
+    quarter = math.pi / 2.0
+    ranges = [1.0, 2.0, 3.0, 4.0]  # ahead, left, behind, right
+    ask = (ranges, 0.0, quarter, 0.1, 10.0)
+    assert values.nearest(*ask, math.radians(150), math.radians(-150)) == 3.0
+    assert values.nearest(*ask, math.radians(-100), math.radians(-80)) == 4.0
+    assert values.nearest(*ask, -math.pi, math.pi) == 1.0
+
+
+def test_nearest_of_special_beams() -> None:
+    """NaN and too short are invalid, -inf is the least range, far and inf are nothing there."""
+    nan, inf = math.nan, math.inf
+    assert scan(nan, 0.05, 3.0, nan, nan) == 3.0
+    assert scan(nan, -inf, 3.0, nan, nan) == 0.1
+    assert scan(nan, inf, 11.0, nan, nan) == inf
+    assert scan(nan, nan, 0.05, nan, nan) is None
+
+
+def test_usable_scan() -> None:
+    """A scan counts as a message when any beam of it is valid, wherever it points."""
+    guard = FUNCTIONS["nearest"].guard
+    assert guard is not None
+    assert not guard.evaluate([math.nan, 0.05], 0.1)
+    assert guard.evaluate([math.nan, math.inf], 0.1)
+    assert guard.evaluate([-math.inf], 0.1)
+    assert not guard.evaluate([], 0.1)
+
+
+# The texts agree ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["roll", "pitch", "yaw", "tilt"])
+@given(x=NUMBERS, y=NUMBERS, z=NUMBERS, w=NUMBERS)
+@example(x=0.0, y=0.0, z=0.0, w=0.0)
+def test_python_of_a_quaternion(name: str, x: float, y: float, z: float, w: float) -> None:
+    """The Python text gives the reference's result to the last bit."""
+    evaluate = FUNCTIONS[name].evaluate
+    assert evaluate is not None
+    result = evaluate(x, y, z, w)
+    assert same(text_of(name)(x, y, z, w), result)
+    least, greatest = FUNCTIONS[name].bounds
+    assert result is None or least <= result <= greatest
+
+
+@given(value=NUMBERS, previous=NUMBERS, elapsed_ns=st.integers(0, 10**15))
+def test_python_of_numbers(value: float, previous: float, elapsed_ns: int) -> None:
+    """Rate, abs and norm agree, on all numbers."""
+    arguments = (value, previous, elapsed_ns)
+    assert same(text_of("rate")(*arguments), values.rate(*arguments))
+    assert same(text_of("abs")(value), values.absolute(value))
+    assert same(text_of("norm")(value, previous, 1.0), values.norm(value, previous, 1.0))
+
+
+@given(array=st.lists(NUMBERS, max_size=8))
+def test_python_of_arrays(array: list[float]) -> None:
+    """Min, max and count agree, on empty arrays too."""
+    for name in ("min", "max", "count"):
+        evaluate = FUNCTIONS[name].evaluate
+        assert evaluate is not None
+        assert same(text_of(name)(array), evaluate(array))
+
+
+SCANS = st.tuples(
+    BEAMS, ANGLES, st.floats(-0.5, 0.5), st.floats(0.0, 1.0), st.floats(0.0, 50.0), ANGLES, ANGLES
+)
+
+
+@given(arguments=SCANS)
+def test_python_of_a_scan(arguments: tuple[Any, ...]) -> None:
+    """Nearest agrees on scans of every kind, and so does the test that a scan is usable."""
+    assert same(text_of("nearest")(*arguments), values.nearest(*arguments))
+    usable = NAMESPACE["scan_usable"](arguments[0], arguments[3])
+    assert usable is values.scan_usable(arguments[0], arguments[3])
+    assert usable or values.nearest(*arguments) is None
+
+
+def test_every_function_of_values_has_its_texts() -> None:
+    """What the monitor evaluates, each target can call."""
+    for row in FUNCTIONS.values():
+        if row.evaluate is not None:
+            assert row.python_call in NAMESPACE or row.python_call in ("abs", "len", "math.hypot")
+            assert row.c_call == "fabs" or f" {row.c_call}(" in row.c
+
+
+# C --------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
+    """All C texts, compiled as strictly as possible, their functions made visible."""
+    compiler = shutil.which("cc")
+    if compiler is None:
+        pytest.skip("no C compiler")
+    directory: Path = tmp_path_factory.mktemp("functions")
+    texts = [row.c for row in FUNCTIONS.values() if row.c]
+    texts += [row.guard.c for row in FUNCTIONS.values() if row.guard]
+    exported = "\n".join(texts).replace("static ", "")
+    prototypes = [line + ";" for line in _signatures(exported)]
+    source = "\n".join(["#include <math.h>", "#include <stddef.h>", *prototypes, exported])
+    (directory / "functions.c").write_text(source)
+    strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-O1"]
+    subprocess.run(
+        [compiler, *strict, "-shared", "-fPIC", "functions.c", "-o", "functions.so", "-lm"],
+        cwd=directory,
+        check=True,
+    )
+    return ctypes.CDLL(str(directory / "functions.so"))
+
+
+def _signatures(source: str) -> list[str]:
+    return [
+        part.strip().rsplit("\n\n", 1)[-1].split("}\n")[-1] for part in source.split("\n{")[:-1]
+    ]
+
+
+def call_c(library: ctypes.CDLL, name: str, *arguments: Any) -> float | None:
+    """Call a function of doubles; an array is passed as pointer and count, NaN is unknown."""
+    function = getattr(library, name)
+    function.restype = ctypes.c_double
+    passed: list[Any] = []
+    for each in arguments:
+        if isinstance(each, list):
+            passed += [(ctypes.c_double * len(each))(*each), ctypes.c_size_t(len(each))]
+        elif isinstance(each, int):
+            passed.append(ctypes.c_longlong(each))
+        else:
+            passed.append(ctypes.c_double(each))
+    result: float = function(*passed)
+    return None if math.isnan(result) else result
+
+
+def close(a: float | None, b: float | None) -> bool:
+    """Tell whether results agree but for the last digits of the mathematical library."""
+    return a is b if a is None or b is None else a == pytest.approx(b, rel=1e-9, abs=1e-9)
+
+
+def same_angle(a: float | None, b: float | None) -> bool:
+    """Tell whether two angles are nearly one direction."""
+    if a is None or b is None:
+        return a is b
+    return abs(math.remainder(a - b, 2.0 * math.pi)) < 1e-6
+
+
+@given(x=MODERATE, y=MODERATE, z=MODERATE, w=MODERATE)
+@example(x=0.0, y=0.0, z=0.0, w=0.0)
+def test_c_of_quaternions(library: ctypes.CDLL, x: float, y: float, z: float, w: float) -> None:
+    """The C texts give the reference's angles; at a vertical pitch roll and yaw mean nothing."""
+    pitch = values.pitch(x, y, z, w)
+    assert same_angle(call_c(library, "deros_pitch", x, y, z, w), pitch)
+    assert same_angle(call_c(library, "deros_tilt", x, y, z, w), values.tilt(x, y, z, w))
+    assume(pitch is None or abs(pitch) < 1.57)
+    assert same_angle(call_c(library, "deros_roll", x, y, z, w), values.roll(x, y, z, w))
+    assert same_angle(call_c(library, "deros_yaw", x, y, z, w), values.yaw(x, y, z, w))
+
+
+@given(x=MODERATE, y=MODERATE, z=MODERATE)
+def test_c_of_numbers(library: ctypes.CDLL, x: float, y: float, z: float) -> None:
+    """The C texts of norm and rate give the reference's results."""
+    assert close(call_c(library, "deros_norm", x, y, z), values.norm(x, y, z))
+    assert close(call_c(library, "deros_rate", x, y, 1000), values.rate(x, y, 1000))
+    assert call_c(library, "deros_rate", x, y, 0) is None
+
+
+@given(array=st.lists(NUMBERS, max_size=8))
+def test_c_of_arrays(library: ctypes.CDLL, array: list[float]) -> None:
+    """The C texts of arrays give the reference's results."""
+    assert call_c(library, "deros_min", array) == values.least(array)
+    assert call_c(library, "deros_max", array) == values.greatest(array)
+    assert call_c(library, "deros_count", array) == len(array)
+
+
+@given(arguments=SCANS)
+def test_c_of_a_scan(library: ctypes.CDLL, arguments: tuple[Any, ...]) -> None:
+    """The C text of nearest gives the reference's result."""
+    assert call_c(library, "deros_nearest", *arguments) == values.nearest(*arguments)
