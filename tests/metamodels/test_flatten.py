@@ -1,0 +1,237 @@
+"""What a system amounts to at run time: full names, topics, parameters and remappings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.metamodels.flatten import FlatNode, FlatSystem, flatten, resolve_name
+from tests.support.systems import load_text
+
+LIDAR = """
+    node lidar : sensors
+    parameters
+      name topic_name : string = "points"
+      name rate : double = 10.0
+    publishes
+      topic scan : sensor_msgs.LaserScan
+      topic cloud : sensor_msgs.PointCloud2 via topic_name
+      topic ~/status : std_msgs.String
+      topic /diagnostics : std_msgs.String
+"""
+
+
+def flat(folder: Path, members: str, **nodes: str) -> FlatSystem:
+    """Flatten a system of ``members`` that may use ``lidar`` and the given nodes."""
+    text = f'system Test imports import "*.rnd" {members}'
+    return flatten(load_text(folder, text, lidar=LIDAR, **nodes))
+
+
+def only_node(folder: Path, members: str, **nodes: str) -> FlatNode:
+    """Flatten a system of one node."""
+    (node,) = flat(folder, members, **nodes).nodes
+    return node
+
+
+def topics_of(node: FlatNode) -> dict[str, str]:
+    """Return where each port ends."""
+    return {port.port.name: port.topic for port in node.ports}
+
+
+@pytest.mark.parametrize(
+    ("name", "namespace", "meaning"),
+    [
+        ("/a/b", "/x", "/a/b"),
+        ("a", "/", "/a"),
+        ("a/b", "/x/y", "/x/y/a/b"),
+        ("~/a", "/x", "/x/me/a"),
+        ("~", "/x", "/x/me"),
+        ("~/a", "/", "/me/a"),
+    ],
+)
+def test_names_resolve_as_ros_2_resolves_them(name: str, namespace: str, meaning: str) -> None:
+    """Absolute names stand, relative ones go under the namespace, private ones under the node."""
+    assert resolve_name(name, namespace, "me") == meaning
+
+
+def test_namespaces_extend_and_replace(tmp_path: Path) -> None:
+    """A relative namespace extends the one around it, an absolute one replaces it."""
+    nodes = flat(
+        tmp_path,
+        """
+        node top : lidar
+        subsystem plain { node inside : lidar }
+        subsystem a namespace a {
+          subsystem b namespace b { node deep : lidar node own : lidar namespace c }
+          subsystem c namespace /z { node far : lidar namespace /q }
+        }
+        """,
+    ).nodes
+    assert [node.full_name for node in nodes] == [
+        "/top",
+        "/inside",
+        "/a/b/deep",
+        "/a/b/c/own",
+        "/q/far",
+    ]
+    assert [node.path for node in nodes] == [(), ("plain",), ("a", "b"), ("a", "b"), ("a", "c")]
+
+
+def test_unwired_ports_talk_on_their_own_names(tmp_path: Path) -> None:
+    """Without a wiring a port ends on its own name, or the one that its parameter holds."""
+    node = only_node(tmp_path, "node eye : lidar namespace /front")
+    assert topics_of(node) == {
+        "scan": "/front/scan",
+        "cloud": "/front/points",
+        "~/status": "/front/eye/status",
+        "/diagnostics": "/diagnostics",
+    }
+    assert all(port.wiring is None for port in node.ports)
+    assert node.parameters == node.remappings == ()
+
+
+def test_an_unwired_port_follows_the_value_set_for_its_parameter(tmp_path: Path) -> None:
+    """``param`` alone moves a port that takes its name from that parameter."""
+    node = only_node(tmp_path, 'node eye : lidar parameters param topic_name = "/cloud"')
+    assert topics_of(node)["cloud"] == "/cloud"
+
+
+def test_wirings_become_remappings(tmp_path: Path) -> None:
+    """A port is remapped from its own name; relative targets are put under the namespace."""
+    node = only_node(
+        tmp_path,
+        """
+        node eye : lidar namespace /front
+          wirings
+            connect scan to ranges
+            connect ~/status to ~/health
+            connect diagnostics to /all
+        """,
+    )
+    assert node.remappings == (
+        ("scan", "/front/ranges"),
+        ("~/status", "/front/eye/health"),
+        ("/diagnostics", "/all"),
+    )
+    assert topics_of(node)["scan"] == "/front/ranges"
+
+
+@pytest.mark.parametrize("end", ["cloud", "topic_name"])
+def test_a_port_with_via_is_wired_by_setting_its_parameter(tmp_path: Path, end: str) -> None:
+    """By its own name or the parameter's: the node reads the topic there, a remapping is no use."""
+    node = only_node(tmp_path, f"node eye : lidar wirings connect {end} to /cloud")
+    assert node.parameters == (("topic_name", "/cloud"),)
+    assert node.remappings == ()
+    assert topics_of(node)["cloud"] == "/cloud"
+    assert node.ports[1].wiring is not None
+    assert node.untyped == ()
+
+
+def test_a_wiring_through_an_unclaimed_parameter_has_no_type(tmp_path: Path) -> None:
+    """It sets the parameter, and is listed apart from the ports."""
+    legacy = 'node legacy : old parameters name out_topic : string = "x"'
+    node = only_node(
+        tmp_path,
+        'node eye : legacy parameters param out_topic = "/a" wirings connect out_topic to /b',
+        legacy=legacy,
+    )
+    assert node.parameters == (("out_topic", "/b"),)
+    assert [untyped.topic for untyped in node.untyped] == ["/b"]
+
+
+def test_the_first_of_two_wirings_counts_everywhere(tmp_path: Path) -> None:
+    """Port, remapping and parameter agree even in a model that is wrong."""
+    node = only_node(
+        tmp_path,
+        """
+        node eye : lidar
+          wirings
+            connect scan to /first      connect scan to /second
+            connect cloud to /one       connect topic_name to /two
+        """,
+    )
+    assert node.remappings == (("scan", "/first"),)
+    assert node.parameters == (("topic_name", "/one"),)
+    assert topics_of(node)["cloud"] == "/one"
+
+
+def test_a_name_that_two_ports_share_is_remapped_once(tmp_path: Path) -> None:
+    """A node that reads and writes one topic moves with both ends."""
+    node = only_node(
+        tmp_path,
+        "node a : echo wirings connect word to /words",
+        echo="""
+            node echo : e
+            subscribes topic word : std_msgs.Bool
+            publishes topic word : std_msgs.Bool
+        """,
+    )
+    assert node.remappings == (("word", "/words"),)
+    assert [port.topic for port in node.ports] == ["/words", "/words"]
+
+
+def test_the_port_of_exactly_that_name_comes_first(tmp_path: Path) -> None:
+    """``x`` and ``/x`` are two names; the slash may be left out only where that is clear."""
+    node = only_node(
+        tmp_path,
+        "node a : two namespace /n wirings connect x to /y",
+        two="node two : e publishes topic /x : std_msgs.Bool topic x : std_msgs.Bool",
+    )
+    assert node.remappings == (("x", "/y"),)
+
+
+def test_a_system_used_twice_is_there_twice(tmp_path: Path) -> None:
+    """Each use has its own namespace, nodes and topics."""
+    (tmp_path / "arm.system").write_text(
+        'system Arm imports import "lidar.rnd" topics topic scans topic /clock '
+        "subsystem tip { node eye : lidar wirings connect scan to scans }"
+    )
+    found = flat(
+        tmp_path,
+        """
+        import "arm.system"
+        subsystem left : Arm namespace /left
+        subsystem right : Arm namespace /r
+        """,
+    )
+    assert [node.full_name for node in found.nodes] == ["/left/eye", "/r/eye"]
+    assert [node.path for node in found.nodes] == [("left", "tip"), ("right", "tip")]
+    assert [node.remappings for node in found.nodes] == [
+        (("scan", "/left/scans"),),
+        (("scan", "/r/scans"),),
+    ]
+    assert [topic.name for topic in found.topics] == ["/left/scans", "/clock", "/r/scans", "/clock"]
+
+
+def test_topics_are_found_by_their_graph_names(tmp_path: Path) -> None:
+    """A topic declared in a subsystem lies under its namespace."""
+    found = flat(tmp_path, "topics topic /a subsystem s namespace s { topics topic b }")
+    assert [topic.name for topic in found.topics] == ["/a", "/s/b"]
+    assert found.topic("/s/b") is found.topics[1]
+    assert found.topic("/b") is None
+
+
+def test_nodes_of_unknown_types_are_kept_without_ports(tmp_path: Path) -> None:
+    """The checks report them; the rest of the system is there all the same."""
+    from deros.metamodels.load import Repository
+    from deros.metamodels.system import System
+
+    text = "system Test node a : nothing wirings connect x to /y"
+    model = Repository().load_text(tmp_path / "test.system", text).model
+    assert isinstance(model, System)
+    (node,) = flatten(model).nodes
+    assert (node.type, node.full_name, node.ports) == (None, "/a", ())
+
+
+def test_nodes_come_in_the_order_written(tmp_path: Path) -> None:
+    """Depth does not matter for the order of nodes."""
+    found = flat(
+        tmp_path,
+        """
+        node z : lidar
+        subsystem s { node y : lidar subsystem t { node x : lidar } }
+        node a : lidar
+        """,
+    )
+    assert [node.instance.name for node in found.nodes] == ["z", "y", "x", "a"]
