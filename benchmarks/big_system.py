@@ -1,7 +1,7 @@
 """Write a big, clean system description: a fleet of carts, ten nodes each, wired in a chain.
 
-Every node is nine lines, as in hand-written systems: the instance with two parameters and two
-wirings, and its share of the declared topics. The node types stand in three ``.rnd`` files.
+Every node is nine lines, as in hand-written systems: a comment, the instance with two parameters
+and two wirings, and its share of the declared topics. The node types stand in three ``.rnd`` files.
 """
 
 from __future__ import annotations
@@ -52,6 +52,7 @@ def _cart(number: int) -> tuple[list[str], list[str]]:
     topics += [f"  topic {base}/stage_{stage}" for stage in range(NODES_PER_CART - 1)]
     lines = [
         f"subsystem cart_{number} {{",
+        f"  // the range sensor of cart {number}",
         f"  node driver_{number} : driver",
         "  parameters",
         "    param rate = 25.0",
@@ -62,6 +63,7 @@ def _cart(number: int) -> tuple[list[str], list[str]]:
     ]
     for stage in range(1, NODES_PER_CART - 1):
         lines += [
+            f"  // smooths stage {stage - 1} into stage {stage}",
             f"  node smoother_{number}_{stage} : smoother",
             "  parameters",
             f"    param window = {stage + 2}",
@@ -71,6 +73,7 @@ def _cart(number: int) -> tuple[list[str], list[str]]:
             f"    connect smoothed to {base}/stage_{stage}",
         ]
     lines += [
+        "  // stops the cart when the way ahead is short",
         f"  node brake_{number} : brake",
         "  parameters",
         "    param threshold = 1.25",

@@ -133,6 +133,22 @@ def test_a_missing_import_names_the_near_file(tmp_path: Path) -> None:
     assert "'camera.rnd'" in found.hint
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["a" * 5000 + ".rnd", "a/" * 3000 + "*.rnd", "[.rnd", "*.rnd", "~/nix/*.rnd", "\0.rnd", ".rnd"],
+)
+def test_names_that_no_file_can_have(tmp_path: Path, name: str) -> None:
+    """Whatever stands between the quotes, an import that leads nowhere is one finding."""
+    loaded = Repository().load_text(tmp_path / "x.system", f'system X imports import "{name}"')
+    assert _only(loaded).code is codes.UNKNOWN_IMPORT
+
+
+@pytest.mark.parametrize("name", ["a\0.rnd", "a" * 5000 + ".rnd"])
+def test_paths_that_no_file_can_have(name: str) -> None:
+    """A path that the system refuses is an unreadable file."""
+    assert _only(Repository().load(name)).code is codes.UNREADABLE_FILE
+
+
 def test_an_import_from_a_missing_folder(tmp_path: Path) -> None:
     """Where the folder is missing too, the hint says so."""
     _write(tmp_path, x_system='system X imports import "nix/camera.rnd"')

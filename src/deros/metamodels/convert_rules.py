@@ -106,7 +106,7 @@ class RulesConverter(Converter):
                 *unknown(reference.name, "system", index.systems, span),
             )
         return Use(
-            self.text(found.path),
+            str(found.path[1:-1]),
             self.name(reference.name),
             system,
             self.span(found),

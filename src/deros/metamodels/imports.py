@@ -20,7 +20,7 @@ def find_files(
     itself, are not meant. A path to no file, or to one of another suffix, is a diagnostic.
     """
     path = os.path.normpath(Path(importer).parent / pattern)
-    if glob.has_magic(pattern) and not Path(path).exists():
+    if glob.has_magic(pattern) and not _is_file(path):
         importing = os.path.realpath(importer)
         wanted = os.path.normpath(Path(glob.escape(str(Path(importer).parent))) / pattern)
         found = sorted(
@@ -35,7 +35,7 @@ def find_files(
         wanted = " or ".join(suffixes)
         message = f"'{pattern}' cannot be imported here: its name does not end in {wanted}"
         return report(codes.UNKNOWN_LANGUAGE, message, span)
-    if not Path(path).is_file():
+    if not _is_file(path):
         message = f"there is no file '{pattern}'"
         return report(codes.UNKNOWN_IMPORT, message, span, _hint(Path(path), suffixes))
     return (shown_path(path),)
@@ -48,6 +48,13 @@ def shown_path(path: str) -> str:
         if not relative.startswith(os.pardir):
             path = relative
     return PurePath(path).as_posix()
+
+
+def _is_file(path: str) -> bool:
+    try:
+        return Path(path).is_file()
+    except OSError:  # a name longer than the file system takes
+        return False
 
 
 def _hint(path: Path, suffixes: tuple[str, ...]) -> str:

@@ -81,7 +81,7 @@ class Repository:
         A fault of the file is a diagnostic of the result, never an exception.
         """
         shown = str(path)
-        key = os.path.realpath(shown)
+        key = _identity(shown)
         if key not in self._files:
             try:
                 source = read(Path(path), shown)
@@ -97,7 +97,7 @@ class Repository:
 
         It replaces what was loaded for ``path`` before; imports in it come from the disk as usual.
         """
-        key = os.path.realpath(str(path))
+        key = _identity(str(path))
         self._files.pop(key, None)
         self._files[key] = self._convert(key, SourceFile(str(path), text))
         return self._files[key]
@@ -123,7 +123,7 @@ class Repository:
 
     def follow(self, importer: _Open, path: str) -> LoadedFile | Diagnostic:
         """Load the file ``path`` for an import; a cycle of imports is a diagnostic."""
-        key = os.path.realpath(path)
+        key = _identity(path)
         chain = [*self._open, importer]
         keys = [each.key for each in chain]
         if key in keys:
@@ -227,6 +227,14 @@ _LOADERS: dict[Language, Any] = {
     "rossystem": _Loading.system,
     "deros": _Loading.rules,
 }
+
+
+def _identity(path: str) -> str:
+    """Return what two names of one file have in common."""
+    try:
+        return os.path.realpath(path)
+    except ValueError:  # a name with a NUL in it, which reading will report
+        return path
 
 
 def _cycle(chain: list[_Open]) -> Diagnostic:

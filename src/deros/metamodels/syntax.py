@@ -50,7 +50,7 @@ def explain(error: TextXSyntaxError, source: SourceFile) -> Diagnostic:
     """Turn textX's syntax error into a diagnostic at the same place."""
     cause = error.__cause__
     position = cause.position if isinstance(cause, NoMatch) else len(source.text)
-    expected = list(dict.fromkeys(_in_words(rule) for rule in error.expected_rules or ()))
+    expected = list(dict.fromkeys(in_words(rule) for rule in error.expected_rules or ()))
     if len(expected) > 1 and "';'" in expected:
         expected.remove("';'")
     found = _FOUND.match(source.text, position)
@@ -94,7 +94,8 @@ def _described(text: str) -> str:
     return f"found the character U+{ord(text):04X} ({name})"
 
 
-def _in_words(rule: Any) -> str:
+def in_words(rule: Any) -> str:
+    """Name what a token of the grammar matches, as a user would."""
     if isinstance(rule, EndOfFile):
         return "the end of the file"
     words = _WORDS.get(rule.rule_name)
