@@ -167,7 +167,8 @@ def _drive_briefly(speed: float, duration: float, stage: Stage, referee: Referee
         stage.watch(lambda: stage.now >= end, 10.0)
 
 
-def _kill(stage: Stage, _referee: Referee) -> None:
+def _kill(stage: Stage, referee: Referee) -> None:
+    stage.watch(lambda: referee.fulfilled is not None, 5.0)
     stage.kill_safety_node()
 
 

@@ -76,8 +76,7 @@ class Scoreboard:
         """Return the table as it stands."""
         table = Table(title="The fifteen test cases", title_justify="left")
         for name in ("", "case", "expected", "observed", "reaction time", ""):
-            right = name in {"", "reaction time"}
-            table.add_column(name, justify="right" if right else "left", no_wrap=name != "case")
+            table.add_column(name, justify="right" if name in {"", "reaction time"} else "left")
         for case in self._cases:
             table.add_row(str(case.number), case.title, describe(case.expected), *self._cells(case))
         return table

@@ -17,6 +17,7 @@ from typing import Any
 import rclpy
 from geometry_msgs.msg import Vector3
 from nav_msgs.msg import Odometry
+from rcl_interfaces.srv import GetParameters
 from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -115,15 +116,9 @@ class Stage:
         self._context.init()
         self._node = Node("player", context=self._context)
         self._levers: dict[str, Any] = {}
-        steps = self._node.create_publisher(Float64, "/world/step", 10)
-        self._pace = (
-            Pace(lambda seconds: steps.publish(Float64(data=seconds))) if simulated else None
-        )
+        self._pace = self._make_pace() if simulated else None
         for topic, kind, values in _WATCHED:
             self._node.create_subscription(kind, topic, self._receiver(values), 50)
-        if self._pace is not None:
-            steady = Clock(clock_type=ClockType.STEADY_TIME)
-            self._node.create_timer(0.25, self._pace.remind, clock=steady)
         self._reset = self._node.create_client(Trigger, "/safety/reset")
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
@@ -141,6 +136,25 @@ class Stage:
         self._executor.shutdown()
         self._node.destroy_node()
         self._context.try_shutdown()
+
+    def _make_pace(self) -> Pace:
+        """Set up what it takes to let time pass in steps."""
+        steps = self._node.create_publisher(Float64, "/world/step", 10)
+        # A node answers after it has handled what came before.
+        question = self._node.create_client(GetParameters, "/safety/get_parameters")
+
+        def ask() -> None:
+            if question.service_is_ready():
+                answer = question.call_async(GetParameters.Request())
+                answer.add_done_callback(on_answer)
+
+        def on_answer(_: object) -> None:
+            with self._changed:
+                pace.answered()
+
+        pace = Pace(lambda seconds: steps.publish(Float64(data=seconds)), ask)
+        self._node.create_timer(0.25, pace.remind, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        return pace
 
     def _spin(self) -> None:
         while not self._done.is_set():
