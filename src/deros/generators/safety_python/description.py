@@ -104,9 +104,9 @@ def _interval(interval: Interval) -> str:
     return f"{opening}{interval.lower!r}, {interval.upper!r}{closing}"
 
 
-def _value(value: Value) -> str:
+def _value(value: Value | tuple[Value, ...]) -> str:
     if isinstance(value, tuple):
-        return f"[{', '.join(map(_scalar, value))}]"
+        return f"[{', '.join(map(_value, value))}]"
     return _scalar(value)
 
 

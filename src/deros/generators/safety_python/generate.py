@@ -1,0 +1,57 @@
+"""Safety rules to an ament_python package: the node, its monitor, and the user's actions."""
+
+from __future__ import annotations
+
+from deros.generators.monitor_python import render_monitor
+from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
+from deros.generators.rosnode_python.generate import package_files
+from deros.generators.rosnode_python.source import call, expression, mark_long_lines
+from deros.generators.safety_python.description import node_description
+from deros.generators.safety_python.node import safety_node
+from deros.generators.safety_python.view import SafetyView, safety_view
+from deros.generators.templates import environment
+from deros.metamodels.rules import Rules
+from deros.monitor.build import build
+
+
+def generate(model: Rules, context: Context, options: Options) -> Files:
+    """Return the package of the safety node that runs ``model``.
+
+    The safety node is a node: what every node has comes from the node generator, out of the node
+    description that is part of the output. On top come the monitor, the class that joins the two,
+    and a file for the code of the actions that are robot code.
+
+    Raises:
+        GenerationError: if the rules have an error, or names collide.
+        ValueError: if an option cannot be read.
+    """
+    built = build(model, context.store)
+    if built.program is None:
+        raise GenerationError(built.diagnostics)
+    node = safety_node(built.program, built.topics, options, model.source)
+    view = safety_view(model, built.program, node, context.store)
+    copyright_line = options.get("copyright", "")
+    files = package_files([node], options)
+    root = f"{view.package}/{view.package}"
+    files[f"{view.package}/{node.name}.rnd"] = File(node_description(node))
+    files[f"{root}/monitor.py"] = File(_licensed(render_monitor(built.program), copyright_line))
+    files[f"{root}/{view.node.module}.py"] = File(_render("node.py", view, copyright_line))
+    if view.actions:
+        base = _render("actions_base.py", view, copyright_line)
+        user = _render("actions.py", view, copyright_line)
+        files[f"{root}/{view.actions_module}_base.py"] = File(base)
+        files[f"{root}/{view.actions_module}.py"] = File(user, Owner.USER)
+    return files
+
+
+def _render(template: str, view: SafetyView, copyright_line: str) -> str:
+    loaded = environment("deros.generators.safety_python").get_template(f"{template}.j2")
+    text = loaded.render(safety=view, node=view.node, call=call, expression=expression)
+    return mark_long_lines(_licensed(text, copyright_line))
+
+
+def _licensed(text: str, copyright_line: str) -> str:
+    """Put the licence header of the node generator above a module, if there is a holder."""
+    package = {"copyright": copyright_line}
+    header = environment("deros.generators.rosnode_python").get_template("_header.j2")
+    return header.render(package=package) + text

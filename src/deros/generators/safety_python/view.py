@@ -1,0 +1,310 @@
+"""What the templates of the safety node see: the program in terms of rclpy."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from deros.generators.monitor_python import monitor_view
+from deros.generators.monitor_python.source import header, origin
+from deros.generators.names import Emitted, check_collisions, python_identifier
+from deros.generators.rosnode_python.source import Call, Text, import_lines, one_line, wrapped
+from deros.generators.rosnode_python.view import NodeView, interface_imports, node_view
+from deros.generators.safety_python.messages import is_stamped, literal, reading
+from deros.interfaces.fields import ResolvedField, format_path, resolve
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.node import NodeType, PortKind
+from deros.metamodels.rules import Rules
+from deros.monitor import walk
+from deros.monitor.ir import Action, Behaviour, Binding, Program, Trigger
+
+LOG_STATE = "log_state"
+
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_CONDITION = re.compile(r"\bif\b(.*?)\bthen\b", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class HandlerView:
+    """What is done with the messages of one topic.
+
+    Attributes:
+        identifier: of the port: the node's method is ``on_<identifier>``.
+        type: the message class as the module names it.
+        call: the call of the monitor's method.
+    """
+
+    identifier: str
+    type: str
+    topic: str
+    call: Call
+
+
+@dataclass(frozen=True, slots=True)
+class FieldView:
+    """A field that carries states: ``states`` pairs an action with what it publishes there.
+
+    ``single`` is a boolean field of one action, written without a choice.
+    """
+
+    target: str
+    inactive: str | None
+    single: str | None
+    states: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelView:
+    """A topic that carries the states of bound actions."""
+
+    identifier: str
+    type: str
+    topic: str
+    actions: tuple[str, ...]
+    stamped: bool
+    fields: tuple[FieldView, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ActionView:
+    """An action whose code the user writes."""
+
+    name: str
+    method: str
+    signature: str
+    notes: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyView:
+    """All that the templates print.
+
+    Attributes:
+        rules: the file name of the rules.
+        imports: the statements that import the interfaces.
+        channels_of: of each bound action, the channel that carries its state.
+        behaviours: of each behaviour, where it stands and its condition.
+        callers: of each action that can be refused a reset, the behaviours that call for it.
+        trigger: the service class of ``~/reset`` as the module names it; empty without latches.
+    """
+
+    package: str
+    node: NodeView
+    rules: str
+    name: str
+    imports: tuple[str, ...]
+    handlers: tuple[HandlerView, ...]
+    channels: tuple[ChannelView, ...]
+    channels_of: tuple[tuple[str, str], ...]
+    actions: tuple[ActionView, ...]
+    behaviours: tuple[Text, ...]
+    callers: tuple[tuple[str, tuple[str, ...]], ...]
+    heartbeat: str
+    trigger: str
+    rule_count: int
+    logs: bool
+    uses_nan: bool
+
+    @property
+    def actions_module(self) -> str:
+        """Module of the user's action bodies."""
+        return f"{self.node.module}_actions"
+
+    @property
+    def actions_class(self) -> str:
+        """Class of the user's action bodies."""
+        return f"{self.node.class_name}Actions"
+
+
+def safety_view(
+    model: Rules, program: Program, node: NodeType, store: InterfaceStore
+) -> SafetyView:
+    """Return the view of the safety node ``node`` that runs ``program``.
+
+    Raises:
+        GenerationError: if two topics, actions or modules would get one name.
+    """
+    base = node_view(node)
+    handlers = tuple(_handlers(program, base, store))
+    channels = _channels(program, base, node, store)
+    actions = tuple(_action(a, program) for a in program.actions if _needs_code(a))
+    view = SafetyView(
+        package=node.package,
+        node=base,
+        rules=origin_file(model),
+        name=one_line(program.name),
+        imports=tuple(_imports(base, node, bool(actions))),
+        handlers=handlers,
+        channels=channels,
+        channels_of=tuple((name, c.identifier) for c in channels for name in c.actions),
+        actions=actions,
+        behaviours=tuple(_behaviour(each) for each in walk.behaviours(program)),
+        callers=tuple(_callers(program)),
+        heartbeat=_alias(base, node, "~/heartbeat"),
+        trigger=_alias(base, node, "~/reset"),
+        rule_count=len(program.rules),
+        uses_nan=any("math.nan" in str(each.call) for each in handlers),
+        logs=any(action.name == LOG_STATE for action in program.actions),
+    )
+    _check_names(view, program, node)
+    return view
+
+
+def origin_file(model: Rules) -> str:
+    """Return the file name of the rules, without the folder: no output depends on the machine."""
+    return re.split(r"[/\\]", model.source.path)[-1]
+
+
+def _needs_code(action: Action) -> bool:
+    return action.binding is None and action.name != LOG_STATE
+
+
+def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
+    spans = {action.name: action.span or node.name_span for action in program.actions}
+    reserved = [
+        Emitted(name, f"{name!r} of the class itself", node.name_span)
+        for name in ("node", "unfilled")
+    ]
+    methods = [Emitted(a.method, f"action {a.name!r}", spans[a.name]) for a in view.actions]
+    check_collisions([*reserved, *methods], f"the class {view.actions_class}")
+    modules = ["monitor", view.node.module, view.node.base_module]
+    if view.actions:
+        modules += [view.actions_module, f"{view.actions_module}_base"]
+    emitted = (Emitted(name, f"module {name!r}", node.name_span) for name in modules)
+    check_collisions(emitted, f"package {view.package}")
+
+
+def _imports(base: NodeView, node: NodeType, has_actions: bool) -> list[str]:
+    used = [port.type for port in node.ports]
+    imports = interface_imports(dict(base.interfaces), used)
+    imports |= {
+        "rclpy.clock": {"Clock", "ClockType", "JumpThreshold", "TimeJump"},
+        "rclpy.duration": {"Duration"},
+        node.package: {"monitor"},
+        f"{node.package}.{base.base_module}": {base.base_class, "run"},
+    }
+    if has_actions:
+        imports[f"{node.package}.{base.module}_actions"] = {f"{base.class_name}Actions"}
+    return import_lines(imports)
+
+
+def _alias(base: NodeView, node: NodeType, port_name: str) -> str:
+    port = node.port(port_name)
+    return dict(base.interfaces)[port.type] if port else ""
+
+
+# Messages in --------------------------------------------------------------------------------------
+
+
+def _handlers(program: Program, base: NodeView, store: InterfaceStore) -> list[HandlerView]:
+    ports = {port.name: port for port in base.subscriptions}
+    found: list[HandlerView] = []
+    for handler in monitor_view(program).handlers:
+        port = ports[handler.topic]
+        kind = program.topics[handler.topic]
+        fields = (reading(store, kind, each.path) for each in handler.parameters)
+        call = Call(f"self._monitor.{handler.method}", ("self._now()", *fields))
+        found.append(HandlerView(port.identifier, port.type, port.name, call))
+    return found
+
+
+# States out ---------------------------------------------------------------------------------------
+
+
+def _channels(
+    program: Program, base: NodeView, node: NodeType, store: InterfaceStore
+) -> tuple[ChannelView, ...]:
+    bound: dict[str, list[tuple[str, Binding]]] = {}
+    for action in program.actions:
+        if action.binding is not None:
+            bound.setdefault(action.binding.topic, []).append((action.name, action.binding))
+    types = {port.name: port.type for port in node.ports_of(PortKind.PUBLISHER)}
+    return tuple(
+        ChannelView(
+            port.identifier,
+            port.type,
+            port.name,
+            tuple(name for name, _ in bound[port.name]),
+            is_stamped(store, types[port.name]),
+            tuple(_fields(types[port.name], bound[port.name], store)),
+        )
+        for port in base.publishers
+        if port.name in bound
+    )
+
+
+def _fields(
+    kind: InterfaceType, bound: list[tuple[str, Binding]], store: InterfaceStore
+) -> list[FieldView]:
+    by_path: dict[tuple[str, ...], list[tuple[str, Binding]]] = {}
+    for name, binding in bound:
+        by_path.setdefault(binding.path, []).append((name, binding))
+    return [_field(kind, path, states, store) for path, states in by_path.items()]
+
+
+def _field(
+    kind: InterfaceType,
+    path: tuple[str, ...],
+    bound: list[tuple[str, Binding]],
+    store: InterfaceStore,
+) -> FieldView:
+    found = resolve(store, kind, path)
+    assert isinstance(found, ResolvedField), found
+    states = tuple((name, literal(found.type, binding.value)) for name, binding in bound)
+    first_name, first = bound[0]
+    is_boolean = isinstance(first.value, bool)
+    single = None
+    if is_boolean and len(bound) == 1:
+        single = f"{first_name!r} {'in' if first.value else 'not in'} self._active"
+    inactive = repr(not first.value) if is_boolean else None
+    return FieldView(f"msg.{format_path(path)}", inactive, single, states)
+
+
+# Actions and behaviours ---------------------------------------------------------------------------
+
+
+def _action(action: Action, program: Program) -> ActionView:
+    callers = [b.name for b in walk.behaviours(program) if b.index in action.triggered_by]
+    place = f"Declared in {origin(action.span)}" if action.span else "Declared"
+    note = f"{place}, run by {', '.join(callers) if callers else 'no behaviour'}."
+    types = _argument_types(action, program)
+    parameters = zip(action.parameters, types, strict=True)
+    arguments = ["self", *(f"{python_identifier(name)}: {kind}" for name, kind in parameters)]
+    method = python_identifier(action.name)
+    return ActionView(
+        action.name,
+        method,
+        f"def {method}({', '.join(arguments)}) -> None:",
+        (tuple(wrapped(note, indent=8)),),
+    )
+
+
+def _argument_types(action: Action, program: Program) -> list[str]:
+    """Return the type of each parameter: that of all arguments given for it in the rules."""
+    given: list[set[str]] = [set() for _ in action.parameters]
+    for behaviour in walk.behaviours(program):
+        for item in behaviour.body:
+            if isinstance(item, Trigger) and item.action == action.index:
+                for types, argument in zip(given, item.arguments, strict=True):
+                    types.add(type(argument).__name__)
+    for types in given:
+        if "float" in types:
+            types.discard("int")  # as annotations have it, an int is a float
+    return [" | ".join(sorted(types)) or "object" for types in given]
+
+
+def _behaviour(behaviour: Behaviour) -> Text:
+    text = _COMMENT.sub(" ", header(behaviour.span.text))
+    condition = _CONDITION.search(text)
+    shown = one_line(condition[1] if condition else text)
+    return Text(f"{behaviour.name!r}: ", f"{origin(behaviour.span)}: if {shown}")
+
+
+def _callers(program: Program) -> list[tuple[str, tuple[str, ...]]]:
+    names = {each.index: each.name for each in walk.behaviours(program)}
+    return [
+        (action.name, tuple(names[index] for index in action.triggered_by))
+        for action in program.actions
+        if action.latched or action.reset_by is not None
+    ]
