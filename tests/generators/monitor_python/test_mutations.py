@@ -1,0 +1,63 @@
+"""The comparison with the reference engine can fail: it finds each slip put into the code."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from deros.generators.monitor_python import render_monitor
+from tests.support.monitors import compare
+from tests.support.strategies import programs, traces
+
+SLIPS = {
+    "for is exclusive": (r"t >= (\w+_due)", r"t > \1"),
+    "an interval restarts at every event": (r"if \w+_due == NEVER:", "if True:"),
+    "an interval is never cleared": (r"(\w+_due) = self\._\w+_due = NEVER", r"\1 = NEVER"),
+    "a comparison includes its bound": (r" > ", " >= "),
+    "unknown counts as false": (r" is False", " is not True"),
+    "and for or": (r" or ", " and "),
+    "or for and": (r"^( +if .*) and (?=.*:$)", r"\1 or "),
+    "NaN is taken as a value": (r"^        if (\w+) == \1\b.*:", "        if True:"),
+    "an input is not forgotten": (r"^            self\._forget_\w+\(\)$", "            pass"),
+    "deadlines are missed": (r"^            self\._catch_up\(t\)", "            pass"),
+    "behaviours act at every event": (r"if not self\._behaviour_\d+:", "if True:"),
+    "a nested behaviour ignores the outer": (r"if self\._behaviour_\d+ and ", "if "),
+    "a reset is never refused": (r"^            if self\._behaviour_.*:", "            if False:"),
+    "messages do not count": (r"^            self\._\w+_timeout = t \+ \d+", "            pass"),
+    "intervals survive a step back": (
+        r"^        self\.(_\w+_due) = NEVER$",
+        r"        self.\1 = getattr(self, '\1', NEVER)",
+    ),
+    "the first event is not the first": (r"^        if not self\._started:", "        if False:"),
+    "rates look at the wrong time": (r"t - self\._(\w+_last_t)", r"t + self._\1"),
+}
+"""Slips by name: a pattern of the generated text, and what it is replaced by."""
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+def test_slip_is_found(slip: str) -> None:
+    """Some random program and trace tells the mutated monitor from the reference."""
+    pattern, replacement = SLIPS[slip]
+
+    @settings(
+        max_examples=3000,
+        deadline=None,
+        database=None,
+        derandomize=True,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+        report_multiple_bugs=False,
+    )
+    @given(st.data())
+    def search(data: st.DataObject) -> None:
+        program = data.draw(programs())
+        text = render_monitor(program)
+        mutant = re.sub(pattern, replacement, text, flags=re.MULTILINE)
+        if mutant != text:
+            compare(program, data.draw(traces(program)), mutant)
+
+    with pytest.raises(AssertionError):
+        search()

@@ -1,0 +1,374 @@
+"""Random programs, rules in text, and traces, for tests that compare what engines do with them.
+
+Times are a few nanoseconds and values come from small pools, so that deadlines, messages and steps
+of the clock coincide often, and comparisons meet their bounds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from hypothesis import strategies as st
+
+from deros.diagnostics import SourceFile, Span
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.monitor import ir
+from deros.monitor.state import LeafValue
+
+_SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 100)))
+
+Draw = Callable[[st.SearchStrategy[Any]], Any]
+
+
+def span(line: int) -> Span:
+    """Return the span of a whole line of a source that stands for random rules."""
+    start = _SOURCE.text.index(f"line {line};")
+    return Span(_SOURCE, start, start + len(f"line {line};"))
+
+
+# Values -------------------------------------------------------------------------------------------
+
+NUMBERS = (-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0)
+floats = st.sampled_from((*NUMBERS, *NUMBERS, math.nan, math.inf, -math.inf)) | st.floats()
+unit_floats = st.sampled_from((-1.0, -0.5, 0.0, 0.1, 0.5, 1.0, 1.0, math.nan, math.inf))
+small_ints = st.integers(0, 4)
+texts = st.sampled_from(("", "auto", "manual", "it's"))
+durations = st.integers(0, 12)
+waits = st.sampled_from((0, 0, 1, 1, 2, 3, 4, 5, 7, 10, 25))
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of input: where it is, what its leaves are, and what they may hold."""
+
+    topic: str
+    type: InterfaceType
+    path: tuple[str | int, ...]
+    leaves: tuple[tuple[tuple[str | int, ...], FieldType, st.SearchStrategy[Any]], ...]
+    nan_is_unknown: bool = True
+
+
+_FLOAT = FieldType("float64")
+_ANGLES = ("angle_min", "angle_increment", "range_min", "range_max")
+
+KINDS: Mapping[str, Kind] = {
+    "number": Kind(
+        "/speed",
+        InterfaceType("std_msgs", "msg", "Float64"),
+        ("data",),
+        ((("data",), _FLOAT, floats),),
+    ),
+    "integer": Kind(
+        "/mode",
+        InterfaceType("std_msgs", "msg", "UInt8"),
+        ("data",),
+        ((("data",), FieldType("uint8"), small_ints),),
+    ),
+    "boolean": Kind(
+        "/flag",
+        InterfaceType("std_msgs", "msg", "Bool"),
+        ("data",),
+        ((("data",), FieldType("bool"), st.booleans()),),
+    ),
+    "text": Kind(
+        "/name",
+        InterfaceType("std_msgs", "msg", "String"),
+        ("data",),
+        ((("data",), FieldType("string"), texts),),
+    ),
+    "quaternion": Kind(
+        "/imu",
+        InterfaceType("sensor_msgs", "msg", "Imu"),
+        ("orientation",),
+        tuple((("orientation", axis), _FLOAT, unit_floats) for axis in "xyzw"),
+    ),
+    "vector": Kind(
+        "/imu",
+        InterfaceType("sensor_msgs", "msg", "Imu"),
+        ("angular_velocity",),
+        tuple((("angular_velocity", axis), _FLOAT, floats) for axis in "xyz"),
+    ),
+    "array": Kind(
+        "/joints",
+        InterfaceType("sensor_msgs", "msg", "JointState"),
+        ("position",),
+        (
+            (
+                ("position",),
+                FieldType("float64", "unbounded"),
+                st.lists(floats, max_size=3),
+            ),
+        ),
+    ),
+    "element": Kind(
+        "/joints",
+        InterfaceType("sensor_msgs", "msg", "JointState"),
+        ("velocity", 2),
+        ((("velocity", 2), _FLOAT, st.none() | floats),),
+    ),
+    "scan": Kind(
+        "/scan",
+        InterfaceType("sensor_msgs", "msg", "LaserScan"),
+        (),
+        (
+            (("ranges",), FieldType("float32", "unbounded"), st.lists(floats, max_size=4)),
+            *(((name,), FieldType("float32"), unit_floats) for name in _ANGLES),
+        ),
+        nan_is_unknown=False,
+    ),
+}
+
+
+# Programs -----------------------------------------------------------------------------------------
+
+
+@dataclass
+class _Drawing:
+    """A program being drawn: what has been declared, and the counters that number its parts."""
+
+    draw: Draw
+    kinds: list[str] = field(default_factory=list)
+    inputs: list[ir.Input] = field(default_factory=list)
+    leaves: list[ir.Leaf] = field(default_factory=list)
+    fors: int = 0
+    states: int = 0
+    behaviours: int = 0
+    rules: int = 0
+    actions: int = 0
+    triggered_by: dict[int, list[int]] = field(default_factory=dict)
+
+    def input(self) -> None:
+        name = self.draw(st.sampled_from(sorted(KINDS)))
+        kind, index = KINDS[name], len(self.inputs)
+        first = len(self.leaves)
+        for number, (path, type_, _) in enumerate(kind.leaves):
+            nan_is_unknown = kind.nan_is_unknown or number > 0
+            self.leaves.append(ir.Leaf(len(self.leaves), index, path, type_, nan_is_unknown))
+        self.kinds.append(name)
+        self.inputs.append(
+            ir.Input(
+                index,
+                self.draw(st.sampled_from(("speed", "in", "t", "x_2", f"input_{index}"))),
+                kind.topic,
+                kind.type,
+                kind.path,
+                tuple(range(first, len(self.leaves))),
+                self.draw(st.none() | st.integers(0, 12)),
+                span(1 + index),
+            )
+        )
+
+    # Values ---------------------------------------------------------------------------------------
+
+    def number(self, index: int) -> ir.ValueExpression:
+        """Draw a number made of one input, which must have one."""
+        reads = [ir.Read(leaf) for leaf in self.inputs[index].leaves]
+        match self.kinds[index]:
+            case "quaternion":
+                name = self.draw(st.sampled_from(("roll", "pitch", "yaw", "tilt")))
+                value: ir.ValueExpression = ir.Apply(name, tuple(reads), index)
+            case "vector":
+                value = ir.Apply("norm", tuple(reads), index)
+            case "array":
+                name = self.draw(st.sampled_from(("min", "max", "count")))
+                value = ir.Apply(name, tuple(reads), index)
+            case "scan":
+                sector = (ir.Const(self.draw(unit_bearing)), ir.Const(self.draw(unit_bearing)))
+                value = ir.Apply("nearest", (*reads, *sector), index)
+            case _:
+                value = reads[0]
+        for _ in range(self.draw(st.sampled_from((0, 0, 0, 1, 2)))):
+            value = self.wrapped(value, index)
+        return value
+
+    def wrapped(self, value: ir.ValueExpression, index: int) -> ir.ValueExpression:
+        match self.draw(st.sampled_from(("abs", "rate", "scale"))):
+            case "abs":
+                return ir.Apply("abs", (value,), index)
+            case "rate":
+                self.states += 1
+                return ir.Apply("rate", (value,), index, self.states - 1)
+            case _:
+                offset = self.draw(st.sampled_from((0.0, 1.0, -0.5)))
+                return ir.Scale(value, self.draw(st.sampled_from((2.0, -1.0, 0.1))), offset)
+
+    def numeric(self) -> list[int]:
+        return [n for n, kind in enumerate(self.kinds) if kind not in ("boolean", "text")]
+
+    def bound(self) -> ir.ValueExpression:
+        """Draw what a number is compared with."""
+        inputs = self.numeric()
+        if inputs and self.draw(st.integers(0, 5)) == 0:
+            return self.number(self.draw(st.sampled_from(inputs)))
+        return ir.Const(self.draw(st.sampled_from((*NUMBERS, 1, 2))))
+
+    # Conditions -----------------------------------------------------------------------------------
+
+    def condition(self, depth: int, atom: Callable[[], ir.Condition]) -> ir.Condition:
+        choices = ("atom", "atom", "not", "and", "or", "for")
+        choice = "atom" if depth == 0 else self.draw(st.sampled_from(choices))
+        if choice == "atom":
+            return atom()
+        if choice == "not":
+            return ir.Not(self.condition(depth - 1, atom))
+        if choice == "for":
+            operand = self.condition(depth - 1, atom)
+            self.fors += 1
+            return ir.For(self.fors - 1, operand, self.draw(durations), span(50))
+        size = self.draw(st.integers(2, 3))
+        operands = tuple(self.condition(depth - 1, atom) for _ in range(size))
+        return ir.And(operands) if choice == "and" else ir.Or(operands)
+
+    def atom(self) -> ir.Condition:
+        """Draw a condition on an input."""
+        index = self.draw(st.integers(0, len(self.inputs) - 1))
+        choice = self.draw(st.integers(0, 9))
+        if choice == 0 and self.inputs[index].timeout_ns is not None:
+            return ir.Missing(index)
+        if choice == 1:
+            return ir.Age(index, self.draw(operators), self.draw(st.integers(-1, 10)))
+        if choice == 2:
+            return ir.Truth(ir.Const(self.draw(st.booleans())))
+        read = ir.Read(self.inputs[index].leaves[0])
+        match self.kinds[index]:
+            case "boolean":
+                return self.boolean(index, read)
+            case "text" if self.draw(st.booleans()):
+                return self.like(index, "text")
+            case "text":
+                operator = self.draw(st.sampled_from(("=", "!=")))
+                return ir.Compare(read, operator, ir.Const(self.draw(texts)))
+        if choice < 6:
+            left, right = self.number(index), self.bound()
+            sides = (right, left) if choice == 3 else (left, right)
+            return ir.Compare(sides[0], self.draw(operators), sides[1])
+        closed = self.draw(st.tuples(st.booleans(), st.booleans()))
+        return ir.Within(self.number(index), self.bound(), self.bound(), *closed)
+
+    def boolean(self, index: int, read: ir.Read) -> ir.Condition:
+        choices: tuple[ir.Condition, ...] = (
+            ir.Truth(read),
+            ir.Compare(read, "=", ir.Const(False)),
+            ir.Compare(read, "!=", ir.Const(False)),
+            ir.Compare(ir.Const(True), "=", read),
+            self.like(index, "boolean"),
+        )
+        return choices[self.draw(st.integers(0, len(choices) - 1))]
+
+    def like(self, index: int, kind: str) -> ir.Condition:
+        """Draw the comparison of an input with another of its kind, or with itself."""
+        others = [n for n, each in enumerate(self.kinds) if each == kind]
+        other = self.inputs[self.draw(st.sampled_from(others))]
+        left, right = ir.Read(self.inputs[index].leaves[0]), ir.Read(other.leaves[0])
+        return ir.Compare(left, self.draw(st.sampled_from(("=", "!="))), right)
+
+    # Rules, behaviours, actions -------------------------------------------------------------------
+
+    def rule(self) -> ir.Rule:
+        index = self.rules
+        condition = self.condition(self.draw(st.integers(0, 3)), self.atom)
+        self.rules += 1
+        return ir.Rule(index, "entity", f"rule_{index}", condition, span(10 + index))
+
+    def reference(self) -> ir.Condition:
+        return ir.RuleRef(self.draw(st.integers(0, self.rules - 1)))
+
+    def behaviour(self, depth: int, parent: int | None) -> ir.Behaviour:
+        index = self.behaviours
+        self.behaviours += 1
+        condition = self.condition(self.draw(st.integers(0, 2)), self.reference)
+        body: list[ir.Trigger | ir.Behaviour] = []
+        for _ in range(self.draw(st.integers(1, 3))):
+            if depth and self.draw(st.integers(0, 2)) == 0:
+                body.append(self.behaviour(depth - 1, index))
+            else:
+                action = self.draw(st.integers(0, self.actions - 1))
+                self.triggered_by.setdefault(action, []).append(index)
+                # Every trigger has a line of its own, so that the events name each of them.
+                line = 60 + sum(map(len, self.triggered_by.values())) % 39
+                arguments = self.draw(st.sampled_from(((), (1, 2.5), ("too 'fast\"",), (True,))))
+                body.append(ir.Trigger(action, arguments, span(line)))
+        name = f"behaviour_{index + 1}"
+        return ir.Behaviour(index, name, condition, tuple(body), parent, span(20 + index))
+
+    def action(self, index: int) -> ir.Action:
+        reset = self.draw(st.sampled_from(("never", "latched", "by")))
+        reset_by = self.draw(st.integers(0, self.actions - 1)) if reset == "by" else None
+        triggered_by = tuple(dict.fromkeys(self.triggered_by.get(index, ())))
+        return ir.Action(
+            index, f"action_{index}", (), None, reset_by, reset == "latched", triggered_by, span(9)
+        )
+
+
+operators = st.sampled_from(("=", "!=", "<", "<=", ">", ">="))
+unit_bearing = st.sampled_from((-1.0, -0.5, 0.0, 0.5, 1.0))
+
+
+@st.composite
+def programs(draw: Draw) -> ir.Program:
+    """Draw a program: up to four inputs, five rules, nested behaviours, actions with resets."""
+    drawing = _Drawing(draw)
+    for _ in range(draw(st.integers(1, 4))):
+        drawing.input()
+    rules = tuple(drawing.rule() for _ in range(draw(st.integers(1, 5))))
+    drawing.actions = draw(st.integers(1, 3))
+    behaviours = tuple(drawing.behaviour(2, None) for _ in range(draw(st.integers(1, 4))))
+    actions = tuple(drawing.action(index) for index in range(drawing.actions))
+    return ir.Program(
+        "random", tuple(drawing.leaves), tuple(drawing.inputs), rules, behaviours, actions
+    )
+
+
+# Traces -------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Step:
+    """One call of a monitor, ``wait_ns`` after the one before (before it, if negative)."""
+
+    call: Literal["message", "advance", "reset"]
+    wait_ns: int
+    topic: str = ""
+    leaves: Mapping[int, LeafValue] = field(default_factory=dict)
+
+
+@st.composite
+def traces(draw: Draw, program: ir.Program) -> list[Step]:
+    """Draw what drives a program's monitor: messages mostly, timers that may be late or absent."""
+    steps = []
+    for _ in range(draw(st.integers(4, 30))):
+        call = draw(
+            st.sampled_from(("message", "message", "message", "message", "advance", "reset"))
+        )
+        backward = draw(st.integers(0, 19)) == 0
+        wait_ns = -draw(st.integers(1, 15)) if backward else draw(waits)
+        if call != "message":
+            steps.append(Step(call, wait_ns))
+            continue
+        topic = draw(st.sampled_from(tuple(program.topics)))
+        steps.append(Step("message", wait_ns, topic, draw(leaf_values(program, topic))))
+    return steps
+
+
+@st.composite
+def leaf_values(draw: Draw, program: ir.Program, topic: str) -> dict[int, LeafValue]:
+    """Draw one message: equal fields have equal values, whichever input reads them."""
+    message: dict[tuple[str | int, ...], LeafValue] = {}
+    values: dict[int, LeafValue] = {}
+    for leaf in program.leaves:
+        if program.inputs[leaf.input].topic == topic:
+            if leaf.path not in message:
+                message[leaf.path] = draw(_values(leaf))
+            values[leaf.index] = message[leaf.path]
+    return values
+
+
+def _values(leaf: ir.Leaf) -> st.SearchStrategy[Any]:
+    for kind in KINDS.values():
+        for path, type_, values in kind.leaves:
+            if (path, type_) == (leaf.path, leaf.type):
+                return values
+    raise AssertionError(f"no values for {leaf.path}")
