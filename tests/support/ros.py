@@ -61,7 +61,11 @@ def environment(domain: int) -> dict[str, str]:
 
 @contextlib.contextmanager
 def running(command: Sequence[str], env: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
-    """Run a program with its output in one pipe; it is gone when the block ends."""
+    """Run a program with its output in one pipe; it is gone when the block ends.
+
+    Raises:
+        AssertionError: if it does not end by SIGINT.
+    """
     with subprocess.Popen(
         command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     ) as process:
@@ -74,6 +78,7 @@ def running(command: Sequence[str], env: dict[str, str]) -> Iterator[subprocess.
                     process.wait(LIMIT)
                 except subprocess.TimeoutExpired:
                     process.kill()
+                    raise AssertionError(f"{command[0]} does not end by SIGINT") from None
 
 
 class Peer:

@@ -10,7 +10,7 @@ from deros.generators.rosnode_python.view import NodeView, PackageView, PortView
 
 def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
     """Return the import statements of the base class: standard library, then the rest."""
-    standard: dict[str, set[str]] = {"typing": {"Any"}}
+    standard: dict[str, set[str]] = {"signal": set(), "typing": {"Any"}}
     if node.has_handlers:
         standard["abc"] = {"ABC", "abstractmethod"}
     if node.parameters:
@@ -22,6 +22,7 @@ def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
         dict(node.interfaces), (kind for kind, _ in node.interfaces)
     )
     add = _Adder(rest)
+    add("rclpy")
     if node.lifecycle:
         add("rclpy.lifecycle", "LifecycleNode")
         if node.gated:
@@ -33,6 +34,7 @@ def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
         add("rclpy.action", "ActionServer", "CancelResponse", "GoalResponse")
         add("rclpy.action.server", "ServerGoalHandle")
         add("rclpy.callback_groups", "ReentrantCallbackGroup")
+        add("rclpy.executors", "MultiThreadedExecutor")
     if node.action_clients:
         add("rclpy.action", "ActionClient")
     if node.clients or node.action_clients:
@@ -51,12 +53,9 @@ def user_imports(package: PackageView, node: NodeView) -> list[str]:
     used = [kind for kind, name in node.interfaces if name in handled]
     rest: dict[str, set[str]] = interface_imports(dict(node.interfaces), used)
     add = _Adder(rest)
-    add("rclpy")
-    add("rclpy.executors", "ExternalShutdownException")
     if node.actions:
         add("rclpy.action.server", "ServerGoalHandle")
-        add("rclpy.executors", "MultiThreadedExecutor")
-    add(f"{package.name}.{node.base_module}", node.base_class)
+    add(f"{package.name}.{node.base_module}", node.base_class, "run")
     return import_lines(rest)
 
 

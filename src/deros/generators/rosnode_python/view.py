@@ -45,7 +45,6 @@ _TAKEN = frozenset(
         "ClockType",
         "DurabilityPolicy",
         "Duration",
-        "ExternalShutdownException",
         "FloatingPointRange",
         "Future",
         "GoalResponse",

@@ -1,10 +1,8 @@
 """The node dock: yours to fill in. deros wrote this file once and leaves it alone."""
 
-from docking.dock_base import DockBase
+from docking.dock_base import DockBase, run
 from example_interfaces.action import Fibonacci
-import rclpy
 from rclpy.action.server import ServerGoalHandle
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rosgraph_msgs.msg import Clock as RosgraphMsgsClock
 
 
@@ -24,14 +22,7 @@ class Dock(DockBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        node = Dock()
-        rclpy.spin(node, executor=MultiThreadedExecutor())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(Dock, args)
 
 
 if __name__ == '__main__':

@@ -1,8 +1,6 @@
 """The node odometry_node: yours to fill in. deros wrote this file once and leaves it alone."""
 
-from differential_odometry.odometry_node_base import OdometryNodeBase
-import rclpy
-from rclpy.executors import ExternalShutdownException
+from differential_odometry.odometry_node_base import OdometryNodeBase, run
 from sensor_msgs.msg import Imu, LaserScan
 from std_msgs.msg import Int32
 from std_srvs.srv import Trigger
@@ -47,14 +45,7 @@ class OdometryNode(OdometryNodeBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        node = OdometryNode()
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(OdometryNode, args)
 
 
 if __name__ == '__main__':
