@@ -82,6 +82,14 @@ def test_all_missing_programs_are_named_before_anything_starts(start: Start) -> 
     assert "started, process" not in text
 
 
+def test_programs_are_found_where_the_environment_says(start: Start, tmp_path: Path) -> None:
+    """DEROS_PACKAGE_PATH names install spaces, as --package-path does."""
+    elsewhere = str(tmp_path / "prefix")
+    run = start("node a : short", AMENT_PREFIX_PATH="", DEROS_PACKAGE_PATH=f"/nowhere:{elsewhere}")
+    assert run.end() == 0
+    assert "[a] done" in run.lines
+
+
 def test_dry_run_prints_the_commands_and_starts_nothing(start: Start, tmp_path: Path) -> None:
     """The commands can be pasted into a shell, and none of them is run."""
     run = start('subsystem arm "The arm" { node a : short }', "--dry-run")
@@ -317,6 +325,7 @@ def test_nodes_are_told_even_when_the_guard_is_killed_with_the_script(start: Sta
     run.until("[a] ready")
     guard = next(int(pid) for pid in _children(run.process.pid) if int(pid) != run.started()["a"])
     os.kill(guard, signal.SIGKILL)
+    run.until("the guard is gone")
     run.signal(signal.SIGKILL)
     assert await_end(run.started()["a"])
 

@@ -138,6 +138,7 @@ class Supervisor:
                     break
                 if pid == self._guard.pid:
                     self._guard.lost = True
+                    self._say('the guard is gone: nodes may live on if this script is killed')
                 if pid in running:
                     running[pid].exit_code = os.waitstatus_to_exitcode(status)
         for process in running.values():

@@ -1,0 +1,243 @@
+"""``deros up``: what it checks first, and that it runs what the script would."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from deros.generators.builtin import rosnode_python
+from deros.generators.writer import write
+from deros.metamodels.load import Repository
+from tests.support.stand_ins import Run, await_end, load_system, make_prefix, make_script
+from tests.support.systems import CONTEXT
+
+if TYPE_CHECKING:
+    from tests.support.ros import Peer
+
+DEROS = Path(sys.executable).with_name("deros")
+
+Up = Callable[..., Run]
+
+
+@pytest.fixture
+def up(tmp_path: Path) -> Iterator[Up]:
+    """Give a function that runs a system of stand-ins with ``deros up``."""
+    prefix = make_prefix(tmp_path / "install" / "demo")
+    runs: list[Run] = []
+
+    def start(
+        members: str, *arguments: str, env: Mapping[str, str] | None = None, install: bool = True
+    ) -> Run:
+        load_system(tmp_path, members)
+        places = ["--install", str(prefix.parent)] if install else []
+        command: list[str | Path] = [DEROS, "up", tmp_path / "robot.system", *places, *arguments]
+        runs.append(Run(command, {**os.environ, "AMENT_PREFIX_PATH": "", **(env or {})}))
+        return runs[-1]
+
+    yield start
+    for run in runs:
+        run.close()
+
+
+def test_a_system_runs_until_it_is_told_to_stop(up: Up) -> None:
+    """The nodes of the install space start, and stop in order; the code is 0."""
+    run = up("node a : steady subsystem s namespace s { node b : steady }")
+    run.until("[a] ready", "[b] ready")
+    run.signal(signal.SIGINT)
+    assert run.end() == 0
+    assert {"[a] got SIGINT", "[b] got SIGINT"} <= set(run.lines)
+
+
+def test_the_failure_of_a_node_is_the_commands(up: Up) -> None:
+    """Exit code 1 comes through."""
+    run = up("node a : steady node b : failing")
+    assert run.end() == 1
+    assert "[Robot] stopping: b has failed" in run.lines
+
+
+def test_a_model_with_errors_is_not_started(up: Up) -> None:
+    """The findings are shown as by ``deros check``, with its code, and nothing is started."""
+    run = up("node a : short wirings connect nothing to /x")
+    assert run.end() == 1
+    text = "\n".join(run.lines)
+    assert "error[DRS204]" in text
+    assert "started" not in text
+
+
+def test_warnings_do_not_keep_a_system_from_starting(up: Up) -> None:
+    """They are shown, and then it runs."""
+    run = up("topics topic /lonely node a : short")
+    assert run.end() == 0
+    text = "\n".join(run.lines)
+    assert text.index("warning[DRS212]") < text.index("[a] done")
+
+
+def test_a_value_that_ros_2_cannot_take_is_not_started(up: Up, tmp_path: Path) -> None:
+    """What the script's generator refuses, ``up`` refuses as well."""
+    (tmp_path / "bytes.rnd").write_text("node bytes : demo parameters name b : byte[] = [1]")
+    run = up("node a : bytes parameters param b = [2]")
+    assert run.end() == 1
+    assert "error[DRS402]" in "\n".join(run.lines)
+
+
+def test_missing_programs_are_named_and_the_code_is_2(up: Up) -> None:
+    """Without the install space there is nothing to run."""
+    run = up("node a : short node b : steady", install=False)
+    assert run.end() == 2
+    text = "\n".join(run.lines)
+    assert "/a: package 'demo' has no program 'short'" in text
+    assert "/b: package 'demo' has no program 'steady'" in text
+
+
+def test_a_dry_run_prints_what_the_scripts_does(up: Up, tmp_path: Path) -> None:
+    """Command and script print the same commands for the same system."""
+    members = "node a : short subsystem s namespace /s { node b : steady log_level warn }"
+    run = up(members, "--dry-run")
+    assert run.end() == 0
+    (tmp_path / "again").mkdir()
+    script = make_script(tmp_path / "again", members)
+    places = ["--package-path", str(tmp_path / "install")]
+    command = [sys.executable, str(script), "--dry-run", *places]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert run.lines[-4:] == done.stdout.splitlines()
+
+
+@pytest.mark.parametrize("arguments", [["--only", "b"], ["--", "--only", "b"], ["--except", "a"]])
+def test_nodes_can_be_chosen(up: Up, arguments: list[str]) -> None:
+    """The script's arguments are options of the command, and may also follow ``--``."""
+    run = up("node a : short node b : short", *arguments)
+    assert run.end() == 0
+    assert "[b] done" in run.lines
+    assert "[a] done" not in run.lines
+
+
+def test_only_systems_can_be_run(tmp_path: Path) -> None:
+    """A node description is a usage error, and so is a file that is not there."""
+    (tmp_path / "a.rnd").write_text("node a : demo")
+    for name, words in (("a.rnd", "no system description"), ("b.system", "DRS001")):
+        done = subprocess.run(
+            [DEROS, "up", tmp_path / name], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 2
+        assert words in done.stderr
+
+
+def test_nodes_end_with_the_command_even_when_it_is_killed(up: Up) -> None:
+    """SIGKILL of the command leaves nothing behind."""
+    run = up("node a : stubborn", "--stop-timeout", "0.1")
+    run.until("[a] ready")
+    run.signal(signal.SIGKILL)
+    assert await_end(run.started()["a"])
+
+
+# On the real middleware ---------------------------------------------------------------------------
+
+TALKER = """
+    node talker : up_demo
+    parameters
+      name text : string = "nothing"
+      name volume : double = 0.0
+    publishes
+      topic words : std_msgs.String
+    timers
+      timer tick every 50 ms
+"""
+LISTENER = """
+    node listener : up_demo
+    subscribes
+      topic heard : std_msgs.String
+    publishes
+      topic ~/answer : std_msgs.String
+"""
+SYSTEM = """
+    system Talk
+    imports
+      import "*.rnd"
+    topics
+      topic /room
+      external topic /answers : std_msgs.String
+    subsystem front namespace /front {
+      node speaker : talker
+      parameters
+        param text = "true"
+        param volume = 11
+      wirings
+        connect words to /room
+    }
+    subsystem back namespace /back {
+      node ear : listener respawn
+      wirings
+        connect heard to /room
+        connect ~/answer to /answers
+    }
+"""
+BODIES = {
+    "talker": (
+        "self.get_logger().warning('on_tick does nothing yet', once=True)",
+        "self.publish_words(String(data=f'{self.parameters.text} {self.parameters.volume!r}'))",
+    ),
+    "listener": (
+        "self.get_logger().warning('on_heard does nothing yet', once=True)",
+        "self.publish_answer(String(data=f'{self.get_fully_qualified_name()}: {msg.data}'))",
+    ),
+}
+
+
+def generate_package(folder: Path) -> None:
+    """Generate the package of both nodes and fill them in."""
+    (folder / "talker.rnd").write_text(TALKER)
+    (folder / "listener.rnd").write_text(LISTENER)
+    loaded = Repository().load(folder / "talker.rnd")
+    assert loaded.diagnostics == ()
+    write(rosnode_python(loaded.model, CONTEXT), folder)
+    for name, (empty, filled) in BODIES.items():
+        path = folder / "up_demo" / "up_demo" / f"{name}.py"
+        text = path.read_text()
+        assert empty in text
+        text = text.replace(empty, filled)
+        if "import String" not in text:
+            text = text.replace(
+                "\nfrom up_demo", "\nfrom std_msgs.msg import String\nfrom up_demo", 1
+            )
+        path.write_text(text)
+
+
+@pytest.mark.ros
+def test_generated_nodes_talk_as_the_system_says(
+    tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
+) -> None:
+    """Two generated packages run from their sources, under their names, and hear each other.
+
+    Names, namespaces, both kinds of remapping and a text that looks like a truth value arrive; a
+    killed node comes back; and all ends with 0.
+    """
+    from std_msgs.msg import String
+
+    generate_package(tmp_path)
+    (tmp_path / "talk.system").write_text(SYSTEM)
+    answers: list[str] = []
+    ros_peer.node.create_subscription(String, "/answers", lambda m: answers.append(m.data), 10)
+    run = Run([DEROS, "up", tmp_path / "talk.system", "--install", tmp_path], ros_env)
+    try:
+        ros_peer.until(lambda: answers)
+        assert answers[0] == "/back/ear: true 11.0"
+        assert set(ros_peer.node.get_node_names_and_namespaces()) >= {
+            ("speaker", "/front"),
+            ("ear", "/back"),
+        }
+        run.until("ear started")
+        os.kill(run.started()["ear"], signal.SIGKILL)
+        run.until("ear was killed by SIGKILL; restart 1 in 0 s")
+        answers.clear()
+        ros_peer.until(lambda: answers)
+        run.signal(signal.SIGINT)
+        assert run.end() == 0
+    finally:
+        run.close()
