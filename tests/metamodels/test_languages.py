@@ -12,8 +12,15 @@ from textx import get_children_of_type
 from textx.exceptions import TextXSyntaxError
 
 from benchmarks.big_system import write
-from deros.metamodels.languages import LANGUAGES, Language, Token, language_of, metamodel
+from deros.metamodels.languages import (
+    LANGUAGES,
+    Language,
+    language_of,
+    metamodel,
+    quick_metamodel,
+)
 from deros.metamodels.load import Repository
+from deros.metamodels.matching import Token
 from deros.metamodels.scoping import Reference
 from deros.metamodels.syntax import in_words
 from tests.support import paper
@@ -58,9 +65,9 @@ def test_textx_parses_comments_and_all() -> None:
 
 
 def test_tokens_know_their_place() -> None:
-    """Attribute values of a textX model are texts with an offset."""
+    """In the loader's models, attribute values are texts with an offset."""
     text = "node  a : p publishes topic /x : std_msgs.Bool"
-    model = metamodel("rosnode").model_from_str(text)
+    model = quick_metamodel("rosnode").model_from_str(text)
     (port,) = get_children_of_type("TopicPort", model)
     for token in (model.name, model.package, port.name, port.type):
         assert isinstance(token, Token)

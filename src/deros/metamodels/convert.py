@@ -15,7 +15,7 @@ from deros.interfaces.units import UnitRegistry
 from deros.metamodels.common import Interval, Name, QosProfile, Scalar, Value
 
 if TYPE_CHECKING:
-    from deros.metamodels.languages import Token
+    from deros.metamodels.matching import Token
 
 _ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{4}|.)", re.DOTALL)
 _ESCAPES = {'"': '"', "\\": "\\", "/": "/", "n": "\n", "t": "\t", "r": "\r"}

@@ -45,7 +45,7 @@ from deros.metamodels.rules import (
 )
 
 if TYPE_CHECKING:
-    from deros.metamodels.languages import Token
+    from deros.metamodels.matching import Token
     from deros.metamodels.scoping import FileIndex, Reference
     from deros.metamodels.system import System
 

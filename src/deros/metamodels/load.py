@@ -19,7 +19,8 @@ from deros.metamodels.convert_node import NodeConverter
 from deros.metamodels.convert_rules import RulesConverter
 from deros.metamodels.convert_system import SystemConverter
 from deros.metamodels.imports import find_files
-from deros.metamodels.languages import LANGUAGES, Language, Token, language_of, quick_metamodel
+from deros.metamodels.languages import LANGUAGES, Language, language_of, quick_metamodel
+from deros.metamodels.matching import Token
 from deros.metamodels.node import NodeType
 from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, too_deep
 from deros.metamodels.rules import Rules

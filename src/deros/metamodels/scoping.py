@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
-    from deros.metamodels.languages import Token
+    from deros.metamodels.matching import Token
     from deros.metamodels.node import NodeType
     from deros.metamodels.system import System
 

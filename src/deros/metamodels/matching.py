@@ -1,0 +1,249 @@
+"""A quick way to run a parser that textX has built from a grammar.
+
+Arpeggio, textX's parser, raises an exception for every alternative that does not match, and looks
+for a comment before every token. It takes three and a half times as long as the functions made here
+from the very same parser expressions. They yield the very same parse tree, except that the value of
+a token is a :class:`Token`, which knows its place. Where they find no match, textX's own parser
+runs after all, because only it can tell what is wrong.
+
+Prepared text is parsed, see :func:`deros.metamodels.reading.prepare`: its comments are blank.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+from arpeggio import (
+    EndOfFile,
+    NonTerminal,
+    OneOrMore,
+    Optional,
+    OrderedChoice,
+    ParsingExpression,
+    RegExMatch,
+    Repetition,
+    Sequence,
+    StrMatch,
+    Terminal,
+    ZeroOrMore,
+)
+
+Matcher = Callable[[str, int, list[Any]], int]
+"""Matches a text at a position that is no blank and appends to the list what it makes of it.
+
+It returns the position of the next character that is no blank, or -1, and then what it appended is
+to be thrown away.
+"""
+
+_skip_blanks = re.compile(r"[\t\n\r ]*").match
+
+
+class Token(str):
+    """A piece of a model's text; ``start`` is the offset of its first character."""
+
+    __slots__ = ("start",)
+    start: int
+
+    @property
+    def end(self) -> int:
+        """The offset just past the last character."""
+        return self.start + len(self)
+
+
+class _Leaf(Terminal):  # type: ignore[misc]
+    error = False
+    comments = None
+    suppress = False
+    extra_info = None
+
+    def __init__(self, rule: Any, position: int, value: str) -> None:
+        self.rule = rule
+        self.rule_name = rule.rule_name
+        self.position = position
+        self.value = value
+
+
+class _Branch(NonTerminal):  # type: ignore[misc]
+    error = False
+    comments = None
+    _filtered = False
+
+    def __init__(self, rule: Any, nodes: list[Any]) -> None:
+        list.__init__(self, nodes)
+        self.rule = rule
+        self.rule_name = rule.rule_name
+        self.position = nodes[0].position
+
+
+def make_quick(metamodel: Any) -> None:
+    """Let the parsers of a textX metamodel run by matchers, and fall back to textX's way."""
+    blueprint = metamodel._parser_blueprint
+    match = _Compiler().matcher(blueprint.parser_model)
+
+    class QuickParser(type(blueprint)):  # type: ignore[misc]
+        def _parse(self) -> Any:
+            text = self.input
+            found: list[Any] = []
+            if match(text, _skip_blanks(text).end(), found) >= 0:  # type: ignore[union-attr]
+                return found[0]
+            return super()._parse()
+
+    blueprint.__class__ = QuickParser
+
+
+class _Compiler:
+    """Makes one matcher for each parser expression; expressions refer to each other in circles."""
+
+    def __init__(self) -> None:
+        self._made: dict[int, Matcher] = {}
+
+    def matcher(self, expression: ParsingExpression) -> Matcher:
+        """Return the matcher of an expression, made at its first use."""
+        known = self._made.get(id(expression))
+        if known is not None:
+            return known
+
+        def forward(text: str, position: int, out: list[Any]) -> int:
+            return self._made[id(expression)](text, position, out)
+
+        self._made[id(expression)] = forward
+        made = self._make(expression)
+        self._made[id(expression)] = made
+        return made
+
+    def _make(self, expression: ParsingExpression) -> Matcher:
+        if isinstance(expression, EndOfFile):
+            return _end(expression)
+        if isinstance(expression, RegExMatch):
+            return _token(expression)
+        if isinstance(expression, StrMatch):
+            return _sign(expression)
+        parts = [self.matcher(node) for node in expression.nodes]
+        kind = type(expression)
+        if kind is Sequence:
+            made = _sequence(parts)
+        elif kind is OrderedChoice:
+            made = _choice(parts)
+        elif kind is Optional:
+            made = _optional(parts[0])
+        elif kind in (ZeroOrMore, OneOrMore):
+            made = self._repetition(expression, parts[0])
+        else:
+            raise TypeError(f"no matcher for {kind.__name__}, which no grammar here needs")
+        return _branch(expression, made) if expression.root else made
+
+    def _repetition(self, expression: Repetition, part: Matcher) -> Matcher:
+        separator = self.matcher(expression.sep) if expression.sep else None
+        least = 1 if type(expression) is OneOrMore else 0
+        return _repeated(part, separator, least)
+
+
+def _end(expression: EndOfFile) -> Matcher:
+    def match(text: str, position: int, out: list[Any]) -> int:
+        if position < len(text):
+            return -1
+        out.append(_Leaf(expression, position, ""))
+        return position
+
+    return match
+
+
+def _token(expression: RegExMatch) -> Matcher:
+    find = expression.regex.match
+
+    def match(text: str, position: int, out: list[Any]) -> int:
+        found = find(text, position)
+        if found is None:
+            return -1
+        token = Token(found.group())
+        token.start = position
+        out.append(_Leaf(expression, position, token))
+        end: int = _skip_blanks(text, found.end()).end()  # type: ignore[union-attr]
+        return end
+
+    return match
+
+
+def _sign(expression: StrMatch) -> Matcher:
+    sign = expression.to_match
+    length = len(sign)
+
+    def match(text: str, position: int, out: list[Any]) -> int:
+        if not text.startswith(sign, position):
+            return -1
+        out.append(_Leaf(expression, position, sign))
+        end: int = _skip_blanks(text, position + length).end()  # type: ignore[union-attr]
+        return end
+
+    return match
+
+
+def _sequence(parts: list[Matcher]) -> Matcher:
+    if len(parts) == 1:
+        return parts[0]
+
+    def match(text: str, position: int, out: list[Any]) -> int:
+        for part in parts:
+            position = part(text, position, out)
+            if position < 0:
+                return -1
+        return position
+
+    return match
+
+
+def _choice(parts: list[Matcher]) -> Matcher:
+    def match(text: str, position: int, out: list[Any]) -> int:
+        before = len(out)
+        for part in parts:
+            end = part(text, position, out)
+            if end >= 0:
+                return end
+            del out[before:]
+        return -1
+
+    return match
+
+
+def _optional(part: Matcher) -> Matcher:
+    def match(text: str, position: int, out: list[Any]) -> int:
+        before = len(out)
+        end = part(text, position, out)
+        if end >= 0:
+            return end
+        del out[before:]
+        return position
+
+    return match
+
+
+def _repeated(part: Matcher, separator: Matcher | None, least: int) -> Matcher:
+    def match(text: str, position: int, out: list[Any]) -> int:
+        count = 0
+        while True:
+            before = len(out)
+            end = position
+            if separator is not None and count:
+                end = separator(text, end, out)
+            if end >= 0:
+                end = part(text, end, out)
+            if end < 0:
+                del out[before:]
+                return position if count >= least else -1
+            position = end
+            count += 1
+
+    return match
+
+
+def _branch(expression: ParsingExpression, inner: Matcher) -> Matcher:
+    def match(text: str, position: int, out: list[Any]) -> int:
+        nodes: list[Any] = []
+        end = inner(text, position, nodes)
+        if end >= 0 and nodes:
+            out.append(_Branch(expression, nodes))
+        return end
+
+    return match

@@ -1,0 +1,51 @@
+"""Texts of the three languages, and ways to spoil them."""
+
+from __future__ import annotations
+
+from hypothesis import strategies as st
+
+from tests.support import paper
+
+_EXTENSIONS = """\
+node a : p "d" executable "x" lifecycle
+parameters name x : double[] = [1.0, 2e3] [m/s] in [0.1, 2) one_of [1] size 3 read_only "d"
+publishes topic /o : a.B { t.x[2] [m/s], y [rad] } qos best_effort depth 5 deadline 1 ms via x
+timers timer t every 20 ms
+"""
+_RULES = """\
+unit knot = 0.5 m/s
+action stop publishes true on /stop : std_msgs.Bool reset_by ok latched "d";
+input s = topic /scan.ranges[2] timeout 0.5 sec
+entity e { r: (not /a.b.c(1, -2 deg).d() >= -x.y for 2 sec) or s in (0, 1 m] and t; }
+behaviour b: if e.r then { stop; if e.r then { log_state("a\\"b"); }; };
+"""
+_SYSTEM = """\
+system S imports import "n/*.rnd" topics external topic /t : a.B qos reliable "d"
+subsystem l : Arm namespace /l node n : a namespace x respawn delay 1 sec max 3 log_level warn
+parameters param p = [true, "x", -1.5e3] wirings connect a to ~/b;
+"""
+TEXTS = {
+    "rnd": [paper.FIGURE_11, _EXTENSIONS],
+    "system": [paper.FIGURE_12, _SYSTEM],
+    "deros": [*paper.RULES.values(), _RULES],
+}
+"""Sound models by the suffix of their files."""
+
+_WORDS = "not for in if topic node subsystem connect qos 0 1e9 é \u00a0 \x0c \U0001f916"
+_SIGNS = '" \\ /* */ // ( ) [ ] { } ; : . , - ~ / ='
+PIECES = st.sampled_from(["", " ", "\n", *_WORDS.split(" "), *_SIGNS.split(" ")])
+"""Words and signs of the languages, and what is none of them."""
+
+
+@st.composite
+def mutated(draw: st.DrawFn) -> tuple[str, str]:
+    """Draw a suffix and one of its texts, cut short or with pieces replaced."""
+    suffix = draw(st.sampled_from(sorted(TEXTS)))
+    text = draw(st.sampled_from(TEXTS[suffix]))
+    if draw(st.booleans()):
+        return suffix, text[: draw(st.integers(0, len(text)))]
+    for _ in range(draw(st.integers(1, 5))):
+        start = draw(st.integers(0, len(text)))
+        end = min(len(text), start + draw(st.integers(0, 8)))
+        text = text[:start] + draw(PIECES) + text[end:]
+    return suffix, text
