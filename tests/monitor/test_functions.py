@@ -19,7 +19,7 @@ from deros.monitor import function_values as values
 from deros.monitor.functions import FUNCTIONS
 
 NUMBERS = st.floats(allow_nan=False)
-MODERATE = st.floats(-1e3, 1e3)
+MODERATE = st.floats(-1e3, 1e3, allow_subnormal=False)
 ANGLES = st.floats(-7.0, 7.0)
 BEAMS = st.lists(st.floats(width=32), max_size=20)
 

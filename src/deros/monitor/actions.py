@@ -10,6 +10,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Related, Severity
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import FLOAT_TYPES, FieldType, MessageDefinition
+from deros.interfaces.units import Unit
 from deros.metamodels import rules
 from deros.metamodels.common import Name
 from deros.metamodels.flatten import resolve_name
@@ -136,12 +137,19 @@ class Actions:
         value: Fixed,
     ) -> ir.Binding | None:
         """Put the value into the first field of the message that can hold it."""
-        for name, kind in definition.fields:
-            if isinstance(kind.base, str) and not kind.is_array:
-                scalar = self._scalar(binding, topic, name, kind, value)
-                if scalar is not None:
-                    self._check_distinct(binding, definition, name, kind, scalar)
-                    return ir.Binding(topic, binding.type, (name,), scalar)
+        candidates = [
+            (name, kind, self._scope.unit_of(topic, binding.type, (name,)))
+            for name, kind in definition.fields
+            if isinstance(kind.base, str) and not kind.is_array
+        ]
+        if isinstance(value, Quantity) and value.unit is not None:
+            # A field whose unit is known to fit goes before one that happens to have none.
+            candidates.sort(key=lambda candidate: candidate[2] is None)
+        for name, kind, unit in candidates:
+            scalar = self._scalar(kind, unit, value)
+            if scalar is not None:
+                self._check_distinct(binding, definition, name, kind, scalar)
+                return ir.Binding(topic, binding.type, (name,), scalar)
         fields = ", ".join(f"{name} ({kind})" for name, kind in definition.fields)
         self._scope.fault(
             codes.ACTION_VALUE,
@@ -151,10 +159,8 @@ class Actions:
         )
         return None
 
-    def _scalar(
-        self, binding: rules.Binding, topic: str, name: str, kind: FieldType, value: Fixed
-    ) -> ir.Scalar | None:
-        """Return the value as this field holds it, or ``None`` if it cannot."""
+    def _scalar(self, kind: FieldType, unit: Unit | None, value: Fixed) -> ir.Scalar | None:
+        """Return the value as a field of this type and unit holds it, or ``None`` if it cannot."""
         if not isinstance(value, Quantity):
             scalar = value.value if isinstance(value, Plain) else value.constant.value
             if isinstance(value, MessageConstant) and value.constant.type != kind.base:
@@ -162,7 +168,6 @@ class Actions:
             return scalar if family_of(scalar) == family(kind) else None
         if family(kind) != "number":
             return None
-        unit = self._scope.unit_of(topic, binding.type, (name,))
         if unit and value.unit and not self._scope.units.compatible(value.unit, unit):
             return None
         number = value.in_unit(unit)

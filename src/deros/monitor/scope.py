@@ -26,7 +26,8 @@ from deros.monitor import ir
 from deros.monitor.resolved import DeclaredInput
 from deros.monitor.topics import SystemTopics
 
-_PATH_PART = re.compile(r"\s*(?:\.\s*)?([A-Za-z_]\w*|\[\s*\d+\s*\])")
+_GAP = r"(?:\s|//[^\n]*|/\*.*?\*/)*"
+_PATH_PART = re.compile(rf"{_GAP}(?:\.{_GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])", re.DOTALL)
 
 
 class Scope:

@@ -73,11 +73,15 @@ class NumberSet:
         drawn_in = []
         for piece in self.pieces:
             lower, upper = piece.lower, piece.upper
+            lower_closed, upper_closed = piece.lower_closed, piece.upper_closed
             if isinstance(lower, Fraction):
                 least = math.ceil(lower)
-                lower = Fraction(least + (least == lower and not piece.lower_closed))
+                lower = Fraction(least + (least == lower and not lower_closed))
+                lower_closed = True
             if isinstance(upper, Fraction):
                 greatest = math.floor(upper)
-                upper = Fraction(greatest - (greatest == upper and not piece.upper_closed))
-            drawn_in.extend(NumberSet.between(lower, upper).pieces)
+                upper = Fraction(greatest - (greatest == upper and not upper_closed))
+                upper_closed = True
+            ends = NumberSet.between(lower, upper, lower_closed, upper_closed)
+            drawn_in.extend(ends.pieces)
         return NumberSet(tuple(drawn_in))

@@ -1,0 +1,282 @@
+"""Comparisons: exact bounds, units, kinds of values, ages."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from deros.monitor import ir
+from deros.monitor.bounds import integer_bound
+from deros.monitor.build import build
+from deros.monitor.evaluate import COMPARE
+from tests.support.rules import condition, embedded_store, program
+
+SPEED = "topic /odom.twist.twist.linear.x"
+TURN = "topic /imu.angular_velocity.z"
+MODE = "topic /mode.data"
+
+
+def bound(text: str, declarations: str = "") -> ir.Scalar:
+    """Return the constant that a rule compares with."""
+    found = condition(text, declarations)
+    assert isinstance(found, ir.Compare)
+    assert isinstance(found.right, ir.Const)
+    return found.right.value
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        (f"{SPEED} > 0.5", 0.5),
+        (f"{SPEED} > 0.5 m/s", 0.5),
+        (f"{SPEED} > 1.8 km/h", 0.5),
+        (f"{SPEED} > 30 cm/s", 0.3),
+        (f"{TURN} > 90 deg/s", math.pi / 2.0),
+        (f"{TURN} > -90 deg/s", -math.pi / 2.0),
+        ("topic /imu.orientation.roll() > toRad(10 deg)", math.radians(10)),
+        ("topic /imu.orientation.roll() > toRad(10)", math.radians(10)),
+        ("topic /imu.orientation.roll() > toDeg(0.2 rad)", 0.2),
+        ("topic /imu.orientation.roll() > 0.2", 0.2),
+        ("topic /speed.data > toRad(180 deg)", math.pi),
+        ("topic /speed.data > toDeg(1)", math.degrees(1)),
+        ("topic /speed.data > 10 deg", 10.0),
+    ],
+)
+def test_constant_in_the_unit_of_the_field(text: str, value: float) -> None:
+    """A constant is converted exactly and rounded once; without a unit to go by it stands as is."""
+    assert bound(text) == value
+
+
+def test_unit_of_ones_own() -> None:
+    """A unit that the rules define converts like any other."""
+    declarations = "unit knot = 0.514444 m/s  const limit = 2 knot"
+    assert bound(f"{SPEED} > limit", declarations) == 1.028888
+
+
+def test_temperature_has_an_offset() -> None:
+    """A field in degrees Celsius is compared with kelvins and degrees Fahrenheit."""
+    assert bound("topic /battery.temperature > 300 K") == 26.85
+    assert bound("topic /battery.temperature > 68 degF") == 20.0
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.decimals(-1000, 1000, allow_nan=False, places=6))
+def test_decimal_is_rounded_once(value: Decimal) -> None:
+    """A written number is the double nearest to it."""
+    assert bound(f"topic /speed.data > {value:f}") == float(value)
+
+
+@given(
+    value=st.integers(-300, 300),
+    number=st.fractions(-300, 300, max_denominator=8),
+    operator=st.sampled_from(sorted(COMPARE)),
+)
+def test_integer_bound_means_the_same(value: int, number: Fraction, operator: ir.Operator) -> None:
+    """For every integer the comparison brought to an integer bound has the exact verdict."""
+    brought, limit = integer_bound(operator, number)
+    assert COMPARE[brought](value, limit) is COMPARE[operator](Fraction(value), number)
+
+
+def test_integer_bound_beyond_doubles() -> None:
+    """A number that rounds to an integer is not taken for one."""
+    operator, limit = integer_bound("=", Fraction(2**60) + Fraction(1, 2))
+    assert (operator, limit) == ("=", 0.5)
+    assert integer_bound(">", Fraction(2**63 - 1)) == (">", 2**63 - 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "operator", "value"),
+    [
+        (f"{MODE} > 2.5", ">", 2),
+        (f"{MODE} >= 2.5", ">=", 3),
+        (f"{MODE} < 2.5", "<", 3),
+        (f"{MODE} <= 2.5", "<=", 2),
+        (f"{MODE} = 2.5", "=", 2.5),
+        (f"{MODE} == 2", "=", 2),
+        (f"2 <= {MODE}", ">=", 2),
+        (f"2.5 < {MODE}", ">", 2),
+        (f"2 != {MODE}", "!=", 2),
+    ],
+)
+def test_comparison_of_an_integer(text: str, operator: str, value: float) -> None:
+    """Integers are compared with integers; a constant on the left is moved to the right."""
+    assert condition(text) == ir.Compare(ir.Read(0), operator, ir.Const(value))  # type: ignore[arg-type]
+    assert type(bound(text)) is type(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "within"),
+    [
+        (f"{MODE} in [1.5, 3.5]", (2, 3, True, True)),
+        (f"{MODE} in (1, 3.5)", (1, 3, False, True)),
+        ("topic /speed.data in (1, 2]", (1.0, 2.0, False, True)),
+        ("topic /speed.data in [1, 2)", (1.0, 2.0, True, False)),
+    ],
+)
+def test_interval(text: str, within: tuple[float, float, bool, bool]) -> None:
+    """Ends stay as they are written, but those of integers are drawn in to integers."""
+    lower, upper, lower_closed, upper_closed = within
+    expected = ir.Within(ir.Read(0), ir.Const(lower), ir.Const(upper), lower_closed, upper_closed)
+    assert condition(text) == expected
+    assert condition(text.replace(" in ", " not in ")) == ir.Not(expected)
+
+
+def test_interval_between_fields() -> None:
+    """The ends may be read from topics."""
+    found = condition(f"topic /speed.data in [{MODE}, 3]")
+    assert found == ir.Within(ir.Read(0), ir.Read(1), ir.Const(3.0), True, True)
+
+
+def test_field_against_field() -> None:
+    """Fields of one unit compare as they are, others through a factor."""
+    same = condition(f"{SPEED} > topic /odom.twist.twist.linear.y")
+    assert same == ir.Compare(ir.Read(0), ">", ir.Read(1))
+    stamp = "topic /imu.header.stamp"
+    scaled = condition(f"{stamp}.sec > {stamp}.nanosec")
+    assert scaled == ir.Compare(ir.Read(0), ">", ir.Scale(ir.Read(1), 1e-9))
+
+
+def test_message_constant_by_name() -> None:
+    """A name that the rules do not declare may be a constant of the message on the other side."""
+    status = "topic /status.level"
+    assert condition(f"{status} = ERROR") == ir.Compare(ir.Read(0), "=", ir.Const(2))
+    assert condition(f"WARN != {status}") == ir.Compare(ir.Read(0), "!=", ir.Const(1))
+    assert bound(f"{status} = ERROR", "const ERROR = 7") == 7
+
+
+def test_booleans_and_texts() -> None:
+    """A boolean stands alone or is compared; a text is compared."""
+    flag = "topic /flag.data"
+    assert condition(flag) == ir.Truth(ir.Read(0))
+    assert condition(f"{flag} != true") == ir.Compare(ir.Read(0), "!=", ir.Const(True))
+    assert condition('topic /name.data = "go"') == ir.Compare(ir.Read(0), "=", ir.Const("go"))
+    assert condition("true") == ir.Truth(ir.Const(True))
+
+
+def test_missing_against_a_boolean() -> None:
+    """`missing()` may be compared with true and false."""
+    declared = "input v = topic /speed.data timeout 1 sec"
+    assert condition("v.missing() = false", declared) == ir.Not(ir.Missing(0))
+    assert condition("v.missing() != false", declared) == ir.Missing(0)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("v.age() > 0.4 sec", ir.Age(0, ">", 400_000_000)),
+        ("v.age() >= 3 ns", ir.Age(0, ">=", 3)),
+        ("v.age() < 2", ir.Age(0, "<", 2_000_000_000)),
+        ("1 min < v.age()", ir.Age(0, ">", 60_000_000_000)),
+        (
+            "v.age() in (1 sec, 2 sec]",
+            ir.And((ir.Age(0, ">", 1_000_000_000), ir.Age(0, "<=", 2_000_000_000))),
+        ),
+        (
+            "v.age() not in [1 sec, 2 sec)",
+            ir.Not(ir.And((ir.Age(0, ">=", 1_000_000_000), ir.Age(0, "<", 2_000_000_000)))),
+        ),
+    ],
+)
+def test_age(text: str, expected: ir.Condition) -> None:
+    """An age is compared with whole nanoseconds; a plain number is in seconds."""
+    assert condition(text, "input v = topic /speed.data timeout 9 sec") == expected
+
+
+@pytest.mark.parametrize(
+    ("duration", "nanoseconds"),
+    [("4sec", 4 * 10**9), ("0.1 ms", 10**5), ("2 min", 12 * 10**10), ("0 sec", 0), ("1 ns", 1)],
+)
+def test_duration_is_exact(duration: str, nanoseconds: int) -> None:
+    """Durations are whole nanoseconds, not rounded ones."""
+    found = condition(f"topic /flag.data for {duration}")
+    assert isinstance(found, ir.For)
+    assert found.duration_ns == nanoseconds
+
+
+# Functions ------------------------------------------------------------------------------------
+
+
+def test_functions_of_functions() -> None:
+    """The rate of an angle is an angle per second; each rate has a memory of its own."""
+    declared = "input q = topic /imu.orientation"
+    found = condition("q.yaw().rate().abs() > 90 deg/s or q.yaw().rate() > 1", declared)
+    yaw = ir.Apply("yaw", tuple(ir.Read(leaf) for leaf in range(4)), 0)
+    first = ir.Apply("abs", (ir.Apply("rate", (yaw,), 0, 0),), 0)
+    assert isinstance(found, ir.Or)
+    assert found.operands[0] == ir.Compare(first, ">", ir.Const(math.pi / 2.0))
+    assert found.operands[1] == ir.Compare(ir.Apply("rate", (yaw,), 0, 1), ">", ir.Const(1.0))
+
+
+def test_norm_has_the_unit_of_its_components() -> None:
+    """The length of a velocity is a speed."""
+    found = condition("topic /odom.twist.twist.linear.norm() > 3.6 km/h")
+    reads = tuple(ir.Read(leaf) for leaf in range(3))
+    assert found == ir.Compare(ir.Apply("norm", reads, 0), ">", ir.Const(1.0))
+
+
+def test_nearest_reads_the_scan() -> None:
+    """NaN beams are the function's business; a NaN in the scan's geometry makes it unknown."""
+    built = program("entity e { r: topic /scan.nearest(-30 deg, 0.5) < 40 cm; }")
+    assert [(leaf.path, leaf.nan_is_unknown) for leaf in built.leaves] == [
+        (("ranges",), False),
+        (("angle_min",), True),
+        (("angle_increment",), True),
+        (("range_min",), True),
+        (("range_max",), True),
+    ]
+    leaves = [ir.Read(leaf) for leaf in range(5)]
+    bearings = ir.Const(-0.5235987755982989), ir.Const(0.5)
+    nearest = ir.Apply("nearest", (*leaves, *bearings), 0)
+    assert built.rules[0].condition == ir.Compare(nearest, "<", ir.Const(0.4))
+
+
+def test_counting_ignores_nan_unless_another_function_cares() -> None:
+    """`count()` alone reads an array whatever it holds; with `max()` a NaN makes it unknown."""
+    declared = "input p = topic /joints.position"
+    counted = program(f"{declared} entity e {{ r: p.count() > 3; }}")
+    assert [leaf.nan_is_unknown for leaf in counted.leaves] == [False]
+    both = program(f"{declared} entity e {{ r: p.count() > 3 and p.max() > 1; }}")
+    assert [leaf.nan_is_unknown for leaf in both.leaves] == [True]
+
+
+def test_count_of_texts() -> None:
+    """Any array has a length, also one of texts or of messages."""
+    built = program(
+        "entity e { r: topic /joints.name.count() != 6; s: /status.values.count() > 1; }"
+    )
+    assert [str(leaf.type) for leaf in built.leaves] == [
+        "string[]",
+        "diagnostic_msgs/msg/KeyValue[]",
+    ]
+
+
+def test_unit_annotated_on_a_port(tmp_path: Path) -> None:
+    """A node description tells the unit of a field that no convention knows, also of elements."""
+    (tmp_path / "gauge.rnd").write_text(
+        "node gauge : gauges publishes"
+        " topic depth : std_msgs.Float64 { data [cm] }"
+        " topic depths : std_msgs.Float64MultiArray { data [mm] }"
+    )
+    (tmp_path / "Tank.system").write_text(
+        'system Tank imports import "gauge.rnd" node gauge : gauge'
+    )
+    text = (
+        'use "Tank.system" import Tank entity e {'
+        " one: /depth.data > 2 m; each: /depths.data[3] > 2 m; all: /depths.data.max() > 1 cm; }"
+    )
+    model = Repository().load_text(tmp_path / "x.deros", text).model
+    assert isinstance(model, Rules)
+    built = build(model, embedded_store()).program
+    assert built is not None
+    bounds = [
+        each.condition.right for each in built.rules if isinstance(each.condition, ir.Compare)
+    ]
+    assert bounds == [ir.Const(200.0), ir.Const(2000.0), ir.Const(10.0)]
