@@ -90,7 +90,7 @@ class Chart:
         self._rectangle(top, 14, "lane")
         for start, end in spans:
             left = self.time(start)
-            width = max(1.5, self.time(end) - left)
+            width = max(3.0, self.time(end) - left)
             self.parts.append(
                 f'<rect class="bar {css}" x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" '
                 f'height="14" rx="2"><title>{escape(label)}: {start:.2f} to {end:.2f}</title>'

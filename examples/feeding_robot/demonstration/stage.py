@@ -153,7 +153,7 @@ class Stage:
                 pace.answered()
 
         pace = Pace(lambda seconds: steps.publish(Float64(data=seconds)), ask)
-        self._node.create_timer(0.25, pace.remind, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._node.create_timer(0.1, pace.remind, clock=Clock(clock_type=ClockType.STEADY_TIME))
         return pace
 
     def _spin(self) -> None:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import rclpy
-from feeding_robot_actuators.actuator_arbiter_base import ActuatorArbiterBase
+from feeding_robot_actuators.actuator_arbiter_base import ActuatorArbiterBase, run
 from feeding_robot_actuators.arbitration import Arbiter, Limits
 from geometry_msgs.msg import Twist
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import ExternalShutdownException
 from std_msgs.msg import Bool, Float64, UInt8, UInt64
 
 
@@ -64,13 +62,7 @@ class ActuatorArbiter(ActuatorArbiterBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        rclpy.spin(ActuatorArbiter())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(ActuatorArbiter, args)
 
 
 if __name__ == "__main__":

@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 import random
 
-import rclpy
 from feeding_robot_imu.attitude import disturbed
-from feeding_robot_imu.imu_driver_base import ImuDriverBase
+from feeding_robot_imu.imu_driver_base import ImuDriverBase, run
 from nav_msgs.msg import Odometry
-from rclpy.executors import ExternalShutdownException
 from sensor_msgs.msg import Imu
 
 GRAVITY = 9.81
@@ -46,13 +44,7 @@ class ImuDriver(ImuDriverBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        rclpy.spin(ImuDriver())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(ImuDriver, args)
 
 
 if __name__ == "__main__":

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 
-import rclpy
-from feeding_robot_lidar.lidar_driver_base import LidarDriverBase
+from feeding_robot_lidar.lidar_driver_base import LidarDriverBase, run
 from feeding_robot_lidar.sweep import ranges
-from rclpy.executors import ExternalShutdownException
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
 
@@ -33,13 +31,7 @@ class LidarDriver(LidarDriverBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        rclpy.spin(LidarDriver())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(LidarDriver, args)
 
 
 if __name__ == "__main__":

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 
-import rclpy
 from feeding_robot_mission.mission import Mission
-from feeding_robot_mission.mission_controller_base import MissionControllerBase
+from feeding_robot_mission.mission_controller_base import MissionControllerBase, run
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import ExternalShutdownException
 from std_msgs.msg import Bool, UInt8, UInt64
 
 AUTOMATIC = 2
@@ -63,13 +61,7 @@ class MissionController(MissionControllerBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        rclpy.spin(MissionController())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(MissionController, args)
 
 
 if __name__ == "__main__":

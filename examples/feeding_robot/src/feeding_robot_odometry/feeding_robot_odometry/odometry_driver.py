@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import random
 
-import rclpy
-from feeding_robot_odometry.odometry_driver_base import OdometryDriverBase
+from feeding_robot_odometry.odometry_driver_base import OdometryDriverBase, run
 from nav_msgs.msg import Odometry
-from rclpy.executors import ExternalShutdownException
 
 
 class OdometryDriver(OdometryDriverBase):
@@ -33,13 +31,7 @@ class OdometryDriver(OdometryDriverBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        rclpy.spin(OdometryDriver())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(OdometryDriver, args)
 
 
 if __name__ == "__main__":

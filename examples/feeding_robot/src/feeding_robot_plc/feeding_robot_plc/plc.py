@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import rclpy
 from feeding_robot_plc.logic import Contact, Mode, PlcLogic, Watchdog
-from feeding_robot_plc.plc_base import PlcBase
+from feeding_robot_plc.plc_base import PlcBase, run
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import ExternalShutdownException
 from std_msgs.msg import Bool, ColorRGBA, Float64, UInt8, UInt64
 
 STALLED = 10.0
@@ -125,13 +123,7 @@ class Plc(PlcBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        rclpy.spin(Plc())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(Plc, args)
 
 
 if __name__ == "__main__":

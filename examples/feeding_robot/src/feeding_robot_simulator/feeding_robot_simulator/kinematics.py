@@ -91,6 +91,11 @@ class Obstacle:
         return Obstacle(max(0.0, self.distance - travelled))
 
 
+def unevenness(x: float) -> tuple[float, float]:
+    """Return roll and pitch, in rad, that the ground of the yard has at ``x``; up to 1.5 degrees."""
+    return math.radians(1.5) * math.sin(1.9 * x), math.radians(1.1) * math.sin(1.3 * x + 1.0)
+
+
 def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
     """Return ``(x, y, z, w)`` of the rotation by roll, pitch and yaw, in rad (REP 103)."""
     cr, sr = math.cos(roll / 2), math.sin(roll / 2)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import rclpy
 from builtin_interfaces.msg import Time
 from feeding_robot_simulator.kinematics import (
     IDLE_SPEED,
@@ -13,12 +12,12 @@ from feeding_robot_simulator.kinematics import (
     Obstacle,
     Vehicle,
     quaternion,
+    unevenness,
 )
-from feeding_robot_simulator.robot_simulator_base import RobotSimulatorBase
+from feeding_robot_simulator.robot_simulator_base import RobotSimulatorBase, run
 from geometry_msgs.msg import Vector3
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import ExternalShutdownException
 from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import Bool, Float64
 
@@ -111,7 +110,8 @@ class RobotSimulator(RobotSimulatorBase):
         msg.child_frame_id = "base_link"
         pose = msg.pose.pose
         pose.position.x, pose.position.y = self._motion.x, self._motion.y
-        orientation = quaternion(self._slope.x, self._slope.y, self._motion.yaw)
+        roll, pitch = unevenness(self._motion.x)
+        orientation = quaternion(self._slope.x + roll, self._slope.y + pitch, self._motion.yaw)
         pose.orientation.x, pose.orientation.y = orientation[0], orientation[1]
         pose.orientation.z, pose.orientation.w = orientation[2], orientation[3]
         msg.twist.twist.linear.x = self._motion.speed
@@ -128,13 +128,7 @@ class RobotSimulator(RobotSimulatorBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        rclpy.spin(RobotSimulator())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(RobotSimulator, args)
 
 
 if __name__ == "__main__":

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 
-import rclpy
-from intelligent_one_robot.marking_robot_base import MarkingRobotBase
+from intelligent_one_robot.marking_robot_base import MarkingRobotBase, run
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import ExternalShutdownException
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Bool, UInt64
 
@@ -69,13 +67,7 @@ class MarkingRobot(MarkingRobotBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until SIGINT or SIGTERM."""
-    try:
-        rclpy.init(args=args)
-        rclpy.spin(MarkingRobot())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    run(MarkingRobot, args)
 
 
 if __name__ == "__main__":
