@@ -147,8 +147,9 @@ def _wirings(
         if port is None and not is_topic_parameter(node_type, wiring.port):
             yield _unknown_port(instance, node_type, wiring)
             continue
-        if port is None:
-            yield from _conflict(node, wiring)
+        parameter = wiring.port if port is None else port.via
+        if parameter is not None:
+            yield from _conflict(node, parameter, wiring)
         if port is None or port.kind in _TOPIC_KINDS:
             target = resolve_name(wiring.target, node.namespace, instance.name)
             if target not in declared:
@@ -190,9 +191,9 @@ def _unknown_port(instance: NodeInstance, node_type: NodeType, wiring: Wiring) -
     return report(codes.UNKNOWN_PORT, message, wiring.port_span, hint, (related,))
 
 
-def _conflict(node: FlatNode, wiring: Wiring) -> Iterator[Diagnostic]:
+def _conflict(node: FlatNode, parameter: str, wiring: Wiring) -> Iterator[Diagnostic]:
     """Compare the topic that a parameter is wired to with the value that ``param`` gives it."""
-    setting = next((p for p in node.instance.parameters if p.name == wiring.port), None)
+    setting = next((p for p in node.instance.parameters if p.name == parameter), None)
     if setting is None or not isinstance(setting.value, str):
         return
 
