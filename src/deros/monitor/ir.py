@@ -2,8 +2,8 @@
 
 It is the one thing that the reference engine and every generated target read. Times are integer
 nanoseconds. Conditions have Kleene's three values; a value expression is a number, a boolean or a
-string, or unknown (``None`` in the engine). Unit conversion has been done: constants stand in the unit
-of the field they are compared with.
+string, or unknown (``None`` in the engine). Unit conversion has been done: constants stand in the
+unit of the field they are compared with.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ Scalar = bool | int | float | str
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """One primitive field, or array of primitives, that the rules read from an input's message.
+    """One primitive field, or array, that the rules read from an input's message.
 
     Attributes:
         index: its place in :attr:`Program.leaves`.
         input: index of the input it belongs to.
         path: from the message's root: field names and array indices.
-        type: a primitive or an array of primitives.
+        type: a primitive or an array; of messages only where nothing but its length is asked for.
         nan_is_unknown: whether a NaN here makes the input unknown (see :class:`Input`).
     """
 
@@ -44,9 +44,9 @@ class Leaf:
 class Input:
     """A value observed on a topic: named by an ``input`` line, or a topic term used in a rule.
 
-    It is unknown until the first message, after ``timeout_ns`` without one, and as soon as a message
-    carries a NaN (or an index that its array does not have) in a leaf with ``nan_is_unknown``; such a
-    message does not count for the timeout.
+    It is unknown until the first message, after ``timeout_ns`` without one, and as soon as a
+    message carries a NaN (or an index that its array does not have) in a leaf with
+    ``nan_is_unknown``; such a message does not count for the timeout.
     """
 
     index: int
@@ -80,7 +80,8 @@ class Read:
 class Apply:
     """A function of the function table applied to values, in the order that its row declares.
 
-    ``state`` numbers the functions that remember something between messages (``rate``), else ``None``.
+    ``state`` numbers the functions that remember something between messages (``rate``); it is
+    ``None`` for the others.
     """
 
     function: str
@@ -142,9 +143,9 @@ class Missing:
 class Age:
     """The time since an input's last counted message, compared with a constant.
 
-    Unknown before the first message, and again after a backward clock step; known otherwise, whatever
-    NaN or the timeout do to the input's value. ``age > T`` is first true at last + T + 1 ns, ``age >= T``
-    at last + T: both instants are deadlines.
+    Unknown before the first message, and again after a backward clock step; known otherwise,
+    whatever NaN or the timeout do to the input's value. ``age > T`` is first true at
+    last + T + 1 ns, ``age >= T`` at last + T: both instants are deadlines.
     """
 
     input: int
@@ -177,8 +178,8 @@ class Or:
 class For:
     """True once the operand has been true without a break for ``duration_ns`` (inclusive).
 
-    An operand that is false or unknown clears the interval, and the whole is then false or unknown as
-    the operand is; while the operand is true but the time has not passed, the whole is false.
+    An operand that is false or unknown clears the interval, and the whole is then false or unknown
+    as the operand is; while the operand is true but the time has not passed, the whole is false.
     """
 
     index: int  # its place among all For of the program, in the order they are evaluated

@@ -1,0 +1,43 @@
+"""No program, however broken, ends in an exception."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from deros.validators.rules import check_rules
+from tests.support.rules import embedded_store
+
+_CASES = Path(__file__).resolve().parents[1] / "cases"
+_TEXTS = [re.sub(r"//.*", "", each.read_text()) for each in sorted(_CASES.glob("DRS3*.deros"))]
+_TOKENS = [re.findall(r'"[^"]*"|[~/]?[\w/.]+|[^\w\s]', text) for text in _TEXTS]
+_WORDS = sorted({token for tokens in _TOKENS for token in tokens})
+
+
+@st.composite
+def programs(draw: st.DrawFn) -> str:
+    """Draw a bad program with some words more, replaced by others, or left out."""
+    tokens = list(draw(st.sampled_from(_TOKENS)))
+    for _ in range(draw(st.integers(0, 3))):
+        place = draw(st.integers(10, len(tokens) - 1))
+        tokens[place : place + draw(st.integers(0, 1))] = draw(
+            st.lists(st.sampled_from(_WORDS), max_size=1)
+        )
+    return " ".join(tokens)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(text=programs())
+def test_any_program_gives_findings(text: str) -> None:
+    """Whatever parses is checked to the end, and every finding has a place in it."""
+    loaded = Repository().load_text(_CASES / "rules.deros", text)
+    if not isinstance(loaded.model, Rules):
+        return
+    for finding in check_rules(loaded.model, embedded_store()):
+        assert finding.message
+        assert finding.span.end <= len(finding.span.source.text)
