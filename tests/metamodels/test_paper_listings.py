@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from deros import codes
+from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType, ParameterType, PortKind
 from deros.metamodels.rules import (
@@ -24,6 +26,7 @@ from deros.metamodels.rules import (
     Truth,
 )
 from deros.metamodels.system import NodeInstance, Subsystem, System
+from deros.validators.check import check
 from tests.support import paper
 
 
@@ -47,6 +50,15 @@ def test_every_program_loads_without_a_finding(system: Path, listing: str) -> No
     rules = _rules(system, listing)
     assert rules.uses[0].system is not None
     assert rules.uses[0].system.name == "RobotSafety"
+
+
+@pytest.mark.parametrize("listing", paper.RULES.values(), ids=paper.RULES)
+def test_every_program_checks_clean(system: Path, listing: str) -> None:
+    """Against the matching system there is nothing to say but that its inputs have no timeout."""
+    repository = Repository()
+    loaded = repository.load_text(system.with_name("paper.deros"), listing)
+    findings = check([loaded], repository, InterfaceStore())
+    assert {found.code for found in findings} == {codes.NO_TIMEOUT}
 
 
 def test_figure_2_constants_and_inputs(system: Path) -> None:

@@ -126,7 +126,7 @@ topics
   topic /fmInformation/imu
   topic /fmKnowledge/encoder_odom
   // FILLED
-  topic /plc/state
+  external topic /plc/state
   topic /stop_robot
   // FILLED
 subsystem Safety
