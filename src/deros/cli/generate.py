@@ -142,7 +142,9 @@ def _know_options(generator: Generator, given: dict[str, str]) -> None:
     for name in given:
         if f"--{name}" not in known:
             hint = did_you_mean(f"--{name}", [*known, "--overwrite", "--interfaces"])
-            raise click.NoSuchOption(f"--{name}", f"No such option: --{name} {hint}".rstrip())
+            raise click.NoSuchOption(
+                f"--{name}", f"No such option: --{name}" + (f"; {hint}" if hint else "")
+            )
 
 
 def _show(diagnostics: Sequence[Diagnostic]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import re
 from pathlib import Path
 
@@ -39,6 +40,9 @@ def read(path: Path, shown: str) -> SourceFile:
     nothing = SourceFile(shown, "")
     start = Span(nothing, 0, 0)
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            # Reading from a pipe or a device would wait for something that may never come.
+            raise OSError(errno.EINVAL, "neither a file nor a folder")
         data = path.read_bytes()
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)

@@ -1,0 +1,220 @@
+"""No input ends in a traceback: whatever a file holds, there are findings and an exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.support.cli import Outcome, deros
+
+CASES = Path(__file__).resolve().parents[1] / "cases"
+
+MODELS = {
+    "robot.rnd": """\
+node robot : demo "A robot" executable "run"
+parameters
+  name speed : double = 0.5 [m/s] in (0, 2.0] "How fast" read_only
+  name modes : string[] = ["a", "b"] size 2
+publishes
+  topic odom : nav_msgs.Odometry { twist.twist.linear.x [m/s] } qos reliable depth 10
+subscribes
+  topic /stop : std_msgs.Bool qos best_effort deadline 100 ms
+timers
+  timer tick every 20 ms
+""",
+    "robot.system": """\
+system Robot
+imports import "robot.rnd"
+topics
+  topic /odom : nav_msgs.Odometry /* pinned */
+  external topic /stop
+subsystem Base namespace /base {
+  node robot : robot respawn delay 1 sec max 3 log_level debug
+  parameters param speed = 1.0
+  wirings connect odom to /odom connect stop to /stop
+}
+""",
+    "robot.deros": """\
+use "robot.system" import Robot
+action stop publishes true on /stop : std_msgs.Bool reset_by go;
+action go;
+const limit = 0.5 m/s
+input speed = topic /odom.twist.twist.linear.x timeout 0.5 sec
+entity drive {
+  fast: (speed.abs() > limit for 2 sec) or not speed in [-limit, limit);
+  blind: speed.missing();
+}
+behaviour halt: if drive.fast or drive.blind for 100 ms then {
+  stop; if drive.blind then { log_state("blind"); };
+};
+if not drive.fast and not drive.blind then { go; };
+""",
+}
+
+
+@pytest.fixture
+def models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with one clean model of each language, which is the working folder."""
+    for name, text in MODELS.items():
+        (tmp_path / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def _findings(*arguments: object) -> tuple[Outcome, list[dict[str, object]]]:
+    outcome = deros("check", "--format", "json", *arguments)
+    assert "bug in deros" not in outcome.err, outcome.err
+    assert outcome.code in (0, 1, 2)
+    return outcome, json.loads(outcome.out)
+
+
+@pytest.mark.usefixtures("models")
+def test_the_models_are_clean() -> None:
+    """What the other tests damage is sound."""
+    assert _findings(*MODELS)[1] == []
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_truncated_models(models: Path, name: str) -> None:
+    """Cut off anywhere, a model is still answered by findings, at places that exist."""
+    text = MODELS[name]
+    for length in range(0, len(text), 7):
+        (models / name).write_text(text[:length])
+        for finding in _findings(name)[1]:
+            assert isinstance(finding["line"], int)
+            assert 1 <= finding["line"] <= text.count("\n") + 1
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_damaged_bytes(models: Path, name: str) -> None:
+    """Bytes changed at random give findings, or happen to give another model."""
+    chance = random.Random(name)
+    for _ in range(60):
+        damaged = bytearray(MODELS[name].encode())
+        for _ in range(chance.randint(1, 6)):
+            damaged[chance.randrange(len(damaged))] = chance.randrange(256)
+        (models / name).write_bytes(damaged)
+        _findings(name)
+
+
+@settings(max_examples=80, deadline=None)
+@given(content=st.binary(max_size=300), suffix=st.sampled_from([".rnd", ".system", ".deros"]))
+def test_random_bytes(
+    tmp_path_factory: pytest.TempPathFactory, content: bytes, suffix: str
+) -> None:
+    """Random bytes are never a model, and never a crash."""
+    path = tmp_path_factory.mktemp("random") / f"model{suffix}"
+    path.write_bytes(content)
+    _findings(path)
+
+
+@pytest.mark.parametrize("suffix", ["rnd", "system", "deros"])
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"\n\n",
+        b"\xef\xbb\xbf",
+        b"\x00" * 64,
+        b"\x7fELF\x02\x01\x01" + bytes(range(256)),
+        b"\xff\xfe" + "node a : b".encode("utf-16-le"),
+        b"(" * 100_000,
+        b"not " * 20_000,
+        b"subsystem a {" * 20_000,
+        b"/*" * 50_000,
+        b'"' + b"a" * 200_000,
+        "node \u202e : \U0001f916".encode(),
+        b"node a : b\r\nparameters\r\n\tname p : int = 1.5\r\n",
+    ],
+    ids=lambda content: repr(content[:12]),
+)
+def test_odd_files(tmp_path: Path, suffix: str, content: bytes) -> None:
+    """Empty, binary, unfinished, deeply nested and exotic files are answered by findings."""
+    path = tmp_path / f"odd.{suffix}"
+    path.write_bytes(content)
+    outcome, findings = _findings(path)
+    assert findings or outcome.code == 0
+
+
+@pytest.mark.parametrize("depth", [50, 5000])
+def test_nested_conditions(models: Path, depth: int) -> None:
+    """Parentheses are followed as deep as people write them, and refused beyond."""
+    condition = "(" * depth + "speed > limit" + ")" * depth
+    text = MODELS["robot.deros"].replace("speed.abs() > limit for", f"{condition} for")
+    (models / "robot.deros").write_text(text)
+    codes = {finding["code"] for finding in _findings("robot.deros")[1]}
+    assert codes == (set() if depth == 50 else {"DRS004"})
+
+
+def test_long_conditions(models: Path) -> None:
+    """A condition of thousands of terms is long, not deep."""
+    condition = " or ".join(["speed > limit"] * 3000)
+    text = MODELS["robot.deros"].replace("speed.abs() > limit for", f"({condition}) for")
+    (models / "robot.deros").write_text(text)
+    assert {finding["code"] for finding in _findings("robot.deros")[1]} <= {"DRS004"}
+
+
+def test_import_cycles(models: Path) -> None:
+    """A system that imports itself, directly or around a corner, is one finding, not for ever."""
+    (models / "robot.system").write_text('system Robot\nimports import "robot.system"\n')
+    assert "DRS202" in {finding["code"] for finding in _findings("robot.system")[1]}
+    for here, there in (("a", "b"), ("b", "c"), ("c", "a")):
+        text = f'system {here.upper()}\nimports import "{there}.system"\n'
+        text += f"subsystem x : {there.upper()}\n"
+        (models / f"{here}.system").write_text(text)
+    assert "DRS202" in {finding["code"] for finding in _findings("a.system")[1]}
+
+
+def test_imports_of_what_is_no_file(models: Path) -> None:
+    """Directories, dangling links and globs that match nothing are unknown imports."""
+    (models / "folder.rnd").mkdir()
+    (models / "dangling.rnd").symlink_to("nowhere.rnd")
+    for path in ("folder.rnd", "dangling.rnd", "no*.rnd", "/", "..", ""):
+        (models / "x.system").write_text(f'system X\nimports import "{path}"\n')
+        assert _findings("x.system")[0].code in (1, 2)
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+def test_forbidden_files(models: Path) -> None:
+    """A file without permission to read is a finding."""
+    (models / "robot.rnd").chmod(0)
+    assert _findings("robot.rnd")[0].code == 2
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_device_or_pipe_is_no_model(models: Path, name: str) -> None:
+    """A path that is neither file nor directory is refused without waiting for it."""
+    (models / name).unlink()
+    os.mkfifo(models / name)
+    assert _findings(name)[0].code == 2
+
+
+def test_generating_from_bad_models_writes_nothing(models: Path) -> None:
+    """A model with errors leaves the output directory as it was, even not there."""
+    (models / "robot.rnd").write_text(MODELS["robot.rnd"].replace("0.5 [m/s]", '"x" [m/s]'))
+    for name, target in (
+        ("robot.rnd", "python"),
+        ("robot.system", "script"),
+        ("robot.deros", "python"),
+    ):
+        outcome = deros("generate", name, "--target", target, "-o", "out")
+        assert outcome.code == 1
+        assert "DRS103" in outcome.err
+        assert not (models / "out").exists()
+
+
+@pytest.mark.parametrize("case", sorted(p.name for p in CASES.glob("DRS*")))
+def test_cases_can_be_named_from_anywhere(
+    case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every bad model ends in the exit code that its findings call for, wherever one stands."""
+    monkeypatch.chdir(tmp_path)
+    if not case.endswith(".expected"):
+        outcome, findings = _findings(CASES / case)
+        assert outcome.code >= any(finding["severity"] == "error" for finding in findings)
