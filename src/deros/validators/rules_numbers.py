@@ -41,7 +41,7 @@ class NumberSet:
 
     def __and__(self, other: NumberSet) -> NumberSet:
         """Return the numbers in both."""
-        met = []
+        met: list[_Piece] = []
         for a in self.pieces:
             for b in other.pieces:
                 # The later beginning counts, and of two equal ones the open one; likewise the end.
@@ -58,7 +58,7 @@ class NumberSet:
 
     def complement(self) -> NumberSet:
         """Return all other numbers, infinities included."""
-        gaps = []
+        gaps: list[_Piece] = []
         start: Number = -math.inf
         start_closed = True
         for piece in self.pieces:
@@ -70,7 +70,7 @@ class NumberSet:
 
     def of_integers(self) -> NumberSet:
         """Return the set with its finite ends drawn in to the nearest integers within."""
-        drawn_in = []
+        drawn_in: list[_Piece] = []
         for piece in self.pieces:
             lower, upper = piece.lower, piece.upper
             lower_closed, upper_closed = piece.lower_closed, piece.upper_closed

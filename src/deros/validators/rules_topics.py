@@ -9,9 +9,9 @@ from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.names import did_you_mean, near
 from deros.metamodels.common import Name
 from deros.metamodels.flatten import FlatPort, resolve_name
-from deros.metamodels.rules import Rules, TopicPath
+from deros.metamodels.rules import Rules
 from deros.monitor.topics import KnownTopic, SystemTopics
-from deros.validators.rules_walk import all_terms, rules_of, terms_of
+from deros.validators.rules_walk import topics_read
 
 
 def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
@@ -23,7 +23,7 @@ def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
     if not topics.complete:
         return
     read: dict[str, Name] = {}
-    for name in _topics_read(rules):
+    for name in topics_read(rules):
         read.setdefault(resolve_name(name.text, "/"), name)
     bound = {
         resolve_name(action.binding.topic.text, "/"): action.binding.topic
@@ -36,16 +36,6 @@ def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
     for topic, name in bound.items():
         if topic not in read:
             yield from _unread(topic, name, topics)
-
-
-def _topics_read(rules: Rules) -> Iterator[Name]:
-    for each in rules.inputs:
-        yield each.term.topic
-    for _, rule in rules_of(rules):
-        for term in terms_of(rule.condition):
-            for inner in all_terms(term):
-                if isinstance(inner, TopicPath):
-                    yield inner.topic
 
 
 def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from deros.metamodels.common import Name
 from deros.metamodels.rules import (
     And,
     Behaviour,
@@ -18,6 +19,7 @@ from deros.metamodels.rules import (
     Rule,
     Rules,
     Term,
+    TopicPath,
 )
 
 
@@ -58,6 +60,17 @@ def terms_of(condition: Condition) -> Iterator[Term]:
             yield from terms_of(condition.operand)
         case _:
             yield condition.operand
+
+
+def topics_read(rules: Rules) -> Iterator[Name]:
+    """Yield every topic that inputs and rules name, as often as they do."""
+    for each in rules.inputs:
+        yield each.term.topic
+    for _, rule in rules_of(rules):
+        for term in terms_of(rule.condition):
+            for inner in all_terms(term):
+                if isinstance(inner, TopicPath):
+                    yield inner.topic
 
 
 def all_terms(term: Term) -> Iterator[Term]:
