@@ -262,6 +262,12 @@ def test_a_directory_is_unreadable(tmp_path: Path) -> None:
     assert _only(Repository().load(tmp_path / "a.system")).code is codes.UNREADABLE_FILE
 
 
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    """A named pipe that nobody writes to is unreadable at once."""
+    os.mkfifo(tmp_path / "a.rnd")
+    assert _only(Repository().load(tmp_path / "a.rnd")).code is codes.UNREADABLE_FILE
+
+
 def test_another_kind_of_file(tmp_path: Path) -> None:
     """A suffix that belongs to none of the languages is reported as such."""
     _write(tmp_path, a_txt="node a : p")

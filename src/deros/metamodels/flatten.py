@@ -1,9 +1,10 @@
 """What a system amounts to at run time: every node by its full name, every topic by its graph name.
 
 Names resolve as ROS 2 resolves them (ROS 2 design, "Topic and Service name mapping"): an absolute
-name stands as it is, a relative one is put under the namespace where it is written, ``~/x`` under the
-node's own full name. An absolute ``namespace`` replaces the enclosing one, a relative one extends it.
-An imported system used as ``subsystem left : Arm namespace /left`` is flattened under ``/left``.
+name stands as it is, a relative one is put under the namespace where it is written, ``~/x`` under
+the node's own full name. An absolute ``namespace`` replaces the enclosing one, a relative one
+extends it. An imported system used as ``subsystem left : Arm namespace /left`` is flattened under
+``/left``.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ class FlatTopic:
 
 @dataclass(frozen=True, slots=True)
 class FlatSystem:
-    """All nodes and declared topics of a system, imported systems expanded, in the order written."""
+    """All nodes and declared topics of a system, imports expanded, in the order written."""
 
     system: System
     nodes: tuple[FlatNode, ...]
@@ -178,7 +179,7 @@ def _flat_node(instance: NodeInstance, namespace: str, path: tuple[str, ...]) ->
 
 
 def _default_topic(port: Port, node_type: NodeType | None, settings: dict[str, Value]) -> str:
-    """Return the name an unwired port uses: its parameter's value where it has one, else its own."""
+    """Return the name an unwired port uses: its parameter's value if it has one, else its own."""
     if port.via is None or node_type is None:
         return port.name
     parameter = node_type.parameter(port.via)
@@ -187,6 +188,6 @@ def _default_topic(port: Port, node_type: NodeType | None, settings: dict[str, V
 
 
 def is_topic_parameter(node_type: NodeType, name: str) -> bool:
-    """Tell whether ``name`` is a string parameter of the node type, which may hold a topic's name."""
+    """Tell whether ``name`` is a string parameter of the type: it may hold a topic's name."""
     parameter = node_type.parameter(name)
     return parameter is not None and parameter.type is ParameterType.STRING
