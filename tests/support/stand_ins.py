@@ -114,9 +114,9 @@ class Run:
         """What has been read so far."""
         return self._text.splitlines()
 
-    def until(self, *texts: str) -> None:
-        """Read until each of the texts is there."""
-        while not all(text in self._text for text in texts):
+    def until(self, *texts: str, times: int = 1) -> None:
+        """Read until each of the texts is there, so many times."""
+        while not all(self._text.count(text) >= times for text in texts):
             assert self._read(), f"ended without {texts}:\n{self._text}"
 
     def signal(self, number: signal.Signals) -> None:

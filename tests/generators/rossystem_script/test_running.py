@@ -217,7 +217,7 @@ def test_told_to_stop_all_nodes_get_sigint_and_the_code_is_0(
 
 def test_a_node_that_needs_sigterm_has_stopped_well(start: Start) -> None:
     """After SIGINT comes SIGTERM, and ending on it is still an orderly end."""
-    run = start("node a : slow", "--stop-timeout", "0.1")
+    run = start("node a : slow", "--stop-timeout", "1")
     run.until("[a] ready")
     run.signal(signal.SIGINT)
     assert run.end() == 0
@@ -230,10 +230,12 @@ def test_a_node_that_needs_sigterm_has_stopped_well(start: Start) -> None:
 
 def test_a_stubborn_node_is_killed_and_the_code_is_1(start: Start) -> None:
     """The order is SIGINT, SIGTERM, SIGKILL; having to kill is a failure, but no other node's."""
-    run = start("node a : stubborn node b : steady", "--stop-timeout", "0.1")
+    run = start("node a : stubborn node b : steady", "--stop-timeout", "1")
     run.until("[a] ready", "[b] ready")
+    before = time.monotonic()
     run.signal(signal.SIGINT)
     assert run.end() == 1
+    assert time.monotonic() - before > 1.9
     of_a = [line for line in run.lines if "[a]" in line or "] a " in line]
     assert of_a[2:] == [
         "[a] got SIGINT",
@@ -291,8 +293,11 @@ def test_a_system_whose_nodes_all_end_well_ends_with_0(start: Start) -> None:
 
 def test_a_node_has_ended_only_when_its_whole_group_has(start: Start) -> None:
     """What a wrapper started is waited for, gets the next signal, and counts as the node's."""
-    run = start("node a : family", "--stop-timeout", "0.1")
+    run = start("node a : family", "--stop-timeout", "1000")
     run.until("[a] child ")
+    run.signal(signal.SIGINT)
+    assert await_end(run.started()["a"])
+    run.until("stopping")
     run.signal(signal.SIGINT)
     assert run.end() == 0
     assert run.lines[-2:] == ["[a] child got SIGTERM", "[Robot] a stopped"]
@@ -317,6 +322,19 @@ def test_nodes_end_when_the_script_itself_is_killed(start: Start, program: str) 
     assert all(await_end(pid) for pid in pids)
     assert len(guard) == 1
     assert await_end(guard[0])
+
+
+def test_a_failed_start_leaves_the_others_guarded(start: Start, tmp_path: Path) -> None:
+    """After a program that could not be run, and a restart, a kill still leaves nothing behind."""
+    (tmp_path / "prefix" / "lib" / "demo" / "short").write_text("#!/no/such/interpreter\n")
+    arguments = ("--keep-going", "--stop-timeout", "0.1")
+    run = start("node a : stubborn node b : short node c : stubborn respawn", *arguments)
+    run.until("b cannot be started", "[a] ready", "[c] ready")
+    os.kill(run.started()["c"], signal.SIGKILL)
+    run.until("c was killed by SIGKILL; restart 1 in 0 s")
+    run.until("[c] ready", times=2)
+    run.signal(signal.SIGKILL)
+    assert all(await_end(pid) for pid in run.started().values())
 
 
 def test_nodes_are_told_even_when_the_guard_is_killed_with_the_script(start: Start) -> None:

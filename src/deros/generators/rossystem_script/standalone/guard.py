@@ -58,28 +58,29 @@ class Guard:
         os.close(notes)
         os.close(alive)
         self.lost = False
+        self._ticket = 0
 
     @property
     def inherited(self) -> tuple[int, ...]:
         """Name the descriptors that the nodes have to keep open."""
         return (self._alive,)
 
+    def ticket(self) -> int:
+        """Return a new number, under which the next process is to be enrolled and released."""
+        self._ticket += 1
+        return self._ticket
+
     def enrol(self) -> None:
         """Put the calling process, a new group's first, under guard before it runs its program."""
         if not self.lost:
-            os.write(self._notes, b'%d\n' % os.getpid())
+            os.write(self._notes, b'%d %d\n' % (self._ticket, os.getpid()))
         if PRCTL is not None:
             PRCTL(PR_SET_PDEATHSIG, signal.SIGINT)
 
-    def release(self, group: int) -> None:
-        """Let a group go that has ended."""
+    def release(self, ticket: int) -> None:
+        """Let a group go that has ended, or could not be started."""
         with contextlib.suppress(OSError):
-            os.write(self._notes, b'-%d\n' % group)
-
-    def release_latest(self) -> None:
-        """Let the group go that was enrolled last: its program could not be run."""
-        with contextlib.suppress(OSError):
-            os.write(self._notes, b'0\n')
+            os.write(self._notes, b'%d\n' % ticket)
 
     def close(self) -> None:
         """End the guard, and with it what is still enrolled."""
@@ -98,21 +99,17 @@ def _watch(notes: int, alive: int, patience: float) -> None:
     os.closerange(3, low)
     os.closerange(low + 1, high)
     os.closerange(high + 1, os.sysconf('SC_OPEN_MAX'))
-    groups: list[int] = []
+    groups: dict[int, int] = {}  # by ticket
     with open(notes, 'rb') as lines:
         for line in lines:
-            number = int(line)
-            if number > 0:
-                groups.append(number)
-            elif number < 0:
-                groups.remove(-number)
-            else:
-                groups.pop()
+            ticket, *enrolled = map(int, line.split())
+            groups.pop(ticket, None)
+            groups.update((ticket, group) for group in enrolled)
     for stop_signal in STOP_SIGNALS if groups else ():
         # Where the kernel has passed on the script's end as a SIGINT, a second one would disturb
         # a node in the middle of its orderly end.
         if PRCTL is None or stop_signal is not signal.SIGINT:
-            for group in groups:
+            for group in groups.values():
                 signal_group(group, stop_signal)
         if select.select([alive], [], [], patience)[0]:
             return

@@ -36,6 +36,7 @@ class Process:
         self.restarts = 0
         self.signals_sent = 0
         self.group = 0
+        self.ticket = 0  # under which the guard knows the group
         self.exit_code: int | None = None  # the program's own; others of its group may live on
         self.pipe: int | None = None
         self._unfinished = b''
@@ -46,6 +47,7 @@ class Process:
 
         Raises OSError when it cannot be run.
         """
+        self.ticket = guard.ticket()
         read, write = os.pipe()
         try:
             started = subprocess.Popen(

@@ -164,7 +164,7 @@ class Supervisor:
         try:
             pipe = process.start(self._environment, self._guard)
         except OSError as error:
-            self._guard.release_latest()
+            self._guard.release(process.ticket)
             self._say(f'{process.label} cannot be started: {error}')
             self._failure(process)
             return
@@ -192,7 +192,7 @@ class Supervisor:
 
     def _ended(self, process: Process) -> None:
         """Decide what follows the end of a node: nothing, a new start, or the end of all."""
-        self._guard.release(process.group)
+        self._guard.release(process.ticket)
         if process.pipe is not None:
             with contextlib.suppress(KeyError):  # after its end of file, or while it is held back
                 self._selector.unregister(process.pipe)
@@ -274,7 +274,7 @@ class Supervisor:
             self._output.write(b''.join(b'%s%s\n' % (prefix, line) for line in lines))
 
     def _say(self, text: str) -> None:
-        self._output.write(self._prefix + text.encode() + b'\n')
+        self._output.write(self._prefix + text.encode(errors='surrogateescape') + b'\n')
 
 
 def _prefix(label: str, colour: int | None) -> bytes:
