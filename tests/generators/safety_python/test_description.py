@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -41,7 +43,9 @@ arrays = {
     ParameterType.DOUBLE_ARRAY: scalars[ParameterType.DOUBLE],
     ParameterType.STRING_ARRAY: scalars[ParameterType.STRING],
 }
-values = scalars | {kind: st.lists(item, max_size=3).map(tuple) for kind, item in arrays.items()}
+values: dict[ParameterType, st.SearchStrategy[Any]] = scalars | {
+    kind: st.lists(item, max_size=3).map(tuple) for kind, item in arrays.items()
+}
 intervals = st.builds(Interval, numbers, numbers, st.booleans(), st.booleans())
 profiles = st.builds(
     QosProfile,

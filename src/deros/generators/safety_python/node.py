@@ -129,11 +129,11 @@ def _input_qos(topics: SystemTopics, topic: str) -> QosProfile:
     durable = bool(stated) and all(
         q is not None and q.durability == "transient_local" for q in stated
     )
-    depths = [qos.depth for qos in stated if qos is not None and qos.depth is not None]
+    depths = [qos.depth or 0 for qos in stated if qos is not None]
     return QosProfile(
         reliability="reliable" if reliable else "best_effort",
         durability="transient_local" if durable else None,
-        depth=max(depths, default=_INPUT_DEPTH),
+        depth=max([_INPUT_DEPTH, *depths]),
     )
 
 

@@ -116,6 +116,12 @@ class SafetyView:
         """Class of the user's action bodies."""
         return f"{self.node.class_name}Actions"
 
+    @property
+    def actions_imports(self) -> list[str]:
+        """The import statement of the user's module."""
+        module = f"{self.package}.{self.actions_module}_base"
+        return import_lines({module: {f"{self.actions_class}Base", "not_filled_in"}})
+
 
 def safety_view(
     model: Rules, program: Program, node: NodeType, store: InterfaceStore
