@@ -118,6 +118,7 @@ ACTION_VALUE = _declare(329, "value that the action's message cannot carry")
 EXACT_FLOAT_COMPARISON = _declare(330, "exact comparison of a floating-point value", _W)
 ACTION_TOPIC_NOT_IN_SYSTEM = _declare(331, "topic of an action that nobody in the system reads", _W)
 INVALID_RULES_NAME = _declare(332, "name in the rules that a target refuses")
+ACTIVE_EQUALS_INACTIVE = _declare(333, "action whose active and inactive messages are equal", _W)
 
 # Generation
 NAME_COLLISION = _declare(401, "two generated names collide")

@@ -7,7 +7,7 @@ import re
 from fractions import Fraction
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Related, Severity
+from deros.diagnostics import Related
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import FLOAT_TYPES, FieldType, MessageDefinition
 from deros.interfaces.units import Unit
@@ -190,16 +190,12 @@ class Actions:
             return
         inactive = definition.defaults.get(name, "" if family(kind) == "text" else 0)
         if scalar == inactive:
-            self._scope.diagnostics.append(
-                Diagnostic(
-                    codes.ACTION_VALUE,
-                    f"'{binding.value.span.text}' is what the topic carries while the action"
-                    " is not active, too",
-                    binding.value.span,
-                    "publish a value other than the default of the field",
-                    severity=Severity.WARNING,
-                )
+            message = (
+                f"'{binding.value.span.text}' is also what the topic carries while the action is"
+                " not active"
             )
+            hint = "publish a value other than the default of the field"
+            self._scope.fault(codes.ACTIVE_EQUALS_INACTIVE, message, binding.value.span, hint)
 
     # Calls --------------------------------------------------------------------------------------
 

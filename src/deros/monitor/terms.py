@@ -58,7 +58,9 @@ class Terms:
                 return self._negative(term, message)
             case rules.TopicPath():
                 found = self._scope.anonymous(term)
-                return found and self._located(found, found.path, term.topic.span, term.span)
+                if found is None:
+                    return None
+                return self._located(found, found.path, term.topic.span, term.span)
             case rules.NamePath():
                 return self._name(term, message)
             case rules.Call():
