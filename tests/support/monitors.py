@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator
 
 from hypothesis import note
 
@@ -14,16 +14,22 @@ from tests.support.strategies import Step
 START_NS = 100
 
 
-def compare(program: Program, steps: Sequence[Step], text: str) -> None:
+def timed(steps: Iterable[Step]) -> Iterator[tuple[int, Step]]:
+    """Yield each step with its time; none is negative."""
+    t_ns = START_NS
+    for step in steps:
+        t_ns = max(0, t_ns + step.wait_ns)
+        yield t_ns, step
+
+
+def compare(program: Program, steps: Iterable[Step], text: str) -> None:
     """Drive both with the same calls; they must answer alike at each.
 
     Raises:
         AssertionError: they do not.
     """
     engine, generated = Engine(program, START_NS), GeneratedMonitor(program, START_NS, text)
-    t_ns = START_NS
-    for step in steps:
-        t_ns = max(0, t_ns + step.wait_ns)
+    for t_ns, step in timed(steps):
         note(f"{step.call} at {t_ns} {step.topic} {dict(step.leaves)}")
         if step.call == "message":
             engine.message(t_ns, step.topic, step.leaves)

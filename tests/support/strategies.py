@@ -130,6 +130,7 @@ class _Drawing:
     """A program being drawn: what has been declared, and the counters that number its parts."""
 
     draw: Draw
+    writable: bool = False
     kinds: list[str] = field(default_factory=list)
     inputs: list[ir.Input] = field(default_factory=list)
     leaves: list[ir.Leaf] = field(default_factory=list)
@@ -151,12 +152,12 @@ class _Drawing:
         self.inputs.append(
             ir.Input(
                 index,
-                self.draw(st.sampled_from(("speed", "in", "t", "x_2", f"input_{index}"))),
+                f"input_{index}" if self.writable else self.draw(input_names),
                 kind.topic,
                 kind.type,
                 kind.path,
                 tuple(range(first, len(self.leaves))),
-                self.draw(st.none() | st.integers(0, 12)),
+                self.draw(st.none() | st.integers(1 if self.writable else 0, 12)),
                 span(1 + index),
             )
         )
@@ -185,7 +186,8 @@ class _Drawing:
         return value
 
     def wrapped(self, value: ir.ValueExpression, index: int) -> ir.ValueExpression:
-        match self.draw(st.sampled_from(("abs", "rate", "scale"))):
+        choices = ("abs", "rate") if self.writable else ("abs", "rate", "scale")
+        match self.draw(st.sampled_from(choices)):
             case "abs":
                 return ir.Apply("abs", (value,), index)
             case "rate":
@@ -201,7 +203,7 @@ class _Drawing:
     def bound(self) -> ir.ValueExpression:
         """Draw what a number is compared with."""
         inputs = self.numeric()
-        if inputs and self.draw(st.integers(0, 5)) == 0:
+        if inputs and not self.writable and self.draw(st.integers(0, 5)) == 0:
             return self.number(self.draw(st.sampled_from(inputs)))
         return ir.Const(self.draw(st.sampled_from((*NUMBERS, 1, 2))))
 
@@ -229,7 +231,8 @@ class _Drawing:
         if choice == 0 and self.inputs[index].timeout_ns is not None:
             return ir.Missing(index)
         if choice == 1:
-            return ir.Age(index, self.draw(operators), self.draw(st.integers(-1, 10)))
+            operator = self.draw(orders if self.writable else operators)
+            return ir.Age(index, operator, self.draw(st.integers(-1 + self.writable, 10)))
         if choice == 2:
             return ir.Truth(ir.Const(self.draw(st.booleans())))
         read = ir.Read(self.inputs[index].leaves[0])
@@ -246,7 +249,11 @@ class _Drawing:
             sides = (right, left) if choice == 3 else (left, right)
             return ir.Compare(sides[0], self.draw(operators), sides[1])
         closed = self.draw(st.tuples(st.booleans(), st.booleans()))
-        return ir.Within(self.number(index), self.bound(), self.bound(), *closed)
+        lower, upper = self.bound(), self.bound()
+        if self.writable:
+            lower = ir.Const(self.draw(st.sampled_from(NUMBERS[:4])))
+            upper = ir.Const(self.draw(st.sampled_from(NUMBERS[4:])))
+        return ir.Within(self.number(index), lower, upper, *closed)
 
     def boolean(self, index: int, read: ir.Read) -> ir.Condition:
         choices: tuple[ir.Condition, ...] = (
@@ -289,7 +296,7 @@ class _Drawing:
                 self.triggered_by.setdefault(action, []).append(index)
                 # Every trigger has a line of its own, so that the events name each of them.
                 line = 60 + sum(map(len, self.triggered_by.values())) % 39
-                arguments = self.draw(st.sampled_from(((), (1, 2.5), ("too 'fast\"",), (True,))))
+                arguments = () if self.writable else self.draw(argument_lists)
                 body.append(ir.Trigger(action, arguments, span(line)))
         name = f"behaviour_{index + 1}"
         return ir.Behaviour(index, name, condition, tuple(body), parent, span(20 + index))
@@ -303,14 +310,20 @@ class _Drawing:
         )
 
 
+input_names = st.sampled_from(("speed", "in", "t", "x_2", "/odom.twist"))
+orders = st.sampled_from(("<", "<=", ">", ">="))
 operators = st.sampled_from(("=", "!=", "<", "<=", ">", ">="))
+argument_lists = st.sampled_from(((), (1, 2.5), ("too 'fast\"",), (True,)))
 unit_bearing = st.sampled_from((-1.0, -0.5, 0.0, 0.5, 1.0))
 
 
 @st.composite
-def programs(draw: Draw) -> ir.Program:
-    """Draw a program: up to four inputs, five rules, nested behaviours, actions with resets."""
-    drawing = _Drawing(draw)
+def programs(draw: Draw, writable: bool = False) -> ir.Program:
+    """Draw a program: up to four inputs, five rules, nested behaviours, actions with resets.
+
+    A ``writable`` one is one that a text in DeRoS can mean (:mod:`tests.support.rules_text`).
+    """
+    drawing = _Drawing(draw, writable)
     for _ in range(draw(st.integers(1, 4))):
         drawing.input()
     rules = tuple(drawing.rule() for _ in range(draw(st.integers(1, 5))))

@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
+from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
 from deros.generators.monitor_python import render_monitor
-from tests.support.monitors import compare
-from tests.support.strategies import programs, traces
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from deros.monitor.build import build
+from deros.monitor.engine import Engine, Event
+from deros.monitor.ir import Program
+from tests.support.monitors import START_NS, compare, timed
+from tests.support.rules_text import NODE_TEXT, SYSTEM_TEXT, rules_text
+from tests.support.strategies import Step, programs, traces
 
 EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "600"))
 """Examples per property; set, they are drawn anew in every run, else they are always the same."""
@@ -30,3 +40,62 @@ def test_same_events(data: st.DataObject) -> None:
     text = render_monitor(program)
     note(text)
     compare(program, data.draw(traces(program)), text)
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a system with every topic of the random programs."""
+    folder = tmp_path_factory.mktemp("robot")
+    (folder / "robot.rnd").write_text(NODE_TEXT)
+    (folder / "robot.system").write_text(SYSTEM_TEXT)
+    return folder
+
+
+def _build(text: str, folder: Path) -> Program:
+    repository = Repository()
+    model = repository.load_text(folder / "random.deros", text).model
+    assert isinstance(model, Rules), repository.diagnostics
+    result = build(model, InterfaceStore())
+    assert result.program is not None, result.diagnostics
+    return result.program
+
+
+@settings(thorough, max_examples=EXAMPLES // 3)
+@given(data=st.data())
+def test_same_events_from_text(data: st.DataObject, robot: Path) -> None:
+    """Rules written as a text mean what they were written from, and so does what they generate."""
+    meant = data.draw(programs(writable=True))
+    text = rules_text(meant)
+    note(text)
+    built = _build(text, robot)
+    steps = [each for each in data.draw(traces(meant)) if each.topic in ("", *built.topics)]
+    read = [_as_read_by(meant, built, each) for each in steps]
+    assert _happened(meant, steps) == _happened(built, read)
+    compare(built, read, render_monitor(built))
+
+
+def _as_read_by(meant: Program, built: Program, step: Step) -> Step:
+    """Return a step with its message's leaves as another program numbers them."""
+    fields = {
+        (meant.inputs[leaf.input].topic, leaf.path): step.leaves[leaf.index]
+        for leaf in meant.leaves
+        if leaf.index in step.leaves
+    }
+    leaves = {
+        leaf.index: fields[built.inputs[leaf.input].topic, leaf.path]
+        for leaf in built.leaves
+        if built.inputs[leaf.input].topic == step.topic
+    }
+    return replace(step, leaves=leaves)
+
+
+def _happened(program: Program, steps: list[Step]) -> list[Event]:
+    engine = Engine(program, START_NS)
+    for t_ns, step in timed(steps):
+        if step.call == "message":
+            engine.message(t_ns, step.topic, step.leaves)
+        elif step.call == "advance":
+            engine.advance(t_ns)
+        else:
+            engine.reset(t_ns)
+    return engine.events

@@ -1,0 +1,110 @@
+"""Programs written as DeRoS texts, to hold loading and building to what they mean."""
+
+from __future__ import annotations
+
+import json
+
+from deros.monitor import ir
+from tests.support.strategies import KINDS
+
+NODE_TEXT = "node robot : robot\npublishes\n" + "".join(
+    f"  topic {topic} : {short}\n"
+    for topic, short in {kind.topic: kind.type.short for kind in KINDS.values()}.items()
+)
+"""A node that publishes every topic of the random programs."""
+
+_TOPICS = list(dict.fromkeys(kind.topic for kind in KINDS.values()))
+SYSTEM_TEXT = (
+    'system Robot\nimports\n  import "robot.rnd"\ntopics\n'
+    + "".join(f"  topic {topic}\n" for topic in _TOPICS)
+    + "subsystem Base {\n  node robot : robot\n  wirings\n"
+    + "".join(f"    connect {topic} to {topic}\n" for topic in _TOPICS)
+    + "}\n"
+)
+"""The system of that node."""
+
+
+def rules_text(program: ir.Program) -> str:
+    """Return the text of a program that is ``writable``; every operand stands in parentheses."""
+    writer = _Writer(program)
+    lines = ['use "robot.system" import Robot']
+    lines += [writer.action(each) for each in program.actions]
+    lines += [writer.input(each) for each in program.inputs]
+    lines.append("entity entity {")
+    lines += [f"  {each.name}: {writer.condition(each.condition)};" for each in program.rules]
+    lines.append("}")
+    lines += [writer.behaviour(each) for each in program.behaviours]
+    return "\n".join(lines) + "\n"
+
+
+class _Writer:
+    def __init__(self, program: ir.Program) -> None:
+        self._program = program
+
+    def action(self, action: ir.Action) -> str:
+        binding = f"publishes true on /{action.name} : std_msgs.Bool"
+        reset = " latched" if action.latched else ""
+        if action.reset_by is not None:
+            reset = f" reset_by {self._program.actions[action.reset_by].name}"
+        return f"action {action.name} {binding}{reset};"
+
+    def input(self, each: ir.Input) -> str:
+        timeout = "" if each.timeout_ns is None else f" timeout {each.timeout_ns} ns"
+        return f"input {each.name} = topic {each.topic}{_path(each.path)}{timeout}"
+
+    def behaviour(self, behaviour: ir.Behaviour) -> str:
+        body = [
+            self.behaviour(item)
+            if isinstance(item, ir.Behaviour)
+            else f"{self._program.actions[item.action].name};"
+            for item in behaviour.body
+        ]
+        head = f"behaviour {behaviour.name}: if {self.condition(behaviour.condition)} then"
+        return "\n".join([f"{head} {{", *body, "};"])
+
+    def condition(self, condition: ir.Condition) -> str:
+        match condition:
+            case ir.Truth():
+                return self.value(condition.operand)
+            case ir.Compare():
+                left, right = self.value(condition.left), self.value(condition.right)
+                return f"{left} {condition.operator} {right}"
+            case ir.Within():
+                bounds = f"{self.value(condition.lower)}, {self.value(condition.upper)}"
+                opening = "[" if condition.lower_closed else "("
+                closing = "]" if condition.upper_closed else ")"
+                return f"{self.value(condition.operand)} in {opening}{bounds}{closing}"
+            case ir.Missing():
+                return f"{self._program.inputs[condition.input].name}.missing()"
+            case ir.Age():
+                name = self._program.inputs[condition.input].name
+                return f"{name}.age() {condition.operator} {condition.bound_ns} ns"
+            case ir.Not():
+                return f"not ({self.condition(condition.operand)})"
+            case ir.And():
+                return " and ".join(f"({self.condition(each)})" for each in condition.operands)
+            case ir.Or():
+                return " or ".join(f"({self.condition(each)})" for each in condition.operands)
+            case ir.For():
+                return f"({self.condition(condition.operand)}) for {condition.duration_ns} ns"
+            case ir.RuleRef():
+                return self._program.rules[condition.rule].full_name
+
+    def value(self, value: ir.ValueExpression) -> str:
+        match value:
+            case ir.Const():
+                return json.dumps(value.value)
+            case ir.Read():
+                return self._program.inputs[self._program.leaves[value.leaf].input].name
+            case ir.Apply(function="abs" | "rate"):
+                return f"{self.value(value.arguments[0])}.{value.function}()"
+            case ir.Apply():
+                constants = [each for each in value.arguments if isinstance(each, ir.Const)]
+                arguments = ", ".join(f"{each.value} rad" for each in constants)
+                return f"{self._program.inputs[value.input].name}.{value.function}({arguments})"
+            case ir.Scale():
+                raise ValueError("a scaled value has no text of its own")
+
+
+def _path(path: tuple[str | int, ...]) -> str:
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path)
