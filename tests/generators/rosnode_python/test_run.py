@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import signal
 import subprocess
@@ -38,13 +39,45 @@ COMMAND_TO_STATE = """
     def on_command(self, msg: Bool) -> None:
         self.publish_state(msg)
 """
+RELEASE = """
+    def on_release(self, msg: Empty) -> None:
+        self.released.set()
+"""
+COUNT = """
+    import threading
+    released = threading.Event()
+
+    def execute_count(self, goal_handle: ServerGoalHandle) -> Fibonacci.Result:
+        goal_handle.publish_feedback(Fibonacci.Feedback(sequence=[0]))
+        self.released.wait()  # blocks this thread, as a user's loop may
+        goal_handle.succeed()
+        return Fibonacci.Result(sequence=list(range(goal_handle.request.order)))
+"""
+ASK = """
+    def on_ask(self, msg: Int32) -> None:
+        from std_msgs.msg import Int32
+        from test_msgs.action import Fibonacci
+
+        def accepted(future):
+            future.result().get_result_async().add_done_callback(done)
+
+        def done(future):
+            self.publish_outcome(Int32(data=sum(future.result().result.sequence)))
+
+        def feedback(message):
+            self.get_logger().info(f'feedback {list(message.feedback.sequence)}')
+
+        self.client_count.wait_for_server()
+        future = self.send_count(Fibonacci.Goal(order=msg.data), feedback)
+        future.add_done_callback(accepted)
+"""
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give the install space of a workspace with the generated packages."""
     workspace = tmp_path_factory.mktemp("workspace")
-    for name in ("odometry_node", "valve", "talker"):
+    for name in ("odometry_node", "valve", "talker", "counter"):
         context = Context(InterfaceStore(), Repository())
         model = context.repository.load(MODELS / f"{name}.rnd").model
         assert isinstance(model, NodeType)
@@ -52,6 +85,10 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     source = workspace / "src/differential_odometry/differential_odometry/odometry_node.py"
     _fill_in(source, "on_ticks", TICKS_TO_ODOMETRY)
     _fill_in(workspace / "src/process/process/valve.py", "on_command", COMMAND_TO_STATE)
+    counting = workspace / "src/counting/counting"
+    _fill_in(counting / "counter.py", "on_release", RELEASE)
+    _fill_in(counting / "counter.py", "execute_count", COUNT)
+    _fill_in(counting / "asker.py", "on_ask", ASK)
     env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
     colcon = str(Path(sys.executable).with_name("colcon"))
     command = [colcon, "--log-base", "log", "build", "--executor", "sequential"]
@@ -59,15 +96,17 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
         command, cwd=workspace, env=env, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "3 packages finished" in done.stdout
+    assert "4 packages finished" in done.stdout
     return workspace / "install"
 
 
 def _fill_in(path: Path, handler: str, code: str) -> None:
     """Do a user's work: replace one handler."""
-    before, _, rest = path.read_text().partition(f"    def {handler}(")
-    after = rest.partition("\n    def ")[2]
-    path.write_text(f"{before}{code.strip(chr(10))}\n\n    def {after}")
+    lines = path.read_text().splitlines()
+    functions = (f for f in ast.walk(ast.parse("\n".join(lines))) if isinstance(f, ast.FunctionDef))
+    (found,) = (f for f in functions if f.name == handler)
+    lines[found.lineno - 1 : found.end_lineno] = code.strip("\n").splitlines()
+    path.write_text("\n".join([*lines, ""]))
 
 
 Start = Callable[..., Any]
@@ -253,3 +292,34 @@ def test_nodes_of_one_package_share_it(start: Start, ros_peer: Peer) -> None:
             lambda: {"talker", "listener"} <= set(ros_peer.node.get_node_names())
         )
     assert names
+
+
+def test_a_goal_runs_beside_the_other_handlers(start: Start, ros_peer: Peer) -> None:
+    """A client node sends a goal; a message still reaches the server while it is pursued."""
+    from std_msgs.msg import Empty, Int32
+
+    with start("counting", "counter") as counter, start("counting", "asker") as asker:
+        outcomes: list[int] = []
+        ros_peer.node.create_subscription(
+            Int32, "/outcome", lambda msg: outcomes.append(msg.data), 10
+        )
+        ask = ros_peer.node.create_publisher(Int32, "/ask", 10)
+        release = ros_peer.node.create_publisher(Empty, "/release", 10)
+        ros_peer.until(
+            lambda: (
+                ask.get_subscription_count()
+                and release.get_subscription_count()
+                and ros_peer.node.count_publishers("/outcome")
+                and ros_peer.node.count_publishers("/count/_action/feedback")
+                and ros_peer.node.count_subscribers("/count/_action/feedback")
+            )
+        )
+        ask.publish(Int32(data=5))
+        line = asker.stdout.readline()
+        assert "feedback [0]" in line
+        release.publish(Empty())
+        ros_peer.until(lambda: outcomes)
+        assert outcomes == [0 + 1 + 2 + 3 + 4]
+        for process in (counter, asker):
+            code, output = stop(process, signal.SIGINT)
+            assert (code, "Traceback" in output) == (0, False), output

@@ -1,0 +1,210 @@
+"""What the Python target refuses, and how it turns single constructs into rclpy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.generators.protocol import Context, Files, GenerationError
+from deros.generators.rosnode_python.generate import generate
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType
+
+
+def files_for(text: str, options: dict[str, str] | None = None) -> Files:
+    """Return what is generated for a node description in a folder of its own."""
+    context = Context(InterfaceStore(), Repository())
+    loaded = context.repository.load_text("/nonexistent/a_node.rnd", text)
+    assert isinstance(loaded.model, NodeType), loaded.diagnostics
+    return generate(loaded.model, context, options or {})
+
+
+def base_for(sections: str) -> str:
+    """Return the base class of a node with these sections."""
+    return files_for(f"node a_node : a_package {sections}")[
+        "a_package/a_package/a_node_base.py"
+    ].text
+
+
+def refusal(text: str) -> tuple[str, str, int]:
+    """Return code, message and line of the one diagnostic that a description ends in."""
+    with pytest.raises(GenerationError) as raised:
+        files_for(text)
+    (found,) = raised.value.diagnostics
+    return found.code.name, found.message, found.span.line
+
+
+# Refusals -----------------------------------------------------------------------------------------
+
+
+def test_an_existing_program_needs_no_skeleton() -> None:
+    """A node with a binary of its own is refused with the way out."""
+    code, message, line = refusal('node odometry : wheels\nexecutable "odom"')
+    assert (code, line) == ("DRS402", 1)
+    assert "'odom'" in message
+
+
+@pytest.mark.parametrize(
+    ("sections", "method"),
+    [
+        ("subscribes topic a/b : std_msgs.Bool\ntopic a_b : std_msgs.Bool", "on_a_b"),
+        ("publishes topic ~/x : std_msgs.Bool\ntopic /x : std_msgs.Bool", "publish_x"),
+        ("subscribes topic tick : std_msgs.Bool timers\ntimer tick every 1 s", "on_tick"),
+        ("timers\ntimer parameters_changed every 1 s", "on_parameters_changed"),
+        ("lifecycle timers\ntimer activate every 1 s", "on_activate"),
+        ("clients client c : std_srvs.Empty action_clients\naction c : a_msgs.C", "client_c"),
+    ],
+)
+def test_two_things_of_one_name_collide(sections: str, method: str) -> None:
+    """Whatever becomes one method is refused at the second place."""
+    code, message, line = refusal(f"node a : b {sections}")
+    assert (code, line) == ("DRS401", 2)
+    assert repr(method) in message
+
+
+def test_parameters_of_one_field_collide() -> None:
+    """Dots and underscores in parameter names may meet in one field."""
+    code, message, line = refusal(
+        "node a : b parameters\nname pid.p : double = 1.0\nname pid_p : double = 1.0"
+    )
+    assert (code, line) == ("DRS401", 3)
+    assert "'pid_p'" in message
+
+
+def test_modules_of_one_package_collide(tmp_path: Path) -> None:
+    """A node cannot be called as another node's base module is."""
+    (tmp_path / "a.rnd").write_text("node a : b")
+    (tmp_path / "a_base.rnd").write_text("node a_base : b")
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(tmp_path / "a.rnd").model
+    assert isinstance(model, NodeType)
+    with pytest.raises(GenerationError, match="'a_base' in the modules of package b"):
+        generate(model, context, {})
+
+
+@pytest.mark.parametrize("name", ["use_sim_time", "start_type_description_service"])
+def test_parameters_that_every_node_has_are_refused(name: str) -> None:
+    """Declaring them again would stop the node at start."""
+    assert refusal(f"node a : b parameters\nname {name} : bool = true")[::2] == ("DRS402", 2)
+
+
+def test_qos_of_an_action_is_refused() -> None:
+    """One profile for the five ends of an action has no meaning in rclpy."""
+    text = "node a : b actions\naction dock : test_msgs.Fibonacci qos reliable"
+    assert refusal(text)[::2] == ("DRS402", 2)
+
+
+def test_a_package_must_be_a_module() -> None:
+    """A package named by a Python keyword cannot be imported."""
+    assert refusal("node a\n: class")[::2] == ("DRS402", 2)
+
+
+def test_a_maintainer_must_have_an_address() -> None:
+    """package.xml needs an address, so the option is checked."""
+    with pytest.raises(ValueError, match="'Jane' does not read 'Name <address>'"):
+        files_for("node a : b", {"maintainer": "Jane"})
+
+
+# Single constructs --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("qos", "expression"),
+    [
+        ("", "10"),
+        ("qos sensor_data", "qos_profile_sensor_data"),
+        ("qos system_default", "qos_profile_system_default"),
+        ("qos depth 3", "QoSProfile(depth=3)"),
+        ("qos keep_all", "QoSProfile(history=HistoryPolicy.KEEP_ALL)"),
+        ("qos reliable", "QoSProfile(reliability=ReliabilityPolicy.RELIABLE, depth=10)"),
+        (
+            "qos sensor_data depth 1",
+            "QoSProfile(reliability=ReliabilityPolicy.BEST_EFFORT, depth=1)",
+        ),
+        (
+            "qos depth 1 deadline 100 ms",
+            "QoSProfile(depth=1, deadline=Duration(nanoseconds=100000000))",
+        ),
+    ],
+)
+def test_qos_is_as_stated(qos: str, expression: str) -> None:
+    """Presets, policies and both together become the rclpy profile they mean."""
+    text = base_for(f"publishes topic x : std_msgs.Bool {qos}")
+    compact = "".join(text.split()).replace(",)", ")")
+    wanted = f"self.create_publisher(Bool, 'x', {expression})"
+    assert wanted.replace(" ", "") in compact
+
+
+@pytest.mark.parametrize(
+    ("declaration", "declared"),
+    [
+        ("double = 1", "self.declare_parameter('x', 1.0)"),
+        ("int = 1", "self.declare_parameter('x', 1)"),
+        ("bool = true", "self.declare_parameter('x', True)"),
+        ('string = "a\'b"', "self.declare_parameter('x', \"a'b\")"),
+        ("double[] = [1, 2.5]", "self.declare_parameter('x', [1.0, 2.5])"),
+        ("byte[] = [0, 255]", "self.declare_parameter('x', [b'\\x00', b'\\xff'])"),
+        ("int[] = []", "self.declare_parameter('x', Parameter.Type.INTEGER_ARRAY)"),
+        ("double", "self.declare_parameter('x', Parameter.Type.DOUBLE)"),
+    ],
+)
+def test_defaults_have_the_declared_type(declaration: str, declared: str) -> None:
+    """An integer written for a double is declared as a double, and so on."""
+    assert declared in base_for(f"parameters name x : {declaration}")
+
+
+@pytest.mark.parametrize(
+    ("interval", "bounds"),
+    [
+        ("[1, 9]", (1, 9)),
+        ("(1, 9)", (2, 8)),
+        ("(0.5, 8.5]", (1, 8)),
+        ("[-1e30, 1e30]", (-(2**63), 2**63 - 1)),
+    ],
+)
+def test_open_ends_of_integers_are_exact(interval: str, bounds: tuple[int, int]) -> None:
+    """The closed range of a descriptor holds exactly the integers of the interval."""
+    text = base_for(f"parameters name x : int = 5 in {interval}")
+    assert f"IntegerRange(from_value={bounds[0]}, to_value={bounds[1]})" in text
+    assert "_CONSTRAINTS" not in text
+
+
+def test_a_topic_named_by_a_parameter_is_fixed_at_start() -> None:
+    """The port reads its parameter, whose change at run time is refused as read-only."""
+    text = base_for('parameters name t : string = "/a" subscribes topic x : std_msgs.Bool via t')
+    assert "self.create_subscription(Bool, self.parameters.t or 'x', self.on_x, 10)" in text
+    assert "self.declare_parameter('t', '/a', ParameterDescriptor(read_only=True))" in text
+
+
+def test_message_types_of_one_name_are_told_apart() -> None:
+    """Two packages may have one type name, and a type may be called as the node's class is."""
+    text = base_for(
+        "publishes topic x : a_msgs.State topic y : b_msgs.State topic z : c_msgs.ANode"
+    )
+    assert "from a_msgs.msg import State as AMsgsState" in text
+    assert "from b_msgs.msg import State as BMsgsState" in text
+    assert "from c_msgs.msg import ANode as CMsgsANode" in text
+
+
+def test_no_generated_name_hides_one_of_rclpy() -> None:
+    """No attribute of rclpy's nodes starts like the methods that ports and timers become."""
+    from rclpy.lifecycle import LifecycleNode
+
+    prefixes = (
+        "publish_",
+        "handle_",
+        "call_",
+        "client_",
+        "accept_",
+        "execute_",
+        "cancel_",
+        "send_",
+    )
+    timers_and_fields = ("timer_", "_publisher_", "_action_")
+    assert [n for n in dir(LifecycleNode) if n.startswith(prefixes + timers_and_fields)] == []
+    hooks = {n for n in dir(LifecycleNode) if n.startswith("on_")}
+    assert hooks == {
+        f"on_{n}" for n in ("activate", "cleanup", "configure", "deactivate", "error", "shutdown")
+    }
