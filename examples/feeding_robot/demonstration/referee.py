@@ -118,8 +118,8 @@ class Referee:
             self._note(event)
         if Reaction.ENGINE_OFF in self.observed and self.state.halted:
             self.observed.add(Reaction.STOP)  # nobody may be left to say so
-        # After the reaction the condition may end: that is what the reaction is for. Only its message
-        # may have overtaken that of the condition, which comes from another node.
+        # After the reaction the condition may end: that is what the reaction is for. Yet its
+        # message may have overtaken that of the condition, which comes from another node.
         if not self.acted or (self.fulfilled is None and event.sent < min(self.acted.values())):
             self._follow(event)
 

@@ -92,7 +92,7 @@ class Obstacle:
 
 
 def unevenness(x: float) -> tuple[float, float]:
-    """Return roll and pitch, in rad, that the ground of the yard has at ``x``; up to 1.5 degrees."""
+    """Return roll and pitch (rad) of the uneven ground at ``x``; at most 1.5 degrees."""
     return math.radians(1.5) * math.sin(1.9 * x), math.radians(1.1) * math.sin(1.3 * x + 1.0)
 
 

@@ -1,0 +1,328 @@
+"""The player of the feeding robot's test cases, without ROS."""
+
+from __future__ import annotations
+
+import math
+from html.parser import HTMLParser
+from typing import Any
+
+import pytest
+
+from tests.support.examples import example_module
+
+referee_module = example_module("feeding_robot", "demonstration.referee")
+pace_module = example_module("feeding_robot", "demonstration.pace")
+recording_module = example_module("feeding_robot", "demonstration.recording")
+picture = example_module("feeding_robot", "demonstration.picture")
+chart = example_module("feeding_robot", "demonstration.chart")
+Event, Reaction = referee_module.Event, referee_module.Reaction
+STOP = frozenset({Reaction.STOP})
+STOP_AND_OFF = frozenset({Reaction.STOP, Reaction.ENGINE_OFF})
+MS = 10**6
+
+
+def event(ms: float, name: str, value: Any, delay_ms: float = 0.5) -> Any:
+    """Return an event sent at ``ms`` and received half a millisecond later."""
+    return Event(name, value, round(ms * MS), round((ms + delay_ms) * MS))
+
+
+def referee(expected: frozenset[Any] = STOP, **settings: Any) -> Any:
+    """Return a referee of a robot that drives too fast above 0.5 m/s."""
+    defaults = {
+        "condition": lambda s: s.speed is not None and s.speed > 0.5,
+        "hold": 0.0,
+        "acts": frozenset({"stop"}) if expected else frozenset(),
+        "state": referee_module.RobotState(speed=0.4, stop=False, engine_running=True),
+    }
+    return referee_module.Referee(expected=expected, **(defaults | settings))
+
+
+def feed(judge: Any, *events: Any) -> Any:
+    """Feed events to a referee and return it."""
+    for each in events:
+        judge.feed(each)
+    return judge
+
+
+# The referee --------------------------------------------------------------------------------------
+
+
+def test_the_reaction_time_runs_from_sensor_sent_to_action_received() -> None:
+    """Not from when the player saw the sensor's message, nor to when the action was sent."""
+    judge = feed(referee(), event(100, "speed", 0.6, 9), event(102, "stop", True, 1))
+    assert judge.reaction_time == pytest.approx(0.003)
+
+
+def test_the_rules_own_time_is_no_reaction_time() -> None:
+    """What a rule waits for is taken off."""
+    judge = feed(referee(hold=4.0), event(100, "speed", 0.6), event(4101, "stop", True, 1))
+    assert judge.reaction_time == pytest.approx(0.002)
+    assert judge.verdict == ""
+
+
+def test_a_break_starts_the_condition_anew() -> None:
+    """Only the last unbroken stretch counts."""
+    judge = feed(
+        referee(hold=1.0),
+        event(100, "speed", 0.6),
+        event(600, "speed", 0.4),
+        event(700, "speed", 0.6),
+        event(900, "speed", 0.7),
+        event(1700, "stop", True),
+    )
+    assert judge.reaction_time == pytest.approx(0.0005)
+
+
+def test_a_reaction_before_its_time_fails_the_case() -> None:
+    """Too early is as wrong as not at all."""
+    judge = feed(referee(hold=4.0), event(100, "speed", 0.6), event(3000, "stop", True))
+    assert "too early" in judge.verdict
+
+
+def test_an_action_that_overtakes_its_cause_is_timed_all_the_same() -> None:
+    """Messages of two nodes come in any order; their time stamps tell."""
+    judge = feed(referee(), event(102, "stop", True, 0.5), event(100, "speed", 0.6, 9))
+    assert judge.reaction_time == pytest.approx(0.0025)
+
+
+def test_a_cause_that_comes_after_the_action_is_none() -> None:
+    """An action without a cause is a failure, whatever happens later."""
+    judge = feed(referee(), event(102, "stop", True), event(200, "speed", 0.6))
+    assert judge.reaction_time is None
+    assert judge.verdict == "the reaction came without its cause"
+
+
+def test_the_slowest_of_the_messages_ends_the_reaction_time() -> None:
+    """Where stop and motor stop are due, both must have come."""
+    judge = referee(acts=frozenset({"stop", "motor_stop"}))
+    feed(judge, event(100, "speed", 0.6), event(101, "stop", True))
+    assert judge.reaction_time is None
+    feed(judge, event(104, "motor_stop", True))
+    assert judge.reaction_time == pytest.approx(0.0045)
+
+
+def test_only_the_edge_of_an_action_counts() -> None:
+    """An action that is published again and again has reacted once."""
+    judge = feed(referee(), event(100, "speed", 0.6), event(101, "stop", True))
+    first = judge.reaction_time
+    assert feed(judge, event(201, "stop", True)).reaction_time == first
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("stop", True), ("low_speed", True), ("engine_running", False)]
+)
+def test_a_case_that_expects_nothing_fails_at_any_reaction(name: str, value: bool) -> None:
+    """A needless stop is a failure, too."""
+    judge = feed(referee(frozenset()), event(100, "speed", 0.6))
+    assert judge.verdict == ""
+    assert feed(judge, event(101, name, value)).verdict.startswith("expected none, observed")
+
+
+def test_a_case_is_complete_only_when_the_robot_stands() -> None:
+    """An order to stop is not a stop."""
+    judge = feed(referee(), event(100, "speed", 0.6), event(101, "stop", True))
+    assert not judge.complete
+    assert feed(judge, event(500, "speed", 0.01)).complete
+
+
+def test_low_speed_is_complete_when_the_robot_crawls() -> None:
+    """The order is followed when the speed is below a crawl."""
+    judge = referee(frozenset({Reaction.LOW_SPEED}), acts=frozenset({"low_speed"}))
+    feed(judge, event(100, "speed", 0.6), event(101, "low_speed", True), event(150, "speed", 0.4))
+    assert not judge.complete
+    assert feed(judge, event(500, "speed", 0.2)).complete
+
+
+def test_a_silence_begins_with_the_last_message() -> None:
+    """A dead node is timed from its last heartbeat to the PLC's reaction."""
+    judge = referee(
+        STOP_AND_OFF, hold=0.5, silence_of="heartbeat", acts=frozenset({"engine_enabled"})
+    )
+    feed(judge, event(0, "engine_enabled", True), event(100, "heartbeat", 1))
+    feed(judge, event(200, "heartbeat", 2), event(719, "engine_enabled", False, 1))
+    assert judge.reaction_time == pytest.approx(0.02)
+
+
+def test_a_robot_that_stands_with_its_engine_off_has_stopped() -> None:
+    """Even when the node that demands stops is dead."""
+    judge = referee(STOP_AND_OFF, silence_of="heartbeat", acts=frozenset({"engine_running"}))
+    feed(judge, event(1, "heartbeat", 1), event(2, "engine_running", False))
+    assert judge.observed == {Reaction.ENGINE_OFF}
+    assert feed(judge, event(900, "speed", 0.0)).observed == STOP_AND_OFF
+    assert judge.complete
+
+
+def test_the_nearest_range_is_taken_ahead_only_and_never_from_invalid_beams() -> None:
+    """What stands beside the robot, or reads as NaN, is not ahead."""
+    ranges = [1.0, math.nan, 4.0, 3.0, math.inf, 0.5]
+    assert referee_module.nearest_ahead(ranges, -1.0, 0.4, 0.45) == 3.0
+    assert referee_module.nearest_ahead([math.inf] * 3, -0.1, 0.1, 0.5) == math.inf
+
+
+# Simulated time -----------------------------------------------------------------------------------
+
+
+class Lockstep:
+    """A pace with what it asked for."""
+
+    def __init__(self) -> None:
+        """Log the steps, and count the questions to the safety node."""
+        self.steps: list[float] = []
+        self.questions = 0
+        self.pace = pace_module.Pace(self.steps.append, self._ask)
+
+    def _ask(self) -> None:
+        self.questions += 1
+
+    def see_all(self, but: str = "") -> None:
+        """Show every witness, except one."""
+        for name in sorted(pace_module.WITNESSES - {but}):
+            self.pace.seen(name)
+
+
+def test_time_passes_when_all_have_shown_the_step_and_the_safety_node_answers() -> None:
+    """Neither alone is enough."""
+    lockstep = Lockstep()
+    lockstep.see_all()
+    assert (lockstep.steps, lockstep.pace.now) == ([], 0)
+    lockstep.pace.answered()
+    assert (lockstep.steps, lockstep.pace.now) == ([pace_module.STEP], 200 * MS)
+
+
+@pytest.mark.parametrize("late", sorted(pace_module.WITNESSES))
+def test_time_stands_while_one_is_late(late: str) -> None:
+    """Nobody is left behind: the safety node is not even asked."""
+    lockstep = Lockstep()
+    lockstep.see_all(but=late)
+    assert lockstep.questions == 0
+    lockstep.pace.seen(late)
+    assert lockstep.questions == 1
+
+
+def test_a_reminder_repeats_the_step_without_letting_time_pass() -> None:
+    """A lost message is asked for again; an answer that is on its way is not hurried."""
+    lockstep = Lockstep()
+    lockstep.pace.remind()
+    assert (lockstep.steps, lockstep.pace.now) == ([0.0], 0)
+    lockstep.see_all()
+    lockstep.pace.answered()
+    lockstep.pace.remind()
+    assert lockstep.steps == [0.0, pace_module.STEP]
+
+
+def test_a_lost_answer_is_asked_for_again_and_counts_once() -> None:
+    """Two answers to one question are one step."""
+    lockstep = Lockstep()
+    lockstep.see_all()
+    lockstep.pace.remind()
+    assert lockstep.questions == 2
+    lockstep.pace.answered()
+    lockstep.pace.answered()
+    assert lockstep.steps == [pace_module.STEP]
+
+
+def test_two_steps_fit_into_the_shortest_timeout_of_the_rules() -> None:
+    """A node one step behind is not taken for a silent one."""
+    assert 2 * pace_module.STEP < 0.5
+
+
+# The recording and its picture --------------------------------------------------------------------
+
+
+def recording() -> Any:
+    """Return a recording of two cases, one passed, one failed."""
+    made = recording_module.Recording()
+    for ms in range(0, 4000, 10):
+        made.feed(event(ms, "speed", 0.4 if ms < 2000 else 0.0))
+        made.feed(event(ms, "nearest", math.inf if ms < 1000 else 1.5))
+        made.feed(event(ms, "roll", 0.01))
+        made.feed(event(ms, "stop", ms >= 1000))
+        made.feed(event(ms, "heartbeat", ms))
+    result = recording_module.Result
+    made.results.append(result(2, "Obstacle <b>", STOP, STOP, 0.0012, "", 0.5, 2.0))
+    made.results.append(result(9, "Fast", STOP, frozenset(), None, "no reaction & late", 2.5, 3.9))
+    return made
+
+
+def test_a_recording_keeps_curves_thinned_and_states_by_their_edges() -> None:
+    """A quarter of the samples of a curve, two of a state, none of a counter."""
+    tracks = recording().tracks
+    assert 75 <= len(tracks["speed"]) <= 100
+    assert [value for _, value in tracks["stop"]] == [0.0, 1.0]
+    assert "heartbeat" not in tracks
+
+
+def test_times_in_a_recording_count_from_its_first_event() -> None:
+    """Whatever the clock says."""
+    made = recording_module.Recording()
+    made.feed(Event("speed", 0.1, 7 * 10**18, 7 * 10**18))
+    made.feed(Event("speed", 0.2, 7 * 10**18 + 10**9, 7 * 10**18 + 10**9))
+    assert made.tracks["speed"] == [(0.0, 0.1), (1.0, 0.2)]
+    assert made.end == 1.0
+
+
+@pytest.mark.parametrize(
+    ("share", "value"), [(0.0, 1.0), (0.5, 2.0), (0.51, 3.0), (0.99, 4.0), (1.0, 4.0)]
+)
+def test_percentiles_are_values_that_were_measured(share: float, value: float) -> None:
+    """The nearest rank, nothing in between."""
+    assert recording_module.percentile([4.0, 1.0, 3.0, 2.0], share) == value
+
+
+def test_stretches_are_cut_at_the_edges_and_end_with_the_recording() -> None:
+    """An action that is active at the end is active until the end."""
+    samples = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 1.0)]
+    assert chart.stretches(samples, 5.0) == [(1.0, 2.0), (3.0, 5.0)]
+
+
+class Page(HTMLParser):
+    """Counts a page's elements and collects what it would load."""
+
+    VOID = frozenset({"meta", "link", "br"})
+
+    def __init__(self, text: str) -> None:
+        """Read the page."""
+        super().__init__()
+        self.open: list[str] = []
+        self.count: dict[str, int] = {}
+        self.loads: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Count an element, and note what it refers to."""
+        self.count[tag] = self.count.get(tag, 0) + 1
+        self.loads += [value or "" for name, value in attrs if name in {"src", "href"}]
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Count an element without content."""
+        self.handle_starttag(tag, attrs)
+        if tag not in self.VOID:
+            self.open.pop()
+
+    def handle_endtag(self, tag: str) -> None:
+        """Close the innermost element, which must be this one."""
+        assert self.open.pop() == tag
+
+
+def test_the_picture_is_one_well_formed_page_that_loads_nothing() -> None:
+    """Every element is closed, and there is no reference to anything outside."""
+    text = picture.page([recording(), recording_module.Recording()], "Fast enough.")
+    page = Page(text)
+    assert page.open == []
+    assert page.loads == []
+    assert "http" not in text
+    assert page.count["svg"] == 1
+    assert page.count["tr"] == 3
+
+
+def test_the_picture_shows_bands_verdicts_and_both_colour_schemes() -> None:
+    """One band per case in the colour of its verdict, texts escaped, dark mode provided for."""
+    text = picture.page([recording()], "Fast enough.")
+    assert "1 of 2 cases passed" in text
+    assert text.count('<g class="band good">') == text.count('<g class="band bad">') == 1
+    assert "Obstacle &lt;b&gt;" in text
+    assert "no reaction &amp; late" in text
+    assert "prefers-color-scheme: dark" in text
+    assert "inf" not in text.split("</style>")[1].lower().replace("info", "")

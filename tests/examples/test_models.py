@@ -1,0 +1,74 @@
+"""The examples' models check clean, and the safety node's description in them is up to date."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.generators.protocol import Context
+from deros.generators.registry import discover
+from deros.generators.writer import write
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from deros.validators.check import check
+from tests.support.examples import EXAMPLES
+
+MODELS = sorted(p for s in (".rnd", ".system", ".deros") for p in EXAMPLES.rglob(f"*{s}"))
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda path: path.name)
+def test_every_model_checks_without_a_finding(model: Path) -> None:
+    """Not even a warning: what we show is what we ask for."""
+    repository = Repository()
+    loaded = repository.load(str(model))
+    assert check([loaded], repository, InterfaceStore()) == []
+
+
+@pytest.mark.parametrize(
+    ("rules", "description"),
+    [
+        ("feeding_robot/feeding_robot.deros", "nodes/feeding_robot_safety_node.rnd"),
+        ("intelligent_one/intelligent_one.deros", "intelligent_one_safety_node.rnd"),
+    ],
+)
+def test_the_safety_nodes_description_is_what_its_rules_generate(
+    rules: str, description: str, tmp_path: Path
+) -> None:
+    """If this fails: generate the rules' package and copy its .rnd over the one in the example."""
+    path = EXAMPLES / rules
+    repository = Repository()
+    generator = discover().find("deros", "python")
+    assert generator is not None
+    loaded = repository.load(str(path))
+    write(generator(loaded.model, Context(InterfaceStore(), repository)), tmp_path)
+    (generated,) = tmp_path.rglob("*.rnd")
+    assert (path.parent / description).read_text() == generated.read_text()
+
+
+def test_the_rules_of_the_feeding_robot_cite_every_requirement() -> None:
+    """Each of the seven requirements of the risk list stands beside a rule that meets it."""
+    text = (EXAMPLES / "feeding_robot/feeding_robot.deros").read_text()
+    entities = text[text.index("entity ") : text.index("behaviour ")]
+    assert all(f"[R{number}]" in entities for number in range(1, 8))
+
+
+def test_the_feeding_robot_has_the_entities_and_actions_of_its_risk_assessment() -> None:
+    """Four entities, four actions, and at least fourteen rules and behaviours."""
+    rules = Repository().load(str(EXAMPLES / "feeding_robot/feeding_robot.deros")).model
+    assert isinstance(rules, Rules)
+    assert {str(e.name) for e in rules.entities} == {
+        "imu_sensor_system",
+        "collision_detection",
+        "PLC_system",
+        "drive_system",
+    }
+    assert {str(a.name) for a in rules.actions} == {
+        "low_speed",
+        "stop",
+        "motor_stop",
+        "controllerOk",
+    }
+    assert sum(len(entity.rules) for entity in rules.entities) >= 14
+    assert len(rules.behaviours) >= 14
