@@ -30,6 +30,8 @@ from deros.monitor.terms import Terms, counted
 LOG_STATE = "log_state"
 """The action that is built in: it writes a text to the log."""
 
+_FLOAT32_MAX = (2 - 2**-23) * 2.0**127
+
 # Words of C++ that Python would take as names: rules are to generate for every target.
 _CPP_WORDS = frozenset(
     re.findall(
@@ -165,14 +167,16 @@ class Actions:
             scalar = value.value if isinstance(value, Plain) else value.constant.value
             if isinstance(value, MessageConstant) and value.constant.type != kind.base:
                 return None
-            return scalar if family_of(scalar) == family(kind) else None
+            too_long = isinstance(scalar, str) and len(scalar) > (kind.string_bound or len(scalar))
+            return scalar if family_of(scalar) == family(kind) and not too_long else None
         if family(kind) != "number":
             return None
         if unit and value.unit and not self._scope.units.compatible(value.unit, unit):
             return None
         number = value.in_unit(unit)
         if kind.base in FLOAT_TYPES:
-            return rounded(number)
+            fits = kind.base != "float32" or abs(number) <= _FLOAT32_MAX
+            return rounded(number) if fits else None
         least, greatest = type_bounds(kind)
         fits = number.denominator == 1 and least <= number <= greatest
         return int(number) if fits else None

@@ -238,8 +238,14 @@ class Comparisons:
 
     def _membership(self, node: rules.Membership) -> ir.Condition | None:
         operand = self._terms.resolve(node.operand)
-        ends = [self._terms.resolve(node.lower), self._terms.resolve(node.upper)]
-        lower, upper = ends
+        owner = operand.message if isinstance(operand, Value) else None
+        lower, upper = (
+            # With the operand unknown, so are the names that it would explain.
+            None
+            if operand is None and self._terms.is_open(end)
+            else self._terms.resolve(end, owner)
+            for end in (node.lower, node.upper)
+        )
         if operand is None or lower is None or upper is None:
             return None
         if isinstance(operand, AgeOf):
@@ -253,9 +259,11 @@ class Comparisons:
             return None
         if not self._is_number(operand, node.operand):
             return None
-        if not self._is_end(lower, operand, node.lower) or not self._is_end(
-            upper, operand, node.upper
-        ):
+        fit = [
+            self._is_end(lower, operand, node.lower),
+            self._is_end(upper, operand, node.upper),
+        ]
+        if not all(fit):
             return None
         if isinstance(lower, Quantity) and isinstance(upper, Quantity):
             least, greatest = lower.in_unit(operand.unit), upper.in_unit(operand.unit)
