@@ -24,6 +24,7 @@ BROKEN_PIPE = 141
 COMMANDS: dict[str, tuple[str, str]] = {
     "check": ("deros.cli.check:check", "Check models and report every finding."),
     "generate": ("deros.cli.generate:generate", "Generate code, launch files or parameters."),
+    "graph": ("deros.cli.graph:graph", "Show who talks to whom in a system."),
     "new": ("deros.cli.new:new", "Start a new model that checks clean."),
     "simulate": ("deros.cli.simulate:simulate", "Run safety rules over a recorded trace."),
     "up": ("deros.cli.up:up", "Start every node of a system; stop them all on Ctrl-C."),
