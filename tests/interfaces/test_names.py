@@ -28,6 +28,13 @@ def test_near_finds_what_was_meant_best_first() -> None:
     assert len(near("aaaa", [f"aaa{i}" for i in range(9)])) == 3
 
 
+def test_near_finds_the_match_among_very_many() -> None:
+    """A large system's topics are narrowed down without losing the one that was meant."""
+    topics = [f"/group_{i // 10}/topic_{i}" for i in range(10_000)]
+    assert near("/group_12/topik_123", topics)[0] == "/group_12/topic_123"
+    assert near("/gruop_999/topic_9991", topics)[0] == "/group_999/topic_9991"
+
+
 @pytest.mark.parametrize(
     ("matches", "text"),
     [
