@@ -45,7 +45,7 @@ bench: $(READY)  ## Measure; prints ratios against a floor measured in the same 
 .PHONY: golden
 golden: $(READY)  ## Refresh the expectations in tests/golden and tests/cases, to be reviewed as a diff
 	$(BIN)/python tests/cases/refresh.py
-	DEROS_UPDATE_GOLDEN=1 $(BIN)/python -m pytest -q tests/generators -k golden
+	$(BIN)/python -m pytest -q tests/generators -k as_kept --refresh-golden
 
 .PHONY: clean
 clean:  ## Remove the environment and everything built

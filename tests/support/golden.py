@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,6 +35,7 @@ class Golden:
         }
         assert sorted(kept) == sorted(files)
         for path, file in files.items():
+            assert os.access(folder / path, os.X_OK) >= file.executable, path
             generated = file.owner is Owner.GENERATOR
             text = with_banner(path, file.text) if generated else file.text
             assert text == kept[path], f"{path}: refresh with pytest --refresh-golden"
