@@ -8,19 +8,7 @@ never given a second meaning.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from deros.diagnostics import Severity
-
-
-@dataclass(frozen=True, slots=True)
-class Code:
-    """A kind of finding: its stable name (``DRS201``), a short title and its severity."""
-
-    name: str
-    title: str
-    severity: Severity
-
+from deros.diagnostics import Code, Severity
 
 ALL_CODES: dict[str, Code] = {}
 

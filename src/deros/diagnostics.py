@@ -9,14 +9,9 @@ from __future__ import annotations
 
 import enum
 from bisect import bisect_right
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from deros.codes import Code
 
 
 class Severity(enum.Enum):
@@ -27,12 +22,21 @@ class Severity(enum.Enum):
     INFO = "info"
 
 
+@dataclass(frozen=True, slots=True)
+class Code:
+    """A kind of finding: its stable name (``DRS201``), a short title and its severity."""
+
+    name: str
+    title: str
+    severity: Severity
+
+
 class SourceFile:
     """One text file as it was read: its path as the user named it, and its text.
 
     Identity is what counts: two reads of one path are two sources. Positions in it are character
-    offsets; lines and columns (both from 1, columns in characters) are worked out on demand, because
-    a model has many more spans than diagnostics.
+    offsets; lines and columns (both from 1, columns in characters) are worked out on demand,
+    because a model has many more spans than diagnostics.
     """
 
     def __init__(self, path: str, text: str) -> None:

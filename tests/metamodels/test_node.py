@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from deros import codes
-from deros.codes import Code
+from deros.diagnostics import Code
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import Interval, QosProfile
 from deros.metamodels.load import Repository

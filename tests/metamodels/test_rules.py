@@ -7,7 +7,7 @@ from decimal import Decimal
 import pytest
 
 from deros import codes
-from deros.codes import Code
+from deros.diagnostics import Code
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import (

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros import codes
-from deros.codes import Code
+from deros.diagnostics import Code
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import QosProfile
 from deros.metamodels.load import LoadedFile, Repository

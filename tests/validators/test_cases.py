@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from deros.codes import ALL_CODES
+from deros.diagnostics import Code
 from tests.support import cases
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -32,8 +33,8 @@ def test_case(name: str) -> None:
 
 @pytest.mark.parametrize("code", ALL_CODES)
 def test_every_code_has_a_case(code: str) -> None:
-    """A code is expected by some case, or, for generation, named by a test of the generators."""
-    if code.startswith("DRS4"):
+    """A code is expected by some case, or, for generation and traces, named by some test."""
+    if code.startswith(("DRS4", "DRS5")):
         tests = (ROOT / "tests").rglob("test_*.py")
         name = next(n for n, c in _constants().items() if c == code)
         assert any(re.search(rf"\b({code}|{name})\b", test.read_text()) for test in tests)
@@ -48,7 +49,7 @@ def test_every_code_has_a_case(code: str) -> None:
 def _constants() -> dict[str, str]:
     import deros.codes
 
-    return {n: c.name for n, c in vars(deros.codes).items() if isinstance(c, deros.codes.Code)}
+    return {n: c.name for n, c in vars(deros.codes).items() if isinstance(c, Code)}
 
 
 @pytest.mark.parametrize("code", ALL_CODES)

@@ -24,7 +24,7 @@ from deros.interfaces.types import (
 )
 
 if TYPE_CHECKING:
-    from deros.interfaces.store import Definition
+    from deros.interfaces.sources import Definition
 
 # The member that an IDL structure must have, where the .msg file has none.
 _PLACEHOLDER = "structure_needs_at_least_one_member"

@@ -9,53 +9,20 @@ for, and each definition is read once.
 from __future__ import annotations
 
 import os
-import re
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Protocol
 
-from deros.interfaces.definitions import SECTIONS, DefinitionError, parse_definition
+from deros.interfaces.sources import (
+    INDEX,
+    AmentSource,
+    Definition,
+    DefinitionProblem,
+    FolderSource,
+    Source,
+)
 from deros.interfaces.types import InterfaceKind, InterfaceType, MessageDefinition
-
-_INDEX = Path("share", "ament_index", "resource_index", "rosidl_interfaces")
-_NOT_SEARCHED = frozenset({"__pycache__", "build", "node_modules"})
-_PACKAGE_XML_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
-
-
-@dataclass(frozen=True, slots=True)
-class DefinitionProblem:
-    """A definition that is there but cannot be read: its file, the line (from 1), and why."""
-
-    path: str
-    line: int
-    message: str
-
-
-Definition = tuple[MessageDefinition, ...] | DefinitionProblem | None
-"""The parts of a definition, why it cannot be read, or that there is none."""
-
-
-class Source(Protocol):
-    """One place that definitions come from."""
-
-    def has_package(self, package: str) -> bool:
-        """Tell whether the place has interfaces of ``package``."""
-        ...
-
-    def packages(self) -> frozenset[str]:
-        """Return the packages it has interfaces of."""
-        ...
-
-    def names(self, package: str, kind: InterfaceKind) -> frozenset[str]:
-        """Return the names of the package's interfaces of one kind."""
-        ...
-
-    def definition(self, kind: InterfaceType) -> Definition:
-        """Return the parts of the definition of ``kind``."""
-        ...
 
 
 class InterfaceStore:
@@ -140,109 +107,8 @@ class InterfaceStore:
         return found if isinstance(found, tuple) else None
 
 
-class FolderSource:
-    """Definitions in the source tree of a workspace, of one package, or an install space.
-
-    A package has the name that its ``package.xml`` gives it, else that of its folder.
-    """
-
-    def __init__(self, root: Path) -> None:
-        """Remember the folder; it is searched at the first question."""
-        self._root = root
-
-    @cached_property
-    def _folders(self) -> dict[tuple[str, str], Path]:
-        """The folder of each package and kind; the first one found, in sorted order, counts."""
-        found: dict[tuple[str, str], Path] = {}
-        for directory, below, names in os.walk(self._root):
-            below[:] = sorted(b for b in below if not b.startswith(".") and b not in _NOT_SEARCHED)
-            here = Path(directory)
-            if here.name in SECTIONS and any(name.endswith(f".{here.name}") for name in names):
-                found.setdefault((_package_name(here.resolve().parent), here.name), here)
-        return found
-
-    def has_package(self, package: str) -> bool:
-        """Tell whether the tree has interfaces of ``package``."""
-        return any((package, kind) in self._folders for kind in SECTIONS)
-
-    def packages(self) -> frozenset[str]:
-        """Return the packages of the tree that have interfaces."""
-        return frozenset(package for package, _ in self._folders)
-
-    def names(self, package: str, kind: InterfaceKind) -> frozenset[str]:
-        """Return the names of the package's interfaces of one kind."""
-        folder = self._folders.get((package, kind))
-        return _stems(folder, kind) if folder else frozenset()
-
-    def definition(self, kind: InterfaceType) -> Definition:
-        """Read the definition of ``kind`` from its file."""
-        folder = self._folders.get((kind.package, kind.kind))
-        return read_definition(folder / f"{kind.name}.{kind.kind}", kind) if folder else None
-
-
-class AmentSource:
-    """Definitions of the packages installed in one prefix.
-
-    Source: ament index, resource type ``rosidl_interfaces``.
-    """
-
-    def __init__(self, prefix: Path) -> None:
-        """Remember the prefix."""
-        self._prefix = prefix
-
-    def has_package(self, package: str) -> bool:
-        """Tell whether the index of the prefix lists interfaces of ``package``."""
-        return bool(package) and (self._prefix / _INDEX / package).is_file()
-
-    def packages(self) -> frozenset[str]:
-        """Return the packages that the index lists."""
-        try:
-            return frozenset(entry.name for entry in (self._prefix / _INDEX).iterdir())
-        except OSError:
-            return frozenset()
-
-    def names(self, package: str, kind: InterfaceKind) -> frozenset[str]:
-        """Return the names of the package's interfaces of one kind."""
-        return _stems(self._prefix / "share" / package / kind, kind)
-
-    def definition(self, kind: InterfaceType) -> Definition:
-        """Read the definition of ``kind`` from the package's share folder."""
-        folder = self._prefix / "share" / kind.package / kind.kind
-        return read_definition(folder / f"{kind.name}.{kind.kind}", kind)
-
-
-def read_definition(path: Path, kind: InterfaceType) -> Definition:
-    """Read and parse one file; ``None`` if there is no such file."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError) as error:
-        return DefinitionProblem(path.as_posix(), 1, f"cannot be read: {error}")
-    found = parse_definition(kind, text)
-    if isinstance(found, DefinitionError):
-        return DefinitionProblem(path.as_posix(), found.line, found.message)
-    return found
-
-
-def _stems(folder: Path, kind: str) -> frozenset[str]:
-    try:
-        return frozenset(path.stem for path in folder.iterdir() if path.suffix == f".{kind}")
-    except OSError:
-        return frozenset()
-
-
-def _package_name(folder: Path) -> str:
-    try:
-        text = (folder / "package.xml").read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return folder.name
-    match = _PACKAGE_XML_NAME.search(text)
-    return match[1] if match else folder.name
-
-
 def _environment_prefixes() -> tuple[Path, ...]:
     named = [part for part in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
-    if (Path(sys.prefix) / _INDEX).is_dir():
+    if (Path(sys.prefix) / INDEX).is_dir():
         named.append(sys.prefix)
     return tuple(Path(prefix) for prefix in dict.fromkeys(named))

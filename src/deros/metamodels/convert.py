@@ -8,8 +8,7 @@ from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
 from deros import codes
-from deros.codes import Code
-from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
+from deros.diagnostics import Code, Diagnostic, Related, SourceFile, Span, report
 from deros.interfaces.types import InterfaceKind, InterfaceType
 from deros.interfaces.units import UnitRegistry
 from deros.metamodels.common import Interval, Name, QosProfile, Scalar, Value

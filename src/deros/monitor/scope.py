@@ -11,8 +11,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 
 from deros import codes
-from deros.codes import Code
-from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.diagnostics import Code, Diagnostic, Related, Span, report
 from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.rep103 import unit_of

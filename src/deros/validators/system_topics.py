@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from deros import codes
-from deros.codes import Code
-from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.diagnostics import Code, Diagnostic, Related, Span, report
 from deros.metamodels.flatten import FlatSystem, FlatTopic, resolve_name
 from deros.metamodels.node import PortKind
 from deros.validators.graph import End, Vertex, channels, publishers, subscribers
