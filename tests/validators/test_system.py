@@ -1,0 +1,140 @@
+"""What systems of several files, and very large ones, are told; single findings are under cases."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from deros.diagnostics import Diagnostic
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.validators.check import check
+
+NODES = {
+    "source.rnd": "node source : demo publishes topic out : std_msgs.Float64\n",
+    "sink.rnd": "node sink : demo subscribes topic in : std_msgs.Float64\n",
+}
+ARM = """\
+system Arm
+imports import "*.rnd"
+topics
+  topic state
+  topic /estop
+subsystem Joints {
+  node elbow : source wirings connect out to state
+  node brake : sink wirings connect in to /estop
+}
+"""
+
+
+def _check(directory: Path, *names: str, **files: str) -> list[Diagnostic]:
+    for name, text in {**NODES, **files}.items():
+        (directory / name).write_text(text)
+    repository = Repository()
+    named = [repository.load(directory / name) for name in names]
+    return check(named, repository, InterfaceStore((), prefixes=()))
+
+
+def _said(findings: list[Diagnostic]) -> list[tuple[str, str]]:
+    return [(Path(d.span.file).name, d.code.name) for d in findings]
+
+
+def test_an_imported_system_may_be_completed_by_its_importer(tmp_path: Path) -> None:
+    """What a part lacks is reported where the whole is known, and only if the whole lacks it."""
+    robot = """\
+system Robot
+imports import "arm.system" import "*.rnd"
+topics topic /estop
+subsystem left : Arm namespace /left
+node guard : source wirings connect out to /estop
+"""
+    alone = _check(tmp_path, "arm.system", **{"arm.system": ARM})
+    assert _said(alone) == [("arm.system", "DRS211"), ("arm.system", "DRS210")]
+    whole = _check(tmp_path, "robot.system", **{"robot.system": robot})
+    assert _said(whole) == [("arm.system", "DRS211")]
+    assert "/left/state" in whole[0].message
+
+
+def test_rules_are_ends_of_the_topics_that_they_use(tmp_path: Path) -> None:
+    """A topic that only the safety node reads or feeds lacks nothing."""
+    rules = """\
+use "arm.system" import Arm
+action halt publishes 1.0 on /estop : std_msgs.Float64 latched;
+input state = topic /state.data timeout 1 sec
+entity arm { far: state > 1.0; }
+if arm.far then { halt; };
+"""
+    findings = _check(tmp_path, "arm.deros", **{"arm.system": ARM, "arm.deros": rules})
+    assert _said(findings) == []
+
+
+def test_findings_of_imports_are_reported_once(tmp_path: Path) -> None:
+    """A node description used by two systems of one run is checked once."""
+    bad = "node sink : demo subscribes topic in : std_msgs.Flot64\n"
+    robot = 'system Robot\nimports import "arm.system"\nsubsystem left : Arm namespace /left\n'
+    findings = _check(
+        tmp_path,
+        "robot.system",
+        "arm.system",
+        **{"sink.rnd": bad, "arm.system": ARM, "robot.system": robot},
+    )
+    assert [d.code.name for d in findings].count("DRS102") == 1
+
+
+def test_namespaces_keep_equal_names_apart(tmp_path: Path) -> None:
+    """One system used twice needs a namespace for each use, and no more."""
+    template = """\
+system Robot
+imports import "arm.system"
+topics external topic /estop
+{topics}
+subsystem left : Arm{left}
+subsystem right : Arm{right}
+"""
+    external = "external topic /left/state external topic /right/state"
+    apart = template.format(left=" namespace /left", right=" namespace /right", topics=external)
+    files = {"arm.system": ARM, "robot.system": apart}
+    assert _said(_check(tmp_path, "robot.system", **files)) == []
+    files["robot.system"] = template.format(left="", right="", topics="external topic /state")
+    codes = [code for _, code in _said(_check(tmp_path, "robot.system", **files))]
+    assert codes == ["DRS215", "DRS215"]
+
+
+def _fleet(nodes: int, wrong: int) -> str:
+    """A chain of nodes, of which the first ``wrong`` are connected to misspelt topics."""
+    lines = ["system Fleet", 'imports import "*.rnd"', "topics"]
+    lines += [f"  topic /stage/number_{i}" for i in range(nodes)]
+    for i in range(nodes):
+        topic = f"/stage/nmber_{i}" if i < wrong else f"/stage/number_{i}"
+        lines += [f"node source_{i} : source wirings connect out to {topic}"]
+        lines += [f"node sink_{i} : sink wirings connect in to /stage/number_{i}"]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("wrong", [0, 400])
+def test_checking_is_linear(tmp_path: Path, wrong: int) -> None:
+    """Four times the nodes, sound or full of misspellings, take about four times as long."""
+
+    def seconds(nodes: int) -> float:
+        path = tmp_path / "fleet.system"
+        path.write_text(_fleet(nodes, wrong * nodes // 400))
+        for name, text in NODES.items():
+            (tmp_path / name).write_text(text)
+        repository = Repository()
+        named = [repository.load(path)]
+        start = time.process_time()
+        check(named, repository, InterfaceStore((), prefixes=()))
+        return time.process_time() - start
+
+    seconds(100)
+    small = min(seconds(300) for _ in range(2))
+    assert min(seconds(1200) for _ in range(2)) < 8 * small + 0.05
+
+
+def test_misspelt_topics_among_many_are_still_named(tmp_path: Path) -> None:
+    """The hint finds the topic that was meant among hundreds."""
+    findings = _check(tmp_path, "fleet.system", **{"fleet.system": _fleet(400, 3)})
+    unknown = [d for d in findings if d.code.name == "DRS205"]
+    assert [d.hint for d in unknown] == [f"did you mean '/stage/number_{i}'?" for i in range(3)]
