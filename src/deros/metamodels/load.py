@@ -85,7 +85,7 @@ class Repository:
         key = _identity(shown)
         if key not in self._files:
             try:
-                source = read(Path(path), shown)
+                source = read(Path(path), shown, streams=False)
             except Unreadable as unreadable:
                 found = (unreadable.diagnostic,)
                 self._files[key] = LoadedFile(shown, language_of(shown), None, None, found)

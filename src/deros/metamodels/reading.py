@@ -31,8 +31,10 @@ class Unreadable(Exception):  # noqa: N818 - it carries a finding, and is no fau
         self.diagnostic = diagnostic
 
 
-def read(path: Path, shown: str) -> SourceFile:
+def read(path: Path, shown: str, *, streams: bool = True) -> SourceFile:
     """Read a UTF-8 file; ``shown`` is its path as diagnostics name it.
+
+    Without ``streams``, a pipe or a device is refused: it may keep the reader waiting for ever.
 
     Raises:
         Unreadable: the file cannot be opened, or does not hold text.
@@ -40,8 +42,7 @@ def read(path: Path, shown: str) -> SourceFile:
     nothing = SourceFile(shown, "")
     start = Span(nothing, 0, 0)
     try:
-        if path.exists() and not (path.is_file() or path.is_dir()):
-            # Reading from a pipe or a device would wait for something that may never come.
+        if not streams and path.exists() and not (path.is_file() or path.is_dir()):
             raise OSError(errno.EINVAL, "neither a file nor a folder")
         data = path.read_bytes()
     except (OSError, ValueError) as error:

@@ -1,0 +1,130 @@
+"""deros as textX plug-ins, in an environment with nothing but the wheel and what it requires."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.support.wheel import Environment, build_wheel
+
+CASES = Path(__file__).resolve().parents[1] / "cases"
+LANGUAGES = {"node": ".rnd", "system": ".system", "rules": ".deros"}
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Environment:
+    """An environment with only the wheel installed."""
+    directory = tmp_path_factory.mktemp("wheel")
+    environment = Environment(directory / "environment")
+    environment.install(build_wheel(directory))
+    return environment
+
+
+@pytest.fixture
+def models(installed: Environment, tmp_path: Path) -> Path:
+    """A folder with one new model of each kind, ``courier``, in a folder of its own."""
+    for kind in LANGUAGES:
+        done = installed.run("deros", "new", kind, "courier", "-o", kind, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    return tmp_path
+
+
+def test_languages_and_generators_are_listed(installed: Environment, tmp_path: Path) -> None:
+    """``textx`` lists the three languages and the five generators, each with its description."""
+    languages = installed.run("textx", "list-languages", cwd=tmp_path).stderr
+    for name in ("rosnode (*.rnd)", "rossystem (*.system)", "deros (*.deros)"):
+        assert name in languages
+    generators = installed.run("textx", "list-generators", cwd=tmp_path).stderr
+    for name in (
+        "rosnode -> python",
+        "rossystem -> launch",
+        "rossystem -> script",
+        "rossystem -> params",
+        "deros -> python",
+    ):
+        assert name in generators
+
+
+@pytest.mark.parametrize(("kind", "suffix"), LANGUAGES.items())
+def test_textx_check_accepts_sound_models(
+    installed: Environment, models: Path, kind: str, suffix: str
+) -> None:
+    """``textx check`` says OK, with everything that the model imports found and checked."""
+    done = installed.run("textx", "check", f"{kind}/courier{suffix}", cwd=models)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.endswith(f"courier{suffix}: OK.\n")
+
+
+@pytest.mark.parametrize(
+    ("case", "code"),
+    [
+        ("DRS102_unknown_type.rnd", "DRS102"),
+        ("DRS208_type_mismatch.system", "DRS208"),
+        ("DRS306_incompatible_units.deros", "DRS306"),
+        ("DRS003_syntax_error.rnd", "DRS003"),
+        ("DRS002_not_utf8.rnd", "DRS002"),
+        ("nowhere.rnd", "DRS001"),
+    ],
+)
+def test_textx_check_runs_all_our_checks(
+    installed: Environment, tmp_path: Path, case: str, code: str
+) -> None:
+    """What ``deros check`` finds, ``textx check`` finds, too; it never ends in a traceback."""
+    done = installed.run("textx", "check", CASES / case, cwd=tmp_path)
+    assert done.returncode == 1
+    assert f"error[{code}]" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("kind", "suffix", "target", "expected"),
+    [
+        ("node", ".rnd", "python", "package.xml"),
+        ("system", ".system", "launch", "*.launch.py"),
+        ("system", ".system", "script", "*.py"),
+        ("system", ".system", "params", "*.yaml"),
+        ("rules", ".deros", "python", "package.xml"),
+    ],
+)
+def test_both_generate_commands_write_the_same(
+    installed: Environment, models: Path, kind: str, suffix: str, target: str, expected: str
+) -> None:
+    """``textx generate`` and ``deros generate`` give the same files, byte for byte."""
+    trees = []
+    for program in ("textx", "deros"):
+        out = models / program
+        command = ("generate", f"courier{suffix}", "--target", target, "-o", out)
+        done = installed.run(program, *command, cwd=models / kind)
+        assert done.returncode == 0, done.stderr
+        trees.append({str(p.relative_to(out)): p.read_bytes() for p in out.rglob("*.*")})
+    assert trees[0] == trees[1]
+    assert any(Path(path).match(expected) for path in trees[0])
+
+
+def test_textx_generate_takes_the_generators_options(installed: Environment, models: Path) -> None:
+    """An option of the generator reaches it; one that it does not have is refused."""
+    command = ("generate", "courier.rnd", "--target", "python", "-o", "out")
+    where = models / "node"
+    done = installed.run("textx", *command, "--maintainer", "Jo <jo@example.com>", cwd=where)
+    assert done.returncode == 0, done.stderr
+    (package,) = (where / "out").rglob("package.xml")
+    assert "jo@example.com" in package.read_text()
+    assert installed.run("textx", *command, "--colour", "red", cwd=where).returncode == 1
+
+
+def test_textx_generate_writes_nothing_from_a_bad_model(
+    installed: Environment, tmp_path: Path
+) -> None:
+    """A model with errors is reported and leaves the output directory not even made."""
+    bad = CASES / "DRS208_type_mismatch.system"
+    done = installed.run("textx", "generate", bad, "--target", "launch", "-o", "out", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "error[DRS208]" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_our_commands_are_textx_commands(installed: Environment, models: Path) -> None:
+    """``textx deros check`` is ``deros check``."""
+    done = installed.run("textx", "deros", "check", "rules/courier.deros", cwd=models)
+    assert (done.returncode, done.stdout) == (0, "3 files checked, no findings\n")
