@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
 from deros.monitor import ir
@@ -280,3 +281,25 @@ def test_unit_annotated_on_a_port(tmp_path: Path) -> None:
         each.condition.right for each in built.rules if isinstance(each.condition, ir.Compare)
     ]
     assert bounds == [ir.Const(200.0), ir.Const(2000.0), ir.Const(10.0)]
+
+
+def test_messages_of_ones_own(tmp_path: Path) -> None:
+    """A message of x and y alone is a plane vector, and a bounded array has so many elements."""
+    (tmp_path / "shapes" / "msg").mkdir(parents=True)
+    definition = "float64 x\nfloat64 y\n"
+    (tmp_path / "shapes" / "msg" / "Flat.msg").write_text(definition)
+    (tmp_path / "shapes" / "msg" / "Few.msg").write_text(
+        "Flat flat\nint32[<=4] few\nint32[3] three"
+    )
+    (tmp_path / "S.system").write_text("system S topics external topic /few : shapes.Few")
+    text = (
+        'use "S.system" import S entity e {'
+        " far: /few.flat.norm() > 2; four: /few.few.count() = 4; three: /few.three.count() = 3; }"
+    )
+    model = Repository().load_text(tmp_path / "x.deros", text).model
+    assert isinstance(model, Rules)
+    result = build(model, InterfaceStore([tmp_path], prefixes=()))
+    assert result.program is not None
+    norm = ir.Apply("norm", (ir.Read(0), ir.Read(1), ir.Const(0.0)), 0)
+    assert result.program.rules[0].condition == ir.Compare(norm, ">", ir.Const(2.0))
+    assert [each.operand.bounds for each in result.comparisons] == [(0, math.inf), (0, 4), (3, 3)]
