@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from deros.generators.protocol import Context, Files, GenerationError
-from deros.generators.rosnode_python.generate import generate
+from deros.generators.rosnode_python.generate import generate, package_files
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 
 
-def files_for(text: str, options: dict[str, str] | None = None) -> Files:
-    """Return what is generated for a node description in a folder of its own."""
-    context = Context(InterfaceStore(), Repository())
-    loaded = context.repository.load_text("/nonexistent/a_node.rnd", text)
+def model_of(text: str) -> NodeType:
+    """Return the model of a node description in a folder of its own."""
+    loaded = Repository().load_text("/nonexistent/a_node.rnd", text)
     assert isinstance(loaded.model, NodeType), loaded.diagnostics
-    return generate(loaded.model, context, options or {})
+    return loaded.model
+
+
+def files_for(text: str, options: dict[str, str] | None = None) -> Files:
+    """Return what is generated for a node description."""
+    return generate(model_of(text), Context(InterfaceStore(), Repository()), options or {})
 
 
 def base_for(sections: str) -> str:
@@ -208,3 +217,27 @@ def test_no_generated_name_hides_one_of_rclpy() -> None:
     assert hooks == {
         f"on_{n}" for n in ("activate", "cleanup", "configure", "deactivate", "error", "shutdown")
     }
+
+
+# Any text -----------------------------------------------------------------------------------------
+
+
+@settings(max_examples=60, deadline=None)
+@given(description=st.text(max_size=200), default=st.text(max_size=40))
+def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
+    """Whatever a text holds, Python compiles, XML parses, and YAML gives the default back."""
+    model = model_of('node a : b parameters name x : string = "" publishes topic y : std_msgs.Bool')
+    (parameter,), (port,) = model.parameters, model.ports
+    model = replace(
+        model,
+        description=description,
+        parameters=(replace(parameter, description=description, default=default),),
+        ports=(replace(port, description=description),),
+    )
+    files = package_files([model], {"maintainer": "J <j@example.org>"})
+    for path, file in files.items():
+        if path.endswith(".py"):
+            compile(file.text, path, "exec")
+    ElementTree.fromstring(files["b/package.xml"].text)
+    config = yaml.safe_load(files["b/config/a.yaml"].text)
+    assert config["/**"]["ros__parameters"] == {"x": default}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -202,10 +201,16 @@ def _yaml(parameter: Parameter) -> str | None:
 
 def _yaml_scalar(value: Scalar, kind: ParameterType) -> str:
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
+        return f'"{"".join(map(_yaml_character, value))}"'
     if isinstance(value, bool):
         return "true" if value else "false"
     return _scalar(value, kind)
+
+
+def _yaml_character(character: str) -> str:
+    if character in '"\\':
+        return f"\\{character}"
+    return character if character.isprintable() else f"\\U{ord(character):08X}"
 
 
 # Descriptors and checks ---------------------------------------------------------------------------

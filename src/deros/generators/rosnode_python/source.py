@@ -108,16 +108,19 @@ def _on_one_line(expression: str | Text | Call) -> str:
 
 
 def sentence(text: str) -> str:
-    """Return ``text`` on one line, with a capital in front and a full stop, as PEP 257 has it."""
-    line = one_line(text)
+    """Return ``text`` as a sentence for a docstring: a capital in front, a full stop, one line.
+
+    PEP 257 wants no backslashes in a docstring, and three quotes would end it.
+    """
+    line = one_line(text).replace("\\", "/").replace('"""', "'''")
     if not line:
         return ""
     return f"{line[0].upper()}{line[1:]}" + ("" if line.endswith((".", "!", "?")) else ".")
 
 
 def one_line(text: str) -> str:
-    """Return ``text`` with every run of white space as one blank, safe inside a docstring."""
-    return " ".join(text.split()).replace("\\", "/").replace('"""', "'''")
+    """Return ``text`` with every run of white space and unprintable characters as one blank."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 def wrapped(text: str, indent: int) -> list[str]:
