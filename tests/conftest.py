@@ -5,10 +5,16 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from hypothesis import settings
+
 ROOT = Path(__file__).resolve().parent.parent
 
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
+
+# How long one example takes depends on what else the machine does; it proves nothing.
+settings.register_profile("deros", deadline=None)
+settings.load_profile("deros")
 
 pytest_plugins = ("tests.support.golden", "tests.support.ros")
 
