@@ -10,8 +10,8 @@ from deros import codes
 from deros.diagnostics import report
 from deros.generators.names import python_identifier
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
+from deros.generators.python_source import call, expression, mark_long_lines
 from deros.generators.rosnode_python.imports import base_imports, user_imports
-from deros.generators.rosnode_python.source import call, expression, mark_long_lines
 from deros.generators.rosnode_python.view import PackageView, package_view
 from deros.generators.templates import environment
 from deros.metamodels.node import NodeType, PortKind

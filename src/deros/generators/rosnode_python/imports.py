@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from deros.generators.rosnode_python.source import import_lines
+from deros.generators.python_source import import_lines
 from deros.generators.rosnode_python.view import NodeView, PackageView, PortView, interface_imports
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from deros.generators.names import python_identifier
-from deros.generators.rosnode_python.source import Call, Text, one_line, wrapped
+from deros.generators.python_source import Call, Text, one_line, wrapped
 from deros.metamodels.common import Interval, Scalar, Value
 from deros.metamodels.node import NodeType, Parameter, ParameterType
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from deros.generators.rosnode_python.source import Call
+from deros.generators.python_source import Call
 from deros.metamodels.common import QosProfile
 
 _PRESETS = {

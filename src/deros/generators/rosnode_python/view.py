@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deros.generators.names import Emitted, camel_case, check_collisions, python_identifier
+from deros.generators.python_source import Call, Text, one_line, sentence, wrapped
 from deros.generators.rosnode_python.parameters import ParameterView, parameter_views
 from deros.generators.rosnode_python.qos import qos_view
-from deros.generators.rosnode_python.source import Call, Text, one_line, sentence, wrapped
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.generators.protocol import Context, File, Files, Options
-from deros.generators.rosnode_python.source import mark_long_lines
+from deros.generators.python_source import mark_long_lines
 from deros.generators.rossystem.literals import comment, python_literal
 from deros.generators.rossystem.view import SystemView, system_view
 from deros.generators.templates import environment

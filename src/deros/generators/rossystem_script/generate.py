@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from deros.generators.protocol import Context, File, Files, Options
-from deros.generators.rosnode_python.source import mark_long_lines
+from deros.generators.python_source import mark_long_lines
 from deros.generators.rossystem.literals import WIDTH, comment, python_literal
 from deros.generators.rossystem.view import SystemView, system_view
 from deros.generators.rossystem_script.assemble import runtime

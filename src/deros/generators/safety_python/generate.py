@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from deros.generators.monitor_python import render_monitor
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
+from deros.generators.python_source import call, expression, mark_long_lines
 from deros.generators.rosnode_python.generate import package_files
-from deros.generators.rosnode_python.source import call, expression, mark_long_lines
 from deros.generators.safety_python.description import node_description
 from deros.generators.safety_python.node import safety_node
 from deros.generators.safety_python.view import SafetyView, safety_view

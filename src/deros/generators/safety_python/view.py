@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from deros.generators.monitor_python import monitor_view
 from deros.generators.monitor_python.source import header, origin
 from deros.generators.names import Emitted, check_collisions, python_identifier
-from deros.generators.rosnode_python.source import Call, Text, import_lines, one_line, wrapped
+from deros.generators.python_source import Call, Text, import_lines, one_line, wrapped
 from deros.generators.rosnode_python.view import NodeView, interface_imports, node_view
 from deros.generators.safety_python.messages import is_stamped, literal, reading
 from deros.interfaces.fields import ResolvedField, format_path, resolve
