@@ -106,3 +106,18 @@ def _printed(output: str) -> list[tuple[str, str, str]]:
 
 def _expected(case: Timeline) -> list[tuple[str, str, str]]:
     return [(seconds(t_ns), action, event) for t_ns, action, event in case.expect]
+
+
+def test_trace_from_standard_input(tmp_path: Path) -> None:
+    """``--trace -`` reads what another program writes."""
+    case = next(each for each in timelines.GIVEN if each.name == "immediate")
+    arguments = [*_arguments(case, tmp_path)[:2], "--trace", "-", "--until", case.until]
+    result = subprocess.run(
+        [str(DEROS), *arguments],
+        input="\n".join(case.trace),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert _printed(result.stdout) == _expected(case)

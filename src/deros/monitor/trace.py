@@ -3,7 +3,8 @@
 A line is ``{"t": "1.5", "topic": "/imu", "data": {"angular_velocity.z": 0.2}}``: the time in
 seconds, read exactly, as text or as a number; the topic; and the fields that matter, nested or
 dotted, array elements as ``position[2]``. All other fields have the defaults of the message
-definition. ``NaN``, ``Infinity`` and ``-Infinity`` may be written as texts. Empty lines are skipped.
+definition. ``NaN``, ``Infinity`` and ``-Infinity`` may be written as texts. Empty lines are
+skipped.
 """
 
 from __future__ import annotations

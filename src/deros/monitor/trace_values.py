@@ -209,14 +209,14 @@ def _float(value: Any) -> float | None:
 
 def _fits_float32(number: float) -> bool:
     try:
-        struct.pack("f", number)
+        struct.pack("<f", number)
     except OverflowError:
         return False
     return True
 
 
 def _as_float32(number: float) -> float:
-    rounded: float = struct.unpack("f", struct.pack("f", number))[0]
+    rounded: float = struct.unpack("<f", struct.pack("<f", number))[0]
     return rounded
 
 

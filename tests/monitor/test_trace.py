@@ -1,0 +1,346 @@
+"""Traces are read exactly, and what is wrong in them is found with its place."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from deros.cli.simulate import simulate
+from deros.diagnostics import SourceFile
+from deros.interfaces.store import InterfaceStore
+from deros.monitor.trace import Trace, nanoseconds, read_trace
+from tests.support import timelines
+
+RULES = """use "robot.system" import Robot
+action stop;
+input v = topic /speed.data
+input f = topic /flag.data
+input m = topic /mode.data
+input q = topic /imu.orientation
+input c = topic /imu.angular_velocity_covariance[8]
+input r = topic /scan.ranges
+input e = topic /scan.ranges[1]
+input n = topic /scan.header.frame_id
+entity e {
+  a: v > 1 and f and m = 1 and q.roll() > 1 and c > 1 and r.min() > 1 and e > 1 and n = "laser";
+}
+if e.a then { stop; };
+"""
+PROGRAM = timelines.program(RULES)
+
+
+def read(*lines: str) -> Trace:
+    """Read the lines of a trace for the rules above."""
+    return read_trace(SourceFile("trace.jsonl", "\n".join(lines)), PROGRAM, InterfaceStore())
+
+
+def line(topic: str, data: Any, t: Any = "1.5") -> str:
+    """Return the line of a message."""
+    return json.dumps({"t": t, "topic": topic, "data": data})
+
+
+def values(topic: str, data: Any) -> dict[str, Any]:
+    """Return what the leaves of a topic read from a message, by their paths."""
+    trace = read(line(topic, data))
+    assert not trace.diagnostics, trace.diagnostics
+    (message,) = trace.messages
+    paths = {leaf.index: ".".join(map(str, leaf.path)) for leaf in PROGRAM.leaves}
+    return {paths[index]: value for index, value in message.leaves.items()}
+
+
+# Times --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("0", 0),
+        ("1.0", 10**9),
+        ("2.999999999", 2_999_999_999),
+        ("0.1", 10**8),
+        ("1.0000000000000", 10**9),
+        ("9223372036.854775807", 2**63 - 1),
+        ("9223372036.854775808", None),
+        ("1.0000000001", None),
+        ("-1", None),
+        ("1e3", None),
+        ("", None),
+        ("NaN", None),
+        ("\u0661", None),
+    ],
+)
+def test_times_are_exact(text: str, expected: int | None) -> None:
+    """Seconds become nanoseconds without rounding, or are refused."""
+    assert nanoseconds(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('"1.25"', 1_250_000_000),
+        ("1.25", 1_250_000_000),
+        ("3", 3 * 10**9),
+        ("1e-9", 1),
+        ("2E1", 20 * 10**9),
+    ],
+)
+def test_times_as_numbers(text: str, expected: int) -> None:
+    """A number in JSON is read as exactly as a text."""
+    trace = read(f'{{"t": {text}, "topic": "/speed"}}')
+    assert [each.t_ns for each in trace.messages] == [expected]
+
+
+# Values -------------------------------------------------------------------------------------------
+
+
+def test_defaults() -> None:
+    """What a message does not give has the default of its definition, also below other fields."""
+    assert values("/speed", {}) == {"data": 0.0}
+    assert values("/flag", {}) == {"data": False}
+    assert values("/imu", {}) == {
+        "orientation.x": 0.0,
+        "orientation.y": 0.0,
+        "orientation.z": 0.0,
+        "orientation.w": 1.0,
+        "angular_velocity_covariance.8": 0.0,
+    }
+    assert values("/scan", {}) == {"ranges": [], "ranges.1": None, "header.frame_id": ""}
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"orientation": {"x": 0.5, "w": 0.25}},
+        {"orientation.x": 0.5, "orientation.w": 0.25},
+        {"orientation": {"x": 0.5}, "orientation.w": 0.25},
+        {"orientation.w": 0.25, "orientation": {"x": 0.5}},
+    ],
+)
+def test_nested_and_dotted_fields(data: dict[str, Any]) -> None:
+    """Fields may be nested, dotted, or both in one message."""
+    given = values("/imu", data)
+    assert (given["orientation.x"], given["orientation.w"]) == (0.5, 0.25)
+    assert given["orientation.y"] == 0.0
+
+
+def test_elements_of_arrays() -> None:
+    """A single element lies among defaults; an array may be given as a whole."""
+    assert values("/scan", {"ranges[1]": 2})["ranges"] == [0.0, 2.0]
+    assert values("/scan", {"ranges": [1, 2], "ranges[0]": 3})["ranges"] == [3.0, 2.0]
+    assert values("/scan", {"ranges": [1]})["ranges.1"] is None
+    assert values("/imu", {"angular_velocity_covariance[8]": 2.5})[
+        "angular_velocity_covariance.8"
+    ] == pytest.approx(2.5)
+
+
+def test_not_finite_numbers() -> None:
+    """NaN and the infinities are written as texts, or as Python's JSON writes them."""
+    assert values("/speed", {"data": "Infinity"}) == {"data": math.inf}
+    assert values("/speed", {"data": "-Infinity"}) == {"data": -math.inf}
+    assert math.isnan(values("/speed", {"data": "NaN"})["data"])
+    assert math.isnan(values("/speed", {"data": math.nan})["data"])
+
+
+def test_single_precision_is_rounded() -> None:
+    """A float32 holds what a message could carry."""
+    assert values("/scan", {"ranges": [0.1]})["ranges"] == [0.10000000149011612]
+    assert values("/speed", {"data": 0.1}) == {"data": 0.1}
+
+
+# Faults -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "message"),
+    [
+        ("{", "DRS501", "no JSON"),
+        ("nonsense", "DRS501", "no JSON"),
+        ("[1]", "DRS501", "no object"),
+        ("[" * 100_000, "DRS501", "nested too deeply"),
+        ('{"t": ' + "1" * 5000 + "}", "DRS501", "too long"),
+        ('{"topic": "/speed"}', "DRS501", "lacks 't'"),
+        ('{"t": "1"}', "DRS501", "lacks 'topic'"),
+        ('{"t": "1", "topic": 7}', "DRS501", "'topic' is no text"),
+        ('{"t": "1", "topic": "/speed", "data": 1}', "DRS501", "'data' is no object"),
+        ('{"t": "x", "topic": "/speed"}', "DRS502", "is no time"),
+        ('{"t": true, "topic": "/speed"}', "DRS502", "is no time"),
+        ('{"t": -1, "topic": "/speed"}', "DRS502", "is no time"),
+        ('{"t": 1e999999999, "topic": "/speed"}', "DRS502", "is no time"),
+        ('{"t": NaN, "topic": "/speed"}', "DRS502", "is no time"),
+        (line("/speed", {"date": 1}), "DRS503", "std_msgs/msg/Float64 has no field 'date'"),
+        (line("/speed", {"data.x": 1}), "DRS503", "it has no fields"),
+        (line("/speed", {"": 1}), "DRS503", "no path"),
+        (line("/scan", {"ranges.x": 1}), "DRS503", "lacks the index"),
+        (line("/scan", {"ranges[999999999]": 1}), "DRS503", "beyond the end"),
+        (line("/imu", {"angular_velocity_covariance[9]": 1}), "DRS503", "beyond the end"),
+        (line("/speed", {"data": "fast"}), "DRS504", "'data' is a float64"),
+        (line("/speed", {"data": True}), "DRS504", "cannot hold true"),
+        (line("/speed", {"data": None}), "DRS504", "cannot hold null"),
+        (line("/flag", {"data": 1}), "DRS504", "'data' is a bool"),
+        (line("/mode", {"data": 256}), "DRS504", "'data' is a uint8"),
+        (line("/mode", {"data": 0.5}), "DRS504", "'data' is a uint8"),
+        (line("/scan", {"ranges": 1}), "DRS504", "needs an array"),
+        (line("/scan", {"ranges": [1e39]}), "DRS504", "'ranges[0]' is a float32"),
+        (line("/imu", {"orientation": 1}), "DRS504", "needs an object"),
+        (line("/imu", {"angular_velocity_covariance": [1]}), "DRS504", "1 elements"),
+    ],
+)
+def test_faults(text: str, code: str, message: str) -> None:
+    """A fault is reported at its line, and that line alone is left out."""
+    good = line("/speed", {"data": 1})
+    trace = read(good, "", text, good)
+    (found,) = trace.diagnostics
+    assert (found.code.name, found.span.line) == (code, 3)
+    assert found.is_error
+    assert message in found.message
+    assert len(trace.messages) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        (line("/speed", {"date": 1}), '"date"'),
+        (line("/speed", {"data": "x"}), '"data"'),
+        (line("/imu", {"orientation": {"a": 1}}), '"a"'),
+        ('{"t": -1, "topic": "/speed"}', '"t"'),
+        ('{"t": 1, "topic": "/sped"}', '"/sped"'),
+        ('{"t": 1, "topic": "/speed", "data": {"d\\u0061te": 1}}', None),
+        ('{"t": 1 "topic": "/speed"}', '"'),
+    ],
+)
+def test_places(text: str, place: str | None) -> None:
+    """The key at fault is marked, or the whole line where the key is not found as written."""
+    (found,) = read(text).diagnostics
+    assert found.span.text == (place or text)
+
+
+def test_unread_topic_is_a_warning() -> None:
+    """A topic that no rule reads is named once, with the topic that was probably meant."""
+    trace = read(line("/sped", {"data": 1}), line("/sped", {"data": 2}))
+    (found,) = trace.diagnostics
+    assert (found.code.name, found.is_error, trace.messages) == ("DRS505", False, ())
+    assert found.hint == "did you mean '/speed'?"
+
+
+json_values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner),
+    max_leaves=6,
+)
+
+
+@given(
+    st.sampled_from(sorted(PROGRAM.topics)),
+    st.dictionaries(
+        st.text(max_size=6)
+        | st.sampled_from(["data", "orientation", "ranges", "ranges[1]", "header"]),
+        json_values,
+    ),
+    json_values,
+)
+@example("/scan", {"header": {"stamp": {"sec": 10**400}}}, "1")
+def test_no_data_is_too_strange(topic: str, data: dict[str, Any], t: Any) -> None:
+    """Any JSON is read or reported; nothing else happens."""
+    trace = read(line(topic, data, t))
+    assert len(trace.messages) + len(trace.diagnostics) == 1
+
+
+# The command --------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Return a folder with the robot and its rules."""
+    for name in ("robot.rnd", "robot.system"):
+        (tmp_path / name).write_bytes((timelines.DIRECTORY / name).read_bytes())
+    (tmp_path / "r.deros").write_text(
+        'use "robot.system" import Robot\naction stop;\naction beep(times);\n'
+        "entity e { fast: topic /speed.data > 0.5 for 1 sec; }\n"
+        'if e.fast then { stop; beep(3); log_state("too fast"); };\n'
+    )
+    return tmp_path
+
+
+def run(folder: Path, *arguments: str, trace: str = "") -> Result:
+    """Run the command on the rules of ``folder``, the trace on standard input or in a file."""
+    (folder / "trace.jsonl").write_text(trace)
+    given = [str(folder / "r.deros"), "--trace", str(folder / "trace.jsonl"), *arguments]
+    return CliRunner().invoke(simulate, given)
+
+
+def test_events_in_json(folder: Path) -> None:
+    """An event tells time, action, behaviour, arguments and place."""
+    result = run(folder, "--until", "9", trace=line("/speed", {"data": 1}))
+    records = [json.loads(each) for each in result.stdout.splitlines()]
+    place = {"behaviour": "behaviour_1", "file": str(folder / "r.deros"), "line": 5}
+    event = {"t": "2.500000000", "event": "trigger"}
+    assert records == [
+        {**event, "action": "stop", **place},
+        {**event, "action": "beep", "arguments": [3], **place},
+        {**event, "action": "log_state", "text": "too fast", **place},
+    ]
+    assert result.exit_code == 0
+
+
+def test_without_until_the_last_message_ends_the_run(folder: Path) -> None:
+    """No deadline after it is settled."""
+    assert run(folder, trace=line("/speed", {"data": 1})).stdout == ""
+
+
+def test_steps_of_the_clock_are_told_apart(folder: Path) -> None:
+    """They are no events of the rules, and go to standard error."""
+    trace = "\n".join(line("/speed", {"data": 0}, t) for t in ("2", "1"))
+    result = run(folder, trace=trace)
+    assert result.stdout == ""
+    assert result.stderr == "the clock stepped back to 1.000000000\n"
+
+
+def test_faults_of_the_trace_fail_the_run(folder: Path) -> None:
+    """All are reported, nothing is simulated, and the exit code is 1."""
+    result = run(folder, "--until", "9", trace="x\n" + line("/speed", {"data": 1}) + "\ny\n")
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert "trace.jsonl:1:1: error[DRS501]" in result.stderr
+    assert "trace.jsonl:3:1: error[DRS501]" in result.stderr
+
+
+def test_faults_of_the_rules_fail_the_run(folder: Path) -> None:
+    """Rules that mean nothing are not run."""
+    rules = folder / "r.deros"
+    rules.write_text(rules.read_text().replace("/speed.data", "/speed.date"))
+    result = run(folder)
+    assert result.exit_code == 1
+    assert "r.deros:4:" in result.stderr
+    assert "error[DRS302]" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["r.deros", "--trace", "nothing.jsonl"],
+        ["nothing.deros", "--trace", "trace.jsonl"],
+        ["robot.rnd", "--trace", "trace.jsonl"],
+        ["r.deros", "--trace", "binary"],
+        ["r.deros", "--trace", "."],
+        ["r.deros"],
+        ["r.deros", "--trace", "trace.jsonl", "--until", "soon"],
+        ["r.deros", "--trace", "trace.jsonl", "--monitor", "none"],
+    ],
+)
+def test_unusable_input(
+    arguments: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What cannot be read, and what is no use of the command, exits with 2 and words."""
+    (folder / "trace.jsonl").write_text("")
+    (folder / "binary").write_bytes(b"\xff\x00")
+    monkeypatch.chdir(folder)
+    result = CliRunner().invoke(simulate, arguments)
+    assert result.exit_code == 2
+    assert result.stderr
+    assert isinstance(result.exception, SystemExit)
