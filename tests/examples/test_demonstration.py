@@ -79,6 +79,12 @@ def test_a_reaction_before_its_time_fails_the_case() -> None:
     assert "too early" in judge.verdict
 
 
+def test_a_reaction_that_takes_too_long_fails_the_case() -> None:
+    """Half a second after it was due some other rule may have brought it."""
+    judge = feed(referee(), event(100, "speed", 0.6), event(601, "stop", True))
+    assert judge.verdict == "the reaction took 0.501 s"
+
+
 def test_an_action_that_overtakes_its_cause_is_timed_all_the_same() -> None:
     """Messages of two nodes come in any order; their time stamps tell."""
     judge = feed(referee(), event(102, "stop", True, 0.5), event(100, "speed", 0.6, 9))

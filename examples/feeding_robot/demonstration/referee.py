@@ -21,6 +21,9 @@ CRAWL = 0.25
 EARLIEST = 0.002
 """How much earlier, in s, than computed a reaction may seem: time stamps of two processes."""
 
+LATEST = 0.5
+"""Reaction time, in s, beyond which a reaction does not count: another rule may have brought it."""
+
 
 @dataclass(frozen=True)
 class RobotState:
@@ -170,6 +173,8 @@ class Referee:
             return "the reaction came without its cause"
         if time is not None and not time >= -EARLIEST:
             return f"the reaction came {-time:.3f} s too early"
+        if time is not None and time > LATEST:
+            return f"the reaction took {time:.3f} s"
         return ""
 
 

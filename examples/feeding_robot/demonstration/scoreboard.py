@@ -75,8 +75,9 @@ class Scoreboard:
     def table(self) -> Table:
         """Return the table as it stands."""
         table = Table(title="The fifteen test cases", title_justify="left")
-        for name in ("", "case", "expected", "observed", "reaction time", ""):
-            table.add_column(name, justify="right" if name in {"", "reaction time"} else "left")
+        time = "median / 99 %" if self._repeat > 1 else "reaction time"
+        for name in ("", "case", "expected", "observed", time, ""):
+            table.add_column(name, justify="right" if name in {"", time} else "left")
         for case in self._cases:
             table.add_row(str(case.number), case.title, describe(case.expected), *self._cells(case))
         return table
@@ -92,7 +93,15 @@ class Scoreboard:
         count = f" {passed}/{self._repeat}" if self._repeat > 1 else ""
         verdict = Text(f"failed{count}" if failed else f"passed{count}")
         verdict.stylize("bold red" if failed else "green")
-        return Text(describe(shown.observed)), Text(reaction_text(shown)), verdict
+        return Text(describe(shown.observed)), Text(_times(results)), verdict
+
+
+def _times(results: Sequence[Result]) -> str:
+    """Return the reaction time of one case; of several rounds median and 99 %."""
+    times = [1e3 * result.reaction_time for result in results if result.reaction_time is not None]
+    if len(times) < 2 or results[0].simulated:
+        return reaction_text(results[-1])
+    return f"{percentile(times, 0.5):.1f} / {percentile(times, 0.99):.1f} ms"
 
 
 def summary(results: Sequence[Result], monitored: frozenset[int]) -> str:
