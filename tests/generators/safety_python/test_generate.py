@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 from pathlib import Path
+from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
@@ -102,6 +104,23 @@ def test_the_user_owns_the_actions_alone() -> None:
     files = files_of("every_thing")
     owned = [path for path, file in files.items() if file.owner is Owner.USER]
     assert owned == ["every_thing_safety/every_thing_safety/every_thing_safety_node_actions.py"]
+
+
+def test_an_action_added_later_is_reported_until_it_has_a_body() -> None:
+    """The user's file, written before, lacks the method; the base class has it, and says so."""
+    pytest.importorskip("rclpy")
+    files = files_of("every_thing")
+    module = "every_thing_safety/every_thing_safety/every_thing_safety_node_actions_base.py"
+    names: dict[str, Any] = {}
+    exec(compile(files[module].text, module, "exec"), names)
+    base = names["EveryThingSafetyNodeActionsBase"]
+    written_before = type("Actions", (base,), {"beep": lambda *_: None})
+    node = Mock()
+    actions = written_before(node)
+    assert actions.unfilled() == ["release"]
+    actions.release()
+    (message,) = node.get_logger().error.call_args.args
+    assert message.startswith("action release() should have been carried out now")
 
 
 def test_bound_actions_need_no_file_of_actions() -> None:
