@@ -219,6 +219,28 @@ def test_no_generated_name_hides_one_of_rclpy() -> None:
     }
 
 
+@pytest.mark.ros
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        "name x : double",
+        "name x : int[] = [] name y : byte[] = [1]",
+        "name x : double = 1e-7 name y : double[] = [1, -2.5e300]",
+        'name x : string = "true" name y : string = "\\\\ \\" ü" name z.z : bool = false',
+    ],
+)
+def test_ros_reads_every_parameter_file(parameters: str, tmp_path: Path) -> None:
+    """The parser of ROS 2 takes the file, even when it holds no value."""
+    import rclpy
+    from rclpy.context import Context as RosContext
+
+    files = files_for(f"node a_node : a_package parameters {parameters}")
+    (tmp_path / "a.yaml").write_text(files["a_package/config/a_node.yaml"].text)
+    context = RosContext()
+    rclpy.init(args=["--ros-args", "--params-file", str(tmp_path / "a.yaml")], context=context)
+    context.shutdown()
+
+
 # Any text -----------------------------------------------------------------------------------------
 
 

@@ -152,6 +152,11 @@ class NodeView:
         return self.lifecycle and bool(self.subscriptions or self.timers)
 
     @property
+    def configured(self) -> bool:
+        """Whether the parameter file has a value to hold."""
+        return any(p.yaml is not None for p in self.parameters)
+
+    @property
     def checked(self) -> tuple[ParameterView, ...]:
         """The parameters that need more checks than rclpy makes."""
         return tuple(p for p in self.parameters if p.constraints)
