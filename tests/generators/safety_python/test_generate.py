@@ -208,6 +208,16 @@ def test_names_that_collide_are_refused(rules: str, options: dict[str, str], fra
     assert fragment in diagnostic.message
 
 
+def test_a_topic_with_both_ends_in_the_node_is_refused() -> None:
+    """A node description could not tell the two ports apart."""
+    rules = "action slow publishes 1.0 on /speed : std_msgs.Float64;\n"
+    with pytest.raises(GenerationError, match="both publish and watch '/speed'") as refused:
+        files_of_text(f"{HEAD}{rules}entity e {{ r: v > 1; }} if e.r then {{ slow; }};")
+    (diagnostic,) = refused.value.diagnostics
+    assert diagnostic.code.name == "DRS402"
+    assert [related.span.line for related in diagnostic.related] == [2]
+
+
 def test_rules_with_an_error_are_not_generated() -> None:
     """What is wrong with the rules is what the generator says."""
     with pytest.raises(GenerationError) as refused:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 
-from deros.diagnostics import SourceFile, Span
-from deros.generators.protocol import Options
+from deros import codes
+from deros.diagnostics import Related, SourceFile, Span, report
+from deros.generators.protocol import GenerationError, Options
 from deros.interfaces.names import check_node_name, check_package_name
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import Interval, QosProfile
@@ -39,8 +40,10 @@ def safety_node(
         rules_source: for the places that diagnostics about the node speak of.
 
     Raises:
+        GenerationError: if the rules watch a topic that they publish.
         ValueError: if an option is no name that ROS 2 accepts.
     """
+    _check_ends(program)
     package = _package(program, options)
     name = options.get("node", f"{package}_node")
     if (why := check_node_name(name)) is not None:
@@ -57,6 +60,24 @@ def safety_node(
         parameters=(_publish_freq(start),),
         ports=tuple(_ports(program, topics, start)),
     )
+
+
+def _check_ends(program: Program) -> None:
+    """Refuse a topic with both ends in this node: a node description names its ports apart."""
+    watched = {each.topic: each.span for each in reversed(program.inputs)}
+    found = [
+        report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"the rules both publish and watch '{action.binding.topic}'",
+            action.span,
+            hint="where the topic is watched, use the conditions that trigger the action",
+            related=(Related(watched[action.binding.topic], "watched here"),),
+        )
+        for action in program.actions
+        if action.binding is not None and action.span and action.binding.topic in watched
+    ]
+    if found:
+        raise GenerationError(found)
 
 
 def _package(program: Program, options: Options) -> str:
