@@ -69,3 +69,15 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
     outcome = deros("new", "node", "courier", "-o", tmp_path / "models" / "deeper")
     assert outcome.code == 2
     assert "cannot write" in outcome.err
+
+
+def test_the_safety_node_is_described_as_it_is_generated(tmp_path: Path) -> None:
+    """The node description that comes with new rules is the generator's own, but for comments."""
+    deros("new", "rules", "courier", "-o", tmp_path)
+    deros("generate", tmp_path / "courier.deros", "--target", "python", "-o", tmp_path / "out")
+    (generated,) = (tmp_path / "out").rglob("*.rnd")
+    texts = [
+        [line for line in path.read_text().splitlines() if not line.startswith("//")]
+        for path in (tmp_path / "courier_safety_node.rnd", generated)
+    ]
+    assert texts[0] == texts[1]

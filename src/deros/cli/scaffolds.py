@@ -73,6 +73,7 @@ node ${name}_robot : $package "The robot that the rules watch"
 
 subscribes
   topic stop_robot : std_msgs.Bool
+  topic heartbeat : std_msgs.UInt64 "Stop, too, when it stops"
 
 publishes
   topic odom : nav_msgs.Odometry
@@ -84,11 +85,13 @@ system ${name}_system
 
 imports
   import "${name}_robot.rnd"
+  import "${name}_safety_node.rnd"
 
 topics
   topic /odom
   topic /resume
-  external topic /stop_robot    // published by the safety node that the rules become
+  topic /stop_robot
+  topic /heartbeat
 
 subsystem Robot {
   node robot : ${name}_robot
@@ -96,7 +99,33 @@ subsystem Robot {
     connect odom to /odom
     connect resume to /resume
     connect stop_robot to /stop_robot
+    connect heartbeat to /heartbeat
 }
+
+subsystem Safety {
+  node safety : ${name}_safety_node
+  wirings
+    connect /odom to /odom
+    connect /resume to /resume
+    connect /stop_robot to /stop_robot
+    connect ~/heartbeat to /heartbeat
+}
+"""
+
+# As the generator writes it; when the rules come to read other topics, copy the generated one here.
+_SAFETY_NODE = """\
+// What the rules become: deros generate $name.deros --target python makes it, and this text.
+node ${name}_safety_node : ${name}_safety "Watches the safety rules of $name"
+parameters
+  name publish_freq : double = 10.0 [Hz] in (0.0, 1000.0] read_only \
+"How often the states of the actions and the heartbeat are published"
+publishes
+  topic /stop_robot : std_msgs.Bool qos reliable transient_local depth 1 "Active: stop"
+  topic ~/heartbeat : std_msgs.UInt64 qos reliable depth 1 \
+"Counts up at publish_freq: stop when it stops"
+subscribes
+  topic /odom : nav_msgs.Odometry qos best_effort depth 10
+  topic /resume : std_msgs.Bool qos best_effort depth 10
 """
 
 _RULES = """\
@@ -137,6 +166,7 @@ _SCAFFOLDS: dict[str, dict[str, str]] = {
         "$name.deros": _RULES,
         "$name.system": _WATCHED_SYSTEM,
         "${name}_robot.rnd": _WATCHED_NODE,
+        "${name}_safety_node.rnd": _SAFETY_NODE,
     },
 }
 
