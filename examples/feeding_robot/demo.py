@@ -73,8 +73,6 @@ def _demonstrate(options: argparse.Namespace) -> int:
     from rich.console import Console
 
     console = Console()
-    if not console.is_terminal:
-        console.width = 120
     output: Path = options.output
     workshop = Workshop(EXAMPLE / "feeding_robot.system", output / "packages", output)
     try:

@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 from typing import Any
 
 import pytest
+from rich.console import Console
 
 from tests.support.examples import example_module
 
@@ -15,6 +16,8 @@ pace_module = example_module("feeding_robot", "demonstration.pace")
 recording_module = example_module("feeding_robot", "demonstration.recording")
 picture = example_module("feeding_robot", "demonstration.picture")
 chart = example_module("feeding_robot", "demonstration.chart")
+cases = example_module("feeding_robot", "demonstration.cases")
+scoreboard = example_module("feeding_robot", "demonstration.scoreboard")
 Event, Reaction = referee_module.Event, referee_module.Reaction
 STOP = frozenset({Reaction.STOP})
 STOP_AND_OFF = frozenset({Reaction.STOP, Reaction.ENGINE_OFF})
@@ -279,6 +282,57 @@ def test_stretches_are_cut_at_the_edges_and_end_with_the_recording() -> None:
     """An action that is active at the end is active until the end."""
     samples = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 1.0)]
     assert chart.stretches(samples, 5.0) == [(1.0, 2.0), (3.0, 5.0)]
+
+
+# The scoreboard -----------------------------------------------------------------------------------
+
+
+def result(number: int, time: float | None, failure: str = "") -> Any:
+    """Return a result of a case that expects a stop and shows one."""
+    return recording_module.Result(number, "case", STOP, STOP, time, failure, 0.0, 1.0)
+
+
+def test_the_scoreboard_fits_into_eighty_columns_and_fifteen_lines() -> None:
+    """No row wraps, so that the live table stands still on any terminal."""
+    board = scoreboard.Scoreboard(Console(width=80), cases.CASES, 1)
+    for case in cases.CASES:
+        board.report(result(case.number, 0.0123))
+    console = Console(width=80)
+    with console.capture() as capture:
+        console.print(board.table())
+    assert len(capture.get().rstrip().splitlines()) == 1 + len(cases.CASES)
+
+
+def test_the_scoreboard_is_complete_when_every_round_of_every_case_has_passed() -> None:
+    """A round that was not played is no better than one that failed."""
+    console = Console(quiet=True)
+    board = scoreboard.Scoreboard(console, cases.CASES[1:3], 2)
+    for number in (2, 2, 3):
+        board.report(result(number, 0.001))
+    assert not board.complete
+    board.report(result(3, 0.001))
+    assert board.complete
+    board.report(result(3, 0.001, "too late"))
+    assert not board.complete
+
+
+def test_the_summary_counts_the_safety_nodes_reactions_only() -> None:
+    """Median and 99 % over the cases that are its own, in ms."""
+    results = [result(2, 0.001), result(3, 0.002), result(4, 0.009), result(14, 5.0)]
+    text = scoreboard.summary([*results, result(8, None)], frozenset({2, 3, 4, 8}))
+    assert "over 3 reactions: median 2.0 ms, 99 % 9.0 ms" in text
+    assert "No reaction" in scoreboard.summary([], frozenset({2}))
+
+
+def test_the_cases_are_those_of_the_safety_test() -> None:
+    """Two bring no reaction, one slows the robot down, two stop it, ten shut its engine off."""
+    assert [case.number for case in cases.CASES] == list(range(1, 16))
+    expected = {case.number: case.expected for case in cases.CASES}
+    assert [n for n in expected if not expected[n]] == [8, 11]
+    assert [n for n in expected if expected[n] == {Reaction.LOW_SPEED}] == [1]
+    assert [n for n in expected if expected[n] == STOP] == [2, 3]
+    engine_off = [4, 5, 6, 7, 9, 10, 12, 13, 14, 15]
+    assert [n for n in expected if expected[n] == STOP_AND_OFF] == engine_off
 
 
 class Page(HTMLParser):

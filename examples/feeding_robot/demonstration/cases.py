@@ -205,7 +205,7 @@ ENGINE_STOP = frozenset({"stop", "motor_stop"})
 CASES: tuple[Case, ...] = (
     Case(
         1,
-        "Obstacle in the warning zone",
+        "Obstacle, warning zone",
         partial(_obstacle, 3.5),
         _between(2.0, 4.0),
         SLOW,
@@ -213,7 +213,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         2,
-        "Obstacle in the stop zone",
+        "Obstacle, stop zone",
         partial(_obstacle, 1.5),
         _between(0.8, 2.0),
         STOP,
@@ -221,7 +221,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         3,
-        "Obstacle in the collision zone",
+        "Obstacle, collision zone",
         partial(_obstacle, 0.6),
         _between(0.0, 0.8),
         STOP,
@@ -245,7 +245,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         6,
-        "Feeding arm hits something",
+        "Feeding arm hit",
         partial(_touch, "feeding_arm"),
         _contact("feeding_arm"),
         STOP_AND_ENGINE_OFF,
@@ -261,7 +261,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         8,
-        "Forward above 0.5 m/s, for 3 s only",
+        "Above 0.5 m/s for 3 s",
         partial(_drive_briefly, 0.75, 3.0),
         _faster(0.5),
         NOTHING,
@@ -269,7 +269,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         9,
-        "Forward above 0.5 m/s for 4 s",
+        "Above 0.5 m/s for 4 s",
         partial(_drive_at, 0.75),
         _faster(0.5),
         STOP_AND_ENGINE_OFF,
@@ -278,7 +278,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         10,
-        "Forward above 1 m/s",
+        "Above 1 m/s",
         partial(_drive_at, 1.3),
         _faster(1.0),
         STOP_AND_ENGINE_OFF,
@@ -286,7 +286,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         11,
-        "Backward above 0.25 m/s, for 1.3 s only",
+        "Back 0.25 m/s for 1.3 s",
         partial(_drive_briefly, -0.32, 1.3),
         _faster_backward(0.25),
         NOTHING,
@@ -294,7 +294,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         12,
-        "Backward above 0.25 m/s for 2 s",
+        "Back 0.25 m/s for 2 s",
         partial(_drive_at, -0.32),
         _faster_backward(0.25),
         STOP_AND_ENGINE_OFF,
@@ -303,7 +303,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         13,
-        "Backward above 0.4 m/s",
+        "Back above 0.4 m/s",
         partial(_drive_at, -0.6),
         _faster_backward(0.4),
         STOP_AND_ENGINE_OFF,
@@ -321,7 +321,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         15,
-        "Stands for 10 min, engine on",
+        "Ten minutes at a stand",
         _nothing,
         _idles,
         STOP_AND_ENGINE_OFF,

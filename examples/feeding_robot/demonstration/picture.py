@@ -135,5 +135,5 @@ def reaction_text(result: Result) -> str:
     if result.reaction_time is None:
         return "-"
     if result.simulated:
-        return f"{result.reaction_time:.1f} s (simulated)"
+        return f"{result.reaction_time:.1f} s sim"
     return f"{result.reaction_time * 1e3:.1f} ms"

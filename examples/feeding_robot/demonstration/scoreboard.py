@@ -12,7 +12,7 @@ from rich.text import Text
 from demonstration.cases import Case
 from demonstration.picture import reaction_text
 from demonstration.recording import Result, percentile
-from demonstration.referee import describe
+from demonstration.referee import Reaction, describe
 
 
 class Scoreboard:
@@ -74,34 +74,40 @@ class Scoreboard:
 
     def table(self) -> Table:
         """Return the table as it stands."""
-        table = Table(title="The fifteen test cases", title_justify="left")
-        time = "median / 99 %" if self._repeat > 1 else "reaction time"
+        table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False, header_style="dim")
+        time = "ms 50/99 %" if self._repeat > 1 else "time"
         for name in ("", "case", "expected", "observed", time, ""):
             table.add_column(name, justify="right" if name in {"", time} else "left")
         for case in self._cases:
-            table.add_row(str(case.number), case.title, describe(case.expected), *self._cells(case))
+            expected = _compact(case.expected)
+            table.add_row(str(case.number), case.title, expected, *self._cells(case))
         return table
 
     def _cells(self, case: Case) -> tuple[Text, Text, Text]:
         results = self._results[case.number]
         if not results:
-            state = "running" if case is self._running else ""
+            state = "now" if case is self._running else ""
             return Text(), Text(), Text(state, style="cyan")
         failed = [result for result in results if not result.passed]
         shown = failed[-1] if failed else results[-1]
         passed = len(results) - len(failed)
-        count = f" {passed}/{self._repeat}" if self._repeat > 1 else ""
-        verdict = Text(f"failed{count}" if failed else f"passed{count}")
+        count = f"{passed}/{self._repeat}" if self._repeat > 1 else ""
+        verdict = Text(count or ("FAIL" if failed else "ok"))
         verdict.stylize("bold red" if failed else "green")
-        return Text(describe(shown.observed)), Text(_times(results)), verdict
+        return Text(_compact(shown.observed)), Text(_times(results)), verdict
+
+
+def _compact(reactions: frozenset[Reaction]) -> str:
+    """Return reactions as short as it takes for a row to fit into 80 columns."""
+    return describe(reactions).replace(" + ", "+")
 
 
 def _times(results: Sequence[Result]) -> str:
-    """Return the reaction time of one case; of several rounds median and 99 %."""
+    """Return the reaction time of one case; of several rounds median and 99 %, in ms."""
     times = [1e3 * result.reaction_time for result in results if result.reaction_time is not None]
     if len(times) < 2 or results[0].simulated:
         return reaction_text(results[-1])
-    return f"{percentile(times, 0.5):.1f} / {percentile(times, 0.99):.1f} ms"
+    return f"{percentile(times, 0.5):.1f}/{percentile(times, 0.99):.1f}"
 
 
 def summary(results: Sequence[Result], monitored: frozenset[int]) -> str:
