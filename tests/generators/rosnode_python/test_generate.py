@@ -93,6 +93,33 @@ def test_modules_of_one_package_collide(tmp_path: Path) -> None:
         generate(model, context, {})
 
 
+@pytest.mark.parametrize(
+    ("beside", "refused"),
+    [
+        ("node listener : chat subscribes topic", True),
+        ("node listener : other subscribes topic", False),
+        ("\0 : no text", False),
+        ('node listener : chat executable "there_already"', False),
+    ],
+)
+def test_a_broken_node_of_the_package_is_not_dropped(
+    beside: str, refused: bool, tmp_path: Path
+) -> None:
+    """A description beside the model that cannot be read stops the run if it is of the package."""
+    (tmp_path / "talker.rnd").write_text("node talker : chat")
+    (tmp_path / "listener.rnd").write_text(beside)
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(tmp_path / "talker.rnd").model
+    assert isinstance(model, NodeType)
+    if refused:
+        with pytest.raises(GenerationError) as raised:
+            generate(model, context, {})
+        assert [d.code.name for d in raised.value.diagnostics] == ["DRS003"]
+    else:
+        assert "chat/chat/talker.py" in generate(model, context, {})
+        assert "chat/chat/listener.py" not in generate(model, context, {})
+
+
 @pytest.mark.parametrize("name", ["use_sim_time", "start_type_description_service"])
 def test_parameters_that_every_node_has_are_refused(name: str) -> None:
     """Declaring them again would stop the node at start."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from deros import codes
-from deros.diagnostics import report
+from deros.diagnostics import has_errors, report
 from deros.generators.names import python_identifier
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.python_source import call, expression, mark_long_lines
@@ -15,6 +16,9 @@ from deros.generators.rosnode_python.imports import base_imports, user_imports
 from deros.generators.rosnode_python.view import PackageView, package_view
 from deros.generators.templates import environment
 from deros.metamodels.node import NodeType, PortKind
+
+if TYPE_CHECKING:
+    from deros.metamodels.load import LoadedFile
 
 _MAINTAINER = re.compile(r"\s*([^<>]*?)\s*<([^<>\s]+@[^<>\s]+)>\s*")
 
@@ -93,14 +97,21 @@ def _render(template: str, **names: object) -> str:
 def _beside(model: NodeType, context: Context) -> list[NodeType]:
     """Return the other nodes of the model's package that are described in its folder.
 
-    Nodes with a program of their own need no skeleton; files that do not load are no nodes.
+    Nodes with a program of their own need no skeleton.
+
+    Raises:
+        GenerationError: if a file that seems to belong to the package has an error; without it, the
+            package would lose a node that it had.
     """
     found: list[NodeType] = []
     own = Path(model.source.path)
     for path in sorted(own.parent.glob("*.rnd")):
         if path.name == own.name:
             continue
-        other = context.repository.load(path).model
+        loaded = context.repository.load(path)
+        if _belongs(loaded, model.package) and has_errors(loaded.diagnostics):
+            raise GenerationError(loaded.diagnostics)
+        other = loaded.model
         if (
             isinstance(other, NodeType)
             and other.package == model.package
@@ -109,6 +120,14 @@ def _beside(model: NodeType, context: Context) -> list[NodeType]:
         ):
             found.append(other)
     return found
+
+
+def _belongs(loaded: LoadedFile, package: str) -> bool:
+    """Tell whether a file describes a node of ``package``, as far as it can be told."""
+    if isinstance(loaded.model, NodeType):
+        return loaded.model.package == package
+    text = loaded.source.text if loaded.source else ""
+    return re.search(rf":\s*{re.escape(package)}\b", text) is not None
 
 
 # What the target refuses --------------------------------------------------------------------------
