@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from hypothesis import strategies as st
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor import ir
+from deros.monitor import ir, walk
 from deros.monitor.state import LeafValue
 
 _SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 100)))
@@ -330,9 +330,23 @@ def programs(draw: Draw, writable: bool = False) -> ir.Program:
     drawing.actions = draw(st.integers(1, 3))
     behaviours = tuple(drawing.behaviour(2, None) for _ in range(draw(st.integers(1, 4))))
     actions = tuple(drawing.action(index) for index in range(drawing.actions))
-    return ir.Program(
+    program = ir.Program(
         "random", tuple(drawing.leaves), tuple(drawing.inputs), rules, behaviours, actions
     )
+    return _without_unread_fields(program) if writable else program
+
+
+def _without_unread_fields(program: ir.Program) -> ir.Program:
+    """Drop the leaves of inputs that are whole messages and of which no rule reads a field."""
+    values = walk.values(tuple(walk.conditions(program)))
+    read = {program.leaves[value.leaf].input for value in values if isinstance(value, ir.Read)}
+    inputs = [
+        each
+        if each.index in read or program.leaves[each.leaves[0]].path == each.path
+        else replace(each, leaves=())
+        for each in program.inputs
+    ]
+    return replace(program, inputs=tuple(inputs))
 
 
 # Traces -------------------------------------------------------------------------------------------

@@ -155,7 +155,7 @@ class Conditions:
 
     def _age(self, condition: Age, operator: Operator) -> Logic:
         age = f"t - {self._layout.counted[condition.input]}"
-        return _compare_numbers(age, operator, str(condition.bound_ns))
+        return _compare_numbers(age, operator, f"{condition.bound_ns:_}")
 
     # Values -------------------------------------------------------------------------------------
 

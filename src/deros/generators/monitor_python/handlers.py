@@ -183,11 +183,11 @@ class _Writer:
         if index in layout.missing:
             statements.append(f"self._{layout.missing[index]} = False")
         if each.timeout_ns is not None:
-            statements.append(f"self._{layout.timeouts[index]} = t + {each.timeout_ns}")
+            statements.append(f"self._{layout.timeouts[index]} = t + {each.timeout_ns:_}")
         soonest = min(self._waits(each), default=None)
         if soonest is not None:
-            statements.append(f"if t + {soonest} < self._due:")
-            statements.append(f"    self._due = t + {soonest}")
+            statements.append(f"if t + {soonest:_} < self._due:")
+            statements.append(f"    self._due = t + {soonest:_}")
         return [f"{' ' * indent}{statement}" for statement in statements]
 
     def _waits(self, each: Input) -> Iterator[int]:

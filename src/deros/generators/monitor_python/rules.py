@@ -41,12 +41,17 @@ def judges(program: Program, layout: Layout) -> tuple[Judge, ...]:
         groups.setdefault(_topics(program, rule.condition), []).append(rule)
     return tuple(
         Judge(
-            layout.names.new("judge", *(topics if len(topics) == 1 else ())),
+            layout.names.new("judge", *_joined(topics)),
             topics,
             tuple(_lines(program, layout, rules)),
         )
         for topics, rules in groups.items()
     )
+
+
+def _joined(topics: tuple[str, ...]) -> list[str]:
+    """Return the words of a method's name; with more than three topics it would be too long."""
+    return " and ".join(topics).split() if len(topics) <= 3 else ["several"]
 
 
 def _topics(program: Program, condition: Condition) -> tuple[str, ...]:
@@ -105,7 +110,7 @@ def interval_lines(conditions: Conditions, layout: Layout, condition: Condition)
                 f"        {due} = self._{due}",
                 *lay_out(8, "if ", conditions.true(part.operand), ":"),
                 f"            if {due} == NEVER:",
-                f"                {due} = self._{due} = t + {part.duration_ns}",
+                f"                {due} = self._{due} = t + {part.duration_ns:_}",
                 f"                if {due} < self._due:",
                 f"                    self._due = {due}",
                 "        else:",

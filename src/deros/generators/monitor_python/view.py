@@ -174,7 +174,7 @@ def _ends(program: Program, layout: Layout) -> tuple[str, ...]:
     for condition in walk.conditions(program):
         if isinstance(condition, Age):
             counted = layout.counted[condition.input]
-            ends += [f"self._{counted} + {change}" for change in age_changes(condition)]
+            ends += [f"self._{counted} + {change:_}" for change in age_changes(condition)]
     return tuple(dict.fromkeys(ends))
 
 
