@@ -32,6 +32,7 @@ lint: $(READY)  ## Check format, style, types and the layering of the packages
 	$(BIN)/ruff format --check $(CHECKED)
 	$(BIN)/ruff check $(CHECKED)
 	$(BIN)/mypy
+	MYPYPATH=benchmarks $(BIN)/mypy benchmarks
 	$(BIN)/lint-imports
 
 .PHONY: docs
