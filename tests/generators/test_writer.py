@@ -141,6 +141,13 @@ def test_the_output_may_not_be_a_file(tmp_path: Path) -> None:
         write({"a.py": File(PYTHON)}, tmp_path / "out")
 
 
+def test_half_a_character_is_reported(tmp_path: Path) -> None:
+    """A lone surrogate, which UTF-8 has no bytes for, gives a message and no file."""
+    with pytest.raises(WriteError, match=r"half a character, '\\ud800'"):
+        write({"a.py": File(PYTHON), "b.txt": File("x\ud800")}, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
 def failing_on(count: int, function: Callable[..., Any]) -> Callable[..., Any]:
     """Return ``function`` with its ``count``-th call failing as on a full disk."""
     calls = 0

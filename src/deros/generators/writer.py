@@ -69,6 +69,8 @@ def write(files: Files, directory: Path, *, overwrite: bool = False) -> WriteRep
     except OSError as error:
         where = error.filename if error.filename is not None else directory
         raise WriteError(f"cannot write {where}: {error.strerror or error}") from error
+    except UnicodeEncodeError as error:
+        raise WriteError(f"cannot write half a character, {error.object[error.start]!r}") from error
 
 
 @dataclass(frozen=True, slots=True)
