@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 from pathlib import Path
@@ -15,6 +16,7 @@ from hypothesis import strategies as st
 from deros.cli.simulate import simulate
 from deros.diagnostics import SourceFile
 from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceType
 from deros.monitor.trace import Trace, nanoseconds, read_trace
 from tests.support import timelines
 
@@ -219,6 +221,24 @@ def test_places(text: str, place: str | None) -> None:
     """The key at fault is marked, or the whole line where the key is not found as written."""
     (found,) = read(text).diagnostics
     assert found.span.text == (place or text)
+
+
+def test_definition_that_is_not_there(tmp_path: Path) -> None:
+    """A message within a message may be of a type that nobody has; it is no crash."""
+    folder = tmp_path / "odd_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Odd.msg").write_text("float64 data\nlost_msgs/Lost lost\n")
+    program = dataclasses.replace(
+        PROGRAM,
+        inputs=tuple(
+            dataclasses.replace(each, type=InterfaceType("odd_msgs", "msg", "Odd"))
+            for each in PROGRAM.inputs[:1]
+        ),
+        leaves=PROGRAM.leaves[:1],
+    )
+    source = SourceFile("trace", line("/speed", {"data": 1, "lost": {"x": 1}}))
+    (found,) = read_trace(source, program, InterfaceStore([tmp_path])).diagnostics
+    assert "lost_msgs" in found.message
 
 
 def test_unread_topic_is_a_warning() -> None:

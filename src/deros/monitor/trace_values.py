@@ -52,9 +52,9 @@ class MessageReader:
     """
 
     def __init__(self, store: InterfaceStore, kind: InterfaceType) -> None:
-        """Read messages of the type ``kind``, with definitions from ``store``."""
+        """Read messages of the type ``kind``, which ``store`` must have."""
         self._store = store
-        self._definition = self._resolve(kind)
+        self._definition = self._resolve(kind, "")
 
     def read(self, data: Mapping[str, Any]) -> dict[str, Any]:
         """Return the message that ``data`` gives: nested, or with dotted keys, or both mixed.
@@ -76,16 +76,16 @@ class MessageReader:
                     return None
                 value, kind = value[step], kind.element
             else:
-                value, kind = self._field(value, self._resolve(kind.base), step)
+                value, kind = self._field(value, self._resolve(kind.base, step), step)
         result: LeafValue = value
         return result
 
     # Definitions --------------------------------------------------------------------------------
 
-    def _resolve(self, kind: InterfaceType | str) -> MessageDefinition:
+    def _resolve(self, kind: InterfaceType | str, key: str) -> MessageDefinition:
         definition = self._store.message(kind) if isinstance(kind, InterfaceType) else None
         if definition is None:
-            raise KeyError(str(kind))
+            raise DataError(key, f"the definition of {kind} is not to be found", unknown=True)
         return definition
 
     def _field(
@@ -137,7 +137,7 @@ class MessageReader:
             return self._array(present, kind, steps, value, key)
         if not isinstance(kind.base, InterfaceType):
             return convert(str(kind.base), value, key)
-        definition = self._resolve(kind.base)
+        definition = self._resolve(kind.base, key)
         if steps:
             self._put(present, definition, steps, value, key)
         elif isinstance(value, Mapping):
