@@ -271,7 +271,7 @@ def test_ros_reads_every_parameter_file(parameters: str, tmp_path: Path) -> None
 # Any text -----------------------------------------------------------------------------------------
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(description=st.text(max_size=200), default=st.text(max_size=40))
 def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
     """Whatever a text holds, Python compiles, XML parses, and YAML gives the default back."""
