@@ -42,6 +42,18 @@ PROGRAMS = {
     "environment": "import json; say(json.dumps(dict(os.environ)))",
     "unfinished": 'os.write(1, b"one\\ntwo\\nthree")',
     "noisy": 'say("ready")\nwhile True: os.write(1, b"x" * 999 + b"\\n")',
+    # Puts a child into a session of its own, which keeps the output open, and ends.
+    "daemon": """\
+read, write = os.pipe()
+if os.fork():
+    os.read(read, 1); os.write(1, b"unfinished"); os._exit(0)
+os.setsid(); say(f"daemon {os.getpid()}"); os.write(write, b"x"); wait_for(signal.SIGTERM)""",
+    # Four megabytes in numbered lines; after the first one it opens the FIFO that MARK names.
+    "verbose": """\
+for number in range(40_000):
+    os.write(1, b"%5d %s\\n" % (number, b"x" * 93))
+    if number == 11_000:
+        open(os.environ["MARK"], "w").close()""",
     "crashing": "signal.pthread_sigmask(signal.SIG_UNBLOCK, ALL); os.kill(os.getpid(), 11)",
     # A wrapper that ends at once on SIGINT, while what it started takes its time.
     "family": """\

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.stand_ins import Run, await_end, make_prefix, make_script
+from tests.support.stand_ins import LIMIT, Run, await_end, make_prefix, make_script
 
 Start = Callable[..., Run]
 
@@ -187,6 +187,17 @@ def test_a_reader_that_takes_nothing_does_not_keep_the_system_from_stopping(star
     assert await_end(run.process.pid)
 
 
+def test_no_line_is_lost_on_a_slow_reader(start: Start, tmp_path: Path) -> None:
+    """Once the script holds back enough, the nodes wait, and go on when somebody reads again."""
+    mark = tmp_path / "mark"
+    os.mkfifo(mark)
+    run = start("node a : verbose", MARK=str(mark))
+    mark.open().close()  # returns when the node has written more than a megabyte
+    assert run.end() == 0
+    numbers = [int(line[4:9]) for line in run.lines if line.startswith("[a] ")]
+    assert numbers == list(range(40_000))
+
+
 def test_a_reader_that_goes_away_ends_the_system(start: Start) -> None:
     """As with ``script | head``: nobody sees the nodes any more, so they are stopped."""
     run = start("node a : noisy", "--stop-timeout", "0.2")
@@ -309,6 +320,14 @@ def test_what_a_node_leaves_behind_is_stopped(start: Start) -> None:
     run.until("[a] left behind", "[a] child got SIGINT", "[Robot] a ended", "[b] ready")
     run.signal(signal.SIGINT)
     assert run.end() == 0
+
+
+def test_a_daemon_is_on_its_own(start: Start) -> None:
+    """Who has left the node's session keeps nobody waiting, and no output of the node is lost."""
+    run = start("node a : daemon", "--stop-timeout", "1000")
+    assert run.process.wait(LIMIT) == 0
+    run.until("[a] unfinished\n[Robot] a ended")
+    os.kill(int(run.lines[1].removeprefix("[a] daemon ")), signal.SIGTERM)
 
 
 @pytest.mark.parametrize("program", ["steady", "stubborn", "family"])

@@ -199,10 +199,9 @@ class Supervisor:
             self._held_back = [held for held in self._held_back if held is not process]
         self._pass_on(process, process.close())
         assert process.exit_code is not None
-        told_to = process.state is State.STOPPING
         process.state, process.due, process.group = State.ENDED, None, 0
         how = describe(process.exit_code)
-        if self._stopping and told_to:
+        if self._stopping:
             sent = STOP_SIGNALS[: process.signals_sent]
             well = any(process.exit_code in STOPPED_BY[number] for number in sent)
             self._failed |= not well
@@ -217,7 +216,7 @@ class Supervisor:
     def _may_restart(self, process: Process) -> bool:
         most = process.node.respawn_max
         wanted = process.node.respawn_delay is not None
-        return wanted and not self._stopping and (most is None or process.restarts < most)
+        return wanted and (most is None or process.restarts < most)
 
     def _restart(self, process: Process) -> str:
         delay = process.node.respawn_delay or 0.0
