@@ -29,6 +29,7 @@ def wait_for(*numbers):
     return signal.sigwait(numbers)
 
 ALL = {signal.SIGINT, signal.SIGTERM}
+signal.alarm(120)  # whatever a failing test forgets ends by itself
 signal.pthread_sigmask(signal.SIG_BLOCK, ALL)
 """
 
@@ -47,7 +48,7 @@ PROGRAMS = {
 read, write = os.pipe()
 if os.fork():
     os.read(read, 1); os.write(1, b"unfinished"); os._exit(0)
-os.setsid(); say(f"daemon {os.getpid()}"); os.write(write, b"x"); wait_for(signal.SIGTERM)""",
+os.setsid(); signal.alarm(120); say(f"daemon {os.getpid()}"); os.write(write, b"x"); wait_for(signal.SIGTERM)""",
     # Four megabytes in numbered lines; after the first one it opens the FIFO that MARK names.
     "verbose": """\
 for number in range(40_000):
@@ -59,12 +60,14 @@ for number in range(40_000):
     "family": """\
 if os.fork():
     wait_for(signal.SIGINT); os._exit(0)
+signal.alarm(120)
 say(f"child {os.getpid()}")
 wait_for(signal.SIGTERM); say("child got SIGTERM")""",
     # The same, but the wrapper ends by itself.
     "leaving": """\
 if os.fork():
     os._exit(0)
+signal.alarm(120)
 say("left behind"); wait_for(signal.SIGINT); say("child got SIGINT")""",
 }
 """Name and code of each program; the code has ``say`` and ``wait_for``, and holds back signals."""
