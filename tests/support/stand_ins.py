@@ -48,7 +48,8 @@ PROGRAMS = {
 read, write = os.pipe()
 if os.fork():
     os.read(read, 1); os.write(1, b"unfinished"); os._exit(0)
-os.setsid(); signal.alarm(120); say(f"daemon {os.getpid()}"); os.write(write, b"x"); wait_for(signal.SIGTERM)""",
+os.setsid(); signal.alarm(120); say(f"daemon {os.getpid()}")
+os.write(write, b"x"); wait_for(signal.SIGTERM)""",
     # Four megabytes in numbered lines; after the first one it opens the FIFO that MARK names.
     "verbose": """\
 for number in range(40_000):
