@@ -78,9 +78,9 @@ def _demonstrate(options: argparse.Namespace) -> int:
     try:
         packages = build(EXAMPLE, workshop.packages)
     except BuildError as error:
-        console.print(str(error), style="red")
+        console.print(str(error), style="red", soft_wrap=True, highlight=False)
         return 1
-    console.print(f"Generated {len(packages)} packages into {workshop.packages}")
+    console.print(f"Generated {len(packages)} packages into {workshop.packages}", soft_wrap=True)
     cases = [case for case in CASES if not options.cases or case.number in options.cases]
     with Scoreboard(console, cases, options.repeat) as board:
         recordings = run(workshop, cases, options.repeat, board.begin, board.report)
@@ -90,8 +90,9 @@ def _demonstrate(options: argparse.Namespace) -> int:
     picture.write_text(page(recordings, sentence), encoding="utf-8")
     for result in board.results:
         if not result.passed:
-            console.print(f"Case {result.number} failed: {result.failure}", style="red")
-    console.print(sentence)
+            text = f"Case {result.number} failed: {result.failure}"
+            console.print(text, style="red", soft_wrap=True, highlight=False)
+    console.print(sentence, soft_wrap=True, highlight=False)
     console.print(f"Picture of the run: {picture}", soft_wrap=True)
     return 0 if board.complete else 1
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -17,10 +19,12 @@ LONGEST = 400.0
 """Seconds after which the demo is taken to hang."""
 
 
-def start(arguments: list[str], environment: dict[str, str], output: Path) -> subprocess.Popen[str]:
-    """Start the demo."""
+def start(
+    arguments: list[str], environment: dict[str, str], output: Path, demo: Path = DEMO
+) -> subprocess.Popen[str]:
+    """Start the demo, or the given one."""
     return subprocess.Popen(
-        [sys.executable, str(DEMO), "--output", str(output), *arguments],
+        [sys.executable, str(demo), "--output", str(output), *arguments],
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -57,25 +61,49 @@ def test_an_interrupted_demo_leaves_nothing_running(
     assert processes_with(str(tmp_path)) == []
 
 
+def changed(tmp_path: Path, file: str, before: str, after: str) -> Path:
+    """Return the demo of a copy of the example in which one text is replaced by another."""
+    example = tmp_path / "feeding_robot"
+    shutil.copytree(DEMO.parent, example)
+    text = (example / file).read_text()
+    assert text.count(before) == 1
+    (example / file).write_text(text.replace(before, after))
+    return example / "demo.py"
+
+
 @pytest.mark.ros
 def test_a_robot_that_reacts_wrongly_fails_the_demo(
     ros_env: dict[str, str], tmp_path: Path
 ) -> None:
     """With a rule too lax, the case that needs it fails, and so does the whole run."""
-    example = tmp_path / "feeding_robot"
-    subprocess.run(["cp", "-r", str(DEMO.parent), str(example)], check=True)
-    rules = example / "feeding_robot.deros"
-    text = rules.read_text()
-    assert "const forward_limit = 1.0 m/s" in text
-    rules.write_text(text.replace("const forward_limit = 1.0 m/s", "const forward_limit = 1.4 m/s"))
-    command = [sys.executable, str(example / "demo.py"), "--cases", "10"]
-    run = subprocess.run(
-        [*command, "--output", str(tmp_path / "out")],
-        env=ros_env,
-        capture_output=True,
-        text=True,
-        timeout=LONGEST,
-        check=False,
-    )
-    assert run.returncode == 1, run.stdout
-    assert "Case 10 failed" in run.stdout
+    rule = "const forward_limit = "
+    demo = changed(tmp_path, "feeding_robot.deros", f"{rule}1.0 m/s", f"{rule}1.4 m/s")
+    with start(["--cases", "10"], ros_env, tmp_path / "out", demo) as run:
+        text, _ = run.communicate(timeout=LONGEST)
+    assert run.returncode == 1, text
+    assert "Case 10 failed: the reaction took" in text, text
+
+
+@pytest.mark.ros
+def test_a_node_that_fails_ends_the_demo_at_once(ros_env: dict[str, str], tmp_path: Path) -> None:
+    """Nobody waits for a robot that is not there, and the message names the culprit."""
+    body = "src/feeding_robot_plc/feeding_robot_plc/plc.py"
+    demo = changed(tmp_path, body, "self._reports = 0", "raise RuntimeError('broken')")
+    with start(["--cases", "1,4"], ros_env, tmp_path / "out", demo) as run:
+        text, _ = run.communicate(timeout=LONGEST)
+    assert run.returncode == 1, text
+    assert "Case 1 failed: the system has ended: plc has failed; see" in text
+    assert processes_with(str(tmp_path)) == []
+
+
+@pytest.mark.ros
+def test_a_model_with_an_error_is_reported_and_nothing_is_started(
+    ros_env: dict[str, str], tmp_path: Path
+) -> None:
+    """The demo names the line; there is no traceback."""
+    demo = changed(tmp_path, "feeding_robot.deros", "speed > forward_limit", "sped > forward_limit")
+    with start([], ros_env, tmp_path / "out", demo) as run:
+        text, _ = run.communicate(timeout=LONGEST)
+    assert run.returncode == 1
+    assert re.search(r"feeding_robot\.deros:\d+: .*'sped'", text), text
+    assert "Traceback" not in text

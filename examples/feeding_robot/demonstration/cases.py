@@ -7,12 +7,13 @@ long it must last, and how the robot has to react.
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 from demonstration.referee import NOTHING, Condition, Reaction, Referee, RobotState
-from demonstration.stage import AUTOMATIC, CONTACTS, LEARN, MANUAL, Stage
+from demonstration.stage import AUTOMATIC, CONTACTS, LEARN, MANUAL, OverdueError, Stage
 
 SLOW = frozenset({Reaction.LOW_SPEED})
 STOP = frozenset({Reaction.STOP})
@@ -99,7 +100,8 @@ def _reset_actions(stage: Stage) -> None:
     The safety node hears mode and contacts on topics of their own, in no order that the player
     could rely on; where it refuses, the operator turns the switch again.
     """
-    for _ in range(10):
+    patience_ends = time.monotonic() + 40.0  # at the start the nodes have yet to find each other
+    while time.monotonic() < patience_ends:
         stage.switch_mode(LEARN)
         _await_reports(stage, LEARN)
         stage.switch_mode(MANUAL)
@@ -107,7 +109,7 @@ def _reset_actions(stage: Stage) -> None:
         granted = stage.state.motor_stop is False or stage.reset_safety()
         if granted and stage.watch(lambda: _is_reset(stage.state), 1.0):
             return
-    stage.wait("the actions to be reset", _is_reset, 1.0)
+    raise OverdueError("the safety node did not let its actions be reset")
 
 
 def _is_reset(state: RobotState) -> bool:

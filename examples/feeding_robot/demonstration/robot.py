@@ -13,6 +13,7 @@ from pathlib import Path
 PATIENCE = 20.0
 """Seconds that the system has to end by itself, before it is killed."""
 
+_STOPPING = re.compile(r"\] stopping: (.+)")
 _STARTED = re.compile(r"\] (\S+) started, process (\d+)")
 
 
@@ -78,14 +79,14 @@ class Robot:
 
     def _read(self) -> None:
         assert self._system.stdout is not None
-        last = ""
+        reason = "before it has begun"
         with self._log.open("w", encoding="utf-8") as log, self._system.stdout as output:
             for line in output:
                 log.write(line)
                 log.flush()
-                last = line.strip() or last
-                started = _STARTED.search(line)
-                if started is not None:
+                if (started := _STARTED.search(line)) is not None:
                     self._processes[started[1]] = int(started[2])
+                elif (stopping := _STOPPING.search(line)) is not None:
+                    reason = stopping[1]
         if not self._ending:
-            self._on_end(f"the system has ended, its last words: {last}")
+            self._on_end(f"the system has ended: {reason}; see {self._log}")
