@@ -10,7 +10,7 @@ DOCS_READY := $(VENV)/.ready-docs
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # Runs a command and, however it ends, leaves none of its descendants behind.
 ALONE := $(BIN)/python tools/supervise.py
-CHECKED := src tests tools benchmarks
+CHECKED := src tests tools benchmarks examples
 BENCHMARKS := $(filter-out benchmarks/big_system.py,$(wildcard benchmarks/*.py))
 
 .DEFAULT_GOAL := help
