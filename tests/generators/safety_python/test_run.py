@@ -117,13 +117,24 @@ def robot(ros_peer: Peer) -> Robot:
     return Robot(ros_peer)
 
 
-def end(process: Process, number: signal.Signals = signal.SIGTERM) -> tuple[int, list[str]]:
-    """Send a signal, and return the exit code and the lines printed, without their time."""
+def end(
+    process: Process, robot: Robot, number: signal.Signals = signal.SIGTERM
+) -> tuple[int, list[str]]:
+    """Send a signal, and return what :func:`result_of` does.
+
+    The node acts first and logs then, so it is left alone until it has beaten again.
+    """
+    beats = len(robot.beats)
+    robot.peer.until(lambda: len(robot.beats) >= beats + 2)
     process.send_signal(number)
+    return result_of(process)
+
+
+def result_of(process: Process) -> tuple[int, list[str]]:
+    """Wait for the end, and return the exit code and the lines printed, without their time."""
     output, _ = process.communicate(timeout=LIMIT)
-    return process.returncode, [
-        line.partition(f"[{NODE}]: ")[2] or line for line in output.splitlines()
-    ]
+    lines = [line.partition(f"[{NODE}]: ")[2] or line for line in output.splitlines()]
+    return process.returncode, lines
 
 
 def test_a_violation_stops_the_robot_until_it_is_reset(start: Start, robot: Robot) -> None:
@@ -142,7 +153,7 @@ def test_a_violation_stops_the_robot_until_it_is_reset(start: Start, robot: Robo
         robot.peer.until(lambda: robot.stop[-1] is False)
         assert robot.reset().message == "no latched action was active"
 
-        code, lines = end(process)
+        code, lines = end(process, robot)
     assert code == 0
     place = "speeding (every_thing.deros:28: if drive.fast for 100 ms)"
     assert lines[0] == "watching 8 rules of every_thing.deros"
@@ -156,7 +167,7 @@ def test_an_action_without_code_is_never_silent(start: Start, robot: Robot) -> N
     with start() as process:
         robot.meet()
         robot.drive_until(0.9, lambda: robot.stop[-1])
-        code, lines = end(process)
+        code, lines = end(process, robot)
     file = "every_thing_safety_node_actions.py"
     assert code == 0
     assert f"action beep does nothing: write its code in {file}" in lines
@@ -185,7 +196,7 @@ def test_the_users_code_runs(start: Start, robot: Robot, package: Path) -> None:
     with start() as process:
         robot.meet()
         robot.drive_until(0.9, lambda: robot.stop[-1])
-        _, lines = end(process)
+        _, lines = end(process, robot)
     assert "beep 3 times: too fast" in lines
     assert not [line for line in lines if line.startswith("action beep")]
 
@@ -217,7 +228,7 @@ def test_a_silent_sensor_and_a_takeover(start: Start, robot: Robot) -> None:
             return robot.limit[-1] == 0.0
 
         robot.drive_until(0.1, released)
-        code, lines = end(process, signal.SIGINT)
+        code, lines = end(process, robot, signal.SIGINT)
     assert code == 0
     assert "crawl, by lost (every_thing.deros:29: if drive.silent or body.ill)" in lines
     assert "crawl is reset" in lines
@@ -231,7 +242,7 @@ def test_it_beats_and_repeats_at_publish_freq(start: Start, robot: Robot) -> Non
         robot.peer.until(lambda: len(robot.beats) >= beats + 20)
         assert len(robot.stop) >= states + 10
         assert robot.beats == sorted(set(robot.beats))
-        code, _ = end(process)
+        code, _ = end(process, robot)
     assert code == 0
 
 
@@ -266,7 +277,8 @@ def test_simulated_time_steps_and_starts_late(start: Start, robot: Robot) -> Non
         beats = len(robot.beats)
         tick(-500.0)
         ticking_until(0.02, lambda: len(robot.beats) > beats + 2)
-        code, lines = end(process)
+        process.send_signal(signal.SIGTERM)
+        code, lines = result_of(process)
     assert code == 0
     (crawl,) = [n for n, line in enumerate(lines) if line.startswith("crawl, by lost")]
     (step,) = [n for n, line in enumerate(lines) if line.startswith("the clock stepped back")]
