@@ -8,7 +8,14 @@ from dataclasses import dataclass
 from deros.generators.monitor_python import monitor_view
 from deros.generators.monitor_python.source import header, origin
 from deros.generators.names import Emitted, check_collisions, python_identifier
-from deros.generators.python_source import Call, Text, import_lines, one_line, wrapped
+from deros.generators.python_source import (
+    Call,
+    Text,
+    import_lines,
+    one_line,
+    sentence,
+    wrapped,
+)
 from deros.generators.rosnode_python.view import NodeView, interface_imports, node_view
 from deros.generators.safety_python.messages import is_stamped, literal, reading
 from deros.interfaces.fields import ResolvedField, format_path, resolve
@@ -134,7 +141,12 @@ def safety_view(
     base = node_view(node)
     handlers = tuple(_handlers(program, base, store))
     channels = _channels(program, base, node, store)
-    actions = tuple(_action(a, program) for a in program.actions if _needs_code(a))
+    described = {action.name.text: action.description for action in model.actions}
+    actions = tuple(
+        _action(each, program, described.get(each.name, ""))
+        for each in program.actions
+        if _needs_code(each)
+    )
     view = SafetyView(
         package=node.package,
         node=base,
@@ -270,7 +282,7 @@ def _field(
 # Actions and behaviours ---------------------------------------------------------------------------
 
 
-def _action(action: Action, program: Program) -> ActionView:
+def _action(action: Action, program: Program, description: str) -> ActionView:
     callers = [b.name for b in walk.behaviours(program) if b.index in action.triggered_by]
     place = f"Declared in {origin(action.span)}" if action.span else "Declared"
     note = f"{place}, run by {', '.join(callers) if callers else 'no behaviour'}."
@@ -282,7 +294,7 @@ def _action(action: Action, program: Program) -> ActionView:
         action.name,
         method,
         f"def {method}({', '.join(arguments)}) -> None:",
-        (tuple(wrapped(note, indent=8)),),
+        tuple(tuple(wrapped(text, indent=8)) for text in (sentence(description), note) if text),
     )
 
 

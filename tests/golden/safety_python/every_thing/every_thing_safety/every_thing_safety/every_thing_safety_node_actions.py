@@ -26,5 +26,7 @@ class EveryThingSafetyNodeActions(EveryThingSafetyNodeActionsBase):
         """
         Carry out the action beep.
 
+        Sounds the horn.
+
         Declared in every_thing.deros:7, run by speeding, behaviour_3.
         """
