@@ -333,19 +333,24 @@ def programs(draw: Draw, writable: bool = False) -> ir.Program:
     program = ir.Program(
         "random", tuple(drawing.leaves), tuple(drawing.inputs), rules, behaviours, actions
     )
-    return _without_unread_fields(program) if writable else program
+    return _as_built(program) if writable else program
 
 
-def _without_unread_fields(program: ir.Program) -> ir.Program:
-    """Drop the leaves of inputs that are whole messages and of which no rule reads a field."""
-    values = walk.values(tuple(walk.conditions(program)))
+def _as_built(program: ir.Program) -> ir.Program:
+    """Drop what the compiler drops: unread fields of whole messages, timeouts of unused inputs.
+
+    Both can tell: a NaN in the field, and the timeout as the first event of all.
+    """
+    conditions = tuple(walk.conditions(program))
+    values = walk.values(conditions)
     read = {program.leaves[value.leaf].input for value in values if isinstance(value, ir.Read)}
-    inputs = [
-        each
-        if each.index in read or program.leaves[each.leaves[0]].path == each.path
-        else replace(each, leaves=())
-        for each in program.inputs
-    ]
+    used = read | {each.input for each in conditions if isinstance(each, ir.Missing | ir.Age)}
+    inputs = []
+    for each in program.inputs:
+        whole = each.index in read or program.leaves[each.leaves[0]].path == each.path
+        leaves = each.leaves if whole else ()
+        timeout_ns = each.timeout_ns if each.index in used else None
+        inputs.append(replace(each, leaves=leaves, timeout_ns=timeout_ns))
     return replace(program, inputs=tuple(inputs))
 
 
