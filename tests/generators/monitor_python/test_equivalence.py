@@ -21,7 +21,7 @@ from tests.support.monitors import START_NS, compare, timed
 from tests.support.rules_text import NODE_TEXT, SYSTEM_TEXT, rules_text
 from tests.support.strategies import Step, programs, traces
 
-EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "600"))
+EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "500"))
 """Examples per property; set, they are drawn anew in every run, else they are always the same."""
 
 thorough = settings(
