@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from deros.diagnostics import Diagnostic, in_file_order
 from deros.interfaces.store import InterfaceStore
@@ -13,7 +13,7 @@ from deros.metamodels.system import System
 
 
 def check(
-    named: Iterable[LoadedFile], repository: Repository, store: InterfaceStore
+    named: Sequence[LoadedFile], repository: Repository, store: InterfaceStore
 ) -> list[Diagnostic]:
     """Return the findings of the files in ``named`` and of their imports, in file order.
 
