@@ -108,8 +108,9 @@ def _targets_of_unknown_ports(flat: FlatSystem) -> set[str]:
     """
     targets: set[str] = set()
     for node in flat.nodes:
+        known = {id(port.wiring) for port in node.ports}
         for wiring in node.instance.wirings:
-            if node.type is None or node.type.port(wiring.port) is None:
+            if id(wiring) not in known:
                 targets.add(resolve_name(wiring.target, node.namespace, node.instance.name))
     return targets
 
