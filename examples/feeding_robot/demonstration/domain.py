@@ -17,15 +17,10 @@ _LOCKS = Path(tempfile.gettempdir()) / "deros-test-domains"  # shared with the p
 def own_domain() -> Iterator[None]:
     """Confine this process and its children to a domain that nobody else here uses.
 
-    A ``ROS_DOMAIN_ID`` that the environment gives is kept: whoever set it has chosen.
-
     Raises:
         RuntimeError: if all domains are taken.
     """
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-    if "ROS_DOMAIN_ID" in os.environ:
-        yield
-        return
     _LOCKS.mkdir(mode=0o777, exist_ok=True)
     for number in reversed(_DOMAINS):
         with (_LOCKS / str(number)).open("w") as lock:

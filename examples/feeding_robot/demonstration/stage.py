@@ -157,8 +157,12 @@ class Stage:
         return pace
 
     def _spin(self) -> None:
-        while not self._done.is_set():
-            self._executor.spin_once(timeout_sec=0.1)
+        try:
+            while not self._done.is_set():
+                self._executor.spin_once(timeout_sec=0.1)
+        except Exception as error:
+            self.abandon(f"the player has failed: {error!r}")
+            raise
 
     def _receiver(self, values: Callable[[Any], Values]) -> Callable[[Any, dict[str, int]], None]:
         """Return what takes a message with the real times at which it was sent and received."""
