@@ -44,7 +44,10 @@ def build(example: Path, folder: Path) -> list[str]:
         raise BuildError("\n".join(map(_line, in_file_order(findings))))
     folder.mkdir(parents=True, exist_ok=True)
     shutil.copytree(
-        example / "src", folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__")
+        example / "src",
+        folder,
+        dirs_exist_ok=True,
+        ignore=shutil.ignore_patterns("__pycache__", "ruff.toml"),
     )
     packages: list[str] = []
     for file in [*rules, *nodes]:

@@ -6,7 +6,7 @@ from feeding_robot_actuators.actuator_arbiter_base import ActuatorArbiterBase, r
 from feeding_robot_actuators.arbitration import Arbiter, Limits
 from geometry_msgs.msg import Twist
 from rclpy.clock import Clock, ClockType
-from std_msgs.msg import Bool, Float64, UInt8, UInt64
+from std_msgs.msg import Bool, Float64, UInt64, UInt8
 
 
 class ActuatorArbiter(ActuatorArbiterBase):
@@ -65,5 +65,5 @@ def main(args: list[str] | None = None) -> None:
     run(ActuatorArbiter, args)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

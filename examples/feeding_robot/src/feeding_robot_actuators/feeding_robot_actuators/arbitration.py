@@ -20,7 +20,8 @@ class Limits:
 
 @dataclass
 class Arbiter:
-    """Keeps what was heard, with the time it was heard at, and decides on the pedal.
+    """
+    Keeps what was heard, with the time it was heard at, and decides on the pedal.
 
     Nothing heard in time means standing still: a lost mission and a lost safety node alike.
     """

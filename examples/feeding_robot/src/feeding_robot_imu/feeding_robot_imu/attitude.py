@@ -27,12 +27,10 @@ def small_rotation(roll: float, pitch: float) -> Quaternion:
 
 
 def disturbed(attitude: Quaternion, deviation: float, noise: random.Random) -> Quaternion:
-    """Return the attitude as the sensor shows it.
+    """
+    Return the true attitude as the sensor shows it.
 
-    Args:
-        attitude: the true attitude.
-        deviation: standard deviation of roll and pitch, in rad.
-        noise: where the disturbance is drawn from.
+    The deviation is the standard one of roll and pitch, in rad; it is drawn from the noise.
     """
     error = small_rotation(noise.gauss(0.0, deviation), noise.gauss(0.0, deviation))
     return product(attitude, error)

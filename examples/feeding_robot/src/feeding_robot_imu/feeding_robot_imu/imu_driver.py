@@ -47,5 +47,5 @@ def main(args: list[str] | None = None) -> None:
     run(ImuDriver, args)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -34,5 +34,5 @@ def main(args: list[str] | None = None) -> None:
     run(LidarDriver, args)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -14,12 +14,11 @@ def bearings(beams: int) -> list[float]:
 
 
 def ranges(clearance: float, beams: int, range_max: float) -> list[float]:
-    """Return what each beam measures, in m; infinity where it meets nothing within ``range_max``.
+    """
+    Return what each beam measures, in m; infinity where it meets nothing within ``range_max``.
 
-    Args:
-        clearance: distance of the obstacle straight ahead, infinite when there is none.
-        beams: how many beams a scan has, at least two.
-        range_max: how far the scanner sees.
+    The clearance is the distance of the obstacle straight ahead, infinite when there is none; a
+    scan has at least two beams.
     """
     return [_range(clearance, bearing, range_max) for bearing in bearings(beams)]
 

@@ -24,11 +24,10 @@ class Command:
 
 @dataclass
 class Mission:
-    """Plans the next command; the lane is the x axis.
+    """
+    Plans the next command; the lane is the x axis.
 
-    Attributes:
-        cruise_speed: speed to reach, in m/s.
-        acceleration: how fast the speed may change, in m/s^2.
+    The cruising speed is in m/s, the acceleration towards it in m/s^2.
     """
 
     cruise_speed: float
@@ -36,15 +35,14 @@ class Mission:
     speed: float = 0.0
 
     def plan(self, allowed: bool, offset: float, heading: float, duration: float) -> Command:
-        """Return what to do now.
+        """
+        Return what to do now.
 
         After a stop the ramp begins anew from standstill: the mission never tries to catch up.
 
-        Args:
-            allowed: whether the order, the mode and the safety node let the robot drive.
-            offset: distance to the left of the lane, in m.
-            heading: direction against the lane's, in rad.
-            duration: time since the last call, in s.
+        Driving is allowed when the order, the mode and the safety node let the robot drive. The
+        offset (m) is to the left of the lane, the heading (rad) is against the lane's, and the
+        duration (s) is the time since the last call.
         """
         if not allowed:
             self.speed = 0.0

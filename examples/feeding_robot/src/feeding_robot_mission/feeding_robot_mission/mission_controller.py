@@ -9,7 +9,7 @@ from feeding_robot_mission.mission_controller_base import MissionControllerBase,
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from std_msgs.msg import Bool, UInt8, UInt64
+from std_msgs.msg import Bool, UInt64, UInt8
 
 AUTOMATIC = 2
 """The position of the mode switch in which the mission drives."""
@@ -64,5 +64,5 @@ def main(args: list[str] | None = None) -> None:
     run(MissionController, args)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -20,7 +20,7 @@ class OdometryDriver(OdometryDriverBase):
         """Measure pose and speed; encoders at rest have no noise."""
         odometry = Odometry()
         odometry.header.stamp = self.get_clock().now().to_msg()
-        odometry.header.frame_id = "odom"
+        odometry.header.frame_id = 'odom'
         odometry.child_frame_id = self.parameters.child_frame_id
         odometry.pose.pose = msg.pose.pose
         slip = self._noise.gauss(1.0, self.parameters.noise)
@@ -34,5 +34,5 @@ def main(args: list[str] | None = None) -> None:
     run(OdometryDriver, args)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import enum
 from dataclasses import dataclass, field
+import enum
 
 
 class Mode(enum.IntEnum):
@@ -17,10 +17,10 @@ class Mode(enum.IntEnum):
 class Contact(enum.Enum):
     """The contacts that are wired to the engine's fuel valve."""
 
-    STOP_BUTTON = "stop button"
-    FRONT_BUMPER = "front bumper"
-    REAR_BUMPER = "rear bumper"
-    FEEDING_ARM = "feeding arm"
+    STOP_BUTTON = 'stop button'
+    FRONT_BUMPER = 'front bumper'
+    REAR_BUMPER = 'rear bumper'
+    FEEDING_ARM = 'feeding arm'
 
 
 class Light(enum.Enum):
@@ -45,7 +45,8 @@ class Watchdog:
 
 @dataclass
 class PlcLogic:
-    """The state of the PLC.
+    """
+    The state of the PLC.
 
     The engine runs only after an operator has turned the ignition in manual mode with nothing
     against it, and whatever shuts it off keeps it off until that is done again. The keep-alives
@@ -76,17 +77,17 @@ class PlcLogic:
     def _reasons(self, now: float) -> list[str]:
         reasons = [each.value for each in Contact if each in self.pressed]
         if self.motor_stop:
-            reasons.append("motor stop of the safety node")
+            reasons.append('motor stop of the safety node')
         if self.mode is not Mode.MANUAL:
             if self.controller.expired(now):
-                reasons.append("no keep-alive of the main controller")
+                reasons.append('no keep-alive of the main controller')
             if self.safety_node.expired(now):
-                reasons.append("no heartbeat of the safety node")
+                reasons.append('no heartbeat of the safety node')
         return reasons
 
     @property
     def light(self) -> Light:
-        """The colour that tells people around what the robot is about to do."""
+        """Tell people around, by a colour, what the robot is about to do."""
         if not self.engine_enabled or self.stopped:
             return Light.RED
         if self.slow or self.mode is not Mode.AUTOMATIC:

@@ -5,14 +5,15 @@ from __future__ import annotations
 from feeding_robot_plc.logic import Contact, Mode, PlcLogic, Watchdog
 from feeding_robot_plc.plc_base import PlcBase, run
 from rclpy.clock import Clock, ClockType
-from std_msgs.msg import Bool, ColorRGBA, Float64, UInt8, UInt64
+from std_msgs.msg import Bool, ColorRGBA, Float64, UInt64, UInt8
 
 STALLED = 10.0
 """Crankshaft speed, in rad/s, below which the engine does not run."""
 
 
 class Plc(PlcBase):
-    """Joins the decisions of :class:`PlcLogic` to its terminals, which are topics here.
+    """
+    Joins the decisions of :class:`PlcLogic` to its terminals, which are topics here.
 
     Its clock is its own, whatever time the rest of the robot lives in.
     """
@@ -99,7 +100,7 @@ class Plc(PlcBase):
 
     def _act(self) -> None:
         for reason in self._logic.supervise(self._now()):
-            self.get_logger().warning(f"engine off: {reason}")
+            self.get_logger().warning(f'engine off: {reason}')
         if self._logic.engine_enabled != self._valve_open:
             self._valve_open = self._logic.engine_enabled
             self.publish_engine_enable(Bool(data=self._valve_open))
@@ -126,5 +127,5 @@ def main(args: list[str] | None = None) -> None:
     run(Plc, args)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

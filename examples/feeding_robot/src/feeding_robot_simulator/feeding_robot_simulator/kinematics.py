@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
+import math
 
 DRIVE_LAG = 0.25
 """Time constant, in s, with which the speed follows the pedal."""
@@ -34,12 +34,12 @@ class Motion:
 
 @dataclass(frozen=True)
 class Controls:
-    """What acts on the machine.
+    """
+    What acts on the machine.
 
-    Attributes:
-        pedal: position from -1 (full backward) to 1 (full forward); 0 holds the robot.
-        steering: angle of the front wheels in rad, positive to the left.
-        engine_on: whether the engine gives the hydraulics their pressure.
+    The pedal goes from -1 (full backward) to 1 (full forward), 0 holds the robot. The steering is
+    the angle of the front wheels in rad, positive to the left. The engine gives the hydraulics
+    their pressure.
     """
 
     pedal: float = 0.0

@@ -1,4 +1,4 @@
-"""The machine itself, simulated: chassis, hydraulic drive, diesel engine and the yard around it."""
+"""The machine itself, simulated: chassis, hydraulic drive, diesel engine and the yard around."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import math
 
 from builtin_interfaces.msg import Time
 from feeding_robot_simulator.kinematics import (
-    IDLE_SPEED,
     Controls,
+    IDLE_SPEED,
     Motion,
     Obstacle,
-    Vehicle,
     quaternion,
     unevenness,
+    Vehicle,
 )
 from feeding_robot_simulator.robot_simulator_base import RobotSimulatorBase, run
 from geometry_msgs.msg import Vector3
@@ -106,8 +106,8 @@ class RobotSimulator(RobotSimulatorBase):
     def _odometry(self) -> Odometry:
         msg = Odometry()
         msg.header.stamp = self.get_clock().now().to_msg()
-        msg.header.frame_id = "yard"
-        msg.child_frame_id = "base_link"
+        msg.header.frame_id = 'yard'
+        msg.child_frame_id = 'base_link'
         pose = msg.pose.pose
         pose.position.x, pose.position.y = self._motion.x, self._motion.y
         roll, pitch = unevenness(self._motion.x)
@@ -131,5 +131,5 @@ def main(args: list[str] | None = None) -> None:
     run(RobotSimulator, args)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -36,12 +36,12 @@ class MarkingRobot(MarkingRobotBase):
         self._heartbeat = self._now()
         if self._set_off is None:
             self._set_off = self._heartbeat
-            self.get_logger().info(f"driving at {CRUISING} m/s")
+            self.get_logger().info(f'driving at {CRUISING} m/s')
 
     def on_stop(self, msg: Bool) -> None:
         """Stand still while the safety node says so."""
         if msg.data and not self._stopped:
-            self.get_logger().warning("stopped by the safety node")
+            self.get_logger().warning('stopped by the safety node')
         self._stopped = msg.data
 
     def on_cycle(self) -> None:
@@ -49,14 +49,14 @@ class MarkingRobot(MarkingRobotBase):
         now = self._now()
         driving = not self._stopped and now - self._heartbeat < SILENCE
         faulty = self._set_off is not None and now - self._set_off >= self.parameters.fault_after
-        racing = faulty and self.parameters.fault == "speed"
+        racing = faulty and self.parameters.fault == 'speed'
         if racing:
-            self.get_logger().warning(f"the throttle sticks at {RACING} m/s", once=True)
+            self.get_logger().warning(f'the throttle sticks at {RACING} m/s', once=True)
         odometry = Odometry()
         if driving:
             odometry.twist.twist.linear.x = RACING if racing else CRUISING
         self.publish_odometry(odometry)
-        roll = LEANING if faulty and self.parameters.fault == "tilt" else 0.0
+        roll = LEANING if faulty and self.parameters.fault == 'tilt' else 0.0
         imu = Imu()
         imu.orientation.x, imu.orientation.w = math.sin(roll / 2), math.cos(roll / 2)
         self.publish_imu(imu)
@@ -70,5 +70,5 @@ def main(args: list[str] | None = None) -> None:
     run(MarkingRobot, args)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()
