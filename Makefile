@@ -38,7 +38,7 @@ lint: $(READY)  ## Check format, style, types and the layering of the packages
 
 .PHONY: docs
 docs: $(DOCS_READY)  ## Build the documentation into site/; a warning is an error
-	$(BIN)/mkdocs build --quiet --strict
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 
 .PHONY: bench
 bench: $(READY)  ## Measure; prints ratios against a floor measured in the same run
