@@ -144,11 +144,10 @@ def _wirings(
                 related=(Related(first.span, "the first connection"),),
             )
         port = node_type.port(wiring.port)
+        parameter = wiring.port if port is None else port.via
         if port is None and not is_topic_parameter(node_type, wiring.port):
             yield _unknown_port(instance, node_type, wiring)
-            continue
-        parameter = wiring.port if port is None else port.via
-        if parameter is not None:
+        elif parameter is not None:
             yield from _conflict(node, parameter, wiring)
         if port is None or port.kind in _TOPIC_KINDS:
             target = resolve_name(wiring.target, node.namespace, instance.name)

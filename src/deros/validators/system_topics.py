@@ -73,8 +73,8 @@ def check_topics(
     for channel in found:
         yield from _types(channel)
     topics = [channel for channel in found if channel.vertex[0] == "topic"]
-    topics = [channel for channel in topics if not _ends_in_rules(channel, rules)]
     pairs = _misspelt_pairs(topics)
+    topics = [channel for channel in topics if not _ends_in_rules(channel, rules)]
     misspelt = {channel.name for pair in pairs for channel in pair}
     for fed, read in pairs:
         yield _misspelling(fed, read)
@@ -177,7 +177,7 @@ def _missing_ends(topics: Iterable[_Channel], misspelt: set[str]) -> Iterator[Di
         if not topic.sources and not topic.sinks:
             yield report(
                 codes.UNUSED_TOPIC,
-                f"nobody publishes or subscribes '{topic.name}'",
+                f"nobody publishes or subscribes to '{topic.name}'",
                 topic.span,
                 hint="remove the declaration, or connect ports to it",
             )
@@ -186,15 +186,15 @@ def _missing_ends(topics: Iterable[_Channel], misspelt: set[str]) -> Iterator[Di
             yield _one_sided(
                 codes.NO_PUBLISHER,
                 f"nobody publishes '{topic.name}', "
-                f"which {_names(topic.sinks)} subscribe{_s(topic.sinks)}",
+                f"which {_names(topic.sinks)} subscribe{_s(topic.sinks)} to",
                 topic,
                 topic.sinks,
-                f"'{other}' has the same type and nobody subscribes it; " if other else "",
+                f"'{other}' has the same type and nobody subscribes to it; " if other else "",
             )
         elif not topic.sinks:
             yield _one_sided(
                 codes.NO_SUBSCRIBER,
-                f"nobody subscribes '{topic.name}', which {_names(topic.sources)} "
+                f"nobody subscribes to '{topic.name}', which {_names(topic.sources)} "
                 f"publish{'es' if len(topic.sources) == 1 else ''}",
                 topic,
                 topic.sources,
@@ -247,7 +247,7 @@ def _misspelt_pairs(topics: Iterable[_Channel]) -> list[tuple[_Channel, _Channel
     """Pair topics that are only published with ones of the same type that are only subscribed.
 
     Two belong together when their names nearly match: then it is likelier that one name is wrong
-    than that two connections are missing.
+    than that two connections are missing. That a safety rule reads one of them makes it no better.
     """
     fed: dict[InterfaceType, dict[str, _Channel]] = defaultdict(dict)
     read: dict[InterfaceType, dict[str, _Channel]] = defaultdict(dict)
