@@ -133,7 +133,8 @@ def test_bound_actions_need_no_file_of_actions() -> None:
 def test_the_output_needs_nothing_of_deros() -> None:
     """Every import is of ROS 2, the standard library or the package itself."""
     allowed = {
-        "abc", "collections", "dataclasses", "functools", "math", "signal", "traceback", "typing",
+        "abc", "collections", "contextlib", "dataclasses", "functools", "math", "signal",
+        "traceback", "typing",
         "glob", "pathlib", "setuptools", "launch", "launch_ros", "ament_index_python", "pytest",
         "ament_flake8", "ament_pep257", "rclpy", "rcl_interfaces", "every_thing_safety",
         "std_msgs", "std_srvs", "nav_msgs", "sensor_msgs", "diagnostic_msgs",

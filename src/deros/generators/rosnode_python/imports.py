@@ -10,7 +10,7 @@ from deros.generators.rosnode_python.view import NodeView, PackageView, PortView
 
 def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
     """Return the import statements of the base class: standard library, then the rest."""
-    standard: dict[str, set[str]] = {"signal": set(), "typing": {"Any"}}
+    standard: dict[str, set[str]] = {"contextlib": set(), "signal": set(), "typing": {"Any"}}
     if node.has_handlers:
         standard["abc"] = {"ABC", "abstractmethod"}
     if node.parameters:
