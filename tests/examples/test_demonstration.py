@@ -76,6 +76,12 @@ def test_a_break_starts_the_condition_anew() -> None:
     assert judge.reaction_time == pytest.approx(0.0005)
 
 
+def test_a_condition_that_ends_when_the_reaction_is_due_has_been_its_cause() -> None:
+    """The engine may be off before the player hears of the stop."""
+    judge = feed(referee(), event(100, "speed", 0.6), event(125, "speed", 0.3))
+    assert feed(judge, event(126, "stop", True)).reaction_time == pytest.approx(0.0265)
+
+
 def test_a_reaction_before_its_time_fails_the_case() -> None:
     """Too early is as wrong as not at all."""
     judge = feed(referee(hold=4.0), event(100, "speed", 0.6), event(3000, "stop", True))

@@ -18,8 +18,8 @@ STANDING = 0.02
 CRAWL = 0.25
 """Speed, in m/s, that the robot keeps below under ``low_speed``."""
 
-EARLIEST = 0.002
-"""How much earlier, in s, than computed a reaction may seem: time stamps of two processes."""
+EARLIEST = 0.03
+"""How much too early, in s, a reaction may seem: by one message that the player has not seen."""
 
 LATEST = 0.5
 """Reaction time, in s, beyond which a reaction does not count: another rule may have brought it."""
@@ -137,7 +137,9 @@ class Referee:
             if event.name == self.silence_of:
                 self.fulfilled = event.sent
         elif not self.condition(self.state):
-            self.fulfilled = None
+            # Once it has lasted long enough the reaction is due, whatever happens then.
+            if not self.held(event.sent, self.hold):
+                self.fulfilled = None
         elif self.fulfilled is None:
             self.fulfilled = event.sent
 
