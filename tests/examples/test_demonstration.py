@@ -133,6 +133,12 @@ def test_a_case_that_expects_nothing_fails_at_any_reaction(name: str, value: boo
     assert feed(judge, event(101, name, value)).verdict.startswith("expected none, observed")
 
 
+def test_a_case_that_expects_nothing_fails_when_nothing_was_provoked() -> None:
+    """No reaction to no violation proves nothing."""
+    judge = feed(referee(frozenset()), event(100, "speed", 0.4))
+    assert judge.verdict == "what must bring no reaction has not come about"
+
+
 def test_a_case_is_complete_only_when_the_robot_stands() -> None:
     """An order to stop is not a stop."""
     judge = feed(referee(), event(100, "speed", 0.6), event(101, "stop", True))

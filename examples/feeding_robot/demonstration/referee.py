@@ -98,6 +98,7 @@ class Referee:
             the last of them.
         fulfilled: when the message that fulfilled the condition was sent, ``None`` while it does
             not hold.
+        provoked: whether the condition has ever held.
         acted: when each of the ``acts`` was received.
     """
 
@@ -108,6 +109,7 @@ class Referee:
     state: RobotState = field(default_factory=RobotState)
     silence_of: str | None = None
     fulfilled: int | None = None
+    provoked: bool = False
     observed: set[Reaction] = field(default_factory=set)
     acted: dict[str, int] = field(default_factory=dict)
 
@@ -142,6 +144,7 @@ class Referee:
                 self.fulfilled = None
         elif self.fulfilled is None:
             self.fulfilled = event.sent
+            self.provoked = True
 
     def held(self, now: int, seconds: float) -> bool:
         """Whether at ``now`` the condition has lasted ``seconds``."""
@@ -170,6 +173,8 @@ class Referee:
             return (
                 f"expected {describe(self.expected)}, observed {describe(frozenset(self.observed))}"
             )
+        if not self.acts and not self.provoked:
+            return "what must bring no reaction has not come about"
         time = self.reaction_time
         if self.acts and time is None:
             return "the reaction came without its cause"
