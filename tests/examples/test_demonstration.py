@@ -82,6 +82,16 @@ def test_a_condition_that_ends_when_the_reaction_is_due_has_been_its_cause() -> 
     assert feed(judge, event(126, "stop", True)).reaction_time == pytest.approx(0.0265)
 
 
+@pytest.mark.parametrize(("resolution", "passes"), [(0.03, False), (0.2, True)])
+def test_a_reaction_may_seem_too_early_by_what_the_player_cannot_tell(
+    resolution: float, passes: bool
+) -> None:
+    """By a cycle of the sensors in real time, by a step in simulated time, and no more."""
+    judge = referee(hold=1.0, resolution=resolution)
+    feed(judge, event(100, "speed", 0.6), event(1000, "stop", True))
+    assert (judge.verdict == "") is passes
+
+
 def test_a_reaction_before_its_time_fails_the_case() -> None:
     """Too early is as wrong as not at all."""
     judge = feed(referee(hold=4.0), event(100, "speed", 0.6), event(3000, "stop", True))

@@ -12,7 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from demonstration.referee import NOTHING, Condition, Reaction, Referee, RobotState
+from demonstration.pace import STEP
+from demonstration.referee import CYCLE, NOTHING, Condition, Reaction, Referee, RobotState
 from demonstration.stage import AUTOMATIC, CONTACTS, LEARN, MANUAL, OverdueError, Stage
 
 SLOW = frozenset({Reaction.LOW_SPEED})
@@ -62,7 +63,17 @@ class Case:
 
     def referee(self, state: RobotState) -> Referee:
         """Return a referee who watches this case from ``state`` on."""
-        return Referee(self.condition, self.hold, self.expected, self.acts, state, self.silence_of)
+        # On simulated time a message may reach the safety node in the step before or after.
+        resolution = 1.01 * STEP if self.simulated else CYCLE
+        return Referee(
+            self.condition,
+            self.hold,
+            self.expected,
+            self.acts,
+            state,
+            self.silence_of,
+            resolution,
+        )
 
 
 def prepare(stage: Stage, driving: bool) -> None:

@@ -18,8 +18,8 @@ STANDING = 0.02
 CRAWL = 0.25
 """Speed, in m/s, that the robot keeps below under ``low_speed``."""
 
-EARLIEST = 0.03
-"""How much too early, in s, a reaction may seem: by one message that the player has not seen."""
+CYCLE = 0.03
+"""A cycle of the sensors in s, and a little more: the player may see a message less than others."""
 
 LATEST = 0.5
 """Reaction time, in s, beyond which a reaction does not count: another rule may have brought it."""
@@ -94,6 +94,7 @@ class Referee:
         hold: for how long, in s, the condition must last before a reaction is due.
         expected: the reactions that must come, and the only ones that may.
         acts: the names of the messages that carry the expected reaction.
+        resolution: how exactly, in s, the player can tell when the condition began.
         silence_of: where the condition is a silence, the messages that are silent: it begins with
             the last of them.
         fulfilled: when the message that fulfilled the condition was sent, ``None`` while it does
@@ -108,6 +109,7 @@ class Referee:
     acts: frozenset[str]
     state: RobotState = field(default_factory=RobotState)
     silence_of: str | None = None
+    resolution: float = CYCLE
     fulfilled: int | None = None
     provoked: bool = False
     observed: set[Reaction] = field(default_factory=set)
@@ -178,7 +180,7 @@ class Referee:
         time = self.reaction_time
         if self.acts and time is None:
             return "the reaction came without its cause"
-        if time is not None and not time >= -EARLIEST:
+        if time is not None and time < -self.resolution:
             return f"the reaction came {-time:.3f} s too early"
         if time is not None and time > LATEST:
             return f"the reaction took {time:.3f} s"
