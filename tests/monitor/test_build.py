@@ -97,6 +97,20 @@ def test_missing_reads_the_value_that_an_input_names() -> None:
     assert built.rules[0].condition == ir.Missing(0)
 
 
+def test_missing_reads_all_numbers_of_a_part_but_not_of_a_whole_message() -> None:
+    """An orientation of NaN is no orientation; a message may have numbers that are not in use."""
+    part = program(
+        "input q = topic /imu.orientation timeout 1 sec entity e { r: q.missing(); }",
+    )
+    assert [leaf.path for leaf in part.leaves] == [("orientation", axis) for axis in "xyzw"]
+    array = program(
+        "input d = topic /scan.ranges timeout 1 sec entity e { r: d.missing(); }",
+    )
+    assert [(leaf.path, leaf.nan_is_unknown) for leaf in array.leaves] == [(("ranges",), True)]
+    whole = program("input m = topic /imu timeout 1 sec entity e { r: m.missing(); }")
+    assert whole.leaves == ()
+
+
 def test_part_of_an_input() -> None:
     """A path may go on where an input ends, and stays a part of that one input."""
     built = program(

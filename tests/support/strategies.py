@@ -347,8 +347,7 @@ def _as_built(program: ir.Program) -> ir.Program:
     used = read | {each.input for each in conditions if isinstance(each, ir.Missing | ir.Age)}
     inputs = []
     for each in program.inputs:
-        whole = each.index in read or program.leaves[each.leaves[0]].path == each.path
-        leaves = each.leaves if whole else ()
+        leaves = each.leaves if each.index in read or each.path else ()
         timeout_ns = each.timeout_ns if each.index in used else None
         inputs.append(replace(each, leaves=leaves, timeout_ns=timeout_ns))
     return replace(program, inputs=tuple(inputs))

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Span
-from deros.interfaces.fields import FieldPath, ResolvedField, format_path
+from deros.interfaces.fields import FieldPath, ResolvedField, format_path, leaves
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.interfaces.units import Unit
@@ -270,6 +270,8 @@ class Terms:
             return None
         assert isinstance(operand, (Value, Part))
         owner = operand.input
+        if isinstance(operand, Part):
+            self._watch(operand)
         if row.result is Result.DURATION:
             return AgeOf(owner)
         if owner.timeout_ns is None:
@@ -281,6 +283,23 @@ class Terms:
             )
             return None
         return MissingOf(owner)
+
+    def _watch(self, part: Part) -> None:
+        """Read every floating-point number of a part: a NaN there is a sensor that has no value.
+
+        A whole message is left alone, because in many a one NaN means that a field is not in use.
+        """
+        if not part.path:
+            return
+        kind = part.type
+        read: Iterable[tuple[tuple[str, ...], FieldType]]
+        if kind.is_array or isinstance(kind.base, str):
+            read = [((), kind)] if kind.element.is_float else []
+        else:
+            every = leaves(self._scope.store, kind.base)
+            read = [(path, leaf) for path, leaf in every if leaf.is_float]
+        for path, leaf in read:
+            self._scope.read(part.input, (*part.path, *path), leaf)
 
     def _of_number(self, row: Function, operand: Value) -> Value:
         state = None
