@@ -153,6 +153,12 @@ def test_message_constant_by_name() -> None:
     assert bound(f"{status} = ERROR", "const ERROR = 7") == 7
 
 
+def test_message_constants_that_are_numbers_have_an_order() -> None:
+    """Levels are compared as levels: at least a warning."""
+    found = condition("topic /status.level >= WARN")
+    assert found == ir.Compare(ir.Read(0), ">=", ir.Const(1))
+
+
 def test_booleans_and_texts() -> None:
     """A boolean stands alone or is compared; a text is compared."""
     flag = "topic /flag.data"

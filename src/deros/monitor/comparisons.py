@@ -157,11 +157,15 @@ class Comparisons:
             message = f"'{left.span.text}' is {describe(value)}, it cannot be {named}"
             self._scope.fault(codes.WRONG_OPERAND, message, node.span)
             return None
+        if kind == "number" and isinstance(scalar, (int, float)):
+            if not math.isfinite(scalar):
+                message = f"{named} is {scalar}, not a number that can be compared with"
+                self._scope.fault(codes.WRONG_OPERAND, message, node.span)
+                return None
+            return self._with_number(node, value, operator, Fraction(scalar))
         if operator not in _EQUALITY:
             self._not_ordered(node, operator, named)
             return None
-        if kind == "number" and isinstance(scalar, (int, float)):
-            return self._with_number(node, value, operator, Fraction(scalar))
         return ir.Compare(value.expression, operator, ir.Const(scalar))
 
     def _not_ordered(self, node: rules.Comparison, operator: str, what: str) -> None:
