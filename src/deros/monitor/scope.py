@@ -208,6 +208,16 @@ class Scope:
                 f"pin it in the system: 'topic {topic} : PACKAGE.TYPE'",
                 (Related(known.place, "the topic"),),
             )
+        elif len(known.types) > 1:
+            self.fault(
+                codes.TYPE_MISMATCH,
+                f"the used systems give '{topic}' different types: "
+                + ", ".join(each.short for each in known.types),
+                name.span,
+                "rename the topic in one of the systems, or make their types agree",
+                tuple(Related(place, each.short) for each, place in known.types.items()),
+            )
+            return None
         elif self.store.message(kind) is None:
             self.fault(
                 codes.RULE_TYPE_UNKNOWN,

@@ -27,6 +27,7 @@ class KnownTopic:
         subscriptions: the ports that subscribe to it.
         untyped: the wirings to it through parameters that no port claims: their type, and whether
             the node publishes or subscribes, is not known.
+        types: the types that the used systems give it, each with the place of the first to do so.
     """
 
     name: str
@@ -34,6 +35,7 @@ class KnownTopic:
     publishers: list[FlatPort] = field(default_factory=list)
     subscriptions: list[FlatPort] = field(default_factory=list)
     untyped: list[UntypedWiring] = field(default_factory=list)
+    types: dict[InterfaceType, Span] = field(default_factory=dict)
 
     @property
     def external(self) -> bool:
@@ -97,21 +99,34 @@ class SystemTopics:
         return iter(self._topics.values())
 
     def _add(self, system: System) -> None:
+        for own in self._topics_of(system):
+            known = self._topics.setdefault(own.name, KnownTopic(own.name))
+            known.declarations += own.declarations
+            known.publishers += own.publishers
+            known.subscriptions += own.subscriptions
+            known.untyped += own.untyped
+            if own.type is not None:
+                known.types.setdefault(own.type, own.place)
+
+    def _topics_of(self, system: System) -> Iterable[KnownTopic]:
+        found: dict[str, KnownTopic] = {}
+
+        def topic(name: str) -> KnownTopic:
+            return found.setdefault(name, KnownTopic(name))
+
         flat = flatten(system)
         for declared in flat.topics:
-            self._topic(declared.name).declarations.append(declared)
+            topic(declared.name).declarations.append(declared)
         for node in flat.nodes:
             self.complete &= node.type is not None
             for port in node.ports:
                 if port.port.kind is PortKind.PUBLISHER:
-                    self._topic(port.topic).publishers.append(port)
+                    topic(port.topic).publishers.append(port)
                 elif port.port.kind is PortKind.SUBSCRIPTION:
-                    self._topic(port.topic).subscriptions.append(port)
+                    topic(port.topic).subscriptions.append(port)
             for untyped in node.untyped:
-                self._topic(untyped.topic).untyped.append(untyped)
-
-    def _topic(self, name: str) -> KnownTopic:
-        return self._topics.setdefault(name, KnownTopic(name))
+                topic(untyped.topic).untyped.append(untyped)
+        return found.values()
 
 
 def _without_indices(path: str) -> str:
