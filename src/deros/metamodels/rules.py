@@ -260,12 +260,67 @@ class ActionCall:
 
 @dataclass(frozen=True, slots=True)
 class Behaviour:
-    """``[behaviour NAME:] if CONDITION then { … };`` with its body in the order written."""
+    """``[optional] [behaviour NAME:] if CONDITION then { … };``, its body in the order written.
+
+    An ``optional`` one, which has a name, can be switched off while the safety node runs.
+    """
 
     condition: Condition
     body: tuple[ActionCall | Behaviour, ...]
     span: Span = field(compare=False, repr=False)
     name: Name | None = None
+    optional: bool = False
+
+
+# Gates ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class GateLimit:
+    """``linear.x to [-0.1, 0.1] m/s``: a field of the command and the interval it is kept in.
+
+    ``unit`` follows the interval and is that of both ends; an end may have one of its own instead.
+    """
+
+    path: tuple[str | int, ...]
+    lower: Term
+    upper: Term
+    lower_closed: bool
+    upper_closed: bool
+    span: Span = field(compare=False, repr=False)
+    path_span: Span = field(compare=False, repr=False)
+    interval_span: Span = field(compare=False, repr=False)
+    unit: str | None = None
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class GateLine:
+    """One line of a gate: when it applies, and what it makes of the command.
+
+    It applies while ``action`` is active or, without one, when what ``lost`` names has been silent
+    for ``duration``. ``limits`` is empty for a line that commands zero.
+    """
+
+    action: Name | None
+    lost: Literal["heartbeat", "input"] | None
+    duration: Number | None
+    limits: tuple[GateLimit, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """``gate SOURCE -> TARGET : TYPE rate R { … }``: what safety lets through of a command."""
+
+    source: Name
+    target: Name
+    type: InterfaceType
+    rate: Number
+    lines: tuple[GateLine, ...]
+    span: Span = field(compare=False, repr=False)
+    type_span: Span = field(compare=False, repr=False)
+    description: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,3 +336,4 @@ class Rules:
     inputs: tuple[Input, ...] = ()
     entities: tuple[Entity, ...] = ()
     behaviours: tuple[Behaviour, ...] = ()
+    gates: tuple[Gate, ...] = ()

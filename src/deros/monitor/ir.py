@@ -231,7 +231,8 @@ class Behaviour:
     """Acts when its condition turns true while the enclosing one (``parent``) holds.
 
     ``index`` numbers all behaviours in the order written, outer before inner; ``name`` is the given
-    name or ``behaviour_N`` (N from 1).
+    name or ``behaviour_N`` (N from 1). An ``optional`` one can be disabled at run time: its condition
+    then counts as false, while the intervals in it go on being evaluated.
     """
 
     index: int
@@ -240,6 +241,7 @@ class Behaviour:
     body: tuple[Trigger | Behaviour, ...]
     parent: int | None
     span: Span = field(compare=False, repr=False)
+    optional: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,9 +272,55 @@ class Action:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+# Gates ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """The interval, ends included, that a gate keeps one numeric field of the command in."""
+
+    path: tuple[str | int, ...]
+    type: FieldType
+    lower: int | float
+    upper: int | float
+
+
+@dataclass(frozen=True, slots=True)
+class GateLine:
+    """When a gate does something to the command, and what.
+
+    ``action`` is the index of a bound action; without one the line is about the loss, for
+    ``lost_ns``, of what ``lost`` names. No ``limits``: the line commands zero.
+    """
+
+    action: int | None
+    lost: Literal["heartbeat", "input"] | None
+    lost_ns: int | None
+    limits: tuple[Limit, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """What safety lets through of the commands on ``source`` to ``target``.
+
+    ``period_ns`` is that at which zeros are published. What a gate does with its lines is defined
+    by :mod:`deros.monitor.gate`.
+    """
+
+    index: int
+    source: str
+    target: str
+    type: InterfaceType
+    period_ns: int
+    lines: tuple[GateLine, ...]
+    span: Span = field(compare=False, repr=False)
+    description: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Program:
-    """Everything a monitor does."""
+    """Everything a monitor does, and the gates that heed it."""
 
     name: str
     leaves: tuple[Leaf, ...]
@@ -280,6 +328,7 @@ class Program:
     rules: tuple[Rule, ...]
     behaviours: tuple[Behaviour, ...]  # the outermost ones; nested ones stand in their bodies
     actions: tuple[Action, ...]
+    gates: tuple[Gate, ...] = ()
 
     @property
     def topics(self) -> dict[str, InterfaceType]:
