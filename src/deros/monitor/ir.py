@@ -231,8 +231,8 @@ class Behaviour:
     """Acts when its condition turns true while the enclosing one (``parent``) holds.
 
     ``index`` numbers all behaviours in the order written, outer before inner; ``name`` is the given
-    name or ``behaviour_N`` (N from 1). An ``optional`` one can be disabled at run time: its condition
-    then counts as false, while the intervals in it go on being evaluated.
+    name or ``behaviour_N`` (N from 1). An ``optional`` one can be disabled at run time: its
+    condition then counts as false, while the intervals in it go on being evaluated.
     """
 
     index: int
