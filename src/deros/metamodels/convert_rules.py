@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 from deros import codes
 from deros.diagnostics import SourceFile, Span
@@ -27,6 +27,9 @@ from deros.metamodels.rules import (
     Constant,
     Entity,
     For,
+    Gate,
+    GateLimit,
+    GateLine,
     Input,
     Membership,
     NamePath,
@@ -77,8 +80,9 @@ class RulesConverter(Converter):
             "Input": self._input,
             "Entity": self._entity,
             "Behaviour": self._behaviour,
+            "Gate": self._gate,
         }
-        for statement in model.statements:
+        for statement in map(self._named_behaviour, model.statements):
             kind = type(statement).__name__
             groups.setdefault(kind, []).append(convert[kind](statement))
         return Rules(
@@ -91,6 +95,7 @@ class RulesConverter(Converter):
             inputs=tuple(groups.get("Input", ())),
             entities=tuple(groups.get("Entity", ())),
             behaviours=tuple(groups.get("Behaviour", ())),
+            gates=tuple(groups.get("Gate", ())),
         )
 
     # Declarations -----------------------------------------------------------------------------
@@ -176,7 +181,61 @@ class RulesConverter(Converter):
             for item in found.body
         )
         name = None if found.name is None else self.name(found.name)
-        return Behaviour(self._condition(found.condition), body, self.span(found), name)
+        return Behaviour(
+            self._condition(found.condition), body, self.span(found), name, bool(found.optional)
+        )
+
+    def _named_behaviour(self, statement: Any) -> Any:
+        """Return the statement; report ``optional`` before a behaviour that has no name."""
+        if type(statement).__name__ != "NamelessOptional":
+            return statement
+        message = "an optional behaviour needs a name, by which it is switched off"
+        hint = "write 'optional behaviour NAME: if …'"
+        start: int = statement._tx_position
+        span = Span(self.source, start, start + len("optional"))
+        self.report(codes.SYNTAX_ERROR, message, span, hint)
+        return statement.behaviour
+
+    # Gates ------------------------------------------------------------------------------------
+
+    def _gate(self, found: Any) -> Gate:
+        return Gate(
+            self.name(found.source),
+            self.name(found.target),
+            self.interface(found.type, "msg"),
+            self._number(found.rate),
+            tuple(map(self._gate_line, found.lines)),
+            self.span(found),
+            self.token_span(found.type),
+            self.text(found.description),
+        )
+
+    def _gate_line(self, found: Any) -> GateLine:
+        loss = found.loss
+        return GateLine(
+            None if found.action is None else self.name(found.action),
+            None if loss is None else cast(Literal["heartbeat", "input"], str(loss.what)),
+            None if loss is None else self._number(loss.duration),
+            tuple(map(self._gate_limit, found.limits)),
+            self.span(found),
+        )
+
+    def _gate_limit(self, found: Any) -> GateLimit:
+        field = self.name(found.field)
+        steps, span = self._path(field, found)
+        interval = found.interval
+        return GateLimit(
+            (field.text, *steps),
+            self._term(interval.lower),
+            self._term(interval.upper),
+            interval.opening == "[",
+            interval.closing == "]",
+            self.span(found),
+            span,
+            self.span(interval),
+            self.unit(found.unit),
+            None if found.unit is None else self.token_span(found.unit),
+        )
 
     # Conditions -------------------------------------------------------------------------------
 

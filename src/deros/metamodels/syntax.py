@@ -27,6 +27,8 @@ _WORDS = {
     "Number": "a number",
     "Integer": "a whole number",
     "UnitText": "a unit",
+    "LossUnit": "a unit",
+    "LossName": "'heartbeat' or 'input'",
     "BracketUnit": "a unit",
     "FieldPath": "a field",
     "Path": "a field",
