@@ -146,7 +146,7 @@ def _port(
 def _input_qos(topics: SystemTopics, topic: str) -> QosProfile:
     known = topics.get(topic)
     stated = [flat.port.qos for flat in known.publishers] if known else []
-    reliable = bool(stated) and all(map(_is_reliable, stated))
+    reliable = bool(stated) and all(map(is_reliable, stated))
     durable = bool(stated) and all(
         q is not None and q.durability == "transient_local" for q in stated
     )
@@ -158,7 +158,8 @@ def _input_qos(topics: SystemTopics, topic: str) -> QosProfile:
     )
 
 
-def _is_reliable(qos: QosProfile | None) -> bool:
+def is_reliable(qos: QosProfile | None) -> bool:
+    """Tell whether a publisher is stated to be reliable."""
     if qos is None:
         return False
     if qos.reliability is not None:
