@@ -107,6 +107,18 @@ EXACT_FLOAT_COMPARISON = _declare(330, "exact comparison of a floating-point val
 ACTION_TOPIC_NOT_IN_SYSTEM = _declare(331, "topic of an action that nobody in the system reads", _W)
 INVALID_RULES_NAME = _declare(332, "name in the rules that a target refuses")
 ACTIVE_EQUALS_INACTIVE = _declare(333, "action whose active and inactive messages are equal", _W)
+GATE_WITHOUT_NUMBERS = _declare(334, "gate for messages without a number")
+GATE_LOOP = _declare(335, "gate that publishes what it reads")
+GATE_RATE = _declare(336, "rate that a gate does not have")
+GATE_LIMIT = _declare(337, "limit that a gate cannot keep")
+GATE_ACTION = _declare(338, "gate on an action that publishes no state")
+GATE_BYPASSED = _declare(339, "publisher wired past a gate")
+GATE_NOT_IN_SYSTEM = _declare(340, "gate that the system lacks")
+GATE_UNREAD = _declare(341, "gate whose commands nobody in the system reads", _W)
+GATE_LIMIT_OVERRIDES_ZERO = _declare(342, "limit that goes before the zero of an action", _W)
+GATE_WITHOUT_HEARTBEAT = _declare(343, "gate that does not watch the heartbeat", _W)
+GATE_WITHOUT_INPUT = _declare(344, "gate that does not watch its input", _W)
+GATE_HEARTBEAT_TOO_SHORT = _declare(345, "heartbeat given up sooner than it can be trusted", _W)
 
 # Generation
 NAME_COLLISION = _declare(401, "two generated names collide")

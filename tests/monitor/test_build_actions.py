@@ -27,15 +27,15 @@ def binding(text: str, declarations: str = "") -> ir.Binding:
         ('"halt" on /name : std_msgs.String', ("data",), "halt"),
         ("ERROR on /status : diagnostic_msgs.DiagnosticStatus", ("level",), 2),
         ('"bad" on /status : diagnostic_msgs.DiagnosticStatus', ("name",), "bad"),
-        ("40 cm on /far : sensor_msgs.Range", ("min_range",), 0.4),
+        ("40 cm on /far : sensor_msgs.Range", ("min_range",), 0.4000000059604645),
         ("2 on /far : sensor_msgs.Range", ("radiation_type",), 2),
-        ("30 deg on /far : sensor_msgs.Range", ("field_of_view",), 0.5235987755982989),
+        ("30 deg on /far : sensor_msgs.Range", ("field_of_view",), 0.5235987901687622),
     ],
 )
 def test_value_goes_into_the_first_field_that_fits(
     text: str, path: tuple[str, ...], value: ir.Scalar
 ) -> None:
-    """The first primitive field of the value's kind, range and unit takes it, converted."""
+    """The first primitive field of the kind, range and unit takes it, as it can hold it."""
     found = binding(text, "const slow = 0.5 m/s")
     assert (found.path, found.value) == (path, value)
     assert type(found.value) is type(value)

@@ -15,7 +15,7 @@ from deros.metamodels import rules
 from deros.metamodels.common import Name
 from deros.metamodels.flatten import resolve_name
 from deros.monitor import ir
-from deros.monitor.bounds import rounded, type_bounds
+from deros.monitor.bounds import as_float32, rounded, type_bounds
 from deros.monitor.resolved import (
     Fixed,
     MessageConstant,
@@ -93,9 +93,8 @@ class Actions:
 
     def _bind(self, binding: rules.Binding) -> ir.Binding | None:
         topic = resolve_name(binding.topic.text, "/")
-        definition = self._scope.store.message(binding.type)
+        definition = self._scope.message_type(binding.type, binding.type_span)
         if definition is None:
-            self._unknown_type(binding)
             return None
         known = self._scope.topics.get(topic)
         if known is not None and known.type is not None and known.type != binding.type:
@@ -114,22 +113,6 @@ class Actions:
             self._scope.fault(codes.ACTION_VALUE, message, binding.value.span)
             return None
         return self._carried(binding, topic, definition, value)
-
-    def _unknown_type(self, binding: rules.Binding) -> None:
-        store, kind = self._scope.store, binding.type
-        if store.has_package(kind.package):
-            message = f"package '{kind.package}' has no message type '{kind.name}'"
-            hint = did_you_mean(near(kind.name, store.names(kind.package, "msg")))
-            self._scope.fault(codes.UNKNOWN_TYPE, message, binding.type_span, hint)
-            return
-        hint = did_you_mean(near(kind.package, store.packages()))
-        message = f"no interface package '{kind.package}' is known"
-        self._scope.fault(
-            codes.UNKNOWN_PACKAGE,
-            message,
-            binding.type_span,
-            hint or "name the folder that has it with --interfaces PATH",
-        )
 
     def _carried(
         self,
@@ -175,8 +158,10 @@ class Actions:
             return None
         number = value.in_unit(unit)
         if kind.base in FLOAT_TYPES:
-            fits = kind.base != "float32" or abs(number) <= _FLOAT32_MAX
-            return rounded(number) if fits else None
+            if kind.base == "float64":
+                return rounded(number)
+            # What is published must be what a reader, such as a gate, finds in the message.
+            return as_float32(rounded(number)) if abs(number) <= _FLOAT32_MAX else None
         least, greatest = type_bounds(kind)
         fits = number.denominator == 1 and least <= number <= greatest
         return int(number) if fits else None
@@ -236,6 +221,20 @@ class Actions:
         hint = hint or f"declare it: 'action {name};'"
         message = f"no action '{name}' is declared"
         self._scope.fault(codes.UNKNOWN_NAME, message, name.span, hint)
+
+    def bound(self, name: Name) -> int | None:
+        """Return the index of a bound action that a gate heeds; report any other."""
+        declared = self._declared.get(name.text)
+        if declared is None:
+            self._unknown(name)
+            return None
+        if declared.binding is None:
+            message = f"'{name}' publishes no state, so no gate can know whether it is active"
+            hint = f"bind it: 'action {name} publishes true on /{name} : std_msgs.Bool …'"
+            place = (Related(declared.span, "declared here"),)
+            self._scope.fault(codes.GATE_ACTION, message, name.span, hint, place)
+            return None
+        return self._indices[name.text]
 
     def _argument(self, term: rules.Term) -> ir.Scalar | None:
         found = self._terms.resolve(term)

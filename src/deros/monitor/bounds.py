@@ -6,6 +6,7 @@ An end is an exact fraction, or a float for the infinities.
 from __future__ import annotations
 
 import math
+import struct
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -38,6 +39,15 @@ def rounded(value: Fraction) -> float:
         return float(value)
     except OverflowError:
         return math.inf if value > 0 else -math.inf
+
+
+def as_float32(value: float) -> float:
+    """Return the nearest number that a ``float32`` holds; infinity beyond their range."""
+    try:
+        narrow: float = struct.unpack("<f", struct.pack("<f", value))[0]
+    except OverflowError:
+        return math.copysign(math.inf, value)
+    return narrow
 
 
 def integer_bound(operator: ir.Operator, number: Fraction) -> tuple[ir.Operator, int | float]:

@@ -18,6 +18,7 @@ from deros.monitor import ir
 from deros.monitor.actions import Actions
 from deros.monitor.comparisons import Comparisons
 from deros.monitor.conditions import Conditions
+from deros.monitor.gates import Gates
 from deros.monitor.resolved import ResolvedComparison
 from deros.monitor.scope import Scope
 from deros.monitor.terms import Terms
@@ -68,6 +69,7 @@ class _Builder:
         self.comparisons = Comparisons(self.scope, terms)
         self._conditions = Conditions(self.scope, self.comparisons)
         self._actions = Actions(self.scope, terms, program.actions)
+        self._gates = Gates(self.scope, terms, self._actions)
         self._rule_index: dict[str, dict[str, int]] = {}
         self._behaviours = 0
 
@@ -80,6 +82,7 @@ class _Builder:
             for each in self._program.behaviours
             if (built := self._behaviour(each, None)) is not None
         )
+        gates = self._gates.build(self._program.gates)
         return ir.Program(
             self._program.name,
             tuple(self.scope.leaves),
@@ -87,6 +90,7 @@ class _Builder:
             built_rules,
             behaviours,
             self._actions.program_actions(),
+            gates,
         )
 
     # Rules --------------------------------------------------------------------------------------
@@ -161,7 +165,9 @@ class _Builder:
         if condition is None:
             return None
         name = written.name.text if written.name else f"behaviour_{index + 1}"
-        return ir.Behaviour(index, name, condition, tuple(body), parent, written.span)
+        return ir.Behaviour(
+            index, name, condition, tuple(body), parent, written.span, written.optional
+        )
 
 
 def _with_nested(behaviour: rules.Behaviour) -> Iterator[rules.Behaviour]:

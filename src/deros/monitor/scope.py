@@ -16,7 +16,7 @@ from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.rep103 import unit_of
 from deros.interfaces.store import InterfaceStore
-from deros.interfaces.types import FieldType, InterfaceType
+from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.interfaces.units import Unit, UnitRegistry
 from deros.metamodels import rules
 from deros.metamodels.common import Name
@@ -228,6 +228,22 @@ class Scope:
             )
             return None
         return kind
+
+    def message_type(self, kind: InterfaceType, span: Span) -> MessageDefinition | None:
+        """Return the definition of a message type that the rules name; report an unknown one."""
+        definition = self.store.message(kind)
+        if definition is not None:
+            return definition
+        if self.store.has_package(kind.package):
+            message = f"package '{kind.package}' has no message type '{kind.name}'"
+            hint = did_you_mean(near(kind.name, self.store.names(kind.package, "msg")))
+            self.fault(codes.UNKNOWN_TYPE, message, span, hint)
+            return None
+        hint = did_you_mean(near(kind.package, self.store.packages()))
+        message = f"no interface package '{kind.package}' is known"
+        hint = hint or "name the folder that has it with --interfaces PATH"
+        self.fault(codes.UNKNOWN_PACKAGE, message, span, hint)
+        return None
 
     def field(
         self, kind: InterfaceType, path: FieldPath, before: Span, span: Span, written: int
