@@ -14,7 +14,6 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import (
     INTEGER_RANGES,
     FieldType,
-    InterfaceType,
     MessageDefinition,
 )
 from deros.interfaces.units import Unit
@@ -23,15 +22,13 @@ from deros.metamodels.flatten import resolve_name
 from deros.monitor import ir
 from deros.monitor.actions import Actions
 from deros.monitor.bounds import as_float32, rounded, type_bounds
+from deros.monitor.commands import QUATERNION, TIME
 from deros.monitor.resolved import MessageConstant, Quantity
 from deros.monitor.scope import Scope
 from deros.monitor.terms import Terms
 
 SLOWEST_HZ, FASTEST_HZ = 1, 1000
 """Between these lies the rate at which a gate publishes zeros."""
-
-TIME = InterfaceType("builtin_interfaces", "msg", "Time")
-QUATERNION = InterfaceType("geometry_msgs", "msg", "Quaternion")
 
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9]+")
 

@@ -1,0 +1,110 @@
+"""Commands as plain data: which of them a gate takes, what limits make of one, what zero is.
+
+A message is a mapping from field names to values; a nested message is a mapping, an array a
+sequence. That is the form in which traces hold messages, too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import (
+    FLOAT_TYPES,
+    STRING_TYPES,
+    FieldType,
+    InterfaceType,
+)
+from deros.monitor.ir import Limit
+
+Message = Mapping[str, Any]
+
+TIME = InterfaceType("builtin_interfaces", "msg", "Time")
+HEADER = InterfaceType("std_msgs", "msg", "Header")
+QUATERNION = InterfaceType("geometry_msgs", "msg", "Quaternion")
+
+NO_ROTATION = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+"""A quaternion of four zeros is no rotation at all, and breaks who computes with it."""
+
+
+def is_finite(value: Any) -> bool:
+    """Tell whether no number in a message is NaN or infinite."""
+    if isinstance(value, float):
+        return math.isfinite(value)
+    if isinstance(value, Mapping):
+        return all(map(is_finite, value.values()))
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return all(map(is_finite, value))
+    return True
+
+
+def limited(message: Message, limits: Iterable[Limit]) -> Message:
+    """Return the message with every limit kept: itself, where it keeps them all already."""
+    for limit in limits:
+        value = value_at(message, limit.path)
+        if value is not None and not limit.lower <= value <= limit.upper:
+            message = put(message, limit.path, limit.lower if value < limit.lower else limit.upper)
+    return message
+
+
+def value_at(message: Message, path: Sequence[str | int]) -> Any:
+    """Return what stands at ``path``; ``None`` where an array is too short for it."""
+    value: Any = message
+    for step in path:
+        if isinstance(step, int) and step >= len(value):
+            return None
+        value = value[step]
+    return value
+
+
+def put(value: Any, path: Sequence[str | int], new: int | float) -> Any:
+    """Return a copy of a message with another number at ``path``."""
+    if not path:
+        return new
+    step, *rest = path
+    if isinstance(step, int):
+        return [put(each, rest, new) if i == step else each for i, each in enumerate(value)]
+    return {**value, step: put(value[step], rest, new)}
+
+
+def zero(store: InterfaceStore, kind: InterfaceType, last: Message | None, t_ns: int) -> Message:
+    """Return the command to do nothing, in the form of the ``last`` command if there is one.
+
+    Numbers are 0 and booleans false; texts, and with them the frame, are those of the last command,
+    and arrays as long as in it. Quaternions say no rotation, the stamps of headers ``t_ns``.
+    """
+    return _zero_message(store, kind, last or {}, t_ns)
+
+
+def _zero_message(store: InterfaceStore, kind: InterfaceType, last: Message, t_ns: int) -> Message:
+    if kind == QUATERNION:
+        return NO_ROTATION
+    definition = store.message(kind)
+    assert definition is not None, f"{kind} was known when the gate was built"
+    made = {
+        name: _zero_field(store, field, last.get(name), t_ns) for name, field in definition.fields
+    }
+    if kind == HEADER:
+        seconds, nanoseconds = divmod(t_ns, 10**9)
+        made["stamp"] = {"sec": seconds, "nanosec": nanoseconds}
+    return made
+
+
+def _zero_field(store: InterfaceStore, kind: FieldType, last: Any, t_ns: int) -> Any:
+    if not kind.is_array:
+        return _zero_value(store, kind, last, t_ns)
+    if last is None:
+        last = [None] * (kind.size or 0) if kind.array == "fixed" else []
+    return [_zero_value(store, kind.element, each, t_ns) for each in last]
+
+
+def _zero_value(store: InterfaceStore, kind: FieldType, last: Any, t_ns: int) -> Any:
+    if isinstance(kind.base, InterfaceType):
+        return _zero_message(store, kind.base, last or {}, t_ns)
+    if kind.base in STRING_TYPES:
+        return last or ""
+    if kind.base == "bool":
+        return False
+    return 0.0 if kind.base in FLOAT_TYPES else 0
