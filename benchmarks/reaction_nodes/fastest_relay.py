@@ -1,0 +1,32 @@
+"""The fastest relay that rclpy allows: bytes in, constant bytes out, nothing looked at."""
+
+from __future__ import annotations
+
+import gc
+
+import rclpy
+from rclpy.node import Node
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import Imu
+from std_msgs.msg import Bool
+
+from reaction_nodes.common import IMU_QOS, STATE_QOS, spin
+
+
+def main() -> None:
+    """Run until SIGINT or SIGTERM."""
+    rclpy.init()
+    gc.disable()
+    node = Node("fastest_relay")
+    publish = node.create_publisher(Bool, "state", STATE_QOS).publish
+    state = serialize_message(Bool(data=True))
+
+    def relay(_: bytes) -> None:
+        publish(state)
+
+    node.create_subscription(Imu, "imu", relay, IMU_QOS, raw=True)
+    spin(node)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,135 @@
+"""The results of the reaction benchmark as a table and as JSON."""
+
+from __future__ import annotations
+
+import os
+import platform
+from dataclasses import asdict
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from support.reaction_results import Results, Row
+from support.summary import Summary
+
+SOURCE = (
+    "Adam, Larsen, Jensen, Schultz: Rule-based dynamic safety monitoring for mobile robots, Table 1"
+)
+"""Where the rows of the paper come from."""
+
+_PAPER = (
+    ("R_S: Intelligent One, robot, speed", 2.0, 2.00271, 0.00461, 2.00006, 2.01374),
+    ("S_S: Intelligent One, simulated, speed", 2.0, 2.01150, 0.00741, 2.00200, 2.02500),
+    ("R_T: Intelligent One, robot, tilt", 0.4, 0.40635, 0.00916, 0.40002, 0.42600),
+    ("S_T: Intelligent One, simulated, tilt", 0.4, 0.40825, 0.00526, 0.40000, 0.42300),
+    ("R_S: FIX-Robo, robot, speed", 4.0, 4.00509, 0.00400, 4.00127, 4.01705),
+    ("S_S: FIX-Robo, simulated, speed", 4.0, 4.00462, 0.00747, 4.00000, 4.02000),
+)
+"""Name, ideal, average, standard deviation, least and greatest, in seconds."""
+
+
+def paper_rows() -> list[tuple[str, float, Summary]]:
+    """Return name, ideal in seconds, and lateness of each experiment of the paper."""
+    return [
+        (
+            name,
+            ideal,
+            Summary(
+                None,
+                1e3 * (mean - ideal),
+                1e3 * deviation,
+                1e3 * (least - ideal),
+                None,
+                None,
+                1e3 * (greatest - ideal),
+            ),
+        )
+        for name, ideal, mean, deviation, least, greatest in _PAPER
+    ]
+
+
+def show(results: Results, console: Console) -> None:
+    """Print the table, with a verdict per bar below it."""
+    machine = "under load" if results.run.loaded else "idle machine"
+    table = Table(title=f"Reaction in ms, {machine}", title_justify="left", pad_edge=False)
+    table.add_column("")
+    for head in ("n", "avg", "SD", "min", "median", "99 %", "max", "/ floor: median", "99 %"):
+        table.add_column(head, justify="right")
+    section = ""
+    for row in results.rows:
+        if row.section != section:
+            section = row.section
+            table.add_section()
+            table.add_row(Text(_HEADS.get(section, f"rule {section}, lateness"), style="bold"))
+        table.add_row(row.name, *_cells(row.summary), *_ratios(row))
+    table.add_section()
+    table.add_row(Text("the paper, measured - ideal", style="bold"))
+    for name, ideal, summary in paper_rows():
+        table.add_row(f"{name}, {ideal:g} s", *_cells(summary))
+    table.caption = f"{SOURCE}."
+    console.print(table)
+    if results.run.loaded:
+        console.print(f"The load's own messages that arrived: {results.run.traffic:.0f} per second")
+    for bar in results.bars():
+        mark = Text("holds", style="green") if bar.held else Text("FAILS", style="bold red")
+        text = Text.assemble(mark, f"  {bar.what}: {bar.found} (asked for: {bar.allowed})")
+        console.print(text, soft_wrap=True)
+
+
+_HEADS = {
+    "immediate rule": "immediate rule, tilt published -> state received",
+    "all of them": "all rules with a for, lateness",
+}
+
+
+def _cells(summary: Summary) -> list[str]:
+    times = (
+        summary.mean,
+        summary.deviation,
+        summary.least,
+        summary.median,
+        summary.percent_99,
+        summary.greatest,
+    )
+    count = "" if summary.count is None else str(summary.count)
+    return [count, *("" if time is None else f"{time:.3f}" for time in times)]
+
+
+def _ratios(row: Row) -> list[str]:
+    return [f"{ratio:.2f}" for ratio in row.ratios or ()]
+
+
+def as_json(results: Results) -> dict[str, Any]:
+    """Return everything that was found, every single time included."""
+    return {
+        "benchmark": "reaction",
+        "loaded": results.run.loaded,
+        "machine": {
+            "processors": os.cpu_count(),
+            "system": platform.platform(),
+            "python": platform.python_version(),
+        },
+        "series": [
+            {
+                "section": row.section,
+                "name": row.name.strip(),
+                "ms": asdict(row.summary),
+                "ratios_to_floor": dict(
+                    zip(("median", "percent_99"), row.ratios or (), strict=False)
+                ),
+                "times_ns": row.times,
+            }
+            for row in results.rows
+        ],
+        "paper": {
+            "source": SOURCE,
+            "rows": [
+                {"name": name, "ideal_s": ideal, "ms": asdict(summary)}
+                for name, ideal, summary in paper_rows()
+            ],
+        },
+        "load_messages_per_second": results.run.traffic,
+        "bars": [asdict(bar) for bar in results.bars()],
+    }

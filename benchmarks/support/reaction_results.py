@@ -1,0 +1,222 @@
+"""What a run of the reaction benchmark has found, and the bars that it is held against."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from support.samples import Fired, Sample, Told, Trigger, match
+from support.summary import Summary, summarize
+
+IMMEDIATE_MEDIAN = 1.15
+"""The median of an immediate reaction: at most so many times that of the fastest relay."""
+
+IMMEDIATE_PERCENT_99 = 1.3
+"""The same of the 99th percentile."""
+
+LATE_MEDIAN_MS = 0.5
+"""The median lateness of a rule with a ``for``: less than so many milliseconds."""
+
+LATE_PERCENT_99_MS = 1.0
+"""The same of the 99th percentile."""
+
+LOADED = 2.0
+"""Under load everything takes less than so many times as long as its floor under the same load."""
+
+SAFETY, FASTEST, USUAL = "safety", "fastest", "usual"
+"""Whose immediate reactions are compared."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What one run has recorded.
+
+    Args:
+        loaded: whether the machine was put under load.
+        immediate: the reactions at once, by who reacted.
+        timed: the reactions of the safety node after a while.
+        floor: those of the timed relay.
+        triggers: what the safety nodes tell of their reactions.
+        firings: what the timed relay tells of its timers.
+        sleeps: how late a plain sleep ended, in ns.
+        lost: how many reactions have not come.
+        traffic: messages per second of the load that have come to their receiver.
+    """
+
+    loaded: bool
+    immediate: dict[str, list[Sample]]
+    timed: list[Sample]
+    floor: list[Sample]
+    triggers: list[Trigger]
+    firings: list[Fired]
+    sleeps: list[int]
+    lost: int
+    traffic: float
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One series: what was measured, of whom, its times in ns, and the floor it stands beside."""
+
+    section: str
+    name: str
+    times: list[int]
+    summary: Summary
+    floor: Summary | None
+
+    @property
+    def ratios(self) -> tuple[float, float] | None:
+        """The median and the 99th percentile as multiples of the floor's."""
+        if self.floor is None:
+            return None
+        return _ratio(self.summary.median, self.floor.median), _ratio(
+            self.summary.percent_99, self.floor.percent_99
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """One thing that is asked for: what was found, what is allowed, and whether it holds."""
+
+    what: str
+    found: str
+    allowed: str
+    held: bool
+
+
+class Results:
+    """The series of a run, each beside its floor, and the verdicts."""
+
+    def __init__(self, run: Run) -> None:
+        """Look at a run."""
+        self.run = run
+        self.durations = sorted({sample.seconds for sample in run.timed})
+
+    @cached_property
+    def immediate_told(self) -> list[Told]:
+        """The immediate reactions with what the safety node tells of them."""
+        return match(self.run.immediate[SAFETY], self.run.triggers)
+
+    @cached_property
+    def timed_told(self) -> list[Told]:
+        """The timed reactions with what the safety node tells of them."""
+        return match(self.run.timed, self.run.triggers)
+
+    @cached_property
+    def rows(self) -> list[Row]:
+        """All series, floors first."""
+        return list(self._immediate_rows()) + [
+            row for seconds in (*self.durations, None) for row in self._timed_rows(seconds)
+        ]
+
+    def row(self, section: str, name: str) -> Row:
+        """Return the row of that name."""
+        return next(row for row in self.rows if (row.section, row.name) == (section, name))
+
+    def _immediate_rows(self) -> Iterator[Row]:
+        section = "immediate rule"
+        late = {name: [each.late for each in found] for name, found in self.run.immediate.items()}
+        floor = summarize(late[FASTEST])
+        yield Row(section, "fastest relay", late[FASTEST], floor, None)
+        yield _row(section, "usual relay", late[USUAL], floor)
+        yield _row(section, "safety node", late[SAFETY], floor)
+        inside = [each.late for each in self.immediate_told]
+        yield Row(section, "  of which inside it", inside, summarize(inside), None)
+
+    def _timed_rows(self, seconds: float | None) -> Iterator[Row]:
+        """Yield the rows of one duration, or of all durations together."""
+        section = f"for {seconds:g} sec" if seconds else "all of them"
+
+        def chosen(other: float) -> bool:
+            return seconds is None or other == seconds
+
+        fired = [each for each in self.run.firings if chosen(each.duration / 1e9)]
+        began = [each.began - each.due for each in fired]
+        timer = summarize(began)
+        yield Row(section, "one-shot timer of rclpy", began, timer, None)
+        yield _row(section, "timed relay, published", [f.published - f.due for f in fired], timer)
+        published = [t.late for t in self.timed_told if chosen(t.sample.seconds)]
+        yield _row(section, "safety node, published", published, timer)
+        relayed = [s.late for s in self.run.floor if chosen(s.seconds)]
+        relay = summarize(relayed)
+        yield Row(section, "timed relay, end to end", relayed, relay, None)
+        received = [s.late for s in self.run.timed if chosen(s.seconds)]
+        yield _row(section, "safety node, end to end", received, relay)
+        if seconds is None:
+            yield Row(section, "time.sleep", self.run.sleeps, summarize(self.run.sleeps), None)
+
+    @property
+    def early(self) -> int:
+        """How many of the safety node's reactions came before their time, by a nanosecond."""
+        samples = [*self.run.immediate[SAFETY], *self.run.timed]
+        told = [*self.immediate_told, *self.timed_told]
+        early = {sample for sample in samples if sample.late < 0}
+        return len(early | {each.sample for each in told if each.is_early})
+
+    @property
+    def untold(self) -> int:
+        """How many of the safety node's reactions have no event."""
+        samples = len(self.run.immediate[SAFETY]) + len(self.run.timed)
+        return samples - len(self.immediate_told) - len(self.timed_told)
+
+    def bars(self) -> list[Bar]:
+        """Hold the results against what is asked for."""
+        bars = list(self._loaded_bars() if self.run.loaded else self._idle_bars())
+        count = len(self.run.immediate[SAFETY]) + len(self.run.timed)
+        for what, number in (
+            ("reactions that are early by a nanosecond or more", self.early),
+            ("reactions that have not come", self.run.lost),
+            ("reactions without an event", self.untold),
+        ):
+            bars.append(Bar(what, f"{number} of {count}", "none", number == 0))
+        return bars
+
+    def _idle_bars(self) -> Iterator[Bar]:
+        safety = self.row("immediate rule", "safety node")
+        assert safety.ratios is not None
+        median, percent_99 = safety.ratios
+        yield _at_most("immediate, median / fastest relay's", median, IMMEDIATE_MEDIAN)
+        yield _at_most("immediate, 99 % / fastest relay's", percent_99, IMMEDIATE_PERCENT_99)
+        usual = self.row("immediate rule", "usual relay")
+        against_usual = _ratio(safety.summary.median, usual.summary.median)
+        yield _below("immediate, median / usual relay's", against_usual, 1.0)
+        for seconds in self.durations:
+            late = self.row(f"for {seconds:g} sec", "safety node, published").summary
+            assert late.median is not None
+            assert late.percent_99 is not None
+            yield _below(f"for {seconds:g} sec, median late", late.median, LATE_MEDIAN_MS, " ms")
+            yield _below(
+                f"for {seconds:g} sec, 99 % late", late.percent_99, LATE_PERCENT_99_MS, " ms"
+            )
+
+    def _loaded_bars(self) -> Iterator[Bar]:
+        sections: Sequence[tuple[str, str]] = (
+            ("immediate rule", "safety node"),
+            ("all of them", "safety node, published"),
+            ("all of them", "safety node, end to end"),
+        )
+        for section, name in sections:
+            ratios = self.row(section, name).ratios
+            assert ratios is not None
+            what = f"{section.replace('all of them', 'for T')}: {name}"
+            yield _below(f"{what}, median / floor's", ratios[0], LOADED)
+            yield _below(f"{what}, 99 % / floor's", ratios[1], LOADED)
+
+
+def _row(section: str, name: str, times: list[int], floor: Summary) -> Row:
+    return Row(section, name, times, summarize(times), floor)
+
+
+def _ratio(value: float | None, floor: float | None) -> float:
+    assert value is not None
+    assert floor is not None
+    return value / floor
+
+
+def _below(what: str, value: float, limit: float, unit: str = "") -> Bar:
+    return Bar(what, f"{value:.3f}{unit}", f"< {limit:g}{unit}", value < limit)
+
+
+def _at_most(what: str, value: float, limit: float) -> Bar:
+    return Bar(what, f"{value:.3f}", f"<= {limit:g}", value <= limit)
