@@ -1,0 +1,97 @@
+"""Faults of time: a wall clock that is set, a simulated one that stands, races or starts over."""
+
+from __future__ import annotations
+
+import math
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.support.faults import PROMPT, TOPICS, Robot, imu, load, speed, ticks
+from tests.support.preload import WallClock
+
+pytestmark = pytest.mark.ros
+
+TILTED = math.radians(20.0)
+DAY = 86400
+
+
+@pytest.mark.parametrize("seconds", [400 * DAY, -3600])
+def test_a_step_of_the_wall_clock_changes_nothing(
+    robot: Robot, tmp_path: Path, seconds: int
+) -> None:
+    """Setting the machine's clock neither stops the robot nor keeps it from being stopped."""
+    wall_clock = WallClock(tmp_path)
+    with robot.safety_node(**wall_clock.env), robot.sensors(TOPICS, **wall_clock.env) as sensors:
+        sensors.drive()
+        robot.until_free()
+        halts = len(robot.states["/halt"])
+        wall_clock.step(seconds)
+        beats = len(robot.beats)
+        robot.spin(1.0)
+        assert len(robot.beats) >= beats + 5, "the heartbeat stood still"
+        assert not any(robot.states["/halt"][halts:]), "stopped without a cause"
+        sensors.play("/imu", imu(TILTED))
+        robot.until_stopped("/halt", limit=0.4 + 1.0)
+        sensors.play("/imu", imu())
+        robot.until_free()
+        wall_clock.step(0)
+        sensors.quiet("/speed")
+        robot.until_stopped("/halt", limit=0.5 + 1.0)
+
+
+SIMULATED = "use_sim_time:=true"
+WITH_CLOCK = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}
+
+
+def test_paused_simulation_lets_violations_through(robot: Robot) -> None:
+    """While simulated time stands, timeouts and heartbeat stand with it, but no immediate stop."""
+    with robot.sensors(WITH_CLOCK) as sensors:
+        sensors.play("/clock", *ticks())
+        with robot.safety_node(SIMULATED):
+            sensors.drive()
+            robot.until_free()
+            sensors.quiet("/clock")
+            robot.spin(0.2)
+            sensors.quiet("/speed")
+            beats = len(robot.beats)
+            robot.spin(1.0)
+            assert len(robot.beats) == beats, "the heartbeat goes on in a paused simulation"
+            assert not robot.is_active("/halt"), "a timeout passed while time stood still"
+            sensors.play("/speed", speed(2.0))
+            robot.until_stopped(limit=PROMPT)
+            sensors.play("/clock", *ticks(2000.0))
+
+
+def test_a_simulation_that_starts_over_is_reported_and_watched(robot: Robot) -> None:
+    """After a step back nothing is taken for known, and every rule works as from the start."""
+    with robot.sensors(WITH_CLOCK) as sensors:
+        sensors.play("/clock", *ticks())
+        with robot.safety_node(SIMULATED) as node:
+            sensors.drive()
+            robot.until_free()
+            sensors.play("/clock", *ticks(10.0))
+            robot.until_alive()
+            assert "the clock stepped back" in node.output()
+            sensors.play("/imu", imu(TILTED))
+            robot.until_stopped("/halt", limit=0.4 + 1.0)
+            sensors.play("/imu", imu())
+            robot.until_free()
+            sensors.quiet("/speed")
+            robot.until_stopped("/halt", limit=0.5 + 1.0)
+
+
+def test_a_fast_simulation_is_counted_in_its_own_time(robot: Robot) -> None:
+    """At twenty times the speed, 20 s pass in one: not earlier, and not 20 s later."""
+    with robot.sensors(WITH_CLOCK) as sensors:
+        sensors.play("/clock", *ticks(step=0.1), rate=200.0)
+        with robot.safety_node(SIMULATED):
+            sensors.match("/load")
+            sensors.send("/load", load(0.0))
+            robot.until_alive()
+            begun = time.monotonic()
+            sensors.send("/load", load(45.0))
+            robot.until_stopped("/slow", limit=5.0)
+            # The clock's player may be ahead by the few ticks that it makes up for.
+            assert time.monotonic() - begun >= (20.0 - 6 * 0.1) / 20

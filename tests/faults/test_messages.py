@@ -1,0 +1,67 @@
+"""Faults of the traffic: floods, giants, strangers and garbage."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import pytest
+
+from tests.support.faults import PROMPT, Robot, button, imu, load, scan, speed
+
+pytestmark = pytest.mark.ros
+
+TILTED = math.radians(20.0)
+
+
+def test_a_flood_on_one_input_starves_no_other(robot: Robot) -> None:
+    """With 20,000 messages a second on one input, rules on others stop, at once and after 0.4 s."""
+    with robot.safety_node(), robot.sensors() as sensors, robot.sensors() as flood:
+        sensors.drive()
+        robot.until_free()
+        flood.match("/load")
+        flood.play("/load", load(1.0), load(2.0), rate=20_000.0)
+        begun = time.monotonic()
+        beats = len(robot.beats)
+        robot.spin(1.0)
+        assert not robot.is_active("/halt"), "a sensor that talks was taken for silent"
+        assert len(robot.beats) >= beats + 5, "the heartbeat was starved"
+        sensors.play("/imu", imu(TILTED))
+        robot.until_stopped("/halt", limit=0.4 + PROMPT)
+        sensors.play("/speed", speed(2.0))
+        robot.until_stopped(limit=PROMPT)
+        rate = flood.quiet("/load") / (time.monotonic() - begun)
+        assert rate > 10_000, "this machine is too slow, or too busy, to flood a topic"
+
+
+def test_a_violation_within_a_flood_stops_the_robot(robot: Robot) -> None:
+    """The flooded input itself is still judged."""
+    with robot.safety_node(), robot.sensors() as flood:
+        flood.match("/load")
+        flood.play("/load", load(99.0), *[load(1.0)] * 99, rate=20_000.0)
+        robot.until_stopped("/slow")
+
+
+def test_a_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
+    """A scan of 2.5 million beams is judged, and the others are watched meanwhile."""
+    with robot.safety_node(), robot.sensors() as sensors:
+        sensors.drive()
+        sensors.match("/scan")
+        robot.until_free()
+        sensors.send("/scan", scan(5.0, beams=2_500_000), times=5, rate=5.0)
+        robot.until_alive()
+        assert not robot.is_active("/halt"), "a sensor that talks was taken for silent"
+        assert not robot.is_active("/stop")
+        sensors.send("/scan", scan(0.1, beams=2_500_000))
+        robot.until_stopped(limit=2 * PROMPT)
+
+
+def test_another_type_on_the_topic_is_not_taken_for_the_sensor(robot: Robot) -> None:
+    """A publisher of another type is not heard, harms nobody, and does not hide the silence."""
+    with robot.safety_node(), robot.sensors({"/speed": "std_msgs/msg/Bool"}) as stranger:
+        stranger.play("/speed", button(True))
+        with robot.sensors() as sensors:
+            sensors.drive()
+            robot.until_free()
+            sensors.quiet("/speed")
+            robot.until_stopped("/halt", limit=0.5 + PROMPT)

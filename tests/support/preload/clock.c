@@ -1,0 +1,129 @@
+// Steps the wall clock of one process, by LD_PRELOAD: CLOCK_REALTIME is off by as many seconds as
+// the file named by WALL_CLOCK_OFFSET says, whenever it is asked. No other clock is touched.
+//
+// The kernel does not know of the step, so waits until a time of the wall clock are cut into short
+// ones, and the clock is looked at in between, as the kernel does when the real clock is set.
+
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <stdlib.h>
+#include <sys/time.h>
+#include <time.h>
+#include <unistd.h>
+
+#define SLICE_NS 20000000L
+#define OLDEST_WALL_TIME 1000000000L  // seconds; no steady clock has come that far
+
+static int (*real_clock_gettime)(clockid_t, struct timespec *);
+static int (*real_cond_timedwait)(pthread_cond_t *, pthread_mutex_t *, const struct timespec *);
+static int (*real_cond_clockwait)(pthread_cond_t *, pthread_mutex_t *, clockid_t,
+                                  const struct timespec *);
+static int (*real_sem_timedwait)(sem_t *, const struct timespec *);
+static int (*real_sem_clockwait)(sem_t *, clockid_t, const struct timespec *);
+static int (*real_mutex_timedlock)(pthread_mutex_t *, const struct timespec *);
+static int offset_file = -1;
+
+__attribute__((constructor)) static void set_up(void) {
+  real_clock_gettime = dlsym(RTLD_NEXT, "clock_gettime");
+  real_cond_timedwait = dlvsym(RTLD_NEXT, "pthread_cond_timedwait", "GLIBC_2.3.2");  // x86-64 keeps an older
+  if (!real_cond_timedwait) real_cond_timedwait = dlsym(RTLD_NEXT, "pthread_cond_timedwait");
+  real_cond_clockwait = dlsym(RTLD_NEXT, "pthread_cond_clockwait");
+  real_sem_timedwait = dlsym(RTLD_NEXT, "sem_timedwait");
+  real_sem_clockwait = dlsym(RTLD_NEXT, "sem_clockwait");
+  real_mutex_timedlock = dlsym(RTLD_NEXT, "pthread_mutex_timedlock");
+  const char *path = getenv("WALL_CLOCK_OFFSET");
+  if (path) offset_file = open(path, O_RDONLY | O_CLOEXEC);
+}
+
+static long offset(void) {
+  char text[32];
+  ssize_t length = offset_file < 0 ? -1 : pread(offset_file, text, sizeof text - 1, 0);
+  if (length <= 0) return 0;
+  text[length] = 0;
+  return strtol(text, NULL, 10);
+}
+
+int clock_gettime(clockid_t clock, struct timespec *now) {
+  if (!real_clock_gettime) set_up();  // asked before the constructors have run
+  int result = real_clock_gettime(clock, now);
+  if (clock == CLOCK_REALTIME && result == 0) now->tv_sec += offset();
+  return result;
+}
+
+int gettimeofday(struct timeval *restrict now, void *restrict zone) {
+  (void)zone;
+  struct timespec precise;
+  clock_gettime(CLOCK_REALTIME, &precise);
+  now->tv_sec = precise.tv_sec;
+  now->tv_usec = precise.tv_nsec / 1000;
+  return 0;
+}
+
+time_t time(time_t *result) {
+  struct timespec now;
+  clock_gettime(CLOCK_REALTIME, &now);
+  if (result) *result = now.tv_sec;
+  return now.tv_sec;
+}
+
+// The end of the next short wait, in the kernel's time; 1 if `until` comes no later than that.
+static int next_slice(const struct timespec *until, struct timespec *slice) {
+  struct timespec kernel;
+  real_clock_gettime(CLOCK_REALTIME, &kernel);
+  *slice = kernel;
+  slice->tv_nsec += SLICE_NS;
+  if (slice->tv_nsec >= 1000000000L) {
+    slice->tv_sec += 1;
+    slice->tv_nsec -= 1000000000L;
+  }
+  struct timespec target = {until->tv_sec - offset(), until->tv_nsec};
+  if (target.tv_sec > slice->tv_sec ||
+      (target.tv_sec == slice->tv_sec && target.tv_nsec > slice->tv_nsec))
+    return 0;
+  *slice = target;
+  return 1;
+}
+
+int pthread_cond_timedwait(pthread_cond_t *restrict condition, pthread_mutex_t *restrict mutex,
+                           const struct timespec *restrict until) {
+  if (until->tv_sec < OLDEST_WALL_TIME) return real_cond_timedwait(condition, mutex, until);
+  for (;;) {
+    struct timespec slice;
+    int last = next_slice(until, &slice);
+    int result = real_cond_timedwait(condition, mutex, &slice);
+    if (result != ETIMEDOUT || last) return result;
+  }
+}
+
+int pthread_cond_clockwait(pthread_cond_t *condition, pthread_mutex_t *mutex, clockid_t clock,
+                           const struct timespec *until) {
+  if (clock != CLOCK_REALTIME) return real_cond_clockwait(condition, mutex, clock, until);
+  return pthread_cond_timedwait(condition, mutex, until);
+}
+
+int sem_timedwait(sem_t *restrict semaphore, const struct timespec *restrict until) {
+  for (;;) {
+    struct timespec slice;
+    int last = next_slice(until, &slice);
+    int result = real_sem_timedwait(semaphore, &slice);
+    if (result == 0 || errno != ETIMEDOUT || last) return result;
+  }
+}
+
+int sem_clockwait(sem_t *restrict semaphore, clockid_t clock, const struct timespec *restrict until) {
+  if (clock != CLOCK_REALTIME) return real_sem_clockwait(semaphore, clock, until);
+  return sem_timedwait(semaphore, until);
+}
+
+int pthread_mutex_timedlock(pthread_mutex_t *restrict mutex, const struct timespec *restrict until) {
+  for (;;) {
+    struct timespec slice;
+    int last = next_slice(until, &slice);
+    int result = real_mutex_timedlock(mutex, &slice);
+    if (result != ETIMEDOUT || last) return result;
+  }
+}
