@@ -9,9 +9,10 @@ from hypothesis import note
 from deros.generators.monitor_python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
 from deros.monitor.ir import Program
-from tests.support.strategies import Step
+from tests.support.strategies import Start, Step
 
 START_NS = 100
+ORDINARY_START = Start(0, frozenset())
 
 
 def timed(steps: Iterable[Step]) -> Iterator[tuple[int, Step]]:
@@ -22,26 +23,39 @@ def timed(steps: Iterable[Step]) -> Iterator[tuple[int, Step]]:
         yield t_ns, step
 
 
-def compare(program: Program, steps: Iterable[Step], text: str) -> None:
+def compare(
+    program: Program, steps: Iterable[Step], text: str, start: Start = ORDINARY_START
+) -> None:
     """Drive both with the same calls; they must answer alike at each.
 
     Raises:
         AssertionError: they do not.
     """
-    engine, generated = Engine(program, START_NS), GeneratedMonitor(program, START_NS, text)
+    note(f"{start}")
+    engine = Engine(program, START_NS, start.grace_ns, start.latched)
+    generated = GeneratedMonitor(program, START_NS, text, start.grace_ns, start.latched)
     for t_ns, step in timed(steps):
-        note(f"{step.call} at {t_ns} {step.topic} {dict(step.leaves)}")
-        if step.call == "message":
-            engine.message(t_ns, step.topic, step.leaves)
-            generated.message(t_ns, step.topic, step.leaves)
-        elif step.call == "advance":
-            engine.advance(t_ns)
-            generated.advance(t_ns)
-        else:
-            assert generated.reset(t_ns) == engine.reset(t_ns)
+        note(f"at {t_ns} {step}")
+        assert call(generated, t_ns, step) == call(engine, t_ns, step)
         assert generated.events == engine.events
         assert [e.span for e in generated.events] == [e.span for e in engine.events]
+        assert generated.waiting == engine.waiting
+        assert generated.explain() == engine.explain()
         _compare_deadlines(engine.next_deadline, generated.next_deadline, t_ns)
+
+
+def call(monitor: Engine | GeneratedMonitor, t_ns: int, step: Step) -> bool | None:
+    """Make the call that a step stands for; return what a reset answers."""
+    match step.call:
+        case "message":
+            monitor.message(t_ns, step.topic, step.leaves)
+        case "advance":
+            monitor.advance(t_ns)
+        case "enable":
+            monitor.enable(t_ns, step.behaviour, step.enabled)
+        case "reset":
+            return monitor.reset(t_ns)
+    return None
 
 
 def _compare_deadlines(reference: int | None, generated: int | None, now_ns: int) -> None:

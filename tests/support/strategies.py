@@ -299,7 +299,8 @@ class _Drawing:
                 arguments = () if self.writable else self.draw(argument_lists)
                 body.append(ir.Trigger(action, arguments, span(line)))
         name = f"behaviour_{index + 1}"
-        return ir.Behaviour(index, name, condition, tuple(body), parent, span(20 + index))
+        optional = not self.writable and self.draw(st.integers(0, 2)) == 0
+        return ir.Behaviour(index, name, condition, tuple(body), parent, span(20 + index), optional)
 
     def action(self, index: int) -> ir.Action:
         reset = self.draw(st.sampled_from(("never", "latched", "by")))
@@ -358,27 +359,57 @@ def _as_built(program: ir.Program) -> ir.Program:
 
 @dataclass(frozen=True)
 class Step:
-    """One call of a monitor, ``wait_ns`` after the one before (before it, if negative)."""
+    """One call of a monitor, ``wait_ns`` after the one before (before it, if negative).
 
-    call: Literal["message", "advance", "reset"]
+    A message has a topic and leaves; what is enabled, or disabled, is a behaviour.
+    """
+
+    call: Literal["message", "advance", "reset", "enable"]
     wait_ns: int
     topic: str = ""
     leaves: Mapping[int, LeafValue] = field(default_factory=dict)
+    behaviour: str = ""
+    enabled: bool = True
+
+
+@dataclass(frozen=True)
+class Start:
+    """How a monitor starts: the timeouts' grace, and the actions that are active already."""
+
+    grace_ns: int
+    latched: frozenset[str]
+
+
+@st.composite
+def starts(draw: Draw, program: ir.Program) -> Start:
+    """Draw how a program's monitor starts, some of its actions named that are not latched."""
+    grace_ns = draw(st.sampled_from((0, 0, 1, 5, 20)))
+    names = [each.name for each in program.actions]
+    return Start(grace_ns, draw(st.frozensets(st.sampled_from(names))))
 
 
 @st.composite
 def traces(draw: Draw, program: ir.Program) -> list[Step]:
     """Draw what drives a program's monitor: messages mostly, timers that may be late or absent."""
-    steps = []
+    optional = [each.name for each in walk.behaviours(program) if each.optional]
+    calls = ["message"] * 5 + ["advance", "reset", *(["enable"] if optional else [])]
+    steps: list[Step] = []
     for _ in range(draw(st.integers(4, 30))):
-        call = draw(
-            st.sampled_from(("message", "message", "message", "message", "advance", "reset"))
-        )
+        call = draw(st.sampled_from(calls))
         backward = draw(st.integers(0, 19)) == 0
         wait_ns = -draw(st.integers(1, 15)) if backward else draw(waits)
+        if call == "enable":
+            name, enabled = draw(st.sampled_from(optional)), draw(st.booleans())
+            steps.append(Step(call, wait_ns, behaviour=name, enabled=enabled))
+            continue
         if call != "message":
             steps.append(Step(call, wait_ns))
             continue
+        if draw(st.integers(0, 3)) == 0:  # repeat a message, as sensors of slow things do
+            sent = [each for each in steps if each.call == "message"]
+            if sent:
+                steps.append(replace(draw(st.sampled_from(sent)), wait_ns=wait_ns))
+                continue
         topic = draw(st.sampled_from(tuple(program.topics)))
         steps.append(Step("message", wait_ns, topic, draw(leaf_values(program, topic))))
     return steps

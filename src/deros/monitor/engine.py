@@ -8,6 +8,7 @@ monitor is held to give the same events at the same nanosecond. In short:
   each, all rules are evaluated, then all behaviours, top to bottom; then resets are settled.
 * Deadlines that are due when a call comes are settled first, in time order, with the old values.
 * A call with an earlier time than the one before shows a backward step of the clock.
+* To enable or disable an optional behaviour is an event too, after which the inputs are as before.
 
 Source: docs, "What a rule means"; the paper's section 4.4, whose prose (not its printed algorithm)
 gives the meaning of ``for``.
@@ -15,13 +16,14 @@ gives the meaning of ``for``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
 from deros.diagnostics import Span
 from deros.monitor import walk
 from deros.monitor.evaluate import evaluate_condition, evaluate_value, is_nan
+from deros.monitor.explain import RuleState, explain_rule
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import Age, Apply, Behaviour, For, Input, Program, Scalar, Trigger
 from deros.monitor.state import LeafValue, RateState, State
@@ -57,8 +59,22 @@ class Engine:
         events: all that has happened since the start, in order.
     """
 
-    def __init__(self, program: Program, start_ns: int = 0) -> None:
-        """Start at ``start_ns``, from which timeouts count; nothing has been true yet."""
+    def __init__(
+        self,
+        program: Program,
+        start_ns: int = 0,
+        grace_ns: int = 0,
+        latched: Collection[str] = frozenset(),
+    ) -> None:
+        """Start at ``start_ns``; nothing has been true yet.
+
+        Args:
+            program: what to run.
+            start_ns: the time of the start.
+            grace_ns: by how much later than the start the timeouts begin to count.
+            latched: the names of the latched actions that are active from the start, because they
+                were when an earlier run ended. Other names are ignored.
+        """
         self.events: list[Event] = []
         self._program = program
         self._now_ns = start_ns
@@ -67,13 +83,25 @@ class Engine:
         self._ages = [each for each in conditions if isinstance(each, Age)]
         values = walk.values(conditions)
         self._functions = [each for each in values if isinstance(each, Apply)]
-        self._state = State(program, start_ns, sum(1 for _ in walk.behaviours(program)))
+        behaviours = tuple(walk.behaviours(program))
+        self._state = State(program, start_ns, len(behaviours), grace_ns)
+        self._optional = {each.name: each.index for each in behaviours if each.optional}
         self._ran: set[int] = set()
+        for action in program.actions:
+            self._state.active[action.index] = action.latched and action.name in latched
 
     @property
     def next_deadline(self) -> int | None:
         """The earliest instant at which something can happen without a message, if there is one."""
         return min(self._deadlines(), default=None)
+
+    @property
+    def waiting(self) -> bool:
+        """Whether an input with a timeout waits for its first message and is not missing yet."""
+        return any(
+            each.timeout_ns is not None and state.counted_ns is None and not state.missing
+            for each, state in zip(self._program.inputs, self._state.inputs, strict=True)
+        )
 
     def message(self, t_ns: int, topic: str, leaves: Mapping[int, LeafValue]) -> list[Event]:
         """Take a message: the value of every leaf of the topic's inputs. Return what happened.
@@ -104,6 +132,32 @@ class Engine:
         self._catch_up(t_ns)
         results = [self._try_reset(each.index) for each in self._program.actions if each.latched]
         return all(results)
+
+    def enable(self, t_ns: int, behaviour: str, enabled: bool) -> list[Event]:
+        """Enable or disable an optional behaviour. Return what happened.
+
+        While it is disabled its condition counts as false, and its intervals go on. Enabled while
+        its condition is true, it acts. What is so already is no event.
+
+        Raises:
+            ValueError: there is no optional behaviour of that name.
+        """
+        if behaviour not in self._optional:
+            raise ValueError(f"no optional behaviour {behaviour}")
+        before = len(self.events)
+        self._catch_up(t_ns)
+        index = self._optional[behaviour]
+        if self._state.enabled[index] != enabled:
+            self._state.enabled[index] = enabled
+            self._evaluate()
+        return self.events[before:]
+
+    def explain(self) -> tuple[RuleState, ...]:
+        """Return what each rule is worth since the last event, and the values behind it."""
+        return tuple(
+            explain_rule(self._program, rule, self._state, self._now_ns)
+            for rule in self._program.rules
+        )
 
     # Time ---------------------------------------------------------------------------------------
 
@@ -199,6 +253,8 @@ class Engine:
         self._ran.clear()
         for rule in self._program.rules:
             verdict = evaluate_condition(rule.condition, self._state, self._now_ns)
+            if (verdict is True) != (self._state.verdicts[rule.index] is True):
+                self._state.turned_ns[rule.index] = self._now_ns
             self._state.verdicts[rule.index] = verdict
         for behaviour in self._program.behaviours:
             self._behave(behaviour, enclosing=True)
@@ -208,7 +264,7 @@ class Engine:
 
     def _behave(self, behaviour: Behaviour, enclosing: bool) -> None:
         verdict = evaluate_condition(behaviour.condition, self._state, self._now_ns)
-        holds = enclosing and verdict is True
+        holds = enclosing and verdict is True and self._state.enabled[behaviour.index]
         rises = holds and not self._state.holds[behaviour.index]
         self._state.holds[behaviour.index] = holds
         for item in behaviour.body:

@@ -47,22 +47,27 @@ class State:
         rates: of each function with a ``state`` number.
         since: of each ``For``, since when its operand has been true without a break.
         verdicts: of each rule, as of the last event.
+        turned_ns: of each rule, when it last became true or ceased to be; the start, or the last
+            step of the clock, if it did not since.
         holds: of each behaviour, whether it and all that enclose it held at the last event.
+        enabled: of each behaviour; those that are not optional always are.
         active: of each action, whether it was triggered and not reset since.
     """
 
-    def __init__(self, program: Program, start_ns: int, behaviours: int) -> None:
-        """Remember nothing yet; timeouts count from ``start_ns``."""
+    def __init__(self, program: Program, start_ns: int, behaviours: int, grace_ns: int = 0) -> None:
+        """Remember nothing yet; timeouts count from ``grace_ns`` after ``start_ns``."""
         self._program = program
         self.verdicts: list[Verdict] = [None] * len(program.rules)
         self.holds = [False] * behaviours
+        self.enabled = [True] * behaviours
         self.active = [False] * len(program.actions)
-        self.forget(start_ns)
+        self.forget(start_ns, grace_ns)
 
-    def forget(self, t_ns: int) -> None:
+    def forget(self, t_ns: int, grace_ns: int = 0) -> None:
         """Drop all that was observed: every interval and every input. Verdicts and actions stay."""
+        self.turned_ns = [t_ns] * len(self._program.rules)
         self.values: list[LeafValue] = [None] * len(self._program.leaves)
-        self.inputs = [InputState(t_ns) for _ in self._program.inputs]
+        self.inputs = [InputState(t_ns + grace_ns) for _ in self._program.inputs]
         self.rates: dict[int, RateState] = {}
         self.since: dict[int, int] = {}
 

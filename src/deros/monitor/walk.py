@@ -91,3 +91,15 @@ def leaves(value: ValueExpression) -> Iterator[int]:
     for term in terms(value):
         if isinstance(term, Read):
             yield term.leaf
+
+
+def terminals(condition: Condition) -> list[Read | Apply]:
+    """Return the leaves and outermost functions that a condition itself (no part) compares."""
+    found: list[Read | Apply] = []
+    for name in ("operand", "left", "right", "lower", "upper"):
+        value = getattr(condition, name, None)
+        while isinstance(value, Scale):
+            value = value.operand
+        if isinstance(value, Read | Apply):
+            found.append(value)
+    return found

@@ -17,9 +17,9 @@ from deros.metamodels.rules import Rules
 from deros.monitor.build import build
 from deros.monitor.engine import Engine, Event
 from deros.monitor.ir import Program
-from tests.support.monitors import START_NS, compare, timed
+from tests.support.monitors import START_NS, call, compare, timed
 from tests.support.rules_text import NODE_TEXT, SYSTEM_TEXT, rules_text
-from tests.support.strategies import Step, programs, traces
+from tests.support.strategies import Step, programs, starts, traces
 
 EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "500"))
 """Examples per property; set, they are drawn anew in every run, else they are always the same."""
@@ -39,7 +39,7 @@ def test_same_events(data: st.DataObject) -> None:
     program = data.draw(programs())
     text = render_monitor(program)
     note(text)
-    compare(program, data.draw(traces(program)), text)
+    compare(program, data.draw(traces(program)), text, data.draw(starts(program)))
 
 
 @pytest.fixture(scope="module")
@@ -92,10 +92,5 @@ def _as_read_by(meant: Program, built: Program, step: Step) -> Step:
 def _happened(program: Program, steps: list[Step]) -> list[Event]:
     engine = Engine(program, START_NS)
     for t_ns, step in timed(steps):
-        if step.call == "message":
-            engine.message(t_ns, step.topic, step.leaves)
-        elif step.call == "advance":
-            engine.advance(t_ns)
-        else:
-            engine.reset(t_ns)
+        call(engine, t_ns, step)
     return engine.events

@@ -66,6 +66,8 @@ class _Writer:
         rises = self._layout.names.new(behaviour.name, "rises") if late else ""
         text = header(behaviour.span.text) if nested else behaviour.span.text
         condition = self._conditions.true(behaviour.condition)
+        if behaviour.optional:
+            condition = all_of([Atom(f"{behaviour.name!r} not in self._disabled"), condition])
         lines = [
             "",
             *comment(8, f"Behaviour {behaviour.name}", behaviour.span, text),

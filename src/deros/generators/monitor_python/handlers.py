@@ -180,20 +180,21 @@ class _Writer:
         ]
         if index in layout.counted:
             statements.append(f"self._{layout.counted[index]} = t")
-        if index in layout.missing:
-            statements.append(f"self._{layout.missing[index]} = False")
-        if each.timeout_ns is not None:
-            statements.append(f"self._{layout.timeouts[index]} = t + {each.timeout_ns:_}")
-        soonest = min(self._waits(each), default=None)
+        soonest = min(self._changes(each), default=None)
         if soonest is not None:
-            statements.append(f"if t + {soonest:_} < self._due:")
-            statements.append(f"    self._due = t + {soonest:_}")
+            statements += _call_at(soonest)
+        if each.timeout_ns is not None:
+            missing = layout.missing[index]
+            statements += [
+                f"self._{layout.heard[index]} = t",
+                f"if self._{layout.silent[index]}:",
+                f"    self._{layout.silent[index]} = self._{missing} = False",
+                *(f"    {line}" for line in _call_at(each.timeout_ns)),
+            ]
         return [f"{' ' * indent}{statement}" for statement in statements]
 
-    def _waits(self, each: Input) -> Iterator[int]:
-        """Yield the times after a message at which something can change without another."""
-        if each.timeout_ns is not None:
-            yield each.timeout_ns
+    def _changes(self, each: Input) -> Iterator[int]:
+        """Yield the ages of a message at which a verdict can change without another message."""
         for condition in walk.conditions(self._program):
             if isinstance(condition, Age) and condition.input == each.index:
                 yield from (change for change in age_changes(condition) if change > 0)
@@ -216,6 +217,11 @@ class _Writer:
                 return scaled(self._value(value.operand), value)
             case Apply():
                 return f"self._{self._layout.values[value].name}"
+
+
+def _call_at(wait_ns: int) -> list[str]:
+    """Return the statements that make the deadline one that is so long after now."""
+    return [f"if t + {wait_ns:_} < self._due:", f"    self._due = t + {wait_ns:_}"]
 
 
 def _has_index(leaf: Leaf) -> bool:

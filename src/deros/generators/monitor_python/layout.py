@@ -12,14 +12,11 @@ from deros.monitor.ir import (
     Age,
     Apply,
     Condition,
-    Const,
     For,
-    Missing,
     Not,
     Program,
     Read,
     RuleRef,
-    Scale,
     ValueExpression,
 )
 
@@ -44,11 +41,15 @@ class Layout:
         names: of them all, and of the methods.
         values: what the conditions read of the inputs' messages, and every function of them.
         last: of a function with a memory, what the message before gave, and when it came.
-        timeouts: of an input with a timeout, when it passes.
-        missing: of an input that a ``missing()`` asks for, whether it is.
+        heard: of an input with a timeout, from when it counts: the last counted message, or the
+            start.
+        silent: of such an input, whether it waits for its first message, or for the first after its
+            timeout.
+        missing: of such an input, whether its timeout has passed.
         counted: of an input that an ``age()`` asks for, when its last counted message came.
         dues: of each ``For``, when it becomes true.
         verdicts: of each rule.
+        since: of each rule, when it last became true or ceased to be.
         three_valued: the rules whose falsehood matters, not only their truth.
         holds: of each behaviour.
         active: of each action that can be reset.
@@ -59,11 +60,13 @@ class Layout:
     names: Names
     values: dict[ValueExpression, Slot] = field(default_factory=dict)
     last: dict[ValueExpression, tuple[str, str]] = field(default_factory=dict)
-    timeouts: dict[int, str] = field(default_factory=dict)
+    heard: dict[int, str] = field(default_factory=dict)
+    silent: dict[int, str] = field(default_factory=dict)
     missing: dict[int, str] = field(default_factory=dict)
     counted: dict[int, str] = field(default_factory=dict)
     dues: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
+    since: dict[int, str] = field(default_factory=dict)
     three_valued: frozenset[int] = frozenset()
     holds: dict[int, str] = field(default_factory=dict)
     active: dict[int, str] = field(default_factory=dict)
@@ -79,7 +82,7 @@ def lay_out_memory(program: Program) -> Layout:
         if isinstance(value, Apply):
             _name_value(program, value, layout)
     for condition in conditions:
-        for value in terminals(condition):
+        for value in walk.terminals(condition):
             _name_value(program, value, layout)
     _name_inputs(program, layout)
     _name_verdicts(program, layout)
@@ -103,22 +106,21 @@ def input_of(program: Program, value: ValueExpression) -> int:
 def _name_inputs(program: Program, layout: Layout) -> None:
     for each in program.inputs:
         if each.timeout_ns is not None:
-            layout.timeouts[each.index] = layout.names.new(each.name, "timeout")
+            layout.heard[each.index] = layout.names.new(each.name, "heard")
+            layout.silent[each.index] = layout.names.new(each.name, "silent")
+            layout.missing[each.index] = layout.names.new(each.name, "missing")
         if slots_of(layout, program, each.index):
             layout.forget[each.index] = layout.names.new("forget", each.name)
     for condition in walk.conditions(program):
-        match condition:
-            case Missing(input=index) if index not in layout.missing:
-                layout.missing[index] = layout.names.new(program.inputs[index].name, "missing")
-            case Age(input=index) if index not in layout.counted:
-                layout.counted[index] = layout.names.new(program.inputs[index].name, "counted")
-            case _:
-                pass
+        if isinstance(condition, Age) and condition.input not in layout.counted:
+            name = program.inputs[condition.input].name
+            layout.counted[condition.input] = layout.names.new(name, "counted")
 
 
 def _name_verdicts(program: Program, layout: Layout) -> None:
     for rule in program.rules:
         layout.verdicts[rule.index] = layout.names.new(rule.entity, rule.name)
+        layout.since[rule.index] = layout.names.new(rule.entity, rule.name, "since")
         for part in walk.parts(rule.condition):
             if isinstance(part, For):
                 layout.dues[part.index] = layout.names.new(rule.entity, rule.name, "due")
@@ -146,23 +148,6 @@ def _name_value(program: Program, value: ValueExpression, layout: Layout) -> Non
     if isinstance(value, Apply) and value.state is not None:
         names = (layout.names.new(slot.name, "last"), layout.names.new(slot.name, "last_t"))
         layout.last[value] = names
-
-
-def terminals(condition: Condition) -> list[ValueExpression]:
-    """Return the leaves and outermost functions that a condition itself compares."""
-
-    def strip(value: ValueExpression) -> ValueExpression:
-        return strip(value.operand) if isinstance(value, Scale) else value
-
-    stripped = (strip(each) for each in operands(condition))
-    return [each for each in stripped if not isinstance(each, Const)]
-
-
-def operands(condition: Condition) -> tuple[ValueExpression, ...]:
-    """Return the values that a condition itself (not its parts) is about."""
-    names = ("left", "right", "lower", "upper", "operand")
-    found = (getattr(condition, name, None) for name in names)
-    return tuple(each for each in found if isinstance(each, Const | Read | Apply | Scale))
 
 
 def _slot(program: Program, value: ValueExpression, names: Names) -> Slot:

@@ -9,9 +9,18 @@ from deros.generators.names import python_identifier
 from deros.monitor.functions import FUNCTIONS
 
 MODULE_NAMES = frozenset(
-    {"Callable", "Event", "Monitor", "NAN", "NEVER", "NamedTuple", "Sequence", "math"}
+    {
+        *("Callable", "Collection", "Sequence", "NamedTuple", "math"),
+        *("Event", "Monitor", "RuleState", "explained"),
+        *("NAN", "NEVER", "OPTIONAL", "RULES_OF"),
+    }
 )
-METHOD_NAMES = frozenset({"act", "advance", "catch_up", "earliest", "evaluate", "reset", "restart"})
+METHOD_NAMES = frozenset(
+    {
+        *("act", "advance", "catch_up", "earliest", "enable", "evaluate", "explain", "reset"),
+        *("disabled", "restart", "rules_of", "waiting"),
+    }
+)
 LOCAL_NAMES = frozenset(
     {"changed", "due", "emit", "now", "self", "settled", "started", "t", "verdict"}
 )

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from deros.generators.monitor_python.conditions import Conditions
-from deros.generators.monitor_python.layout import Layout, input_of, terminals
-from deros.generators.monitor_python.logic import lay_out, text
+from deros.generators.monitor_python.layout import Layout, input_of
+from deros.generators.monitor_python.logic import lay_out
 from deros.generators.monitor_python.source import comment
 from deros.monitor import walk
-from deros.monitor.ir import Age, Condition, Const, For, Missing, Program, Rule, Truth
+from deros.monitor.ir import Age, Condition, For, Missing, Program, Rule
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ def _inputs(program: Program, condition: Condition) -> set[int]:
     for part in walk.parts(condition):
         if isinstance(part, Missing | Age):
             found.add(part.input)
-        found |= {input_of(program, value) for value in terminals(part)}
+        found |= {input_of(program, value) for value in walk.terminals(part)}
     return found
 
 
@@ -76,13 +76,7 @@ def _lines(program: Program, layout: Layout, rules: list[Rule]) -> list[str]:
         lines.append("")
         lines += comment(8, f"Rule {rule.full_name}", rule.span)
         lines += interval_lines(conditions, layout, rule.condition)
-        lines += _verdict(conditions, rule, rule.index in layout.three_valued)
-        name = layout.verdicts[rule.index]
-        lines += [
-            f"        if verdict != self._{name}:",
-            f"            self._{name} = verdict",
-            "            changed = True",
-        ]
+        lines += _verdict(conditions, layout, rule)
     return lines
 
 
@@ -95,7 +89,7 @@ def _remembered(layout: Layout, rules: list[Rule]) -> list[str]:
                 names[layout.missing[part.input]] = None
             elif isinstance(part, Age):
                 names[layout.counted[part.input]] = None
-            for value in terminals(part):
+            for value in walk.terminals(part):
                 names[layout.values[value].name] = None
     return list(names)
 
@@ -119,18 +113,33 @@ def interval_lines(conditions: Conditions, layout: Layout, condition: Condition)
     return lines
 
 
-def _verdict(conditions: Conditions, rule: Rule, three_valued: bool) -> list[str]:
-    condition = rule.condition
-    true = conditions.true(condition)
-    if not three_valued:
-        return lay_out(8, "verdict = ", true)
-    if isinstance(condition, Truth) and not isinstance(condition.operand, Const):
-        return [f"        verdict = {text(true)}"]
+def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:
+    """Return the statements that find a rule's verdict, and note when it changes."""
+    held, since = f"self._{layout.verdicts[rule.index]}", f"self._{layout.since[rule.index]}"
+    true = conditions.true(rule.condition)
+    if rule.index not in layout.three_valued:
+        return [
+            *lay_out(8, "if ", true, ":"),
+            f"            if not {held}:",
+            *_turned(16, held, "True", since),
+            f"        elif {held}:",
+            *_turned(12, held, "False", since),
+        ]
     return [
         *lay_out(8, "if ", true, ":"),
         "            verdict = True",
-        *lay_out(8, "elif ", conditions.false(condition), ":"),
+        *lay_out(8, "elif ", conditions.false(rule.condition), ":"),
         "            verdict = False",
         "        else:",
         "            verdict = None",
+        f"        if verdict != {held}:",
+        f"            if verdict or {held}:",
+        f"                {since} = t",
+        f"            {held} = verdict",
+        "            changed = True",
     ]
+
+
+def _turned(indent: int, held: str, verdict: str, since: str) -> list[str]:
+    blank = " " * indent
+    return [f"{blank}{held} = {verdict}", f"{blank}{since} = t", f"{blank}changed = True"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from deros.diagnostics import Span
@@ -11,6 +11,7 @@ from deros.generators.monitor_python.render import render_monitor
 from deros.generators.monitor_python.view import monitor_view
 from deros.monitor import walk
 from deros.monitor.engine import Event
+from deros.monitor.explain import RuleState
 from deros.monitor.ir import Program, Trigger
 from deros.monitor.state import LeafValue
 
@@ -22,13 +23,20 @@ class GeneratedMonitor:
         events: all that has happened since the start, in order.
     """
 
-    def __init__(self, program: Program, start_ns: int = 0, text: str | None = None) -> None:
+    def __init__(
+        self,
+        program: Program,
+        start_ns: int = 0,
+        text: str | None = None,
+        grace_ns: int = 0,
+        latched: Collection[str] = (),
+    ) -> None:
         """Generate the monitor, or take its ``text``, and start it at ``start_ns``."""
         self.events: list[Event] = []
         module: dict[str, Any] = {"__name__": "generated_monitor"}
         exec(compile(text or render_monitor(program), "<generated monitor>", "exec"), module)
         self._spans = _spans(program)
-        self._monitor = module["Monitor"](start_ns, self._take)
+        self._monitor = module["Monitor"](start_ns, self._take, grace_ns, latched)
         self._handlers = {each.topic: each for each in monitor_view(program).handlers}
 
     @property
@@ -36,6 +44,12 @@ class GeneratedMonitor:
         """When to call :meth:`advance` at the latest."""
         due: int | None = self._monitor.next_deadline
         return due
+
+    @property
+    def waiting(self) -> bool:
+        """Whether an input with a timeout waits for its first message and is not missing yet."""
+        waiting: bool = self._monitor.waiting
+        return waiting
 
     def message(self, t_ns: int, topic: str, leaves: Mapping[int, LeafValue]) -> list[Event]:
         """Take a message and return what happened.
@@ -60,6 +74,16 @@ class GeneratedMonitor:
         """Reset every latched action that is active; tell whether none was refused."""
         done: bool = self._monitor.reset(t_ns)
         return done
+
+    def enable(self, t_ns: int, behaviour: str, enabled: bool) -> list[Event]:
+        """Enable or disable an optional behaviour and return what happened."""
+        before = len(self.events)
+        self._monitor.enable(t_ns, behaviour, enabled)
+        return self.events[before:]
+
+    def explain(self) -> tuple[RuleState, ...]:
+        """Return what each rule is worth since the last event, and the values behind it."""
+        return tuple(RuleState(*each) for each in self._monitor.explain())
 
     def _take(self, event: Any) -> None:
         span = self._spans.get((event.action, event.behaviour, event.line))

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from deros.generators.monitor_python.behaviours import act_lines, latched_lines
+from deros.generators.monitor_python.explained import explained_lines, rules_of, waiting_lines
 from deros.generators.monitor_python.handlers import Handler, handlers
 from deros.generators.monitor_python.layout import Layout, lay_out_memory, slots_of
 from deros.generators.monitor_python.rules import Judge, judges
@@ -30,10 +31,16 @@ class Forget:
 class Timeout:
     """An input's timeout: what is remembered of it, and what to do when it passes."""
 
-    name: str
     duration_ns: int
-    missing: str | None
+    heard: str
+    silent: str
+    missing: str
     forget: str | None
+
+    @property
+    def end(self) -> str:
+        """The instant at which it passes."""
+        return f"self._{self.heard} + {self.duration_ns:_}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +58,10 @@ class MonitorView:
         handlers: one per topic.
         judges: the methods that evaluate rules, and by topic which of them a message calls.
         behaviours: the name of each, and the attribute that tells whether its condition holds.
+        rules_of: the name of each, and the rules that its condition names.
+        optional: the names of those that can be disabled.
+        explained: the lines of what ``explain()`` says of each rule.
+        waiting: the lines of what ``waiting`` returns.
         act: the lines of all behaviours and resets.
         ends: instants, as attributes or sums, that are deadlines while they lie ahead.
         known_at_start: whether a verdict can be known before any message, so that the first event,
@@ -69,6 +80,10 @@ class MonitorView:
     handlers: tuple[Handler, ...]
     judges: tuple[Judge, ...]
     behaviours: tuple[tuple[str, str], ...]
+    rules_of: tuple[tuple[str, tuple[str, ...]], ...]
+    optional: tuple[str, ...]
+    explained: tuple[str, ...]
+    waiting: tuple[str, ...]
     act: tuple[str, ...]
     ends: tuple[str, ...]
     known_at_start: bool
@@ -83,7 +98,7 @@ def monitor_view(program: Program) -> MonitorView:
     made = handlers(program, layout, methods)
     annotations = [each.annotation for handler in made for each in handler.parameters]
     known_at_start = _known_at_start(program, layout)
-    initial = _initial(layout, known_at_start)
+    initial = _initial(program, layout, known_at_start)
     restarted = _restarted(layout)
     forgets = _forgets(program, layout)
     timeouts = _timeouts(program, layout)
@@ -91,7 +106,11 @@ def monitor_view(program: Program) -> MonitorView:
         *(name for name, _ in initial),
         *(name for forget in forgets for name, _ in forget.unknown),
         *(last_t for _, last_t in layout.last.values()),
-        *(timeout.name for timeout in timeouts),
+        *(
+            name
+            for timeout in timeouts
+            for name in (timeout.heard, timeout.silent, timeout.missing)
+        ),
         *(name for name, _ in restarted),
     ]
     return MonitorView(
@@ -112,6 +131,10 @@ def monitor_view(program: Program) -> MonitorView:
         ends=_ends(program, layout),
         known_at_start=known_at_start,
         latched=tuple(latched_lines(program, layout)),
+        rules_of=tuple(rules_of(program)),
+        optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
+        explained=tuple(explained_lines(program, layout)),
+        waiting=tuple(waiting_lines(layout)),
     )
 
 
@@ -126,12 +149,17 @@ def _function_texts(layout: Layout) -> tuple[str, ...]:
     return tuple(each for each in texts if each)
 
 
-def _initial(layout: Layout, known_at_start: bool) -> tuple[tuple[str, str], ...]:
+def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tuple[str, str], ...]:
     pairs = [
         (name, "None" if rule in layout.three_valued else "False")
         for rule, name in layout.verdicts.items()
     ]
-    pairs += [(name, "False") for name in (*layout.holds.values(), *layout.active.values())]
+    pairs += [(name, "False") for name in layout.holds.values()]
+    for index, name in layout.active.items():
+        action = program.actions[index]
+        pairs.append((name, f"{action.name!r} in latched" if action.latched else "False"))
+    if any(each.optional for each in walk.behaviours(program)):
+        pairs.append(("disabled", "set()"))
     pairs += [(last_t, "start") for _, last_t in layout.last.values()]
     if known_at_start:
         pairs.append(("started", "False"))
@@ -139,9 +167,9 @@ def _initial(layout: Layout, known_at_start: bool) -> tuple[tuple[str, str], ...
 
 
 def _restarted(layout: Layout) -> tuple[tuple[str, str], ...]:
-    pairs = [(name, "False") for name in layout.missing.values()]
-    pairs += [(name, "NAN") for name in layout.counted.values()]
+    pairs = [(name, "NAN") for name in layout.counted.values()]
     pairs += [(name, "NEVER") for name in layout.dues.values()]
+    pairs += [(name, "t") for name in layout.since.values()]
     return tuple(pairs)
 
 
@@ -159,9 +187,10 @@ def _forgets(program: Program, layout: Layout) -> tuple[Forget, ...]:
 def _timeouts(program: Program, layout: Layout) -> tuple[Timeout, ...]:
     return tuple(
         Timeout(
-            layout.timeouts[each.index],
             each.timeout_ns,
-            layout.missing.get(each.index),
+            layout.heard[each.index],
+            layout.silent[each.index],
+            layout.missing[each.index],
             layout.forget.get(each.index),
         )
         for each in program.inputs

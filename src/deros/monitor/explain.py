@@ -1,0 +1,135 @@
+"""What a rule is worth and which values it is worth that by, for people to read."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from deros.monitor import walk
+from deros.monitor.evaluate import evaluate_value
+from deros.monitor.ir import (
+    Age,
+    Apply,
+    Condition,
+    Const,
+    Missing,
+    Program,
+    Read,
+    Rule,
+    Scalar,
+    Scale,
+    ValueExpression,
+)
+from deros.monitor.state import State
+
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+Term = Read | Apply | Missing | Age
+"""What a rule reads: a field, a function of fields, or a question about messages as such."""
+
+
+class RuleState(NamedTuple):
+    """A rule at some instant.
+
+    Attributes:
+        name: ``entity.rule``.
+        line: of the rule, in its file.
+        text: of the rule, in one line.
+        value: ``None`` when it is not true and something that it reads is unknown.
+        since: when it last became true or ceased to be, in nanoseconds; the start, or the last
+            backward step of the clock, if it did not since.
+        reads: each term that it reads, with its value; ``None`` is unknown, an age is in seconds.
+    """
+
+    name: str
+    line: int
+    text: str
+    value: bool | None
+    since: int
+    reads: tuple[tuple[str, Scalar | None], ...]
+
+
+def explain_rule(program: Program, rule: Rule, state: State, t_ns: int) -> RuleState:
+    """Return what a rule is worth since the last event."""
+    reads = tuple(
+        (term_name(program, term), _value(term, state, t_ns)) for term in terms(rule.condition)
+    )
+    value: bool | None = state.verdicts[rule.index] is True
+    if not value and any(each is None for _, each in reads):
+        value = None
+    since_ns = state.turned_ns[rule.index]
+    text = one_line(rule.span.text)
+    return RuleState(rule.full_name, rule.span.line, text, value, since_ns, reads)
+
+
+def one_line(text: str) -> str:
+    """Return the text of a rule in one line, without comments."""
+    return " ".join(_COMMENT.sub(" ", text).split())
+
+
+def terms(condition: Condition) -> tuple[Term, ...]:
+    """Return what a condition reads, in the order written, each once."""
+    found: dict[Term, None] = {}
+    for part in walk.parts(condition):
+        if isinstance(part, Missing | Age):
+            found[_plain(part)] = None
+        found.update(dict.fromkeys(walk.terminals(part)))
+    return tuple(found)
+
+
+def term_name(program: Program, term: Term) -> str:
+    """Return a term as rules write it, with angles in radians: ``orientation.roll()``."""
+    match term:
+        case Missing():
+            return f"{program.inputs[term.input].name}.missing()"
+        case Age():
+            return f"{program.inputs[term.input].name}.age()"
+        case Read():
+            return _field_name(program, term)
+        case Apply():
+            return _function_name(program, term)
+
+
+def _plain(term: Missing | Age) -> Term:
+    """Return the term without what it is compared with, so that equal terms are equal."""
+    return Age(term.input, "=", 0) if isinstance(term, Age) else term
+
+
+def _field_name(program: Program, read: Read) -> str:
+    leaf = program.leaves[read.leaf]
+    each = program.inputs[leaf.input]
+    rest = leaf.path[len(each.path) :] if leaf.path[: len(each.path)] == each.path else leaf.path
+    steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in rest)
+    return each.name + "".join(steps)
+
+
+def _function_name(program: Program, function: Apply) -> str:
+    subject = program.inputs[function.input].name
+    constants = [each for each in function.arguments if isinstance(each, Const)]
+    operands = [each for each in function.arguments if not isinstance(each, Const)]
+    if len(operands) == 1:  # a field or a function of fields, no message or part of one
+        subject = _operand_name(program, operands[0])
+    written = ", ".join(f"{each.value:.6g}" for each in constants)
+    return f"{subject}.{function.function}({written})"
+
+
+def _operand_name(program: Program, value: ValueExpression) -> str:
+    match value:
+        case Scale():
+            return _operand_name(program, value.operand)
+        case Const():
+            return str(value.value)
+        case _:
+            return term_name(program, value)
+
+
+def _value(term: Term, state: State, t_ns: int) -> Scalar | None:
+    match term:
+        case Missing():
+            return state.inputs[term.input].missing
+        case Age():
+            counted_ns = state.inputs[term.input].counted_ns
+            return None if counted_ns is None else (t_ns - counted_ns) / 1e9
+        case Read() | Apply():
+            value: Scalar | None = evaluate_value(term, state)
+            return value
