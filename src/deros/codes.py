@@ -132,3 +132,6 @@ BAD_TRACE_TIME = _declare(502, "time that a trace cannot have")
 UNKNOWN_TRACE_FIELD = _declare(503, "unknown field in a trace's message")
 WRONG_TRACE_VALUE = _declare(504, "value that the field of a trace's message cannot hold")
 UNREAD_TRACE_TOPIC = _declare(505, "topic of a trace that the rules do not read", _W)
+
+MENDED_AFTER_GENERATION = frozenset({GATE_BYPASSED, GATE_NOT_IN_SYSTEM})
+"""Errors of a system that a gate is not wired into yet: its node has to be generated before."""

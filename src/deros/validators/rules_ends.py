@@ -1,4 +1,4 @@
-"""Which topics a DeRoS program reads and feeds: its safety node is an end of those topics."""
+"""Which topics a DeRoS program reads and feeds: its nodes are ends of those topics."""
 
 from __future__ import annotations
 
@@ -12,18 +12,20 @@ from deros.validators.rules_walk import topics_read
 
 @dataclass(frozen=True, slots=True)
 class RulesEnds:
-    """Graph names of the topics that safety nodes subscribe (``read``) and publish (``fed``)."""
+    """Graph names of the topics that safety nodes and gates read (``read``) and feed (``fed``)."""
 
     read: frozenset[str] = frozenset()
     fed: frozenset[str] = frozenset()
 
 
 def ends_of(programs: Iterable[Rules]) -> RulesEnds:
-    """Return the ends of the safety nodes that the programs become."""
+    """Return the ends of the safety nodes and the gates that the programs become."""
     read: set[str] = set()
     fed: set[str] = set()
     for rules in programs:
         read.update(resolve_name(name.text, "/") for name in topics_read(rules))
         bindings = (action.binding for action in rules.actions)
         fed.update(resolve_name(each.topic.text, "/") for each in bindings if each is not None)
+        read.update(resolve_name(gate.source.text, "/") for gate in rules.gates)
+        fed.update(resolve_name(gate.target.text, "/") for gate in rules.gates)
     return RulesEnds(frozenset(read), frozenset(fed))

@@ -33,8 +33,14 @@ def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
     for topic, name in read.items():
         if topic not in bound:
             yield from _unfed(topic, name, topics)
+    heeded = {line.action.text for gate in rules.gates for line in gate.lines if line.action}
+    by_gates = {
+        resolve_name(action.binding.topic.text, "/")
+        for action in rules.actions
+        if action.binding and action.name.text in heeded
+    }
     for topic, name in bound.items():
-        if topic not in read:
+        if topic not in read and topic not in by_gates:
             yield from _unread(topic, name, topics)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, report
-from deros.metamodels.rules import ActionCall, NamePath, Rules, Term
+from deros.metamodels.rules import ActionCall, GateLimit, NamePath, Rules, Term
 from deros.validators.rules_walk import all_terms, behaviours_of, rules_of, terms_of
 
 
@@ -16,6 +16,7 @@ def check_usage(rules: Rules) -> Iterator[Diagnostic]:
     fixed = [constant.value for constant in rules.constants]
     fixed += [action.binding.value for action in rules.actions if action.binding]
     fixed += [argument for call in _calls(rules) for argument in call.arguments]
+    fixed += [end for limit in _limits(rules) for end in (limit.lower, limit.upper)]
     used = _names((*read, *fixed))
     for constant in rules.constants:
         if constant.name.text not in used:
@@ -44,6 +45,12 @@ def _calls(rules: Rules) -> Iterator[ActionCall]:
         for item in behaviour.body:
             if isinstance(item, ActionCall):
                 yield item
+
+
+def _limits(rules: Rules) -> Iterator[GateLimit]:
+    for gate in rules.gates:
+        for line in gate.lines:
+            yield from line.limits
 
 
 def _unused_rules(rules: Rules) -> Iterator[Diagnostic]:

@@ -1,0 +1,210 @@
+"""Gates: lines that leave a hole, and systems whose wiring goes past the gate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.interfaces.fields import format_path
+from deros.interfaces.names import did_you_mean, near
+from deros.metamodels.common import Name
+from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, flatten, resolve_name
+from deros.metamodels.node import PortKind
+from deros.metamodels.rules import Gate, GateLine, Rules
+from deros.monitor import ir
+from deros.monitor.build import BuildResult
+from deros.monitor.gates import gate_node_name
+from deros.monitor.topics import KnownTopic, SystemTopics
+
+_FEWEST_BEATS = 2.5
+_SHORTEST_NS = int(_FEWEST_BEATS * 100_000_000)  # at the default `publish_freq` of the safety node
+
+
+def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
+    """Yield the findings about gates in themselves, and in every system that the rules use."""
+    systems = {id(use.system): use.system for use in rules.uses if use.system is not None}
+    flat = [flatten(each) for each in systems.values()] if rules.gates else []
+    for gate in rules.gates:
+        yield from _order(gate)
+        yield from _watching(gate)
+        for each in flat:
+            yield from _wiring(gate, each)
+        if result.topics.complete:
+            yield from _ends(gate, rules, result.topics)
+    for built in result.program.gates if result.program else ():
+        yield from _hasty(built)
+
+
+# Lines ------------------------------------------------------------------------------------------
+
+
+def _order(gate: Gate) -> Iterator[Diagnostic]:
+    """Find zero lines that a limit before them leaves numbers of."""
+    for index, line in enumerate(gate.lines):
+        if line.limits:
+            continue
+        # The limits of an action say nothing while something is lost.
+        earlier = (each for each in gate.lines[:index] if each.limits)
+        limit = next((each for each in earlier if line.action or not each.action), None)
+        if limit is not None:
+            fields = ", ".join(f"'{format_path(each.path)}'" for each in limit.limits)
+            yield report(
+                codes.GATE_LIMIT_OVERRIDES_ZERO,
+                f"while the limit for {_condition(limit)} applies too, it decides about {fields},"
+                " not this zero",
+                line.span,
+                "earlier lines win: write those with 'zero' first",
+                (Related(limit.span, "the limit"),),
+            )
+
+
+def _condition(line: GateLine) -> str:
+    return f"'{line.action}'" if line.action else f"a lost {line.lost}"
+
+
+def _watching(gate: Gate) -> Iterator[Diagnostic]:
+    lost = {line.lost for line in gate.lines}
+    if "heartbeat" not in lost:
+        yield report(
+            codes.GATE_WITHOUT_HEARTBEAT,
+            f"commands to '{gate.target}' go on unchecked when the safety node dies",
+            gate.target.span,
+            "add 'lost heartbeat for 0.3 sec: zero;'",
+        )
+    if "input" not in lost:
+        yield report(
+            codes.GATE_WITHOUT_INPUT,
+            f"when '{gate.source}' falls silent, its last command stays in force",
+            gate.target.span,
+            "add 'lost input for 0.5 sec: zero;'",
+        )
+
+
+def _hasty(gate: ir.Gate) -> Iterator[Diagnostic]:
+    for line in gate.lines:
+        if line.lost == "heartbeat" and line.lost_ns and line.lost_ns < _SHORTEST_NS:
+            yield report(
+                codes.GATE_HEARTBEAT_TOO_SHORT,
+                f"this is less than {_FEWEST_BEATS} heartbeats, of which there are 10 per second:"
+                " a late one would be taken for a lost one",
+                line.span,
+                "write 0.25 sec or more, and mind 'publish_freq' if you set it",
+            )
+
+
+# Wiring -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _End:
+    """A publisher or subscription of a system."""
+
+    node: FlatNode
+    port: FlatPort
+
+    @property
+    def span(self) -> Span:
+        """Where it is connected, or its node where it is not."""
+        wiring = self.port.wiring
+        return wiring.span if wiring is not None else self.node.instance.name_span
+
+
+def _wiring(gate: Gate, flat: FlatSystem) -> Iterator[Diagnostic]:
+    source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
+    name = gate_node_name(target)
+    commanding = list(_at(flat, target, PortKind.PUBLISHER))
+    obeying = list(_at(flat, target, PortKind.SUBSCRIPTION))
+    for end in commanding:
+        if not _is_gate(end.node, name):
+            yield report(
+                codes.GATE_BYPASSED,
+                f"{end.node.full_name} ({end.port.port.name}) is wired past the gate: it publishes"
+                f" '{target}' itself",
+                end.span,
+                f"connect {end.port.port.name} to {source}, which the gate lets through",
+                (Related(gate.span, "the gate"),),
+            )
+    if not commanding and not obeying:
+        return
+    if any(node.type is None for node in flat.nodes):
+        return  # one of them, which another finding is about, may be the gate
+    lacks = _lacks(flat, name, source, target)
+    if lacks:
+        hint = (
+            f"the node type '{name}' is generated with the safety node: import it, and connect"
+            f" {source} and {target}"
+        )
+        place = _named(gate.target, flat)
+        yield report(codes.GATE_NOT_IN_SYSTEM, lacks, gate.target.span, hint, place)
+
+
+def _lacks(flat: FlatSystem, name: str, source: str, target: str) -> str:
+    """Say what part of the gate a system lacks, if any."""
+    if not any(_is_gate(node, name) for node in flat.nodes):
+        return f"system '{flat.system.name}' has no gate to '{target}': no node is a '{name}'"
+    for topic, kind, does in (
+        (target, PortKind.PUBLISHER, "publishes"),
+        (source, PortKind.SUBSCRIPTION, "subscribes to"),
+    ):
+        if not any(_is_gate(end.node, name) for end in _at(flat, topic, kind)):
+            return f"no '{name}' of system '{flat.system.name}' {does} '{topic}'"
+    return ""
+
+
+def _at(flat: FlatSystem, topic: str, kind: PortKind) -> Iterator[_End]:
+    for node in flat.nodes:
+        for port in node.ports:
+            if port.port.kind is kind and port.topic == topic:
+                yield _End(node, port)
+
+
+def _is_gate(node: FlatNode, name: str) -> bool:
+    return node.type is not None and node.type.name == name
+
+
+def _named(target: Name, flat: FlatSystem) -> tuple[Related, ...]:
+    topic = flat.topic(resolve_name(target.text, "/"))
+    return (Related(topic.declaration.name_span, "the topic"),) if topic is not None else ()
+
+
+# Ends -------------------------------------------------------------------------------------------
+
+
+def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
+    """Find a source that nobody feeds, and a target that nobody reads; a gate may do either."""
+    source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
+    fed = {resolve_name(each.target.text, "/") for each in rules.gates}
+    read = {resolve_name(each.source.text, "/") for each in rules.gates}
+    known = topics.get(source)
+    if known is None:
+        hint = did_you_mean(near(source, topics.names))
+        message = f"no used system has a topic '{source}'"
+        if not rules.uses:
+            hint = "'use \"FILE.system\" import NAME' names the system that has it"
+        yield report(codes.RULE_TOPIC_NOT_IN_SYSTEM, message, gate.source.span, hint)
+    elif source not in fed and not _open(known) and not known.publishers:
+        yield report(
+            codes.RULE_TOPIC_NOT_PUBLISHED,
+            f"nobody in the system publishes '{source}'",
+            gate.source.span,
+            f"if it comes from outside: 'external topic {source}'",
+            (Related(known.place, "the topic"),),
+        )
+    known = topics.get(target)
+    if target in read or (known is not None and (_open(known) or known.subscriptions)):
+        return
+    heard = [each.name for each in topics if each.subscriptions or _open(each)]
+    yield report(
+        codes.GATE_UNREAD,
+        f"nobody in the system subscribes to '{target}'",
+        gate.target.span,
+        did_you_mean(near(target, heard)) or f"if it is read outside: 'external topic {target}'",
+        (Related(known.place, "the topic"),) if known is not None else (),
+    )
+
+
+def _open(topic: KnownTopic) -> bool:
+    """Tell whether somebody whom the model does not show is, or may be, at the topic."""
+    return bool(topic.external or topic.untyped)
