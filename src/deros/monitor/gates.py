@@ -18,6 +18,7 @@ from deros.interfaces.types import (
 )
 from deros.interfaces.units import Unit
 from deros.metamodels import rules
+from deros.metamodels.common import Name
 from deros.metamodels.flatten import resolve_name
 from deros.monitor import ir
 from deros.monitor.actions import Actions
@@ -53,7 +54,8 @@ class Gates:
 
     def build(self, written: tuple[rules.Gate, ...]) -> tuple[ir.Gate, ...]:
         """Return the gates that have no fault, in the order written."""
-        self._scope.check_duplicates((each.target for each in written), "a gate to '{}'")
+        targets = (Name(resolve_name(each.target.text, "/"), each.target.span) for each in written)
+        self._scope.check_duplicates(targets, "a gate to '{}'")
         built = (self._gate(index, each) for index, each in enumerate(written))
         return tuple(each for each in built if each is not None)
 

@@ -126,7 +126,7 @@ def _wiring(gate: Gate, flat: FlatSystem) -> Iterator[Diagnostic]:
                 f"connect {end.port.port.name} to {source}, which the gate lets through",
                 (Related(gate.span, "the gate"),),
             )
-    if not commanding and not obeying:
+    if source == target or not (commanding or obeying):
         return
     if any(node.type is None for node in flat.nodes):
         return  # one of them, which another finding is about, may be the gate

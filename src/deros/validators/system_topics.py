@@ -73,7 +73,11 @@ def check_topics(
     for channel in found:
         yield from _types(channel)
     topics = [channel for channel in found if channel.vertex[0] == "topic"]
-    pairs = _misspelt_pairs(topics)
+    pairs = [
+        (fed, read)
+        for fed, read in _misspelt_pairs(topics)
+        if (fed.name, read.name) not in rules.gated  # it is a gate that joins them
+    ]
     topics = [channel for channel in topics if not _ends_in_rules(channel, rules)]
     misspelt = {channel.name for pair in pairs for channel in pair}
     for fed, read in pairs:
