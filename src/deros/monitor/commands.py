@@ -24,6 +24,7 @@ Message = Mapping[str, Any]
 TIME = InterfaceType("builtin_interfaces", "msg", "Time")
 HEADER = InterfaceType("std_msgs", "msg", "Header")
 QUATERNION = InterfaceType("geometry_msgs", "msg", "Quaternion")
+LAYOUT = InterfaceType("std_msgs", "msg", "MultiArrayLayout")
 
 NO_ROTATION = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
 """A quaternion of four zeros is no rotation at all, and breaks who computes with it."""
@@ -73,7 +74,8 @@ def zero(store: InterfaceStore, kind: InterfaceType, last: Message | None, t_ns:
     """Return the command to do nothing, in the form of the ``last`` command if there is one.
 
     Numbers are 0 and booleans false; texts, and with them the frame, are those of the last command,
-    and arrays as long as in it. Quaternions say no rotation, the stamps of headers ``t_ns``.
+    and arrays as long as in it, their layout too. Quaternions say no rotation, the stamps of
+    headers ``t_ns``.
     """
     return _zero_message(store, kind, last or {}, t_ns)
 
@@ -81,6 +83,8 @@ def zero(store: InterfaceStore, kind: InterfaceType, last: Message | None, t_ns:
 def _zero_message(store: InterfaceStore, kind: InterfaceType, last: Message, t_ns: int) -> Message:
     if kind == QUATERNION:
         return NO_ROTATION
+    if kind == LAYOUT and last:
+        return last
     definition = store.message(kind)
     assert definition is not None, f"{kind} was known when the gate was built"
     made = {
