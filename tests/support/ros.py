@@ -63,6 +63,8 @@ def environment(domain: int) -> dict[str, str]:
 def running(command: Sequence[str], env: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
     """Run a program with its output in one pipe; it is gone when the block ends.
 
+    What the block has not read of the output is printed, for pytest to show when the test fails.
+
     Raises:
         AssertionError: if it does not end by SIGINT.
     """
@@ -72,13 +74,23 @@ def running(command: Sequence[str], env: dict[str, str]) -> Iterator[subprocess.
         try:
             yield process
         finally:
-            if process.poll() is None:
-                process.send_signal(signal.SIGINT)
-                try:
-                    process.wait(LIMIT)
-                except subprocess.TimeoutExpired:
-                    process.kill()
-                    raise AssertionError(f"{command[0]} does not end by SIGINT") from None
+            _end(process, command[0])
+
+
+def _end(process: subprocess.Popen[str], name: str) -> None:
+    """End a process by SIGINT, if it still runs, and print the rest of its output."""
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+    if process.stdout is None or process.stdout.closed:
+        return  # its output has been read to the end, so it has ended
+    try:
+        output, _ = process.communicate(timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        output, _ = process.communicate()
+        raise AssertionError(f"{name} does not end by SIGINT") from None
+    finally:
+        print(f"--- the rest of what {name} printed:\n{output}")
 
 
 class Peer:
