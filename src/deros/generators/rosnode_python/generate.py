@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,12 +36,16 @@ def generate(model: NodeType, context: Context, options: Options) -> Files:
     return package_files([model, *_beside(model, context)], options)
 
 
-def package_files(models: Sequence[NodeType], options: Options) -> dict[str, File]:
+def package_files(
+    models: Sequence[NodeType], options: Options, raw: Collection[str] = ()
+) -> dict[str, File]:
     """Return the files of the package that ``models``, all of one package, make up.
 
     Args:
         models: one or more nodes; their order does not matter.
         options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder.
+        raw: the names of the nodes whose subscriptions hand over serialized messages. Of such a
+            node there is no user's module: the caller adds its class and its ``main``.
 
     Raises:
         GenerationError: if names collide, or a construct has no counterpart in rclpy.
@@ -50,14 +54,17 @@ def package_files(models: Sequence[NodeType], options: Options) -> dict[str, Fil
     ordered = tuple(sorted(models, key=lambda model: model.name))
     for model in ordered:
         _check_supported(model)
-    package = package_view(ordered, _maintainer(options), options.get("copyright", ""))
+    copyright_line = options.get("copyright", "")
+    package = package_view(ordered, _maintainer(options), copyright_line, raw)
     files = _package_level(package)
     for node in package.nodes:
         root = f"{package.name}/{package.name}"
         base = _render("base.py", package=package, node=node, imports=base_imports(node))
-        user = _render("node.py", package=package, node=node, imports=user_imports(package, node))
         files[f"{root}/{node.base_module}.py"] = File(base)
-        files[f"{root}/{node.module}.py"] = File(user, Owner.USER)
+        if not node.raw:
+            imports = user_imports(package, node)
+            user = _render("node.py", package=package, node=node, imports=imports)
+            files[f"{root}/{node.module}.py"] = File(user, Owner.USER)
         launch = _render("launch.py", package=package, node=node)
         files[f"{package.name}/launch/{node.name}.launch.py"] = File(launch)
         if node.parameters:

@@ -10,7 +10,9 @@ from deros.generators.rosnode_python.view import NodeView, PackageView, PortView
 
 def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
     """Return the import statements of the base class: standard library, then the rest."""
-    standard: dict[str, set[str]] = {"contextlib": set(), "signal": set(), "typing": {"Any"}}
+    standard: dict[str, set[str]] = {"typing": {"Any"}}
+    if not node.raw:
+        standard |= {"contextlib": set(), "signal": set()}
     if node.has_handlers:
         standard["abc"] = {"ABC", "abstractmethod"}
     if node.parameters:
@@ -22,7 +24,10 @@ def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
         dict(node.interfaces), (kind for kind, _ in node.interfaces)
     )
     add = _Adder(rest)
-    add("rclpy")
+    if node.raw:
+        _raw_imports(node, standard, add)
+    else:
+        add("rclpy")
     if node.lifecycle:
         add("rclpy.lifecycle", "LifecycleNode")
         if node.gated:
@@ -57,6 +62,15 @@ def user_imports(package: PackageView, node: NodeView) -> list[str]:
         add("rclpy.action.server", "ServerGoalHandle")
     add(f"{package.name}.{node.base_module}", node.base_class, "run")
     return import_lines(rest)
+
+
+def _raw_imports(node: NodeView, standard: dict[str, set[str]], add: _Adder) -> None:
+    if node.subscriptions:
+        standard["functools"] = set()
+        standard["typing"].add("Callable")
+        names = ("QoSRequestedIncompatibleQoSInfo", "SubscriptionEventCallbacks")
+        add("rclpy.event_handler", *names)
+        add("rclpy.qos", "QoSProfile")
 
 
 def _parameter_imports(node: NodeView, add: _Adder) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 
 _HOOKS = ("on_parameters_changed",)
+_RAW_HOOKS = ("on_named", "on_incompatible_qos")
 _LIFECYCLE_HOOKS = (
     "on_activate",
     "on_cleanup",
@@ -58,11 +59,13 @@ _TAKEN = frozenset(
         "ParameterDescriptor",
         "Parameters",
         "QoSProfile",
+        "QoSRequestedIncompatibleQoSInfo",
         "ReentrantCallbackGroup",
         "ReliabilityPolicy",
         "ServerGoalHandle",
         "SetParametersResult",
         "SimpleManagedEntity",
+        "SubscriptionEventCallbacks",
     )
 )
 
@@ -112,6 +115,8 @@ class NodeView:
 
     Attributes:
         source: file name of the node description.
+        raw: whether its subscriptions hand over serialized messages, and its class and program
+            come from elsewhere.
         interfaces: for each interface type, module, class name, and its name in the modules.
     """
 
@@ -120,6 +125,7 @@ class NodeView:
     class_name: str
     lifecycle: bool
     source: str
+    raw: bool
     summary: str
     interfaces: tuple[tuple[InterfaceType, str], ...]
     parameters: tuple[ParameterView, ...]
@@ -162,13 +168,13 @@ class NodeView:
         return tuple(p for p in self.parameters if p.constraints)
 
 
-def node_view(model: NodeType) -> NodeView:
-    """Return the view of one node.
+def node_view(model: NodeType, raw: bool = False) -> NodeView:
+    """Return the view of one node, ``raw`` or not (see :class:`NodeView`).
 
     Raises:
         GenerationError: if two ports, timers or parameters would get one name.
     """
-    check_collisions(_methods(model), f"the methods of class {camel_case(model.name)}")
+    check_collisions(_methods(model, raw), f"the methods of class {camel_case(model.name)}")
     check_collisions(
         (
             Emitted(python_identifier(p.name), f"parameter {p.name!r}", p.name_span)
@@ -187,6 +193,7 @@ def node_view(model: NodeType) -> NodeView:
         class_name=class_name,
         lifecycle=model.lifecycle,
         source=Path(model.source.path).name,
+        raw=raw,
         summary=sentence(model.description) or f"The node {model.name}.",
         interfaces=tuple(interfaces.items()),
         parameters=parameter_views(model),
@@ -217,9 +224,10 @@ def duration_text(nanoseconds: int) -> str:
 # Names --------------------------------------------------------------------------------------------
 
 
-def _methods(model: NodeType) -> Iterator[Emitted]:
-    """Yield every method that the base class gets, the hooks of rclpy first."""
-    for hook in (*_HOOKS, *(_LIFECYCLE_HOOKS if model.lifecycle else ())):
+def _methods(model: NodeType, raw: bool) -> Iterator[Emitted]:
+    """Yield every method that the base class gets, the hooks first."""
+    lifecycle_hooks = _LIFECYCLE_HOOKS if model.lifecycle else ()
+    for hook in (*_HOOKS, *(_RAW_HOOKS if raw else ()), *lifecycle_hooks):
         yield Emitted(hook, f"the hook {hook!r}", model.name_span)
     for port in model.ports:
         for method in _METHODS[port.kind]:
@@ -319,9 +327,18 @@ class PackageView:
 
 
 def package_view(
-    models: tuple[NodeType, ...], maintainer: tuple[str, str], copyright_line: str
+    models: tuple[NodeType, ...],
+    maintainer: tuple[str, str],
+    copyright_line: str,
+    raw: Collection[str] = (),
 ) -> PackageView:
     """Return the view of the package that ``models``, all of one package, make up.
+
+    Args:
+        models: the nodes.
+        maintainer: name and address.
+        copyright_line: years and holder, or nothing.
+        raw: the names of the nodes that are raw (see :class:`NodeView`).
 
     Raises:
         GenerationError: if two names collide, in a node or between the nodes' modules.
@@ -332,7 +349,7 @@ def package_view(
         origin = f"node {model.name!r}"
         modules += [Emitted(m, origin, model.name_span) for m in (name, f"{name}_base")]
     check_collisions(modules, f"the modules of package {models[0].package}")
-    nodes = tuple(node_view(model) for model in models)
+    nodes = tuple(node_view(model, model.name in raw) for model in models)
     description = " ".join(node.summary for node in nodes)
     needed = {"ament_index_python", "launch", "launch_ros", "rclpy"}
     needed |= {port.type.package for model in models for port in model.ports}

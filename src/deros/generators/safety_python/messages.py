@@ -1,54 +1,14 @@
-"""Fields of messages as rclpy gives them, and as the monitor takes them."""
+"""Fields of messages as rclpy takes them."""
 
 from __future__ import annotations
 
 import math
 
-from deros.interfaces.fields import FieldPath, ResolvedField, resolve
 from deros.interfaces.store import InterfaceStore
-from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
+from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
 from deros.monitor.ir import Scalar
 
 _HEADER = InterfaceType("std_msgs", "msg", "Header")
-
-
-def reading(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str:
-    """Return the expression that reads the field at ``path`` of the message ``msg``.
-
-    It is NaN where the message's array is too short. ``byte`` comes out as an integer, and what
-    rclpy holds as NumPy (arrays of fixed length) as Python's own numbers: a ``float32`` of NumPy
-    would make its comparisons in single precision.
-    """
-    text, tests = "msg", []
-    here, is_numpy = FieldType(kind), False
-    for position, part in enumerate(path):
-        before = here
-        found = resolve(store, kind, path[: position + 1])
-        assert isinstance(found, ResolvedField), found
-        here = found.type
-        if isinstance(part, str):
-            text += f".{part}"
-            continue
-        is_numpy = before.array == "fixed" and _is_numeric(before)
-        if before.array != "fixed":
-            tests.append(f"len({text}) > {part}")
-        text += f"[{part}]"
-    value = _converted(text, here, is_numpy)
-    return f"{value} if {' and '.join(tests)} else math.nan" if tests else value
-
-
-def _converted(text: str, kind: FieldType, is_numpy: bool) -> str:
-    if kind.base == "byte":
-        return f"[item[0] for item in {text}]" if kind.is_array else f"{text}[0]"
-    if kind.array == "fixed" and _is_numeric(kind):
-        return f"{text}.tolist()"
-    if is_numpy:
-        return f"{'float' if kind.base in FLOAT_TYPES else 'int'}({text})"
-    return text
-
-
-def _is_numeric(kind: FieldType) -> bool:
-    return kind.base in FLOAT_TYPES or (kind.base in INTEGER_RANGES and kind.base != "byte")
 
 
 def literal(kind: FieldType, value: Scalar) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
+from deros.generators.cdr_python import Topic
 from deros.generators.monitor_python import monitor_view
 from deros.generators.monitor_python.source import header, origin
 from deros.generators.names import Emitted, check_collisions, python_identifier
 from deros.generators.python_source import (
-    Call,
     Text,
     import_lines,
     one_line,
@@ -17,7 +18,7 @@ from deros.generators.python_source import (
     wrapped,
 )
 from deros.generators.rosnode_python.view import NodeView, interface_imports, node_view
-from deros.generators.safety_python.messages import is_stamped, literal, reading
+from deros.generators.safety_python.messages import is_stamped, literal
 from deros.interfaces.fields import ResolvedField, format_path, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
@@ -38,14 +39,21 @@ class HandlerView:
 
     Attributes:
         identifier: of the port: the node's method is ``on_<identifier>``.
-        type: the message class as the module names it.
-        call: the call of the monitor's method.
+        method: the monitor's method.
+        fields: what the decoder returns: one ``value``, or a tuple ``fields``.
+        decoded: the fields that are decoded.
     """
 
     identifier: str
-    type: str
     topic: str
-    call: Call
+    method: str
+    fields: str
+    decoded: Topic
+
+    @property
+    def arguments(self) -> str:
+        """What the monitor's method takes."""
+        return "now, value" if self.fields == "value" else "now, *fields"
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +119,11 @@ class SafetyView:
     trigger: str
     rule_count: int
     logs: bool
-    uses_nan: bool
+
+    @property
+    def runtime(self) -> tuple[str, ...]:
+        """The modules that are the same for every program that needs them."""
+        return ("alarm", "machine", "process", *(("states",) if self.channels else ()))
 
     @property
     def actions_module(self) -> str:
@@ -138,8 +150,8 @@ def safety_view(
     Raises:
         GenerationError: if two topics, actions or modules would get one name.
     """
-    base = node_view(node)
-    handlers = tuple(_handlers(program, base, store))
+    base = node_view(node, raw=True)
+    handlers = tuple(_handlers(program, base))
     channels = _channels(program, base, node, store)
     described = {action.name.text: action.description for action in model.actions}
     actions = tuple(
@@ -152,7 +164,7 @@ def safety_view(
         node=base,
         rules=origin_file(model),
         name=one_line(program.name),
-        imports=tuple(_imports(base, node, bool(actions))),
+        imports=tuple(_imports(base, node, channels, bool(actions))),
         handlers=handlers,
         channels=channels,
         channels_of=tuple((name, c.identifier) for c in channels for name in c.actions),
@@ -162,7 +174,6 @@ def safety_view(
         heartbeat=_alias(base, node, "~/heartbeat"),
         trigger=_alias(base, node, "~/reset"),
         rule_count=len(program.rules),
-        uses_nan=any("math.nan" in str(each.call) for each in handlers),
         logs=any(action.name == LOG_STATE for action in program.actions),
     )
     _check_names(view, program, node)
@@ -193,17 +204,28 @@ def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
     check_collisions(emitted, f"package {view.package}")
 
 
-def _imports(base: NodeView, node: NodeType, has_actions: bool) -> list[str]:
-    used = [port.type for port in node.ports]
+def _imports(
+    base: NodeView, node: NodeType, channels: tuple[ChannelView, ...], has_actions: bool
+) -> list[str]:
+    kinds = (PortKind.PUBLISHER, PortKind.SERVICE)
+    used = [port.type for kind in kinds for port in node.ports_of(kind)]
     imports = interface_imports(dict(base.interfaces), used)
+    package = node.package
     imports |= {
         "rclpy.clock": {"Clock", "ClockType", "JumpThreshold", "TimeJump"},
         "rclpy.duration": {"Duration"},
-        node.package: {"monitor"},
-        f"{node.package}.{base.base_module}": {base.base_class, "run"},
+        package: {"monitor", "process"},
+        f"{package}.alarm": {"Alarm"},
+        f"{package}.{base.base_module}": {base.base_class},
     }
+    if base.subscriptions:
+        imports[package].add("decoding")
+        imports["rclpy.event_handler"] = {"QoSRequestedIncompatibleQoSInfo"}
+        imports["rclpy.qos"] = {"qos_policy_name_from_kind"}
+    if channels:
+        imports[f"{package}.states"] = {"StateTopic"}
     if has_actions:
-        imports[f"{node.package}.{base.module}_actions"] = {f"{base.class_name}Actions"}
+        imports[f"{package}.{base.module}_actions"] = {f"{base.class_name}Actions"}
     return import_lines(imports)
 
 
@@ -215,16 +237,14 @@ def _alias(base: NodeView, node: NodeType, port_name: str) -> str:
 # Messages in --------------------------------------------------------------------------------------
 
 
-def _handlers(program: Program, base: NodeView, store: InterfaceStore) -> list[HandlerView]:
+def _handlers(program: Program, base: NodeView) -> Iterator[HandlerView]:
     ports = {port.name: port for port in base.subscriptions}
-    found: list[HandlerView] = []
     for handler in monitor_view(program).handlers:
-        port = ports[handler.topic]
-        kind = program.topics[handler.topic]
-        fields = (reading(store, kind, each.path) for each in handler.parameters)
-        call = Call(f"self._monitor.{handler.method}", ("self._now()", *fields))
-        found.append(HandlerView(port.identifier, port.type, port.name, call))
-    return found
+        identifier = ports[handler.topic].identifier
+        paths = [each.path for each in handler.parameters]
+        topic = Topic(identifier, program.topics[handler.topic], paths)
+        fields = "value" if len(paths) == 1 else "fields"
+        yield HandlerView(identifier, handler.topic, handler.method, fields, topic)
 
 
 # States out ---------------------------------------------------------------------------------------
@@ -274,7 +294,7 @@ def _field(
     is_boolean = isinstance(first.value, bool)
     single = None
     if is_boolean and len(bound) == 1:
-        single = f"{first_name!r} {'in' if first.value else 'not in'} self._active"
+        single = f"{first_name!r} {'in' if first.value else 'not in'} active"
     inactive = repr(not first.value) if is_boolean else None
     return FieldView(f"msg.{format_path(path)}", inactive, single, states)
 

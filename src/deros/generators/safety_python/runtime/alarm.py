@@ -1,0 +1,49 @@
+"""One-shot timers that ring at an instant, once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from rclpy.clock import Clock
+from rclpy.node import Node
+
+
+class Alarm:
+    """
+    A timer that is set to an instant of a clock.
+
+    The EventsExecutor may run the callback of a timer twice for one expiry, when another timer is
+    set in the same moment; of a periodic timer the next call is then one period late. An alarm
+    knows when it is due, whatever the executor does.
+    """
+
+    def __init__(
+        self, node: Node, clock: Clock, now: Callable[[], int], callback: Callable[[], None]
+    ) -> None:
+        """Prepare; now returns the time of the clock in nanoseconds."""
+        self.due = 0  # for which it is set, or was last
+        self.is_set = False
+        self._now = now
+        self._callback = callback
+        self._timer = node.create_timer(1.0, self._ring, clock=clock, autostart=False)
+
+    def ring_at(self, due: int) -> None:
+        """Ring at an instant, or at once if it is past; what was set before is forgotten."""
+        self.due, self.is_set = due, True
+        self._timer.timer_period_ns = max(due - self._now(), 1)
+        self._timer.reset()
+
+    def repeat(self, period: int) -> None:
+        """Ring again a period after the last time; periods that have passed are left out."""
+        now = self._now()
+        self.ring_at(self.due + period if now < self.due + period else now + period)
+
+    def _ring(self) -> None:
+        self._timer.cancel()
+        if not self.is_set:
+            return
+        if self._now() < self.due:
+            self.ring_at(self.due)
+            return
+        self.is_set = False
+        self._callback()
