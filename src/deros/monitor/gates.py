@@ -14,6 +14,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import (
     INTEGER_RANGES,
     FieldType,
+    InterfaceType,
     MessageDefinition,
 )
 from deros.interfaces.units import Unit
@@ -23,7 +24,7 @@ from deros.metamodels.flatten import resolve_name
 from deros.monitor import ir
 from deros.monitor.actions import Actions
 from deros.monitor.bounds import as_float32, rounded, type_bounds
-from deros.monitor.commands import QUATERNION, TIME
+from deros.monitor.commands import LAYOUT, QUATERNION, TIME
 from deros.monitor.resolved import MessageConstant, Quantity
 from deros.monitor.scope import Scope
 from deros.monitor.terms import Terms
@@ -31,6 +32,11 @@ from deros.monitor.terms import Terms
 SLOWEST_HZ, FASTEST_HZ = 1, 1000
 """Between these lies the rate at which a gate publishes zeros."""
 
+_INDIVISIBLE = {
+    TIME: "a time stamp",
+    QUATERNION: "a quaternion",
+    LAYOUT: "the layout of an array",
+}
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9]+")
 
 
@@ -85,7 +91,11 @@ class Gates:
         )
 
     def _check_type(self, gate: rules.Gate, topics: tuple[str, str]) -> None:
-        if not any(has_numbers(self._scope.store, FieldType(gate.type))):
+        values = list(_values(self._scope.store, gate.type))
+        unknown = [each.base for each in values if isinstance(each.base, InterfaceType)]
+        if unknown:
+            self._scope.message_type(unknown[0], gate.type_span)
+        elif not any(each.is_number for each in values):
             message = f"{gate.type.short} has no number that could be limited or made zero"
             self._scope.fault(codes.GATE_WITHOUT_NUMBERS, message, gate.type_span)
         for topic in topics:
@@ -172,10 +182,9 @@ class Gates:
             hint = "name one of its elements, as in 'data[0]'" if kind.is_array else ""
             self._scope.fault(codes.NOT_A_NUMBER_FIELD, message, span, hint)
             return None
-        owner = found.parent.type if found.parent else None
-        if owner in (TIME, QUATERNION):
-            what = "time stamp" if owner == TIME else "quaternion"
-            message = f"'{found.name}' of a {what} means nothing by itself, so it has no limits"
+        whole = _INDIVISIBLE.get(found.parent.type) if found.parent else None
+        if whole is not None:
+            message = f"'{found.name}' of {whole} means nothing by itself, so it has no limits"
             self._scope.fault(codes.GATE_LIMIT, message, span)
             return None
         return found
@@ -278,14 +287,20 @@ def _held(number: Fraction, kind: FieldType) -> int | float:
     return as_float32(value) if kind.base == "float32" else value
 
 
-def has_numbers(store: InterfaceStore, kind: FieldType) -> Iterator[bool]:
-    """Yield, for each value in a message, whether it is a number that can be made zero."""
-    if isinstance(kind.base, str):
-        yield kind.element.is_number
-    elif kind.base != TIME:
-        definition = store.message(kind.base)
-        for _, each in definition.fields if definition else ():
-            yield from has_numbers(store, each)
+def _values(store: InterfaceStore, kind: InterfaceType) -> Iterator[FieldType]:
+    """Yield the type of every value in a message that is a command, in arrays and messages too.
+
+    Of a message type that is not known, nothing but itself can be told.
+    """
+    definition = store.message(kind)
+    if definition is None:
+        yield FieldType(kind)
+    elif kind not in (TIME, LAYOUT):
+        for _, each in definition.fields:
+            if isinstance(each.base, str):
+                yield each.element
+            else:
+                yield from _values(store, each.base)
 
 
 def _article(kind: str) -> str:

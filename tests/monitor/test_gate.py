@@ -1,0 +1,511 @@
+"""The reference gate: one timeline for each sentence that says what a gate means."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from deros.monitor.commands import Message
+from deros.monitor.gate import GateEngine, Output
+from tests.support.rules import embedded_store, program
+
+MS = 1_000_000
+ACTIONS = """
+action stop publishes true on /stop : std_msgs.Bool latched;
+action low_speed publishes true on /low_speed : std_msgs.Bool latched;
+"""
+STOP = "stop: zero;"
+LOW = "low_speed: limit linear.x to [-0.1, 0.1] m/s, angular.z to [-0.2, 0.2] rad/s;"
+HEARTBEAT = "lost heartbeat for 0.3 sec: zero;"
+INPUT = "lost input for 0.5 sec: zero;"
+
+Shown = list[tuple[float, str, float]]
+
+
+class Driver:
+    """A gate of velocity commands, with times in milliseconds."""
+
+    def __init__(self, *lines: str, kind: str = "geometry_msgs.Twist") -> None:
+        """Start at 0 a gate of these lines."""
+        text = f"{ACTIONS}gate /nav -> /cmd_vel : {kind} rate 20 Hz {{ {' '.join(lines)} }}"
+        built = program(text)
+        self.engine = GateEngine(built.gates[0], built.actions, embedded_store())
+
+    def drive(self, t_ms: float, speed: float, turn: float = 0.0) -> Shown:
+        """Command a speed."""
+        return shown(self.engine.command(at(t_ms), twist(speed, turn)))
+
+    def state(self, t_ms: float, action: str, active: bool) -> Shown:
+        """Say what an action is."""
+        return shown(self.engine.state(at(t_ms), f"/{action}", {"data": active}))
+
+    def beat(self, t_ms: float) -> Shown:
+        """Let the safety node's heart beat."""
+        return shown(self.engine.heartbeat(at(t_ms)))
+
+    def wait(self, t_ms: float) -> Shown:
+        """Let time pass, deadline by deadline, as an idle node does."""
+        found: list[Output] = []
+        while (due_ns := self.engine.next_deadline) is not None and due_ns <= at(t_ms):
+            found += self.engine.advance(due_ns)
+        return shown([*found, *self.engine.advance(at(t_ms))])
+
+    def open(self) -> Driver:
+        """Let everything be known and well at 0."""
+        self.beat(0)
+        self.state(0, "stop", False)
+        self.state(0, "low_speed", False)
+        self.drive(0, 0.0)
+        return self
+
+
+def at(t_ms: float) -> int:
+    """Return milliseconds as nanoseconds."""
+    return round(t_ms * MS)
+
+
+def twist(speed: Any, turn: float = 0.0) -> Message:
+    """Return a command; its other numbers are such that a limit would show."""
+    return {
+        "linear": {"x": speed, "y": 7.0, "z": 0.0},
+        "angular": {"x": 0.0, "y": 0.0, "z": turn},
+    }
+
+
+def shown(outputs: list[Output]) -> Shown:
+    """Return when, what and how fast."""
+    return [(each.t_ns / MS, each.kind, each.message["linear"]["x"]) for each in outputs]
+
+
+# Lines of actions ---------------------------------------------------------------------------------
+
+
+def test_command_passes_unchanged_and_at_once() -> None:
+    """With no line that applies, the very message goes through at the instant it comes."""
+    gate = Driver(STOP, LOW, HEARTBEAT, INPUT).open()
+    command = twist(5.0, -3.0)
+    (output,) = gate.engine.command(at(20), command)
+    assert (output.t_ns, output.kind) == (at(20), "pass")
+    assert output.message is command
+
+
+def test_zero_at_once_then_with_the_period() -> None:
+    """A stop is zero at its own instant, without a command, and every period from there on."""
+    gate = Driver(STOP, HEARTBEAT).open()
+    gate.drive(10, 0.5)
+    assert gate.state(33, "stop", True) == [(33, "zero", 0.0)]
+    assert gate.wait(150) == [(83, "zero", 0.0), (133, "zero", 0.0)]
+
+
+def test_no_command_is_published_while_zero_decides() -> None:
+    """Commands neither pass nor bring extra zeros; the period goes on as it was."""
+    gate = Driver(STOP).open()
+    gate.state(0, "stop", True)
+    assert gate.drive(20, 0.5) == gate.drive(49, 0.5) == []
+    assert gate.wait(100) == [(50, "zero", 0.0), (100, "zero", 0.0)]
+
+
+def test_nothing_follows_the_end_of_a_stop_but_the_next_command() -> None:
+    """No stored command is replayed when the zeros end."""
+    gate = Driver(STOP).open()
+    gate.state(0, "stop", True)
+    gate.drive(20, 0.5)
+    assert gate.state(30, "stop", False) == []
+    assert gate.wait(1000) == []
+    assert gate.drive(1001, 0.6) == [(1001, "pass", 0.6)]
+
+
+def test_limit_holds_for_commands() -> None:
+    """Only the limited numbers are touched, and only where they are beyond; the ends are within."""
+    gate = Driver(LOW).open()
+    gate.state(0, "low_speed", True)
+    (output,) = gate.engine.command(at(10), twist(0.5, -3.0))
+    assert output.kind == "limited"
+    assert output.message == {
+        "linear": {"x": 0.1, "y": 7.0, "z": 0.0},
+        "angular": {"x": 0.0, "y": 0.0, "z": -0.2},
+    }
+    assert gate.drive(20, -0.1, 0.2) == [(20, "pass", -0.1)]
+
+
+def test_limit_holds_at_once_for_the_command_being_executed() -> None:
+    """The last command goes out again within the limit; one that keeps it already does not."""
+    gate = Driver(LOW).open()
+    gate.drive(10, 0.5)
+    assert gate.state(15, "low_speed", True) == [(15, "limited", 0.1)]
+    assert gate.wait(1000) == []
+    assert gate.state(1001, "low_speed", False) == []
+    gate.drive(1002, 0.05)
+    assert gate.state(1003, "low_speed", True) == []
+
+
+def test_limit_after_zeros_wakes_no_command() -> None:
+    """What came while zeros were published was never executed, and is not now."""
+    gate = Driver(STOP, LOW).open()
+    gate.state(0, "stop", True)
+    gate.drive(20, 0.5)
+    gate.state(30, "stop", False)
+    assert gate.state(40, "low_speed", True) == []
+
+
+def test_looser_limit_speeds_nothing_up() -> None:
+    """When the tighter of two limits ends, the next command is the first to be faster."""
+    gate = Driver(
+        "stop: limit linear.x to [0, 0.1];", "low_speed: limit linear.x to [0, 0.3];"
+    ).open()
+    gate.state(0, "stop", True)
+    gate.state(0, "low_speed", True)
+    assert gate.drive(10, 0.5) == [(10, "limited", 0.1)]
+    assert gate.state(20, "stop", False) == []
+    assert gate.drive(30, 0.5) == [(30, "limited", 0.3)]
+
+
+def test_earlier_zero_wins_over_a_limit() -> None:
+    """With the zero line first, both active is zero."""
+    gate = Driver(STOP, LOW).open()
+    gate.state(0, "low_speed", True)
+    gate.state(10, "stop", True)
+    assert gate.drive(20, 0.5) == []
+    assert gate.wait(60) == [(60, "zero", 0.0)]
+
+
+def test_earlier_limit_wins_field_by_field() -> None:
+    """A limit before the zero line keeps its own numbers; all others are zero."""
+    gate = Driver(LOW, STOP).open()
+    gate.drive(0, 0.5, 0.1)
+    assert gate.state(5, "low_speed", True) == [(5, "limited", 0.1)]
+    (output,) = gate.engine.state(at(10), "/stop", {"data": True})
+    assert output.kind == "zero"
+    assert output.message == {
+        "linear": {"x": 0.1, "y": 0.0, "z": 0.0},
+        "angular": {"x": 0.0, "y": 0.0, "z": 0.1},
+    }
+
+
+def test_end_of_a_limit_before_a_zero_line_is_zero_at_once() -> None:
+    """What the limit left to the command becomes zero in the same instant, and a period anew."""
+    gate = Driver(LOW, STOP).open()
+    gate.drive(0, 0.5)
+    gate.state(5, "low_speed", True)
+    gate.state(10, "stop", True)
+    assert gate.state(20, "low_speed", False) == [(20, "zero", 0.0)]
+    assert gate.wait(70) == [(70, "zero", 0.0)]
+
+
+# What is not known --------------------------------------------------------------------------------
+
+
+def test_action_counts_as_active_before_its_first_state() -> None:
+    """At the start nothing passes; zeros come from the very start."""
+    gate = Driver(STOP)
+    assert gate.wait(120) == [(0, "zero", 0.0), (50, "zero", 0.0), (100, "zero", 0.0)]
+    assert gate.drive(130, 0.5) == []
+    assert gate.state(140, "stop", False) == []
+    assert gate.drive(150, 0.5) == [(150, "pass", 0.5)]
+
+
+def test_limit_counts_as_active_before_its_first_state() -> None:
+    """A command that comes before the state of the limit's action is limited."""
+    gate = Driver(LOW)
+    assert gate.drive(10, 0.5) == [(10, "limited", 0.1)]
+    gate.state(20, "low_speed", False)
+    assert gate.drive(30, 0.5) == [(30, "pass", 0.5)]
+
+
+def test_action_counts_as_active_from_a_loss_until_its_next_state() -> None:
+    """A heartbeat alone does not open the gate again: what was known may be long out of date."""
+    gate = Driver(STOP, HEARTBEAT).open()
+    gate.wait(400)
+    gate.beat(410)
+    assert gate.drive(415, 0.5) == []
+    gate.state(420, "stop", False)
+    assert gate.drive(425, 0.5) == [(425, "pass", 0.5)]
+
+
+def test_state_during_a_loss_is_known_after_it() -> None:
+    """The first state after the loss began counts, though the heartbeat comes later."""
+    gate = Driver(STOP, HEARTBEAT).open()
+    gate.wait(400)
+    gate.state(405, "stop", False)
+    gate.beat(410)
+    assert gate.drive(415, 0.5) == [(415, "pass", 0.5)]
+
+
+def test_state_that_cannot_be_decoded_counts_as_active() -> None:
+    """After it, nothing is known of the action."""
+    gate = Driver(STOP).open()
+    assert shown(gate.engine.state(at(10), "/stop", None)) == [(10, "zero", 0.0)]
+
+
+def test_states_of_one_topic_are_told_apart_by_value() -> None:
+    """Two actions on one topic: each is active while the field has its own value."""
+    built = program(
+        """action stop publishes 2 on /gear : std_msgs.UInt8;
+        action low publishes 1 on /gear : std_msgs.UInt8;
+        gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+          stop: zero; low: limit linear.x to [0, 0.1]; }"""
+    )
+    engine = GateEngine(built.gates[0], built.actions, embedded_store())
+    for value, expected in ((0, ["pass"]), (1, ["limited"]), (2, []), (3, ["pass"])):
+        engine.state(at(value), "/gear", {"data": value})
+        assert [each.kind for each in engine.command(at(value), twist(0.5))] == expected
+
+
+def test_states_of_floats_are_told_as_the_field_holds_them() -> None:
+    """0.1 in a float32 is another number than 0.1, and still the one that the action publishes."""
+    built = program(
+        """action slow publishes 0.1 on /pace : std_msgs.Float32;
+        gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz { slow: zero; }"""
+    )
+    engine = GateEngine(built.gates[0], built.actions, embedded_store())
+    engine.state(0, "/pace", {"data": 0.0})
+    assert engine.command(0, twist(0.5))[0].kind == "pass"
+    engine.state(1, "/pace", {"data": 0.10000000149011612})
+    assert engine.command(1, twist(0.5)) == []
+
+
+# Losses -------------------------------------------------------------------------------------------
+
+
+def test_heartbeat_is_lost_from_the_start() -> None:
+    """Before the first heartbeat the line applies."""
+    gate = Driver(HEARTBEAT)
+    assert gate.wait(60) == [(0, "zero", 0.0), (50, "zero", 0.0)]
+    assert gate.beat(70) == []
+    assert gate.drive(80, 0.5) == [(80, "pass", 0.5)]
+
+
+def test_heartbeat_is_lost_at_last_plus_time() -> None:
+    """A nanosecond before, commands pass; at the very instant there is zero."""
+    gate = Driver(HEARTBEAT).open()
+    gate.beat(100)
+    assert gate.engine.advance(at(400) - 1) == []
+    assert gate.drive(400 - 1e-6, 0.5) == [(400 - 1e-6, "pass", 0.5)]
+    assert gate.wait(400) == [(400, "zero", 0.0)]
+
+
+def test_deadline_goes_before_a_message_of_its_instant() -> None:
+    """A heartbeat at the instant of the loss comes too late for it, and ends it."""
+    gate = Driver(HEARTBEAT).open()
+    gate.drive(10, 0.5)
+    assert gate.beat(300) == [(300, "zero", 0.0)]
+    assert gate.drive(300, 0.5) == [(300, "pass", 0.5)]
+
+
+def test_late_timer_changes_nothing() -> None:
+    """The zero of a loss bears its own instant, and the state of before counts until there."""
+    gate = Driver(STOP, HEARTBEAT).open()
+    assert gate.drive(310, 0.5) == [(300, "zero", 0.0)]
+
+
+def test_overdue_zeros_are_made_up_for_by_one() -> None:
+    """After a gate has hung, there is one zero and not a thousand; the beat goes on as before."""
+    gate = Driver(STOP)
+    gate.wait(50)
+    assert shown(gate.engine.advance(at(1_000_070))) == [(100, "zero", 0.0)]
+    assert gate.engine.next_deadline == at(1_000_100)
+
+
+def test_input_is_lost_from_the_start_and_after_its_time() -> None:
+    """Zeros until the first command, and again from 0.5 s after the last one."""
+    gate = Driver(INPUT)
+    assert gate.wait(60) == [(0, "zero", 0.0), (50, "zero", 0.0)]
+    assert gate.drive(70, 0.5) == [(70, "pass", 0.5)]
+    assert gate.wait(620) == [(570, "zero", 0.0), (620, "zero", 0.0)]
+    assert gate.drive(630, 0.4) == [(630, "pass", 0.4)]
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), float("-inf")])
+def test_refused_command_is_a_lost_input_at_once(bad: float) -> None:
+    """It is never published; zeros come at once, until the next good command."""
+    gate = Driver(INPUT).open()
+    gate.drive(10, 0.5)
+    assert gate.drive(20, bad) == [(20, "zero", 0.0)]
+    assert gate.wait(70) == [(70, "zero", 0.0)]
+    assert gate.drive(80, 0.5) == [(80, "pass", 0.5)]
+
+
+def test_command_that_cannot_be_decoded_is_refused() -> None:
+    """As one with NaN."""
+    gate = Driver(INPUT).open()
+    assert shown(gate.engine.command(at(10), None)) == [(10, "zero", 0.0)]
+
+
+def test_refused_command_does_not_keep_the_input_alive() -> None:
+    """Without a line about the input nothing follows; the refused one is not executed either."""
+    gate = Driver(LOW, HEARTBEAT).open()
+    gate.drive(10, 0.05)
+    assert gate.drive(20, float("nan")) == []
+    assert gate.state(30, "low_speed", True) == []
+
+
+def test_lost_line_may_limit() -> None:
+    """A loss that limits: what is being executed is slowed down, and so are later commands."""
+    gate = Driver("lost heartbeat for 0.3 sec: limit linear.x to [-0.1, 0.1];").open()
+    gate.drive(10, 0.5)
+    assert gate.wait(1000) == [(300, "limited", 0.1)]
+    assert gate.drive(1010, -0.5) == [(1010, "limited", -0.1)]
+
+
+def test_limit_of_an_action_says_nothing_after_a_loss() -> None:
+    """Low speed before zero does not drive on when the safety node is dead."""
+    gate = Driver(LOW, HEARTBEAT).open()
+    gate.state(0, "low_speed", True)
+    gate.drive(10, 0.5)
+    assert gate.wait(300) == [(300, "zero", 0.0)]
+    gate.beat(310)
+    assert gate.drive(320, 0.5) == [(320, "limited", 0.1)]
+
+
+def test_limit_of_an_action_says_nothing_without_commands() -> None:
+    """Nor does it when the controller is."""
+    gate = Driver(LOW, INPUT).open()
+    gate.state(0, "low_speed", True)
+    gate.drive(10, 0.5)
+    assert gate.wait(510) == [(510, "zero", 0.0)]
+
+
+def test_two_losses_of_one_heartbeat() -> None:
+    """First slower, then zero; limits of actions fall silent with the first."""
+    gate = Driver(
+        "lost heartbeat for 0.6 sec: zero;",
+        "lost heartbeat for 0.3 sec: limit linear.x to [-0.2, 0.2];",
+        LOW,
+    ).open()
+    gate.drive(10, 0.5)
+    assert gate.wait(650) == [(300, "limited", 0.2), (600, "zero", 0.0), (650, "zero", 0.0)]
+
+
+# The clock ----------------------------------------------------------------------------------------
+
+
+def test_backward_step_makes_everything_unknown() -> None:
+    """As at the start: zeros at once, until heartbeat, states and a command have come again."""
+    gate = Driver(STOP, HEARTBEAT, INPUT).open()
+    gate.drive(100, 0.5)
+    assert gate.beat(40) == [(40, "zero", 0.0)]
+    gate.state(41, "stop", False)
+    assert gate.drive(42, 0.5) == [(42, "pass", 0.5)]
+
+
+def test_backward_step_does_not_stop_the_zeros() -> None:
+    """They go on from the new time, however far back it is."""
+    gate = Driver(STOP)
+    gate.wait(1000)
+    assert gate.wait(-5000) == [(-5000, "zero", 0.0)]
+    assert gate.wait(-4950) == [(-4950, "zero", 0.0)]
+
+
+# Zero messages ------------------------------------------------------------------------------------
+
+
+def zero_after(kind: str, command: Message, t_ms: float = 1500) -> Message:
+    """Return the zero that a stop brings after ``command``."""
+    gate = Driver(STOP, kind=kind)
+    gate.engine.state(0, "/stop", {"data": False})
+    (passed,) = gate.engine.command(1, command)
+    assert passed.message is command
+    (output,) = gate.engine.state(at(t_ms), "/stop", {"data": True})
+    return output.message
+
+
+def test_zero_keeps_the_frame_and_takes_the_time() -> None:
+    """The header has the time of the zero and the frame of the last command."""
+    header = {"stamp": {"sec": 1, "nanosec": 2}, "frame_id": "base_link"}
+    assert zero_after("geometry_msgs.TwistStamped", {"header": header, "twist": twist(0.5)}) == {
+        "header": {"stamp": {"sec": 1, "nanosec": 500 * MS}, "frame_id": "base_link"},
+        "twist": {
+            "linear": {"x": 0.0, "y": 0.0, "z": 0.0},
+            "angular": {"x": 0.0, "y": 0.0, "z": 0.0},
+        },
+    }
+
+
+def test_zero_has_arrays_as_long_as_the_last_command() -> None:
+    """Numbers in them are zero, the names of joints stay."""
+    command = {
+        "header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""},
+        "name": ["left", "right"],
+        "position": [],
+        "velocity": [1.0, 2.0],
+        "effort": [3.0],
+    }
+    zero = zero_after("sensor_msgs.JointState", command)
+    assert {name: zero[name] for name in command if name != "header"} == {
+        "name": ["left", "right"],
+        "position": [],
+        "velocity": [0.0, 0.0],
+        "effort": [0.0],
+    }
+
+
+def test_zero_before_any_command_has_empty_arrays() -> None:
+    """There is no length to go by."""
+    gate = Driver(STOP, kind="sensor_msgs.JointState")
+    (output,) = gate.engine.advance(0)
+    assert output.message["velocity"] == output.message["name"] == []
+
+
+def test_zero_keeps_the_layout_of_an_array() -> None:
+    """It says which number is which, and is no command by itself."""
+    layout = {"dim": [{"label": "joint", "size": 2, "stride": 2}], "data_offset": 1}
+    zero = zero_after("std_msgs.Float64MultiArray", {"layout": layout, "data": [1.0, 2.0]})
+    assert zero == {"layout": layout, "data": [0.0, 0.0]}
+
+
+def test_zero_of_a_quaternion_is_no_rotation() -> None:
+    """Four zeros are no rotation at all."""
+    command = {
+        "position": {"x": 1.0, "y": 2.0, "z": 3.0},
+        "orientation": {"x": 1.0, "y": 0.0, "z": 0.0, "w": 0.0},
+    }
+    zero = zero_after("geometry_msgs.Pose", command)
+    assert zero["orientation"] == {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+    assert zero["position"] == {"x": 0.0, "y": 0.0, "z": 0.0}
+
+
+def test_zero_in_arrays_of_messages() -> None:
+    """There are as many points as before, and each is zero; a duration is a number like any."""
+    stamp = {"sec": 3, "nanosec": 4}
+    point = {
+        "positions": [1.0],
+        "velocities": [],
+        "accelerations": [],
+        "effort": [],
+        "time_from_start": stamp,
+    }
+    header = {"stamp": stamp, "frame_id": ""}
+    command = {"header": header, "joint_names": ["a"], "points": [point]}
+    zero = zero_after("trajectory_msgs.JointTrajectory", command)
+    assert zero["points"] == [
+        {**point, "positions": [0.0], "time_from_start": {"sec": 0, "nanosec": 0}}
+    ]
+
+
+def test_zero_of_flags_and_integers() -> None:
+    """Booleans are false and integers 0."""
+    command = {"x_offset": 1, "y_offset": 2, "height": 3, "width": 4, "do_rectify": True}
+    assert zero_after("sensor_msgs.RegionOfInterest", command) == {
+        "x_offset": 0,
+        "y_offset": 0,
+        "height": 0,
+        "width": 0,
+        "do_rectify": False,
+    }
+
+
+def test_zero_before_any_command_has_full_fixed_arrays() -> None:
+    """Their length is part of the type."""
+    gate = Driver(STOP, kind="geometry_msgs.PoseWithCovariance")
+    (output,) = gate.engine.advance(0)
+    assert output.message["covariance"] == [0.0] * 36
+
+
+def test_limit_of_an_element_that_the_command_lacks() -> None:
+    """There is nothing to limit; the elements that are there are."""
+    line = "stop: limit data[0] to [0, 1], data[3] to [0, 1];"
+    gate = Driver(line, kind="std_msgs.Int32MultiArray")
+    layout = {"dim": [], "data_offset": 0}
+    (output,) = gate.engine.command(0, {"layout": layout, "data": [5, 5]})
+    assert output.message["data"] == [1, 5]
