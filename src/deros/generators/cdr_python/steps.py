@@ -56,20 +56,20 @@ class Steps:
             # The first field stands behind the encapsulation, hence at 4 modulo 8.
             ahead = (ENCAPSULATION - self.place.offset) % alignment
             padding = f"({ahead} - at) % {alignment}" if ahead else f"-at % {alignment}"
-            self._move(padding, 0, f"{path}: a multiple of {alignment}" if path else "")
+            self._move(padding, 0, path and f"to {path}, a multiple of {alignment}")
             aligned = moved(alignment)
         self.place = aligned
 
-    def advance(self, distance: str, path: str, more: int = 0) -> None:
+    def advance(self, distance: str, comment: str, more: int = 0) -> None:
         """Move ``at`` by an expression; what is then known of the place is for the caller."""
         self.read_gathered()
-        self._move(distance, more, path)
+        self._move(distance, more, comment)
 
-    def settle(self, path: str) -> None:
+    def settle(self, comment: str) -> None:
         """Make ``at`` stand for the present place."""
         self.read_gathered()
         if not self.place.moving or self.place.offset:
-            self._move("", 0, path)
+            self._move("", 0, comment)
         self.place = self.place.base()
 
     def _move(self, distance: str, more: int, comment: str) -> None:
@@ -112,11 +112,11 @@ class Steps:
         """Return the expression that reads one primitive at the present place, or behind it."""
         return f"{self._writer.parts.reader(letter)}[order](data, {self.place.text(more)})[0]"
 
-    def view(self, letter: str, count: str, name: str, path: str) -> None:
+    def view(self, letter: str, count: str, name: str) -> None:
         """Write the line that looks at numbers in the data as an array."""
         dtype = self._writer.parts.dtype(letter)
         place = self.place.text()
-        self._writer.line(f"{name} = np.frombuffer(data, {dtype}[order], {count}, {place})", path)
+        self._writer.line(f"{name} = np.frombuffer(data, {dtype}[order], {count}, {place})")
 
     def nan(self) -> str:
         """Return the name of the value of an element that is not there."""

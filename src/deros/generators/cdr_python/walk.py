@@ -75,7 +75,7 @@ class Walk(Steps):
     def _string(self, base: str, wanted: Wanted, later: bool, path: str) -> None:
         self.align(4, path)
         if wanted.name is not None:
-            self._writer.line(f"{wanted.name} = {self._text(base)}", path)
+            self._writer.line(f"{wanted.name} = {self._text(base)}")
         if later:
             self._skip(_CHARACTERS[base], path)
 
@@ -86,7 +86,7 @@ class Walk(Steps):
         """Go behind a length, and as many elements of a constant size."""
         known = math.gcd(self.place.plus(4).alignment(), size)
         length = self.one("I")
-        self.advance(length if size == 1 else f"{size} * {length}", path, 4)
+        self.advance(length if size == 1 else f"{size} * {length}", path and f"past {path}", 4)
         self.place = moved(known)
 
     # Arrays -------------------------------------------------------------------------------------
@@ -97,7 +97,7 @@ class Walk(Steps):
             self._fixed_numbers(element, length, wanted, path)
             return
         if isinstance(element.base, InterfaceType) and wanted.name is not None:
-            self._writer.line(f"{wanted.name} = range({length})", path)
+            self._writer.line(f"{wanted.name} = range({length})")
         if self._is_constant(element, length):
             last = max((index for index, _ in wanted.elements), default=-1)
             for index in range(length if later else last + 1):
@@ -107,7 +107,6 @@ class Walk(Steps):
         if element.base in STRING_TYPES and wanted.name is not None:
             self._strings(element, length, wanted, path)
         else:
-            self.settle(path)
             self._elements(element, length, wanted, later, path)
 
     def _is_constant(self, element: FieldType, length: int) -> bool:
@@ -126,7 +125,7 @@ class Walk(Steps):
         if wanted.name is not None and (length <= SMALL or letter == "?"):
             self.gather(f"{length}{letter}", length * size, wanted.name, path)
         elif wanted.name is not None:
-            self.view(letter, str(length), wanted.name, path)
+            self.view(letter, str(length), wanted.name)
         for index, part in wanted.elements:
             self.place = start.plus(index * size)
             self.gather(letter, size, str(part.name), f"{path}[{index}]")
@@ -140,7 +139,7 @@ class Walk(Steps):
             self._skip(stride, path)
             return
         count = self._counter()
-        self._writer.line(f"{count} = {self.one('I')}", path)
+        self._writer.line(f"{count} = {self.one('I')}", path and f"length of {path}")
         self.place = self.place.plus(4)
         self._depth += 1
         is_message = isinstance(element.base, InterfaceType)
@@ -148,14 +147,13 @@ class Walk(Steps):
         if stride is not None:
             self._even(element, (first, stride, count), wanted, later or counted, path)
         elif is_message or wanted.name is None:
-            self.settle(path)
             self._elements(element, count, wanted, later or counted, path)
         else:
             self._strings(element, count, wanted, path)
         self._depth -= 1
         if counted:
             helper = self._writer.parts.helper("elements")
-            self._writer.line(f"{wanted.name} = {helper}(data, {self.place.text()}, {count})", path)
+            self._writer.line(f"{wanted.name} = {helper}(data, {self.place.text()}, {count})")
 
     def _counter(self) -> str:
         """Return the variable for the length of a sequence; nested ones have their own."""
@@ -194,29 +192,31 @@ class Walk(Steps):
     ) -> None:
         first, stride, count = layout
         if first == LARGEST and self.place.aligned(LARGEST) != self.place:
-            self._align_elements(count, later, path)
+            # A view, even one of nothing, must not begin behind the data.
+            self._align_elements(count, later or wanted.name is not None, path)
         start = self.place
         if isinstance(element.base, InterfaceType):
             if first == LARGEST:  # so they are, where there are any
                 self.place = Place(start.moving, start.offset, LARGEST, -start.offset % LARGEST)
             self._even_messages(element, stride, count, wanted, path)
         else:
-            self._numbers(element, count, wanted, path)
+            self._numbers(element, count, wanted)
         self.place = start
         if later:
             known = math.gcd(start.alignment(), stride)
-            self.advance(count if stride == 1 else f"{stride} * {count}", path)
+            distance = count if stride == 1 else f"{stride} * {count}"
+            self.advance(distance, path and f"past {path}")
             self.place = moved(known)
 
-    def _align_elements(self, count: str, later: bool, path: str) -> None:
+    def _align_elements(self, count: str, exact: bool, path: str) -> None:
         """Go to the first element; where there is none, there is no padding, either."""
-        if not later:
+        if not exact:
             self.align(LARGEST, path)
             return
-        self.settle(path)
+        self.settle("")
         with self._writer.indented(f"if {count}:"):
-            self.align(LARGEST, f"{path}[0]")
-            self.settle(path)
+            self.align(LARGEST, path and f"{path}[0]")
+            self.settle("")
         self.place = moved(4)
 
     def _even_messages(
@@ -231,13 +231,13 @@ class Walk(Steps):
                 self._single(element, part, False, f"{path}[{index}]")
                 self.read_gathered()
 
-    def _numbers(self, element: FieldType, count: str, wanted: Wanted, path: str) -> None:
+    def _numbers(self, element: FieldType, count: str, wanted: Wanted) -> None:
         letter, size = FORMATS[str(element.base)]
         if wanted.name is not None and letter == "?":
             value = f"struct.unpack_from(f'{{{count}}}?', data, {self.place.text()})"
-            self._writer.line(f"{wanted.name} = {value}", path)
+            self._writer.line(f"{wanted.name} = {value}")
         elif wanted.name is not None:
-            self.view(letter, count, wanted.name, path)
+            self.view(letter, count, wanted.name)
         for index, part in wanted.elements:
             value = f"{self.one(letter, index * size)} if {count} > {index} else {self.nan()}"
             self._writer.line(f"{part.name} = {value}")
@@ -246,7 +246,7 @@ class Walk(Steps):
 
     def _strings(self, element: FieldType, count: str | int, wanted: Wanted, path: str) -> None:
         base = str(element.base)
-        self.settle(path)
+        self.settle(f"to {path}[0]")
         self._writer.line(f"{wanted.name} = []")
         with self._writer.indented(f"for _ in range({count}):"):
             self.place = moved(1)
@@ -285,19 +285,19 @@ class Walk(Steps):
     def _element(
         self, element: FieldType, part: Wanted, more: bool, condition: str, path: str
     ) -> None:
-        self.settle(path)
+        self.settle("")
         self.default(part)
         before = self.place
         with self._writer.indented(f"if {condition}:"):
             self._single(element, part, more, path)
             self.read_gathered()
             if more:
-                self.settle(path)
+                self.settle(f"past {path}")
         self.place = before.meet(self.place) if more else before
 
     def _loop(self, element: FieldType, times: str, path: str) -> None:
         """Pass over elements one by one."""
-        self.settle(path)
+        self.settle("")
         entry = self.place
         while True:  # what is known of the place must hold at each turn
             trial = self._trial(entry)
@@ -306,7 +306,9 @@ class Walk(Steps):
             if meet == entry:
                 break
             entry = meet
-        with self._writer.indented(f"for _ in range({times}):", f"{path}[]"):
+        with self._writer.indented(
+            f"for _ in range({times}):", path and f"past elements of {path}"
+        ):
             self.place = entry
             self._single(element, NOTHING, True, "")
             self.settle("")
@@ -324,13 +326,13 @@ class Walk(Steps):
             self._single(element, NOTHING, True, f"{path}[{done}]")
             self.place = self.place.plus(self._distance(element) * (count - done - 1))
             return
-        self.settle(path)
+        self.settle("")
         before = self.place
         with self._writer.indented(f"if {count} > {done}:" if done else f"if {count}:"):
             self._single(element, NOTHING, True, f"{path}[{done}]")
             distance = self._distance(element)
             known = math.gcd(self.place.alignment(), distance)
-            self.advance(f"{distance} * ({count} - {done + 1})", path)
+            self.advance(f"{distance} * ({count} - {done + 1})", path and f"past {path}")
         self.place = before.meet(moved(known))
 
     def _distance(self, element: FieldType) -> int:

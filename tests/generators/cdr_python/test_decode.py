@@ -1,0 +1,280 @@
+"""What the decoders read is what rclpy reads, from whatever data."""
+
+from __future__ import annotations
+
+import math
+import random
+import struct
+import time
+import tracemalloc
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+pytest.importorskip("test_msgs.msg")
+
+import numpy as np
+from nav_msgs.msg import Odometry
+from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import Imu, JointState, LaserScan, PointCloud2, PointField
+from test_msgs.msg import UnboundedSequences, WStrings
+
+from deros.interfaces.types import InterfaceType
+from tests.support.cdr import decoder, serialize
+from tests.support.messages import (
+    Path,
+    message_class,
+    message_types,
+    random_message,
+    random_path,
+    read,
+)
+
+TYPES = [
+    kind
+    for kind in message_types(
+        "std_msgs",
+        "geometry_msgs",
+        "sensor_msgs",
+        "nav_msgs",
+        "test_msgs",
+        "diagnostic_msgs",
+        "trajectory_msgs",
+        "visualization_msgs",
+    )
+    if random_path(kind, random.Random(0)) is not None
+]
+
+
+def _draw(kind: InterfaceType, rng: random.Random) -> tuple[Any, list[Path]]:
+    """Return a message, and one to five paths into it."""
+    drawn = (random_path(kind, rng) for _ in range(rng.randint(1, 5)))
+    paths = list(dict.fromkeys(path for path in drawn if path is not None))
+    return random_message(kind, rng), paths or [("header", "stamp", "sec")]
+
+
+def _same(left: list[Any], right: list[Any]) -> bool:
+    """Compare values and their types; NaN is the same as NaN."""
+    return repr(left) == repr(right)
+
+
+seeds = st.integers(0, 2**32)
+
+
+# Values -------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=seeds)
+@pytest.mark.parametrize("kind", TYPES, ids=str)
+def test_reads_what_rclpy_reads(kind: InterfaceType, seed: int) -> None:
+    """Any fields of any message, in both byte orders: values and their types are the same."""
+    message, paths = _draw(kind, random.Random(seed))
+    decode = decoder(kind, paths)
+    expected = [read(message, kind, path) for path in paths]
+    for data in (serialize_message(message), serialize(message, kind, big_endian=True)):
+        assert _same(decode.values(data), expected), (paths, decode.text)
+
+
+@settings(max_examples=100, deadline=None)
+@given(kind=st.sampled_from(TYPES), seed=seeds)
+def test_the_writer_agrees_with_the_middleware(kind: InterfaceType, seed: int) -> None:
+    """The big endian data above is right: the middleware reads it as the message it was."""
+    message = random_message(kind, random.Random(seed))
+    for big_endian in (False, True):
+        data = serialize(message, kind, big_endian)
+        assert repr(deserialize_message(data, message_class(kind))) == repr(message)
+
+
+@settings(max_examples=100, deadline=None)
+@given(seed=seeds, big_endian=st.booleans())
+@pytest.mark.parametrize("name", ["Imu", "BatteryState", "CameraInfo", "LaserScan", "PointCloud2"])
+def test_reads_what_rosbags_writes(name: str, seed: int, big_endian: bool) -> None:
+    """A writer that has nothing to do with the middleware is read as well."""
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    kind = InterfaceType("sensor_msgs", "msg", name)
+    message, paths = _draw(kind, random.Random(seed))
+    if name == "CameraInfo":
+        message.d = message.d or [0.5]  # rosbags pads empty sequences, unlike the middleware
+    theirs = store.deserialize_cdr(serialize(message, kind, big_endian=False), str(kind))
+    data = bytes(store.serialize_cdr(theirs, str(kind), little_endian=not big_endian))
+    expected = [read(message, kind, path) for path in paths]
+    assert _same(decoder(kind, paths).values(data), expected), paths
+
+
+def test_wide_characters_are_units_of_utf_16() -> None:
+    """A character beyond the basic plane takes two units; a null is a character as any other."""
+    message = WStrings(wstring_value="a\0\u20ac\U0001f600", array_of_wstrings=["", "b", "c"])
+    kind = InterfaceType("test_msgs", "msg", "WStrings")
+    decode = decoder(kind, [("wstring_value",), ("array_of_wstrings", 2), ("array_of_wstrings",)])
+    expected = ["a\0\u20ac\U0001f600", "c", ["", "b", "c"]]
+    assert decode.values(serialize_message(message)) == expected
+    assert decode.values(serialize(message, kind, big_endian=True)) == expected
+
+
+def test_a_text_is_what_rclpy_makes_of_it() -> None:
+    """A null ends it, bytes that are no UTF-8 are replaced, and the null at the end may lack."""
+    from std_msgs.msg import String
+
+    decode = decoder(InterfaceType("std_msgs", "msg", "String"), [("data",)])
+    for text in (b"stop\0", b"stop", b"st\0op\0", b"st\xffop\0", b"\0", b""):
+        data = b"\0\1\0\0" + struct.pack("<I", len(text)) + text
+        assert decode.values(data) == [deserialize_message(data, String).data]
+
+
+def test_numbers_are_pythons_own_and_arrays_are_views() -> None:
+    """Elements do not pass through single precision; long arrays are not copied."""
+    message = LaserScan(ranges=[0.5, 1.5], range_max=10.0)
+    kind = InterfaceType("sensor_msgs", "msg", "LaserScan")
+    data = serialize_message(message)
+    (element, ranges, longest) = decoder(kind, [("ranges", 1), ("ranges",), ("range_max",)]).decode(
+        data
+    )
+    assert (type(element), type(longest)) == (float, float)
+    assert isinstance(ranges, np.ndarray)
+    assert not ranges.flags.writeable
+    assert not ranges.flags.owndata
+
+
+def test_an_element_that_is_not_there_is_nan() -> None:
+    """That holds at each depth, also where all before it is there."""
+    kind = InterfaceType("sensor_msgs", "msg", "JointState")
+    data = serialize_message(JointState(name=["a", "b"], position=[1.0, 2.0]))
+    values = decoder(kind, [("position", 1), ("position", 2), ("name", 2), ("effort", 0)])
+    second, *others = values.values(data)
+    assert second == 2.0
+    assert all(map(math.isnan, others))
+
+
+# Data that is not as it should be -----------------------------------------------------------------
+
+
+@settings(max_examples=60, deadline=None)
+@given(kind=st.sampled_from(TYPES), seed=seeds, big_endian=st.booleans())
+def test_truncated_data_is_refused(kind: InterfaceType, seed: int, big_endian: bool) -> None:
+    """Wherever a message ends: an error, or the values of the whole one, which are inside."""
+    rng = random.Random(seed)
+    message, paths = _draw(kind, rng)
+    decode = decoder(kind, paths)
+    data = serialize(message, kind, big_endian)
+    whole = decode.values(data)
+    ends = range(len(data)) if len(data) < 400 else rng.sample(range(len(data)), 400)
+    for end in ends:
+        try:
+            values = decode.values(data[:end])
+        except decode.errors:
+            continue
+        assert _same(values, whole), end
+
+
+@settings(max_examples=100, deadline=None)
+@given(kind=st.sampled_from(TYPES), seed=seeds)
+def test_damaged_data_raises_nothing_else(kind: InterfaceType, seed: int) -> None:
+    """Whatever the bytes are, lengths of billions among them, the decoder ends, and soon."""
+    rng = random.Random(seed)
+    message, paths = _draw(kind, rng)
+    decode = decoder(kind, paths)
+    whole = serialize(message, kind, rng.random() < 0.5)
+    for _ in range(20):
+        data = bytearray(whole)
+        for _ in range(rng.randint(1, 3)):
+            at = rng.randrange(len(data))
+            data[at : at + 4] = rng.choice((b"\xff\xff\xff\xff", b"\x7f", rng.randbytes(4)))
+        try:
+            decode.values(bytes(data))
+        except decode.errors:
+            continue
+
+
+@pytest.mark.parametrize("length", [1000, 2**31, 2**32 - 1])
+@pytest.mark.parametrize(
+    "path",
+    [
+        ("bool_values",),
+        ("float64_values",),
+        ("string_values",),
+        ("basic_types_values",),
+        ("constants_values",),
+        ("alignment_check",),
+    ],
+    ids=str,
+)
+def test_a_length_beyond_the_data_allocates_nothing(path: Path, length: int) -> None:
+    """A sequence that claims more elements than there can be is refused at once."""
+    kind = InterfaceType("test_msgs", "msg", "UnboundedSequences")
+    names = [name for name in UnboundedSequences.get_fields_and_field_types() if "def" not in name]
+    claimed = path[0] if path[0] in names[:-1] else "basic_types_values"
+    decode = decoder(kind, [path])
+    data = b"\0\1\0\0" + bytes(4 * names.index(str(claimed))) + struct.pack("<I", length)
+    data += bytes(400)
+    tracemalloc.start()
+    with pytest.raises(decode.errors):
+        decode.decode(data)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 100_000
+
+
+@pytest.mark.parametrize("start", [b"", b"\0", b"\0\2\0\0", b"\0\7\0\0", b"\1\1\0\0"])
+def test_only_plain_cdr_is_read(start: bytes) -> None:
+    """Parameter lists and the second version of CDR have other layouts."""
+    kind = InterfaceType("std_msgs", "msg", "Float64")
+    for paths in ([("data",)], []):
+        decode = decoder(kind, paths)
+        with pytest.raises(ValueError, match="no plain CDR"):
+            decode.decode(start + bytes(8) if len(start) == 4 else start)
+
+
+# Cost ---------------------------------------------------------------------------------------------
+
+
+def test_a_big_message_costs_microseconds() -> None:
+    """What is not wanted of 10 MB is neither copied nor walked through."""
+    fields = [PointField(name=name, count=1) for name in ("x", "y", "z", "intensity")]
+    message = PointCloud2(width=10_000_000, height=1, fields=fields, is_dense=True)
+    message.data.frombytes(bytes(10_000_000))
+    data = serialize_message(message)
+    kind = InterfaceType("sensor_msgs", "msg", "PointCloud2")
+    decode = decoder(kind, [("width",), ("is_dense",), ("data",)])
+    tracemalloc.start()
+    width, is_dense, points = decode.decode(data)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert (width, is_dense, len(points)) == (10_000_000, True, 10_000_000)
+    assert peak < 100_000
+    times = []
+    for _ in range(50):
+        start = time.perf_counter_ns()
+        decode.decode(data)
+        times.append(time.perf_counter_ns() - start)
+    assert min(times) < 100_000
+
+
+@pytest.mark.parametrize(
+    ("message", "path"),
+    [
+        (Imu(), ("orientation", "w")),
+        (Odometry(), ("twist", "twist", "linear", "x")),
+        (LaserScan(ranges=[1.0] * 2000), ("ranges",)),
+    ],
+    ids=lambda each: type(each).__name__,
+)
+def test_one_field_costs_less_than_the_message(message: Any, path: Path) -> None:
+    """That is what decoders are for; they are five to thirty times as fast."""
+    package = type(message).__module__.partition(".")[0]
+    decode = decoder(InterfaceType(package, "msg", type(message).__name__), [path])
+    data = serialize_message(message)
+
+    def best(function: Any, *arguments: Any) -> int:
+        times = []
+        for _ in range(100):
+            start = time.perf_counter_ns()
+            function(*arguments)
+            times.append(time.perf_counter_ns() - start)
+        return min(times)
+
+    assert 2 * best(decode.decode, data) < best(deserialize_message, data, type(message))
