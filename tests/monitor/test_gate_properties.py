@@ -1,0 +1,244 @@
+"""What holds for the reference gate whatever happens to it, in whatever order."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from functools import cache
+from itertools import pairwise
+from typing import Any
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from deros.monitor.commands import Message, is_finite
+from deros.monitor.gate import GateEngine, Output
+from deros.monitor.ir import Gate, GateLine, Program
+from tests.support.gate_driver import ACTIONS, HEARTBEAT, INPUT, LOW, STOP, twist
+from tests.support.rules import embedded_store, program
+
+LIMIT = 0.1
+LONG = 10_000  # longer than any time of a random gate
+
+Happening = tuple[int, str, Any]
+
+waits = st.sampled_from((0, 0, 1, 1, 2, 3, 5, 8, 13, 40))
+waits_and_steps = waits | st.sampled_from((-1, -20))
+speeds = st.sampled_from((-0.5, -0.1, -0.05, 0.0, 0.05, 0.1, 0.5, math.nan, math.inf, -math.inf))
+calls = st.one_of(
+    st.tuples(st.just("command"), st.builds(twist, speeds, speeds) | st.none()),
+    st.tuples(st.sampled_from(("/stop", "/low_speed")), st.sampled_from((True, False, False))),
+    st.tuples(st.sampled_from(("beat", "beat", "wait")), st.none()),
+)
+
+
+def histories(of_waits: st.SearchStrategy[int]) -> st.SearchStrategy[list[Happening]]:
+    """Draw what happens: how long after the one before, what, and with which value."""
+    return st.lists(st.builds(lambda wait, call: (wait, *call), of_waits, calls), max_size=40)
+
+
+@cache
+def built(*lines: str) -> Program:
+    """Build a gate of these lines."""
+    text = " ".join(lines)
+    return program(f"{ACTIONS}gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {{ {text} }}")
+
+
+@st.composite
+def gates(draw: st.DrawFn, *orders: tuple[str, ...]) -> tuple[Gate, Program]:
+    """Draw a gate with one of these orders of lines, its times a few nanoseconds."""
+    whole = built(*draw(st.sampled_from(orders)))
+    (gate,) = whole.gates
+    lines = tuple(
+        line
+        if line.lost_ns is None
+        else dataclasses.replace(line, lost_ns=draw(st.integers(1, 30)))
+        for line in gate.lines
+    )
+    return dataclasses.replace(gate, period_ns=draw(st.integers(1, 20)), lines=lines), whole
+
+
+ZERO_FIRST = (STOP, HEARTBEAT, INPUT, LOW)
+ALL_ORDERS = (
+    ZERO_FIRST,
+    (STOP, LOW, HEARTBEAT, INPUT),
+    (LOW, STOP, INPUT, HEARTBEAT),
+    (INPUT, LOW, HEARTBEAT, STOP),
+)
+
+
+class Run:
+    """A gate at work; after each call, ``check`` sees the run and what the call published."""
+
+    def __init__(self, gate: tuple[Gate, Program]) -> None:
+        """Start at 0."""
+        self.gate, whole = gate
+        self.engine = GateEngine(self.gate, whole.actions, embedded_store())
+        self.now = 0
+        self.call = ""
+        self.value: Any = None
+        self.beat: int | None = None
+        self.good: int | None = None
+        self.said: dict[str, bool] = {}
+
+    def live(
+        self, history: list[Happening], check: Callable[[list[Output]], None] = lambda _: None
+    ) -> None:
+        """Let things happen; before each, deadlines are settled one by one, as a timer does."""
+        for wait, call, value in history:
+            if wait < 0:
+                self.beat = self.good = None
+                self.said.clear()
+            self.call, self.value = "wait", None
+            while (due := self.engine.next_deadline) is not None and due < self.now + wait:
+                self.now, wait = due, self.now + wait - due
+                check(self.engine.advance(due))
+            self.now += wait
+            self.call, self.value = call, value
+            check(self.happen(call, value))
+
+    def happen(self, call: str, value: Any) -> list[Output]:
+        """Let one thing happen now, and remember it."""
+        # What was due before comes first, with the memory of before.
+        published = self.engine.advance(self.now)
+        if call == "command":
+            published = published + self.engine.command(self.now, value)
+            if value is not None and is_finite(value):
+                self.good = self.now
+        elif call == "beat":
+            published = published + self.engine.heartbeat(self.now)
+            self.beat = self.now
+        elif call != "wait":
+            published = published + self.engine.state(self.now, call, {"data": value})
+            self.said[call] = value
+        return published
+
+    def line(self, lost: str) -> GateLine:
+        """Return the line about a loss."""
+        return next(each for each in self.gate.lines if each.lost == lost)
+
+    def is_silent(self, lost: str, t_ns: int) -> bool:
+        """Tell whether the heartbeat, or good commands, have been silent for the line's time."""
+        last = self.beat if lost == "heartbeat" else self.good
+        return last is None or t_ns - last >= (self.line(lost).lost_ns or 0)
+
+
+def speed(output: Output) -> float:
+    """Return the speed that is commanded."""
+    value: float = output.message["linear"]["x"]
+    return value
+
+
+def is_zero(message: Message) -> bool:
+    """Tell whether every number of a command is 0."""
+    return all(not value for part in message.values() for value in part.values())
+
+
+@given(gates(*ALL_ORDERS), histories(waits_and_steps))
+def test_nothing_but_finite_commands(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """NaN and infinity never pass, whatever lines there are."""
+    run = Run(gate)
+    run.live(history)
+    assert all(is_finite(each.message) for each in run.engine.outputs)
+
+
+@given(gates(ZERO_FIRST), histories(waits_and_steps))
+def test_silence_commands_nothing_but_zeros(
+    gate: tuple[Gate, Program], history: list[Happening]
+) -> None:
+    """From the instant that heartbeat or input have been silent for their time, all is zero."""
+    run = Run(gate)
+
+    def check(published: list[Output]) -> None:
+        for each in published:
+            if run.is_silent("heartbeat", each.t_ns) or run.is_silent("input", each.t_ns):
+                assert each.kind == "zero"
+                assert is_zero(each.message)
+
+    run.live(history, check)
+
+
+@given(gates(ZERO_FIRST), histories(waits_and_steps))
+def test_stop_commands_nothing_but_zeros(
+    gate: tuple[Gate, Program], history: list[Happening]
+) -> None:
+    """Unless the gate has been told that the action is not active."""
+    run = Run(gate)
+
+    def check(published: list[Output]) -> None:
+        for each in published:
+            if run.said.get("/stop", True):
+                assert each.kind == "zero"
+                assert is_zero(each.message)
+
+    run.live(history, check)
+
+
+@given(gates(*ALL_ORDERS), histories(waits_and_steps))
+def test_limits_are_met(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """In every command that is published while the limit's action is, or may be, active."""
+    run = Run(gate)
+
+    def check(published: list[Output]) -> None:
+        for each in published:
+            if run.said.get("/low_speed", True):
+                assert abs(speed(each)) <= LIMIT
+
+    run.live(history, check)
+
+
+@given(gates(*ALL_ORDERS), histories(waits_and_steps), st.builds(twist, st.floats(-9, 9)))
+def test_gate_can_always_be_opened(
+    gate: tuple[Gate, Program], history: list[Happening], command: Message
+) -> None:
+    """After a heartbeat, and word that nothing is active, the very command passes at once."""
+    run = Run(gate)
+    run.live([*history, (0, "beat", None), (0, "/stop", False), (0, "/low_speed", False)])
+    published = run.engine.command(run.now, command)
+    assert [(each.t_ns, each.kind) for each in published] == [(run.now, "pass")]
+    assert published[0].message is command
+
+
+@given(gates(*ALL_ORDERS), histories(waits_and_steps))
+def test_only_commands_drive(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """What is published without a command is zero, or slower than what was published before."""
+    run = Run(gate)
+    before = [0.0]
+
+    def check(published: list[Output]) -> None:
+        for each in published:
+            if each.kind == "pass":
+                assert (run.call, each.message) == ("command", run.value)
+            elif run.call != "command" and each.kind == "limited":
+                assert abs(speed(each)) <= abs(before[0])
+            before[0] = speed(each)
+
+    run.live(history, check)
+
+
+@given(gates(*ALL_ORDERS), histories(waits))
+def test_zeros_are_steady(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """When everything falls silent there are zeros, never further apart than the period."""
+    run = Run(gate)
+    run.live([*history, (LONG, "wait", None)])
+    lost = run.now - LONG + max(each.lost_ns or 0 for each in gate[0].lines)
+    times = [each.t_ns for each in run.engine.outputs if each.t_ns > lost]
+    period = gate[0].period_ns
+    assert all(b - a == period for a, b in pairwise(times))
+    assert times[0] - lost <= period
+    assert run.now - times[-1] <= period
+    assert all(is_zero(each.message) for each in run.engine.outputs if each.t_ns > lost)
+
+
+@given(gates(*ALL_ORDERS), histories(waits_and_steps))
+def test_late_calls_decide_alike(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """A gate without any timer publishes the same for what comes; only zeros fall out."""
+    timely, late = Run(gate), Run(gate)
+    timely.live(history)
+    late.now = 0
+    for wait, call, value in history:
+        late.now += wait
+        late.happen(call, value)
+    driven = [each for each in timely.engine.outputs if each.kind != "zero"]
+    assert [each for each in late.engine.outputs if each.kind != "zero"] == driven

@@ -1,0 +1,76 @@
+"""A reference gate of velocity commands, driven in milliseconds, for tests."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from deros.monitor.commands import Message
+from deros.monitor.gate import GateEngine, Output
+from tests.support.rules import embedded_store, program
+
+MS = 1_000_000
+ACTIONS = """
+action stop publishes true on /stop : std_msgs.Bool latched;
+action low_speed publishes true on /low_speed : std_msgs.Bool latched;
+"""
+STOP = "stop: zero;"
+LOW = "low_speed: limit linear.x to [-0.1, 0.1] m/s, angular.z to [-0.2, 0.2] rad/s;"
+HEARTBEAT = "lost heartbeat for 0.3 sec: zero;"
+INPUT = "lost input for 0.5 sec: zero;"
+
+Shown = list[tuple[float, str, float]]
+
+
+class Driver:
+    """A gate of velocity commands, with times in milliseconds."""
+
+    def __init__(self, *lines: str, kind: str = "geometry_msgs.Twist") -> None:
+        """Start at 0 a gate of these lines."""
+        text = f"{ACTIONS}gate /nav -> /cmd_vel : {kind} rate 20 Hz {{ {' '.join(lines)} }}"
+        built = program(text)
+        self.engine = GateEngine(built.gates[0], built.actions, embedded_store())
+
+    def drive(self, t_ms: float, speed: float, turn: float = 0.0) -> Shown:
+        """Command a speed."""
+        return shown(self.engine.command(at(t_ms), twist(speed, turn)))
+
+    def state(self, t_ms: float, action: str, active: bool) -> Shown:
+        """Say what an action is."""
+        return shown(self.engine.state(at(t_ms), f"/{action}", {"data": active}))
+
+    def beat(self, t_ms: float) -> Shown:
+        """Let the safety node's heart beat."""
+        return shown(self.engine.heartbeat(at(t_ms)))
+
+    def wait(self, t_ms: float) -> Shown:
+        """Let time pass, deadline by deadline, as an idle node does."""
+        found: list[Output] = []
+        while (due_ns := self.engine.next_deadline) is not None and due_ns <= at(t_ms):
+            found += self.engine.advance(due_ns)
+        return shown([*found, *self.engine.advance(at(t_ms))])
+
+    def open(self) -> Driver:
+        """Let everything be known and well at 0."""
+        self.beat(0)
+        self.state(0, "stop", False)
+        self.state(0, "low_speed", False)
+        self.drive(0, 0.0)
+        return self
+
+
+def at(t_ms: float) -> int:
+    """Return milliseconds as nanoseconds."""
+    return round(t_ms * MS)
+
+
+def twist(speed: Any, turn: float = 0.0) -> Message:
+    """Return a command; its other numbers are such that a limit would show."""
+    return {
+        "linear": {"x": speed, "y": 7.0, "z": 0.0},
+        "angular": {"x": 0.0, "y": 0.0, "z": turn},
+    }
+
+
+def shown(outputs: list[Output]) -> Shown:
+    """Return when, what and how fast."""
+    return [(each.t_ns / MS, each.kind, each.message["linear"]["x"]) for each in outputs]
