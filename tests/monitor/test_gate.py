@@ -73,6 +73,7 @@ def test_limit_holds_at_once_for_the_command_being_executed() -> None:
 def test_limit_after_zeros_wakes_no_command() -> None:
     """What came while zeros were published was never executed, and is not now."""
     gate = Driver(STOP, LOW).open()
+    gate.drive(0, 0.5)
     gate.state(0, "stop", True)
     gate.drive(20, 0.5)
     gate.state(30, "stop", False)
@@ -294,6 +295,22 @@ def test_limit_of_an_action_says_nothing_without_commands() -> None:
     gate.state(0, "low_speed", True)
     gate.drive(10, 0.5)
     assert gate.wait(510) == [(510, "zero", 0.0)]
+
+
+def test_limit_of_a_loss_takes_over_from_that_of_an_action() -> None:
+    """Though it is written later: that of the action says nothing any more."""
+    gate = Driver(LOW, "lost input for 0.5 sec: limit linear.x to [-0.05, 0.05];").open()
+    gate.state(0, "low_speed", True)
+    gate.drive(10, 0.5)
+    assert gate.wait(1000) == [(510, "limited", 0.05)]
+
+
+def test_limit_before_a_zero_line_leaves_nothing_to_a_lost_input() -> None:
+    """There is no live command to take the number from, so it is zero like the others."""
+    gate = Driver("lost input for 0.5 sec: limit linear.x to [-0.2, 0.2];", STOP).open()
+    gate.state(0, "stop", True)
+    gate.drive(100, 0.5)
+    assert gate.wait(650)[-2:] == [(600, "zero", 0.0), (650, "zero", 0.0)]
 
 
 def test_two_losses_of_one_heartbeat() -> None:
