@@ -1,0 +1,56 @@
+"""The modules of gates, for the package of their safety node."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from deros.generators.gate_python.view import GateView, gate_view
+from deros.generators.protocol import File
+from deros.generators.python_source import call, expression, mark_long_lines
+from deros.generators.safety_python.description import node_description
+from deros.generators.templates import environment
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.node import NodeType
+from deros.monitor.ir import Program
+
+MODULES = ("logic", "message")
+"""The modules of a gate besides that of its node, by the end of their names."""
+
+
+def gate_files(
+    program: Program,
+    nodes: Sequence[NodeType],
+    safety_node: NodeType,
+    store: InterfaceStore,
+    copyright_line: str = "",
+) -> dict[str, File]:
+    """Return the modules of the gates of ``program``, and the descriptions of their nodes.
+
+    Args:
+        program: the rules.
+        nodes: the nodes of its gates, in order.
+        safety_node: the node whose states and heartbeat they heed.
+        store: the message definitions.
+        copyright_line: years and holder for the headers, or nothing.
+
+    Raises:
+        GenerationError: if two ports of a gate would get one name.
+    """
+    files: dict[str, File] = {}
+    for gate, node in zip(program.gates, nodes, strict=True):
+        view = gate_view(gate, node, program, store, safety_node)
+        root = f"{node.package}/{node.package}/{view.node.module}"
+        files[f"{node.package}/{node.name}.rnd"] = File(node_description(node))
+        files[f"{root}.py"] = File(render("node", view, copyright_line))
+        for module in MODULES:
+            files[f"{root}_{module}.py"] = File(render(module, view, copyright_line))
+    return files
+
+
+def render(module: str, view: GateView, copyright_line: str = "") -> str:
+    """Return the text of one module of a gate: its ``node``, or one of :data:`MODULES`."""
+    header = environment("deros.generators.rosnode_python").get_template("_header.j2")
+    loaded = environment("deros.generators.gate_python").get_template(f"{module}.py.j2")
+    text = header.render(package={"copyright": copyright_line})
+    text += loaded.render(gate=view, node=view.node, call=call, expression=expression)
+    return mark_long_lines(text)

@@ -1,0 +1,46 @@
+"""The generated gate does what the reference gate does, whatever the gate and whatever happens."""
+
+from __future__ import annotations
+
+import os
+
+from hypothesis import HealthCheck, given, note, settings
+from hypothesis import strategies as st
+
+from deros.monitor.gate import GateEngine
+from tests.support.gates import ACTIONS, STORE, GeneratedGate, gates, happenings
+
+EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "500"))
+"""Examples; set, they are drawn anew in every run, else they are always the same."""
+
+START_NS = 100
+
+
+@settings(
+    max_examples=EXAMPLES,
+    deadline=None,
+    derandomize="DEROS_EXAMPLES" not in os.environ,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+@given(st.data())
+def test_same_commands(data: st.DataObject) -> None:
+    """Both publish the same messages at the same nanosecond; timers may be late, clocks step."""
+    gate = data.draw(gates())
+    engine = GateEngine(gate, ACTIONS, STORE, START_NS)
+    generated = GeneratedGate(gate, START_NS)
+    note(generated.texts["logic"])
+    t_ns = START_NS
+    for each in data.draw(happenings(gate)):
+        t_ns = max(0, t_ns + each.wait_ns)
+        note(f"{each.call} at {t_ns} {each.topic} {each.message}")
+        for one in (engine, generated):
+            if each.call == "command":
+                one.command(t_ns, each.message)
+            elif each.call == "state":
+                one.state(t_ns, each.topic, each.message)
+            elif each.call == "heartbeat":
+                one.heartbeat(t_ns)
+            else:
+                one.advance(t_ns)
+        assert generated.outputs == engine.outputs
+        assert generated.next_deadline is None or generated.next_deadline > t_ns

@@ -1,0 +1,297 @@
+"""Random gates, what happens to them, and generated gates that answer as the reference does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+from hypothesis import strategies as st
+
+from deros.diagnostics import SourceFile, Span
+from deros.generators.gate_python import gate_nodes
+from deros.generators.gate_python.generate import render
+from deros.generators.gate_python.view import GateView, gate_view
+from deros.generators.safety_python.node import safety_node
+from deros.interfaces.fields import ResolvedField, resolve
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.monitor.commands import Message
+from deros.monitor.gate import Output, OutputKind
+from deros.monitor.ir import Action, Binding, Gate, GateLine, Limit, Program
+from deros.monitor.topics import SystemTopics
+
+STORE = InterfaceStore()
+SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 20)))
+
+Path = tuple[str | int, ...]
+
+
+def span(line: int) -> Span:
+    """Return the span of a whole line of a source that stands for random gates."""
+    start = SOURCE.text.index(f"line {line};")
+    return Span(SOURCE, start, start + len(f"line {line};"))
+
+
+def message_type(text: str) -> InterfaceType:
+    """Return the message type spelt ``package.Name``."""
+    package, name = text.split(".")
+    return InterfaceType(package, "msg", name)
+
+
+def _bound(index: int, name: str, topic: str, kind: str, value: bool | int) -> Action:
+    binding = Binding(topic, message_type(kind), ("data",), value)
+    return Action(index, name, (), binding, None, False, (), span(index + 1))
+
+
+ACTIONS = (
+    _bound(0, "stop", "/stop", "std_msgs.Bool", True),
+    _bound(1, "go", "/go", "std_msgs.Bool", False),
+    _bound(2, "slow", "/mode", "std_msgs.UInt8", 1),
+    _bound(3, "slower", "/mode", "std_msgs.UInt8", 2),
+)
+"""Actions of all kinds: two share a topic, and one is active when its field is false."""
+
+COMMANDS: Mapping[str, tuple[Path, ...]] = {
+    "geometry_msgs.Twist": (("linear", "x"), ("linear", "y"), ("angular", "z")),
+    "geometry_msgs.TwistStamped": (("twist", "linear", "x"), ("twist", "angular", "z")),
+    "std_msgs.Int32": (("data",),),
+    "std_msgs.Float64MultiArray": (("data", 0), ("data", 2)),
+    "trajectory_msgs.JointTrajectoryPoint": (("positions", 0), ("velocities", 1)),
+    "trajectory_msgs.JointTrajectory": (("points", 0, "positions", 1), ("points", 1, "effort", 0)),
+}
+"""Types of commands, and the fields of each that random limits speak of."""
+
+
+# Random gates -------------------------------------------------------------------------------------
+
+
+@st.composite
+def gates(draw: st.DrawFn) -> Gate:
+    """Draw a gate; its times are a few nanoseconds, so that instants coincide often."""
+    name = draw(st.sampled_from(sorted(COMMANDS)))
+    lines = draw(st.lists(_heads, min_size=1, max_size=6))
+    return Gate(
+        index=0,
+        source="/wish",
+        target="/robot/command",
+        type=message_type(name),
+        period_ns=draw(st.integers(1, 12)),
+        lines=tuple(
+            GateLine(*head, draw(_limits(name)), span(number))
+            for number, head in enumerate(lines, start=2)
+        ),
+        span=span(1),
+    )
+
+
+_heads: st.SearchStrategy[tuple[Any, Any, Any]] = st.one_of(
+    st.tuples(st.integers(0, len(ACTIONS) - 1), st.none(), st.none()),
+    st.tuples(st.none(), st.sampled_from(("heartbeat", "input")), st.integers(1, 60)),
+)
+
+
+@st.composite
+def _limits(draw: st.DrawFn, name: str) -> tuple[Limit, ...]:
+    paths = draw(st.lists(st.sampled_from(COMMANDS[name]), unique=True))
+    limits = []
+    for path in paths:
+        found = resolve(STORE, message_type(name), path)
+        assert isinstance(found, ResolvedField)
+        lower, upper = draw(st.integers(-2, 0)), draw(st.integers(0, 2))
+        ends = (lower, upper) if not found.type.is_float else (lower / 2, upper / 2)
+        limits.append(Limit(path, found.type, *ends))
+    return tuple(limits)
+
+
+# Random events ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Happening:
+    """Something that happens ``wait_ns`` after the one before; ``topic`` of a state."""
+
+    wait_ns: int
+    call: str
+    message: Any = None
+    topic: str = ""
+
+
+QUIET = (
+    Happening(0, "state", {"data": False}, "/stop"),
+    Happening(0, "state", {"data": True}, "/go"),
+    Happening(0, "state", {"data": 0}, "/mode"),
+    Happening(0, "heartbeat"),
+)
+"""What a gate hears of a safety node that has nothing to object to."""
+
+_waits = st.sampled_from((0, 0, 0, 1, 1, 2, 3, 4, 5, 7, 10, 12, 25, 60, -1, -5))
+_tame_floats = st.sampled_from((-3.0, -1.0, -0.5, -0.0, 0.0, 0.25, 0.5, 1.0, 3.0))
+_wild_floats = st.sampled_from((math.nan, math.inf)) | st.floats()
+
+
+@st.composite
+def happenings(draw: st.DrawFn, gate: Gate) -> list[Happening]:
+    """Draw what happens to a gate: commands good and bad, states, heartbeats, the time alone."""
+    first = QUIET if draw(st.booleans()) else ()
+    return [*first, *draw(st.lists(_happening(gate.type), max_size=30))]
+
+
+@st.composite
+def _happening(draw: st.DrawFn, kind: InterfaceType) -> Happening:
+    wait_ns = draw(_waits)
+    call = draw(st.sampled_from(("command", "command", "state", "heartbeat", "advance")))
+    if call == "command":
+        good, any_at_all = messages(kind, _tame_floats), messages(kind, _wild_floats)
+        return Happening(wait_ns, call, draw(st.one_of(good, good, good, any_at_all, st.none())))
+    if call == "state":
+        topic = draw(st.sampled_from(("/stop", "/go", "/mode", "/mode")))
+        values = st.integers(0, 3) if topic == "/mode" else st.booleans()
+        known = st.builds(lambda value: {"data": value}, values)
+        data = draw(st.one_of(known, known, known, st.none()))
+        return Happening(wait_ns, call, data, topic)
+    return Happening(wait_ns, call)
+
+
+def messages(
+    kind: InterfaceType, floats: st.SearchStrategy[float]
+) -> st.SearchStrategy[dict[str, Any]]:
+    """Draw messages as plain data, with their floats out of ``floats``."""
+    definition = STORE.message(kind)
+    assert definition is not None
+    fields = {name: _values(field, floats) for name, field in definition.fields}
+    return st.fixed_dictionaries(fields)
+
+
+def _values(field: FieldType, floats: st.SearchStrategy[float]) -> st.SearchStrategy[Any]:
+    if field.is_array:
+        return st.lists(_values(field.element, floats), max_size=3)
+    if isinstance(field.base, InterfaceType):
+        return messages(field.base, floats)
+    if field.is_float:
+        return floats
+    return st.sampled_from(("", "a b")) if field.base == "string" else st.integers(-9, 9)
+
+
+# The generated gate -------------------------------------------------------------------------------
+
+
+def view_of(gate: Gate, actions: tuple[Action, ...] = ACTIONS) -> GateView:
+    """Return the view of a gate in a package of its own."""
+    program = Program("random", (), (), (), (), actions, (gate,))
+    safety = safety_node(program, SystemTopics(()), {}, SOURCE)
+    (node,) = gate_nodes(program, SystemTopics(()), safety)
+    return gate_view(gate, node, program, STORE, safety)
+
+
+class GeneratedGate:
+    """The generated logic and message functions of a gate, joined as the generated node does.
+
+    Attributes:
+        outputs: all that has been published since the start, in order.
+        texts: the generated modules, by the end of their names.
+    """
+
+    def __init__(self, gate: Gate, start_ns: int = 0) -> None:
+        """Generate the gate, and start it at ``start_ns``."""
+        self.outputs: list[Output] = []
+        self._type = gate.type
+        self._view = view_of(gate)
+        self.texts = {module: render(module, self._view) for module in ("logic", "message")}
+        modules: dict[str, dict[str, Any]] = {}
+        for module, text in self.texts.items():
+            modules[module] = {"__name__": module}
+            exec(compile(text, module, "exec"), modules[module])
+        self._logic, self._functions = modules["logic"], modules["message"]
+        self._gate = self._logic["Gate"](start_ns, self._publish)
+        self._command: Message | None = None
+
+    @property
+    def next_deadline(self) -> int | None:
+        """When to call :meth:`advance` at the latest."""
+        due: int = self._gate.next_deadline
+        return None if due == self._logic["NEVER"] else due
+
+    @property
+    def applying(self) -> tuple[bool, ...]:
+        """Of each line, whether it applies."""
+        lines: tuple[bool, ...] = self._gate.applying
+        return lines
+
+    def command(self, t_ns: int, message: Message | None) -> None:
+        """Take a command (``None``: one that could not be decoded)."""
+        self._gate.advance(t_ns)
+        is_finite = self._functions.get("is_finite", bool)
+        if message is None or not is_finite(_object(message)):
+            self._gate.on_refused(t_ns)
+            return
+        self._command = message
+        fields = self._functions["limited_fields"](_object(message)) if self._view.fields else ()
+        self._gate.on_command(t_ns, *fields)
+
+    def state(self, t_ns: int, topic: str, message: Message | None) -> None:
+        """Take a message about the state of actions (``None``: one that could not be decoded)."""
+        for state in self._view.states:
+            if state.topic == topic:
+                values = {"msg": _object(message)}
+                active = [message is None or eval(a.test, values) for a in state.actions]
+                getattr(self._gate, f"on_state_{state.identifier}")(t_ns, *active)
+                return
+        self._gate.advance(t_ns)
+
+    def heartbeat(self, t_ns: int) -> None:
+        """Take a heartbeat of the safety node."""
+        if self._view.heartbeat:
+            self._gate.on_heartbeat(t_ns)
+        else:
+            self._gate.advance(t_ns)
+
+    def advance(self, t_ns: int) -> None:
+        """Settle all that is due up to and including ``t_ns``."""
+        self._gate.advance(t_ns)
+
+    def _publish(self, kind: OutputKind, values: tuple[Any, ...] = ()) -> None:
+        message = self._command
+        now_ns = self._gate.now
+        if kind != "pass":
+            made = _object(message or _blank(self._type))
+            if kind == "zero" and "make_zero" in self._functions:
+                seconds, rest = divmod(now_ns, 10**9)
+                stamp = SimpleNamespace(sec=seconds, nanosec=rest)
+                self._functions["make_zero"](made, *([stamp] if self._view.stamped else []))
+            if values:
+                self._functions["limit"](made, values)
+            message = _data(made)
+        assert message is not None
+        self.outputs.append(Output(now_ns, kind, message))
+
+
+def _blank(kind: InterfaceType) -> Message:
+    """Return a message as the constructor of its class makes it, but for defaults."""
+    definition = STORE.message(kind)
+    assert definition is not None
+    return {name: _blank_value(field) for name, field in definition.fields}
+
+
+def _blank_value(field: FieldType) -> Any:
+    if field.is_array:
+        return [_blank_value(field.element) for _ in range(field.size or 0)]
+    if isinstance(field.base, InterfaceType):
+        return _blank(field.base)
+    return "" if field.base == "string" else 0.0 if field.is_float else 0
+
+
+def _object(value: Any) -> Any:
+    """Return plain data in the form of messages."""
+    if isinstance(value, Mapping):
+        return SimpleNamespace(**{name: _object(each) for name, each in value.items()})
+    return [_object(each) for each in value] if isinstance(value, list) else value
+
+
+def _data(value: Any) -> Any:
+    """Return what :func:`_object` was made of."""
+    if isinstance(value, SimpleNamespace):
+        return {name: _data(each) for name, each in vars(value).items()}
+    return [_data(each) for each in value] if isinstance(value, list) else value
