@@ -1,0 +1,227 @@
+"""Gates and optional behaviours: what is written becomes the syntax tree that it says."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+import pytest
+
+from deros.diagnostics import Diagnostic
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.languages import metamodel
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import (
+    ActionCall,
+    Gate,
+    GateLimit,
+    NamePath,
+    Negative,
+    Number,
+    Rules,
+)
+
+PRINTED = """gate /cmd_vel_nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+  stop: zero;
+  low_speed: limit linear.x to [-0.1, 0.1] m/s, angular.z to [-0.2, 0.2] rad/s;
+  lost heartbeat for 0.3 sec: zero;
+  lost input for 0.5 sec: zero;
+}
+"""
+
+
+def _load(text: str) -> tuple[Rules, tuple[Diagnostic, ...]]:
+    loaded = Repository().load_text("a.deros", text)
+    assert isinstance(loaded.model, Rules)
+    return loaded.model, loaded.diagnostics
+
+
+def _rules(text: str) -> Rules:
+    rules, diagnostics = _load(text)
+    assert diagnostics == ()
+    return rules
+
+
+def _gate(text: str) -> Gate:
+    (gate,) = _rules(text).gates
+    return gate
+
+
+def _errors(text: str) -> list[tuple[str, str, str]]:
+    loaded = Repository().load_text("a.deros", text)
+    return [(each.message, each.span.text, each.hint) for each in loaded.diagnostics]
+
+
+def test_gate_as_printed() -> None:
+    """Topics, type, rate and every line of the example in the documentation."""
+    gate = _gate(PRINTED)
+    assert (gate.source.text, gate.target.text) == ("/cmd_vel_nav", "/cmd_vel")
+    assert gate.type == InterfaceType("geometry_msgs", "msg", "Twist")
+    assert (gate.rate.value, gate.rate.unit) == (Decimal(20), "Hz")
+    assert [
+        (line.action and line.action.text, line.lost, line.duration and line.duration.span.text)
+        for line in gate.lines
+    ] == [
+        ("stop", None, None),
+        ("low_speed", None, None),
+        (None, "heartbeat", "0.3 sec"),
+        (None, "input", "0.5 sec"),
+    ]
+    assert [len(line.limits) for line in gate.lines] == [0, 2, 0, 0]
+    first, second = gate.lines[1].limits
+    assert (first.path, first.unit, first.lower_closed, first.upper_closed) == (
+        ("linear", "x"),
+        "m/s",
+        True,
+        True,
+    )
+    assert [each.value for each in (first.lower, first.upper) if isinstance(each, Number)] == [
+        Decimal("-0.1"),
+        Decimal("0.1"),
+    ]
+    assert (second.path, second.unit) == (("angular", "z"), "rad/s")
+
+
+def test_gate_as_printed_is_textx_too() -> None:
+    """The metamodel that textX itself uses takes it."""
+    model = metamodel("deros").model_from_str(PRINTED)
+    (gate,) = model.statements
+    assert [line.action for line in gate.lines] == ["stop", "low_speed", None, None]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "gate a->b:geometry_msgs/Twist rate 20Hz{stop:zero low:limit linear.x to[-1,1]m/s"
+        " lost heartbeat for 1s:zero lost input for 1 s:zero}",
+        "gate\na\n->\nb\n:\ngeometry_msgs . Twist\nrate\n20\nHz\n{\nstop\n:\nzero\n;\n}".replace(
+            " . ", "."
+        ),
+        'gate /a -> /b : geometry_msgs.Twist rate 20 Hz "The drive" { } ;',
+        "gate ~/a -> ~/b : geometry_msgs.Twist rate 20 Hz // why\n { /* nothing */ stop: zero; }",
+    ],
+)
+def test_layout_is_free(text: str) -> None:
+    """Blanks, line breaks and semicolons may be there or not."""
+    gate = _gate(f"const a = 3 {text} const b = 1")
+    assert gate.source.text.endswith("a")
+    assert gate.target.text.endswith("b")
+    assert all(line.action or line.duration for line in gate.lines)
+
+
+def test_description() -> None:
+    """A text behind the rate says what the gate is for."""
+    assert _gate('gate a -> b : x.Y rate 1 Hz "The drive" { }').description == "The drive"
+
+
+def _limit(text: str) -> GateLimit:
+    (line,) = _gate(f"gate a -> b : x.Y rate 1 Hz {{ stop: limit {text}; }}").lines
+    (limit,) = line.limits
+    return limit
+
+
+def test_ends_of_limits() -> None:
+    """Names, units of their own, and whether they belong to the interval."""
+    limit = _limit("position[2].x to (-low, 3 cm] m")
+    assert limit.path == ("position", 2, "x")
+    assert (limit.lower_closed, limit.upper_closed) == (False, True)
+    assert isinstance(limit.lower, Negative)
+    assert isinstance(limit.lower.operand, NamePath)
+    assert isinstance(limit.upper, Number)
+    assert (limit.upper.unit, limit.unit) == ("cm", "m")
+
+
+def test_places() -> None:
+    """A limit knows the places of its field, its interval and its unit."""
+    limit = _limit("linear.x to [-1, 1] m/s")
+    spans = (limit.span, limit.path_span, limit.interval_span, limit.unit_span)
+    assert [span.text for span in spans if span] == [
+        "linear.x to [-1, 1] m/s",
+        "linear.x",
+        "[-1, 1]",
+        "m/s",
+    ]
+
+
+def test_keywords_are_names_too() -> None:
+    """Actions, fields, constants and behaviours may be called as the words of a gate."""
+    rules = _rules(
+        """action gate; action lost; action zero; action limit; action heartbeat; action optional;
+        action input; action rate; action to;
+        const lost = 3 const gate = lost const optional = gate const to = 1
+        entity gate { lost: optional > 3; zero: gate.rate > 1; }
+        behaviour optional: if gate.lost then { optional; gate; lost; zero; };
+        optional behaviour gate: if gate.lost then { optional };
+        gate gate -> lost : x.Y rate 1 Hz {
+          lost: zero; gate: zero heartbeat: zero input: zero optional: limit to to [to, gate]
+          zero: limit limit to [0, 1], zero.to to [0, 1]
+          lost heartbeat for 1 sec: zero
+        }"""
+    )
+    (gate,) = rules.gates
+    assert [line.action.text for line in gate.lines if line.action] == [
+        "lost",
+        "gate",
+        "heartbeat",
+        "input",
+        "optional",
+        "zero",
+    ]
+    assert [limit.path for line in gate.lines for limit in line.limits] == [
+        ("to",),
+        ("limit",),
+        ("zero", "to"),
+    ]
+    assert [(each.name and each.name.text, each.optional) for each in rules.behaviours] == [
+        ("optional", False),
+        ("gate", True),
+    ]
+
+
+def test_numbers_before_the_new_words_have_no_unit() -> None:
+    """``gate``, ``optional`` and ``lost`` start what follows a number."""
+    rules = _rules(
+        """const a = 3 gate a -> b : x.Y rate 1 Hz { s: limit x to [0, 1] lost input for 1 s: zero }
+        const b = 4 optional behaviour c: if e.r then { s; }"""
+    )
+    values = [each.value for each in rules.constants]
+    assert [each.unit for each in values if isinstance(each, Number)] == [None, None]
+    assert [limit.unit for limit in rules.gates[0].lines[0].limits] == [None]
+
+
+def test_optional_behaviour() -> None:
+    """The word before a named behaviour, nested ones too, makes it optional."""
+    (outer,) = _rules(
+        "optional behaviour a: if e.r then { stop; optional behaviour b: if e.s then { stop; } };"
+    ).behaviours
+    inner = outer.body[1]
+    assert not isinstance(inner, ActionCall)
+    assert (outer.optional, inner.optional, inner.name and inner.name.text) == (True, True, "b")
+
+
+def test_optional_behaviour_needs_a_name() -> None:
+    """Without one there is nothing to switch it off by."""
+    assert _errors("optional if e.r then { stop; };") == [
+        (
+            "an optional behaviour needs a name, by which it is switched off",
+            "optional",
+            "write 'optional behaviour NAME: if …'",
+        )
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("gate a -> b { }", "found '{' where ':' is expected"),
+        ("gate a b : x.Y rate 1 Hz { }", "found 'b' where '->' is expected"),
+        ("gate a -> b : x.Y { }", "found '{' where 'rate' is expected"),
+        ("gate a -> b : x.Y rate 1 Hz { stop: zreo; }", "found 'zreo' where 'zero' or 'limit'"),
+        ("gate a -> b : x.Y rate 1 Hz { s: limit x in [0, 1]; }", "found 'in' where"),
+        ("gate a -> b : x.Y rate 1 Hz { lost heartbeat: zero; }", "found ':' where 'for' is"),
+        ("gate a -> b : x.Y rate 1 Hz { lost command for 1 s: zero; }", "found 'command' where"),
+    ],
+)
+def test_syntax_errors(text: str, message: str) -> None:
+    """What is missing is named where it is missing."""
+    (error,) = _errors(text)
+    assert error[0].startswith(message)
