@@ -92,6 +92,10 @@ class Processes:
             )
         self._running[name] = _Running(name, process, log)
 
+    def pid(self, name: str) -> int:
+        """Return the number of a process."""
+        return self._running[name].process.pid
+
     def check(self) -> None:
         """See that all of them are running.
 

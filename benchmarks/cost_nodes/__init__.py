@@ -1,0 +1,1 @@
+"""The processes that the safety node's cost is compared with: they receive, and do nothing."""
