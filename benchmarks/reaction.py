@@ -26,6 +26,7 @@ from support.progress import Line
 from support.reaction_report import as_json, show
 from support.reaction_results import FASTEST, SAFETY, USUAL, Results, Run
 from support.reaction_rules import Lane, generate, timed_lanes
+from support.samples import Fired
 
 if TYPE_CHECKING:
     from support.driver import Driver
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
 LOAD_TOPICS = 20
 
-_STAMPS = "/timed_relay/stamps"
 _EVENTS = ("/immediate_safety_node/events", "/timed_safety_node/events")
 _BUSY = 0.3
 
@@ -98,13 +98,11 @@ def _measure(options: argparse.Namespace, folder: Path) -> Run:
             _start_load(processes)
         # Only now: the domain must be chosen before ROS is imported.
         from diagnostic_msgs.msg import DiagnosticStatus
-        from std_msgs.msg import Int64MultiArray
         from support.driver import Driver
         from support.experiment import Immediate, Timed
-        from support.reaction_records import firings, triggers
+        from support.reaction_records import triggers
 
-        records = [(topic, DiagnosticStatus) for topic in _EVENTS] + [(_STAMPS, Int64MultiArray)]
-        driver = Driver(records)
+        driver = Driver([(topic, DiagnosticStatus) for topic in _EVENTS])
         at_once = {
             name: Immediate(driver, driver.channel(lane, name == SAFETY), options.immediate)
             for name, lane in immediate.items()
@@ -121,7 +119,7 @@ def _measure(options: argparse.Namespace, folder: Path) -> Run:
             timed=later[0].samples,
             floor=later[1].samples,
             triggers=[each for topic in _EVENTS for each in triggers(driver.records[topic])],
-            firings=firings(driver.records[_STAMPS]),
+            firings=[Fired(*each) for each in processes.end("timed_relay")],
             sleeps=processes.end("sleeper"),
             lost=at_once[SAFETY].progress.lost + later[0].progress.lost,
             traffic=processes.end("listener") if options.load else 0.0,

@@ -1,4 +1,4 @@
-"""What the measured processes tell of themselves: events of safety nodes, stamps of timers."""
+"""What safety nodes tell of themselves on ``~/events``."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ from collections.abc import Iterable
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.serialization import deserialize_message
-from std_msgs.msg import Int64MultiArray
 
-from support.samples import Fired, Trigger
+from support.samples import Trigger
 
 _STOP = "stop_"
 
@@ -23,8 +22,3 @@ def triggers(records: Iterable[bytes]) -> list[Trigger]:
             lane = values["action"].removeprefix(_STOP)
             found.append(Trigger(lane, int(values["time_ns"]), int(values["published_ns"])))
     return found
-
-
-def firings(records: Iterable[bytes]) -> list[Fired]:
-    """Return what the timed relay tells of its timers."""
-    return [Fired(*deserialize_message(record, Int64MultiArray).data) for record in records]

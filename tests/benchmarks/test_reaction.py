@@ -1,0 +1,101 @@
+"""The benchmark of the safety node's reaction: its arithmetic, and that it runs."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from benchmarks.support.samples import Sample, Told, Trigger, match
+from benchmarks.support.schedule import Schedule
+from benchmarks.support.summary import summarize
+
+REACTION = Path(__file__).resolve().parents[2] / "benchmarks" / "reaction.py"
+MS = 1_000_000
+
+
+def test_nothing_is_done_near_a_due_reaction() -> None:
+    """What would come too near is put off to the end of the quiet, also where two quiets meet."""
+    schedule = Schedule(3)
+    for due in (10, 14, 30):
+        schedule.add(due)
+    assert [schedule.first_free(at) for at in (7, 8, 13, 16, 17, 28, 33)] == [
+        7,
+        17,
+        17,
+        17,
+        17,
+        33,
+        33,
+    ]
+
+
+def test_reactions_are_not_due_at_once() -> None:
+    """Another one has to be due as far away as everything else; what is past counts no more."""
+    schedule = Schedule(3)
+    schedule.add(10)
+    assert [due for due in range(5, 16) if schedule.admits(due)] == [5, 6, 7, 13, 14, 15]
+    schedule.forget_before(13)
+    assert not schedule.admits(12)
+    schedule.forget_before(14)
+    assert schedule.admits(12)
+
+
+def test_a_summary_interpolates_between_the_times() -> None:
+    """Times come in nanoseconds, the summary is in milliseconds."""
+    summary = summarize([4 * MS, 1 * MS, 3 * MS, 2 * MS])
+    assert (summary.count, summary.mean, summary.least, summary.greatest) == (4, 2.5, 1.0, 4.0)
+    assert summary.median == 2.5
+    assert summary.percent_99 == pytest.approx(3.97)
+    assert summary.deviation == pytest.approx(1.29099, abs=1e-5)
+
+
+def test_a_sample_is_joined_with_the_trigger_of_its_own_tilt() -> None:
+    """The one of the same lane between tilt and answer; without one, nothing is told of it."""
+    first, second = Sample("a", 0.0, 100, 200), Sample("a", 0.0, 300, 400)
+    other = Sample("b", 0.0, 100, 200)
+    trigger = Trigger("a", 350, 360)
+    assert match([first, second, other], [trigger]) == [Told(second, trigger)]
+
+
+@pytest.mark.parametrize(
+    ("due", "published", "received", "early"),
+    [
+        (2_000_000_100, 2_000_000_100, 2_000_000_100, False),
+        (2_000_000_099, 2_000_000_200, 2_000_000_300, True),
+        (2_000_000_150, 2_000_000_149, 2_000_000_300, True),
+        (2_000_000_100, 2_000_000_100, 2_000_000_099, True),
+    ],
+)
+def test_a_nanosecond_too_early_is_early(
+    due: int, published: int, received: int, early: bool
+) -> None:
+    """Whether the rule is due, the state published or the answer received before its time."""
+    sample = Sample("a", 2.0, 100, received)
+    assert Told(sample, Trigger("a", due, published)).is_early is early
+
+
+@pytest.mark.ros
+def test_it_measures_everything_in_one_run(tmp_path: Path) -> None:
+    """Every series has the times asked for, and no reaction is lost, early or without an event."""
+    found = tmp_path / "found.json"
+    command = [sys.executable, str(REACTION), "--repeat", "2", "--immediate", "2"]
+    result = subprocess.run(
+        [*command, "--json", str(found)], capture_output=True, text=True, timeout=120
+    )
+    assert result.returncode == 0, result.stderr
+    results = json.loads(found.read_text(encoding="utf-8"))
+    assert {each["section"] for each in results["series"]} == {
+        "immediate rule",
+        "for 0.4 sec",
+        "for 2 sec",
+        "for 4 sec",
+        "all of them",
+    }
+    assert all(each["ms"]["count"] >= 2 for each in results["series"])
+    counted = {bar["what"]: bar["held"] for bar in results["bars"] if bar["allowed"] == "none"}
+    assert len(counted) == 3
+    assert all(counted.values()), counted
