@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import resources
 
 from deros.generators.gate_python.view import GateView, gate_view
 from deros.generators.protocol import File
@@ -15,6 +16,9 @@ from deros.monitor.ir import Program
 
 MODULES = ("logic", "message")
 """The modules of a gate besides that of its node, by the end of their names."""
+
+RUNTIME = ("alarm", "gate_report", "instance", "machine", "process", "publishers", "waker")
+"""The modules that are the same for all gates, most of which the safety node has as well."""
 
 
 def gate_files(
@@ -44,13 +48,28 @@ def gate_files(
         files[f"{root}.py"] = File(render("node", view, copyright_line))
         for module in MODULES:
             files[f"{root}_{module}.py"] = File(render(module, view, copyright_line))
+    if nodes:
+        files |= _runtime(nodes[0].package, copyright_line)
     return files
 
 
 def render(module: str, view: GateView, copyright_line: str = "") -> str:
     """Return the text of one module of a gate: its ``node``, or one of :data:`MODULES`."""
-    header = environment("deros.generators.rosnode_python").get_template("_header.j2")
     loaded = environment("deros.generators.gate_python").get_template(f"{module}.py.j2")
-    text = header.render(package={"copyright": copyright_line})
-    text += loaded.render(gate=view, node=view.node, call=call, expression=expression)
-    return mark_long_lines(text)
+    text = loaded.render(gate=view, node=view.node, call=call, expression=expression)
+    return mark_long_lines(_header(copyright_line) + text)
+
+
+def _runtime(package: str, copyright_line: str) -> dict[str, File]:
+    folder = resources.files("deros.generators.safety_python.runtime")
+    files: dict[str, File] = {}
+    for module in RUNTIME:
+        text = (folder / f"{module}.py").read_text(encoding="utf-8")
+        files[f"{package}/{package}/{module}.py"] = File(_header(copyright_line) + text)
+    return files
+
+
+def _header(copyright_line: str) -> str:
+    """Return the licence header of the node generator, if there is a holder."""
+    template = environment("deros.generators.rosnode_python").get_template("_header.j2")
+    return template.render(package={"copyright": copyright_line})

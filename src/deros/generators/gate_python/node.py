@@ -13,6 +13,13 @@ from deros.monitor.gates import gate_node_name
 from deros.monitor.ir import Gate, Program
 from deros.monitor.topics import SystemTopics
 
+PROCESS_PARAMETERS = ("realtime_priority", "lock_memory", "garbage_collection")
+"""The parameters that a gate has in common with the safety node."""
+
+DIAGNOSTICS = "/diagnostics"
+"""The topic on which a gate tells what it does."""
+
+_DIAGNOSTICS = InterfaceType("diagnostic_msgs", "msg", "DiagnosticArray")
 _UINT64 = InterfaceType("std_msgs", "msg", "UInt64")
 _STATE_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1)
 _RELIABLE_QOS = QosProfile(reliability="reliable", depth=10)
@@ -55,6 +62,7 @@ def _node(gate: Gate, program: Program, topics: SystemTopics, safety_node: NodeT
         gate.span,
         gate.span,
         description=gate.description or described,
+        parameters=tuple(p for p in safety_node.parameters if p.name in PROCESS_PARAMETERS),
         ports=tuple(_ports(gate, program, topics, safety_node)),
     )
 
@@ -80,7 +88,10 @@ def _ports(gate: Gate, program: Program, topics: SystemTopics, safety_node: Node
             kept = ports.get(name)
             port = _port(PortKind.SUBSCRIPTION, name, _UINT64, line.span, _RELIABLE_QOS, "")
             ports[name] = kept or port
-    return [target, *ports.values()]
+    diagnostics = _port(
+        PortKind.PUBLISHER, DIAGNOSTICS, _DIAGNOSTICS, gate.span, _RELIABLE_QOS, "What applies"
+    )
+    return [target, diagnostics, *ports.values()]
 
 
 def _port(

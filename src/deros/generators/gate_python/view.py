@@ -25,6 +25,7 @@ from deros.generators.rosnode_python.view import (
 from deros.generators.safety_python.messages import literal
 from deros.interfaces.fields import ResolvedField, format_path, resolve
 from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
 
@@ -91,6 +92,11 @@ class StateView:
     def parameters(self) -> tuple[str, ...]:
         """The parameters of the method that takes the states."""
         return ("self", "t: int", *(f"{action.attribute}: bool" for action in self.actions))
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """The arguments for it, of a message ``msg`` that may be ``None``."""
+        return ("self._now()", *(f"msg is None or {action.test}" for action in self.actions))
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,6 +253,7 @@ def gate_view(
     states = tuple(_states(gate, program, base, store, names))
     attributes = {each.name: each.attribute for state in states for each in state.actions}
     lines = tuple(_line(line, program, attributes, names) for line in gate.lines)
+    bound = {e.binding.type for e in program.actions if e.binding and e.name in attributes}
     paths = (limit.path for line in gate.lines for limit in line.limits)
     fields = tuple(
         FieldView(field, _limit(field, gate.lines, lines))
@@ -261,7 +268,7 @@ def gate_view(
         source=_port(base.subscriptions, gate.source),
         target=_port(base.publishers, gate.target),
         heartbeat=_port(base.subscriptions, heartbeat) if node.port(heartbeat) else None,
-        imports=tuple(_imports(base, node)),
+        imports=tuple(_imports(base, node, {gate.type, *bound})),
         period=f"{gate.period_ns:_}",
         types=type_views(store, gate.type),
         fields=fields,
@@ -274,8 +281,23 @@ def _port(ports: Iterable[PortView], name: str) -> PortView:
     return next(port for port in ports if port.name == name)
 
 
-def _imports(base: NodeView, node: NodeType) -> list[str]:
-    imports = interface_imports(dict(base.interfaces), {port.type for port in node.ports})
+def _imports(base: NodeView, node: NodeType, used: Iterable[InterfaceType]) -> list[str]:
+    imports = interface_imports(dict(base.interfaces), used)
+    own = ["logic", "message"]
+    imports |= {
+        "rclpy.clock": {"Clock", "ClockType", "JumpThreshold", "TimeJump"},
+        "rclpy.duration": {"Duration"},
+        "rclpy.event_handler": {"QoSRequestedIncompatibleQoSInfo"},
+        "rclpy.serialization": {"deserialize_message"},
+        node.package: {f"{base.module}_{module} as {module}" for module in own},
+        f"{node.package}.{base.base_module}": {base.base_class},
+        f"{node.package}.alarm": {"Alarm"},
+        f"{node.package}.gate_report": {"decoded", "Report"},
+        f"{node.package}.instance": {"claim"},
+        f"{node.package}.process": {"run"},
+    }
+    if node.parameters:
+        imports[node.package].add("machine")
     return import_lines(imports)
 
 

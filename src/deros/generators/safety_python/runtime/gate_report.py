@@ -1,0 +1,130 @@
+"""What a gate does and why, on /diagnostics and in the log."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+import time
+from typing import Any, Protocol
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.node import Node
+from rclpy.serialization import deserialize_message
+
+from .alarm import Alarm
+from .publishers import Publishers
+
+OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+PERIOD = 1_000_000_000  # ns
+SOON = 50_000_000  # ns after a change, within which others are waited for
+
+
+def decoded(data: bytes, kind: type) -> Any:
+    """Return the message, or None if the data is none of this type."""
+    try:
+        return deserialize_message(data, kind)
+    except Exception:  # each type of message may find another kind of fault in it
+        return None
+
+
+class Gate(Protocol):
+    """What is reported of the logic of a gate."""
+
+    applying: tuple[bool, ...]
+    since: int
+
+
+class Report:
+    """Publishes one status, regularly and soon after a change, which it also logs."""
+
+    def __init__(
+        self,
+        node: Node,
+        gate: Gate,
+        lines: Sequence[str],
+        now: Callable[[], int],
+        publish: Callable[[DiagnosticArray], None],
+    ) -> None:
+        """Start; lines are those of the gate, in order, and now its time."""
+        self.refused = 0
+        self.faults: dict[str, str] = {}  # by what they are about
+        self._node = node
+        self._gate = gate
+        self._lines = lines
+        self._now = now
+        self._publish = publish
+        self._told: tuple[bool, ...] = ()
+        self._cause = ''
+        self._publishers = Publishers(node, self.fault)
+        self._alarm = Alarm(
+            node, Clock(clock_type=ClockType.STEADY_TIME), time.monotonic_ns, self._ring
+        )
+        self._alarm.ring_at(0)
+
+    def look(self) -> None:
+        """Report soon if other lines apply than were reported; takes next to no time."""
+        if self._gate.applying is not self._told:
+            self._hurry()
+
+    def refuse(self, cause: str) -> None:
+        """Count a command that was refused."""
+        self.refused += 1
+        self._cause = cause
+        self._hurry()
+
+    def fault(self, subject: str, text: str) -> None:
+        """Note or, with an empty text, forget what is wrong with something."""
+        if self.faults.get(subject, '') == text:
+            return
+        self.faults.pop(subject, None)
+        if text:
+            self.faults[subject] = text
+            self._node.get_logger().error(f'{subject}: {text}')
+        self._hurry()
+
+    def _hurry(self) -> None:
+        soon = time.monotonic_ns() + SOON
+        if not self._alarm.is_set or self._alarm.due > soon:
+            self._alarm.ring_at(soon)
+
+    def _ring(self) -> None:
+        self._alarm.ring_at(time.monotonic_ns() + PERIOD)
+        if self._gate.applying != self._told:
+            self._log()
+        self._told = self._gate.applying
+        message = DiagnosticArray(status=[self._status()])
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._publish(message)
+        self._publishers.look()
+
+    def _log(self) -> None:
+        applying = '; '.join(self._applying())
+        if applying:
+            self._node.get_logger().warning(applying)
+        else:
+            self._node.get_logger().info('commands pass')
+
+    def _applying(self) -> Iterator[str]:
+        for line, applies in zip(self._lines, self._gate.applying, strict=True):
+            if applies:
+                yield line
+
+    def _status(self) -> DiagnosticStatus:
+        applying = list(self._applying())
+        lost = any(line.startswith('lost heartbeat') for line in applying)
+        level = ERROR if self.faults or lost else WARN if applying else OK
+        ago = max(self._now() - self._gate.since, 0) / 1e9
+        values = {
+            'since': f'{ago:.3f} s ago',
+            'since_ns': self._gate.since,
+            'refused': self.refused,
+            'refused_last': self._cause,
+            **self.faults,
+        }
+        return DiagnosticStatus(
+            level=level,
+            name=self._node.get_fully_qualified_name(),
+            message='; '.join([*self.faults.values(), *applying]) or 'commands pass',
+            values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
+        )
