@@ -7,18 +7,6 @@ because whoever certifies a safety node reads them.
 from __future__ import annotations
 
 
-def _python_of_quaternion(name: str, meaning: str, value: str) -> str:
-    return f'''\
-def quaternion_{name}(x: float, y: float, z: float, w: float) -> float | None:
-    """Return {meaning} in radians; None for a quaternion without length."""
-    length = math.hypot(x, y, z, w)
-    if not 0.0 < length < math.inf:
-        return None
-    x, y, z, w = x / length, y / length, z / length, w / length
-    return {value}
-'''
-
-
 def _c_of_quaternion(name: str, value: str) -> str:
     return f"""\
 static double deros_{name}(double x, double y, double z, double w)
@@ -33,27 +21,18 @@ static double deros_{name}(double x, double y, double z, double w)
 """
 
 
+PYTHON_OF_UNIT: dict[str, str] = {
+    "roll": "math.atan2(2.0 * (uw * ux + uy * uz), 1.0 - 2.0 * (ux * ux + uy * uy))",
+    "pitch": (
+        "math.asin(sine if -1.0 <= (sine := 2.0 * (uw * uy - uz * ux)) <= 1.0"
+        " else math.copysign(1.0, sine))"
+    ),
+    "yaw": "math.atan2(2.0 * (uw * uz + ux * uy), 1.0 - 2.0 * (uy * uy + uz * uz))",
+    "tilt": "2.0 * math.atan2(math.hypot(ux, uy), math.hypot(uz, uw))",
+}
+"""Expressions by the function's name, on a quaternion of length 1 with the parts ux, uy, uz, uw."""
+
 PYTHON: dict[str, str] = {
-    "roll": _python_of_quaternion(
-        "roll",
-        "the rotation about the x axis",
-        "math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))",
-    ),
-    "pitch": _python_of_quaternion(
-        "pitch",
-        "the rotation about the y axis",
-        "math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x))))",
-    ),
-    "yaw": _python_of_quaternion(
-        "yaw",
-        "the rotation about the z axis",
-        "math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))",
-    ),
-    "tilt": _python_of_quaternion(
-        "tilt",
-        "the angle of the z axis to the vertical",
-        "2.0 * math.atan2(math.hypot(x, y), math.hypot(z, w))",
-    ),
     "rate": '''\
 def rate_per_second(value: float, previous: float, elapsed_ns: int) -> float | None:
     """Return the change per second; None for two messages of one instant."""
@@ -65,44 +44,55 @@ def rate_per_second(value: float, previous: float, elapsed_ns: int) -> float | N
     "min": '''\
 def array_min(values: Sequence[float]) -> float | None:
     """Return the least element; None for an empty array."""
-    return min(values) if len(values) else None
+    return np.min(values).item() if len(values) else None
 ''',
     "max": '''\
 def array_max(values: Sequence[float]) -> float | None:
     """Return the greatest element; None for an empty array."""
-    return max(values) if len(values) else None
+    return np.max(values).item() if len(values) else None
 ''',
     "nearest": '''\
-def scan_nearest(
-    ranges: Sequence[float],
-    angle_min: float,
-    angle_increment: float,
-    range_min: float,
-    range_max: float,
-    start: float,
-    end: float,
-) -> float | None:
-    """Return the least valid range from bearing start to end; None without a valid beam."""
+@functools.lru_cache(maxsize=64)
+def scan_beams(
+    count: int, angle_min: float, angle_increment: float, start: float, end: float,
+) -> slice | np.ndarray:
+    """Return which beams lie from bearing start to end; kept for further scans of this form."""
     turn = 2.0 * math.pi
     width = end - start if end >= start else end - start + turn
-    shortest = None
-    for index, measured in enumerate(ranges):
-        if measured == -math.inf:  # too near to measure (REP 117)
-            distance = range_min
-        elif not measured >= range_min:  # invalid
-            continue
-        else:
-            distance = measured if measured <= range_max else math.inf
-        offset = (angle_min + index * angle_increment - start) % turn
-        inside = offset <= width + 1e-6 or offset >= turn - 1e-6
-        if inside and (shortest is None or distance < shortest):
-            shortest = distance
-    return shortest
+    with np.errstate(all='ignore'):
+        offsets = (angle_min + np.arange(count) * angle_increment - start) % turn
+        beams = np.flatnonzero((offsets <= width + 1e-6) | (offsets >= turn - 1e-6))
+    if beams.size and beams[-1] - beams[0] < beams.size:
+        return slice(int(beams[0]), int(beams[-1]) + 1)
+    return beams
+
+
+def scan_nearest(
+    ranges: Sequence[float], angle_min: float, angle_increment: float, range_min: float,
+    range_max: float, start: float, end: float,
+) -> float | None:
+    """Return the least valid range from bearing start to end; None without a valid beam."""
+    beams = scan_beams(len(ranges), angle_min, angle_increment, start, end)
+    measured = np.asarray(ranges)[beams]
+    if not measured.size:
+        return None
+    least = float(np.fmin.reduce(measured))  # not NaN, if any is not
+    if least == -math.inf:  # too near to measure (REP 117)
+        return range_min
+    if not least >= range_min:  # invalid, as may be others
+        valid = measured[measured >= range_min]
+        if not valid.size:
+            return None
+        least = float(valid.min())
+    return least if least <= range_max else math.inf
 ''',
     "scan_usable": '''\
 def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
     """Tell whether any beam of the scan is valid."""
-    return any(measured >= range_min or measured == -math.inf for measured in ranges)
+    measured = np.asarray(ranges)
+    if not measured.size:
+        return False
+    return bool(np.fmax.reduce(measured) >= range_min or np.fmin.reduce(measured) == -math.inf)
 ''',
 }
 """Definitions in Python by the function's name; ``None`` is *unknown*."""

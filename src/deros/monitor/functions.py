@@ -6,7 +6,8 @@ message it reads, and what it computes: once as the reference, in
 adding a row. Source: paper, section 4.2, for ``toRad``, ``toDeg``, ``roll`` and ``pitch``.
 
 Python text is the definition of a module-level function that returns ``None`` for *unknown*; its
-module imports ``math`` and, from ``collections.abc``, ``Sequence``. C text is a C99 definition
+module imports ``math`` and, from ``collections.abc``, ``Sequence``, and as the text needs them
+``functools`` and ``numpy as np``. C text is a C99 definition
 (``<math.h>``, ``<stddef.h>``) that returns ``NAN`` for *unknown*; an array is passed as a pointer
 and a count.
 """
@@ -96,6 +97,8 @@ class Function:
         guard: what a message must satisfy to count at all.
         python_call: what Python text calls with the arguments in order.
         python: the definition that Python text needs; empty for what Python has built in.
+        python_of_unit: of a function of a quaternion, in place of both, its expression on the parts
+            ux, uy, uz, uw of the quaternion brought to length 1.
         c_call: what C text calls.
         c: the definition that C text needs.
     """
@@ -114,6 +117,7 @@ class Function:
     guard: Guard | None = None
     python_call: str = ""
     python: str = ""
+    python_of_unit: str = ""
     c_call: str = ""
     c: str = ""
 
@@ -130,8 +134,7 @@ def _of_quaternion(
         leaves=("x", "y", "z", "w"),
         evaluate=evaluate,
         bounds=bounds,
-        python_call=f"quaternion_{name}",
-        python=texts.PYTHON[name],
+        python_of_unit=texts.PYTHON_OF_UNIT[name],
         c_call=f"deros_{name}",
         c=texts.C[name],
     )

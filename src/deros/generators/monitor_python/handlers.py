@@ -7,7 +7,14 @@ from dataclasses import dataclass
 
 from deros.generators.monitor_python.conditions import literal, scaled
 from deros.generators.monitor_python.layout import Layout, input_of
-from deros.generators.monitor_python.logic import Atom, Logic, all_of, lay_out, lay_out_call
+from deros.generators.monitor_python.logic import (
+    Atom,
+    Logic,
+    all_of,
+    any_of,
+    lay_out,
+    lay_out_call,
+)
 from deros.generators.monitor_python.names import Names
 from deros.generators.monitor_python.rules import Judge
 from deros.generators.monitor_python.source import comment
@@ -59,11 +66,20 @@ class Handler:
     judges: tuple[str, ...]
 
 
-def handlers(program: Program, layout: Layout, judges: Sequence[Judge]) -> tuple[Handler, ...]:
-    """Return the handlers of a program, in the order of its topics."""
+_FRESH = "fresh = True"
+
+
+def handlers(
+    program: Program, layout: Layout, judges: Sequence[Judge], known_at_start: bool
+) -> tuple[Handler, ...]:
+    """Return the handlers of a program, in the order of its topics.
+
+    Those judge nothing when a message says nothing new, unless something is ``known_at_start``:
+    then the first message, whatever it says, is the first event.
+    """
     methods = Names(frozenset())
     return tuple(
-        _Writer(program, layout, topic).handler(
+        _Writer(program, layout, topic, known_at_start).handler(
             methods.new("on", topic), tuple(each.method for each in judges if topic in each.topics)
         )
         for topic in program.topics
@@ -73,18 +89,26 @@ def handlers(program: Program, layout: Layout, judges: Sequence[Judge]) -> tuple
 class _Writer:
     """Writes the handler of one topic."""
 
-    def __init__(self, program: Program, layout: Layout, topic: str) -> None:
+    def __init__(self, program: Program, layout: Layout, topic: str, at_first: bool) -> None:
         self._program = program
         self._layout = layout
         self._topic = topic
         self._inputs = [each for each in program.inputs if each.topic == topic]
         self._names = Names()
         self._parameters = self._name_parameters()
+        self._locals: dict[ValueExpression, str] = {}
+        ages = any(each.index in layout.counted for each in self._inputs)
+        self._tells_news = not ages and not at_first
+        """Whether a message that says nothing new can be told; an age always changes."""
+        read = [each for each in self._inputs if self._is_observed(each)]
+        self._counts_news = self._tells_news and len(read) > 1
 
     def handler(self, method: str, judges: tuple[str, ...]) -> Handler:
         lines: list[str] = []
         for each in self._inputs:
             lines += self._input(each)
+        if self._counts_news:
+            lines = ["        fresh = False", *lines, "        if not fresh:", "            return"]
         parameters = tuple(self._parameters.values())
         signature = ["self", "t: int", *(f"{each.name}: {each.annotation}" for each in parameters)]
         return Handler(
@@ -127,6 +151,7 @@ class _Writer:
         lines += [*lay_out(8, "if ", all_of(tests), ":"), *observed]
         if each.index in self._layout.forget:
             lines += ["        else:", f"            self._{self._layout.forget[each.index]}()"]
+            lines += [f"            {_FRESH}"] if self._counts_news else []
         return lines
 
     def _presence(self, each: Input) -> list[Logic]:
@@ -137,7 +162,7 @@ class _Writer:
             name = self._parameters[leaf.path].name
             is_float = leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown
             if leaf.type.is_array and is_float:
-                tests.append(Atom(f"not any(map(math.isnan, {name}))"))
+                tests.append(Atom(f"not np.isnan({name}).any()"))
             elif not leaf.type.is_array and (is_float or _has_index(leaf)):
                 tests.append(Atom(f"{name} == {name}"))
         return tests
@@ -152,52 +177,114 @@ class _Writer:
         return list(tests)
 
     def _functions(self, each: Input, indent: int) -> list[str]:
+        """Return the statements that compute the functions of an input, into local names."""
         lines: list[str] = []
         blank = " " * indent
+        units: set[tuple[ValueExpression, ...]] = set()
         for function in self._functions_of(each):
             row = FUNCTIONS[function.function]
-            slot = self._layout.values[function]
+            if row.python_of_unit:
+                if function.arguments not in units:
+                    units.add(function.arguments)
+                    lines += self._of_quaternion(each, function.arguments, indent)
+                continue
+            name = self._locals[function] = self._names.new(self._layout.values[function].name)
             arguments = [self._value(argument) for argument in function.arguments]
             if function.state is not None:
                 last, last_t = self._layout.last[function]
                 arguments += [f"self._{last}", f"t - self._{last_t}"]
-            if row.python and slot.unknown == "NAN":
-                name = self._names.new(slot.name)
-                lines += lay_out_call(indent, f"{name} = {row.python_call}(", arguments)
-                lines.append(f"{blank}self._{slot.name} = NAN if {name} is None else {name}")
-            else:
-                lines += lay_out_call(indent, f"self._{slot.name} = {row.python_call}(", arguments)
+            lines += lay_out_call(indent, f"{name} = {row.python_call}(", arguments)
             if function.state is not None:
                 lines += [f"{blank}self._{last} = {arguments[0]}", f"{blank}self._{last_t} = t"]
+            if row.python and self._layout.values[function].unknown == "NAN":
+                lines += [f"{blank}if {name} is None:", f"{blank}    {name} = NAN"]
         return lines
 
-    def _observe(self, each: Input, indent: int) -> list[str]:
-        layout, index = self._layout, each.index
-        statements = [
-            f"self._{slot.name} = {self._parameters[self._program.leaves[value.leaf].path].name}"
-            for value, slot in layout.values.items()
-            if isinstance(value, Read) and input_of(self._program, value) == index
+    def _of_quaternion(
+        self, each: Input, parts: tuple[ValueExpression, ...], indent: int
+    ) -> list[str]:
+        """Return the statements for all functions of one quaternion, normalised once."""
+        blank = " " * indent
+        texts = [self._value(part) for part in parts]
+        results: list[str] = []
+        names: list[str] = []
+        for function in self._functions_of(each):
+            row = FUNCTIONS[function.function]
+            if row.python_of_unit and function.arguments == parts:
+                name = self._locals[function] = self._names.new(self._layout.values[function].name)
+                results.append(f"{blank}    {name} = {row.python_of_unit}")
+                names.append(name)
+        return [
+            *lay_out_call(indent, "length = math.hypot(", texts),
+            f"{blank}if 0.0 < length < math.inf:",
+            *(
+                f"{blank}    {unit} = {part} / length"
+                for unit, part in zip(("ux", "uy", "uz", "uw"), texts, strict=True)
+            ),
+            *results,
+            f"{blank}else:",
+            f"{blank}    {' = '.join(names)} = NAN",
         ]
+
+    def _observe(self, each: Input, indent: int) -> list[str]:
+        """Return the statements that remember a message, and find whether it says anything new."""
+        layout, index = self._layout, each.index
+        statements: list[str] = []
         if index in layout.counted:
             statements.append(f"self._{layout.counted[index]} = t")
-        soonest = min(self._changes(each), default=None)
-        if soonest is not None:
-            statements += _call_at(soonest)
+            soonest = min(self._changes(each), default=None)
+            statements += _call_at(soonest) if soonest is not None else []
+        slots = [
+            (f"self._{slot.name}", self._local(value))
+            for value, slot in layout.values.items()
+            if input_of(self._program, value) == index
+        ]
         if each.timeout_ns is not None:
-            missing = layout.missing[index]
-            statements += [
-                f"self._{layout.heard[index]} = t",
-                f"if self._{layout.silent[index]}:",
-                f"    self._{layout.silent[index]} = self._{missing} = False",
-                *(f"    {line}" for line in _call_at(each.timeout_ns)),
-            ]
+            statements += self._heard(each, each.timeout_ns, bool(slots))
+        statements += self._news(slots)
         return [f"{' ' * indent}{statement}" for statement in statements]
+
+    def _heard(self, each: Input, timeout_ns: int, has_values: bool) -> list[str]:
+        """Return the statements that start the timeout anew."""
+        silent, missing = self._layout.silent[each.index], self._layout.missing[each.index]
+        lines = [
+            f"self._{self._layout.heard[each.index]} = t",
+            f"if self._{silent}:",
+            f"    self._{silent} = self._{missing} = False",
+            *(f"    {line}" for line in _call_at(timeout_ns)),
+        ]
+        if has_values:
+            return lines  # unknown values tell that it was silent
+        if self._counts_news:
+            return [*lines, f"    {_FRESH}"]
+        return [*lines, "else:", "    return"] if self._tells_news else lines
+
+    def _news(self, slots: Sequence[tuple[str, str]]) -> list[str]:
+        """Return the statements that take the values over, after a look whether they differ."""
+        stores = [f"{attribute} = {local}" for attribute, local in slots]
+        if not slots or not self._tells_news:
+            return stores
+        if self._counts_news:
+            test: Logic = any_of(Atom(f"{local} != {attribute}") for attribute, local in slots)
+            return [*lay_out(0, "if ", test, ":"), *(f"    {each}" for each in (*stores, _FRESH))]
+        test = all_of(Atom(f"{local} == {attribute}") for attribute, local in slots)
+        return [*lay_out(0, "if ", test, ":"), "    return", *stores]
+
+    def _local(self, value: ValueExpression) -> str:
+        if value in self._locals:
+            return self._locals[value]
+        assert isinstance(value, Read)
+        return self._parameters[self._program.leaves[value.leaf].path].name
 
     def _changes(self, each: Input) -> Iterator[int]:
         """Yield the ages of a message at which a verdict can change without another message."""
         for condition in walk.conditions(self._program):
             if isinstance(condition, Age) and condition.input == each.index:
                 yield from (change for change in age_changes(condition) if change > 0)
+
+    def _is_observed(self, each: Input) -> bool:
+        has_values = each.index in self._layout.forget
+        return has_values or each.timeout_ns is not None or each.index in self._layout.counted
 
     def _functions_of(self, each: Input) -> list[Apply]:
         return [
@@ -216,7 +303,7 @@ class _Writer:
             case Scale():
                 return scaled(self._value(value.operand), value)
             case Apply():
-                return f"self._{self._layout.values[value].name}"
+                return self._locals[value]
 
 
 def _call_at(wait_ns: int) -> list[str]:

@@ -10,8 +10,8 @@ from deros.monitor.functions import FUNCTIONS
 
 MODULE_NAMES = frozenset(
     {
-        *("Callable", "Collection", "Sequence", "NamedTuple", "math"),
-        *("Event", "Monitor", "RuleState", "explained"),
+        *("Callable", "Collection", "Sequence", "NamedTuple", "functools", "math", "np"),
+        *("Event", "Monitor", "RuleState", "explained", "scan_beams"),
         *("NAN", "NEVER", "OPTIONAL", "RULES_OF"),
     }
 )
@@ -22,7 +22,10 @@ METHOD_NAMES = frozenset(
     }
 )
 LOCAL_NAMES = frozenset(
-    {"changed", "due", "emit", "now", "self", "settled", "started", "t", "verdict"}
+    {
+        *("changed", "due", "emit", "fresh", "now", "self", "started", "t", "verdict"),
+        *("length", "sine", "ux", "uy", "uz", "uw"),
+    }
 )
 
 _FUNCTION_NAMES = {row.python_call for row in FUNCTIONS.values()} | {

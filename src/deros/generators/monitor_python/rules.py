@@ -103,11 +103,11 @@ def interval_lines(conditions: Conditions, layout: Layout, condition: Condition)
             lines += [
                 f"        {due} = self._{due}",
                 *lay_out(8, "if ", conditions.true(part.operand), ":"),
-                f"            if {due} == NEVER:",
+                f"            if {due} is NEVER:",
                 f"                {due} = self._{due} = t + {part.duration_ns:_}",
                 f"                if {due} < self._due:",
                 f"                    self._due = {due}",
-                "        else:",
+                f"        elif {due} is not NEVER:",
                 f"            {due} = self._{due} = NEVER",
             ]
     return lines

@@ -51,6 +51,8 @@ class MonitorView:
         name: of the program.
         functions: definitions of the functions that the rules use.
         uses_sequences: whether an array comes into a handler or a function.
+        uses_numpy: whether its numbers are looked at.
+        uses_cache: whether something computed of it is kept.
         slots: the names of the attributes, in order.
         initial: pairs of attribute and value at the start, of what a clock step leaves alone.
         restarted: the same of what it does not.
@@ -72,6 +74,8 @@ class MonitorView:
     name: str
     functions: tuple[str, ...]
     uses_sequences: bool
+    uses_numpy: bool
+    uses_cache: bool
     slots: tuple[str, ...]
     initial: tuple[tuple[str, str], ...]
     restarted: tuple[tuple[str, str], ...]
@@ -95,9 +99,10 @@ def monitor_view(program: Program) -> MonitorView:
     layout = lay_out_memory(program)
     functions = _function_texts(layout)
     methods = judges(program, layout)
-    made = handlers(program, layout, methods)
-    annotations = [each.annotation for handler in made for each in handler.parameters]
     known_at_start = _known_at_start(program, layout)
+    made = handlers(program, layout, methods, known_at_start)
+    annotations = [each.annotation for handler in made for each in handler.parameters]
+    arrays = [*functions, *(line for handler in made for line in handler.lines)]
     initial = _initial(program, layout, known_at_start)
     restarted = _restarted(layout)
     forgets = _forgets(program, layout)
@@ -117,6 +122,8 @@ def monitor_view(program: Program) -> MonitorView:
         name=re.sub(r"[^\w .-]", "_", program.name),
         functions=functions,
         uses_sequences=any("Sequence" in each for each in (*functions, *annotations)),
+        uses_numpy=any("np." in each for each in arrays),
+        uses_cache=any("functools." in each for each in functions),
         slots=tuple(dict.fromkeys(attributes)),
         initial=initial,
         restarted=restarted,
