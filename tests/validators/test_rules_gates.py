@@ -1,0 +1,153 @@
+"""Gates in systems: what is wired well is quiet, and what the model cannot know is let be."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.diagnostics import Diagnostic
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.validators.check import check
+from tests.support.cli import deros
+
+NODES = {
+    "planner.rnd": "node planner : demo\npublishes\n  topic wish : geometry_msgs.Twist\n",
+    "drive.rnd": "node drive : demo\nsubscribes\n  topic cmd_vel : geometry_msgs.Twist\n",
+    "cmd_vel_gate.rnd": "node cmd_vel_gate : demo\npublishes\n  topic /cmd_vel : geometry_msgs.Twist\n"
+    "subscribes\n  topic /nav : geometry_msgs.Twist\n  topic /stop : std_msgs.Bool\n",
+}
+PLANNER = "node planner : planner\nwirings\n  connect wish to /nav\n"
+DRIVE = "node drive : drive\nwirings\n  connect cmd_vel to /cmd_vel\n"
+GATE = """node gate : cmd_vel_gate
+wirings
+  connect /nav to /nav
+  connect /cmd_vel to /cmd_vel
+  connect /stop to /stop
+"""
+TOPICS = "  topic /nav\n  topic /cmd_vel\n  topic /stop\n  external topic /v : std_msgs.Float64\n"
+IMPORTS = "".join(f'  import "{name}"\n' for name in NODES)
+RULES = """use "s.system" import S
+action stop publishes true on /stop : std_msgs.Bool latched;
+const crawl = 0.1 m/s
+input v = topic /v.data timeout 1 sec
+entity e { fast: v > 1 or v.missing(); }
+if e.fast then { stop; };
+gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+  stop: limit linear.x to [-crawl, crawl];
+  lost heartbeat for 0.3 sec: zero;
+  lost input for 0.5 sec: zero;
+}
+"""
+
+
+@pytest.fixture(autouse=True)
+def _nodes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, text in NODES.items():
+        Path(name).write_text(text, encoding="utf-8")
+
+
+def _findings(members: str, topics: str = TOPICS, rules: str = RULES) -> list[Diagnostic]:
+    """Check rules together with the system that they use."""
+    system = f"system S\nimports\n{IMPORTS}topics\n{topics}{members}"
+    Path("s.system").write_text(system, encoding="utf-8")
+    Path("s.deros").write_text(rules, encoding="utf-8")
+    repository = Repository()
+    loaded = repository.load("s.deros")
+    found = check([loaded], repository, InterfaceStore((), prefixes=()))
+    return [each for each in found if each.code.name != "DRS222"]  # imports left unused here
+
+
+def _codes(members: str, topics: str = TOPICS, rules: str = RULES) -> list[str]:
+    return [each.code.name for each in _findings(members, topics, rules)]
+
+
+def test_sound_gate() -> None:
+    """A gate between controller and drive has no finding; its constants and actions are used."""
+    assert _findings(PLANNER + GATE + DRIVE) == []
+
+
+def test_gate_to_the_outside() -> None:
+    """A drive outside the model is declared so; the gate may then be outside, too."""
+    topics = TOPICS.replace("topic /cmd_vel", "external topic /cmd_vel")
+    assert _codes(PLANNER + GATE, topics) == []
+    assert _codes(PLANNER, topics.replace("  topic /stop\n", "")) == []
+
+
+def test_outside_controller() -> None:
+    """A source that is fed from outside is no fault of the rules."""
+    topics = TOPICS.replace("topic /nav", "external topic /nav")
+    assert _codes(GATE + DRIVE, topics) == []
+
+
+def test_system_without_the_target() -> None:
+    """Where nobody uses the target, no gate is missed, but the rules command nobody."""
+    topics = TOPICS.replace("  topic /cmd_vel\n", "").replace("  topic /stop\n", "")
+    assert _codes(PLANNER, topics) == ["DRS341"]
+
+
+def test_gate_left_out() -> None:
+    """One finding says so: not also that ends are missing, or that the two topics are one."""
+    (finding,) = _findings(PLANNER + DRIVE, TOPICS.replace("  topic /stop\n", ""))
+    assert finding.code.name == "DRS340"
+    assert "no node is a 'cmd_vel_gate'" in finding.message
+    assert [each.span.file for each in finding.related] == ["s.system"]
+
+
+def test_bypass_is_found_where_it_is_wired() -> None:
+    """The place is the connection, which has to change; a gate beside it does not excuse it."""
+    joystick = "node joystick : planner\nwirings\n  connect wish to /cmd_vel\n"
+    (finding,) = _findings(PLANNER + GATE + DRIVE + joystick)
+    assert (finding.code.name, finding.span.file) == ("DRS339", "s.system")
+    assert finding.span.text == "connect wish to /cmd_vel"
+
+
+def test_bypass_without_a_connection() -> None:
+    """An unwired port that talks on the target by its own name is found at its node."""
+    Path("planner.rnd").write_text(
+        "node planner : demo\npublishes\n  topic /cmd_vel : geometry_msgs.Twist"
+    )
+    found = _findings("node planner : planner\n" + GATE + DRIVE)
+    assert ("DRS339", "planner") in [(each.code.name, each.span.text) for each in found]
+
+
+def test_gate_connected_elsewhere() -> None:
+    """A gate that is there but reads or feeds other topics is as good as none."""
+    wrong = GATE.replace("connect /nav to /nav", "connect /nav to /wish")
+    topics = TOPICS + "  external topic /wish : geometry_msgs.Twist\n"
+    (finding,) = _findings(PLANNER + wrong + DRIVE, topics)
+    assert finding.message == "no 'cmd_vel_gate' of system 'S' subscribes to '/nav'"
+
+
+def test_node_of_an_unknown_type_may_be_the_gate() -> None:
+    """The unknown type is a finding of its own; that the gate is missing does not follow."""
+    assert "DRS340" not in _codes(PLANNER + DRIVE + "node gate : cmd_vel_gaet\n")
+
+
+def test_source_that_nobody_publishes() -> None:
+    """As for inputs."""
+    assert "DRS318" in _codes(GATE + DRIVE)
+
+
+def test_chain_of_gates() -> None:
+    """The target of one gate may be the source of the next."""
+    second = RULES[RULES.index("gate ") :].replace("/cmd_vel", "/drive").replace("/nav", "/cmd_vel")
+    Path("drive.rnd").write_text(
+        "node drive_gate : demo\npublishes\n  topic /drive : geometry_msgs.Twist\n"
+        "subscribes\n  topic /cmd_vel : geometry_msgs.Twist\n"
+    )
+    members = "node second : drive_gate\nwirings\n  connect /cmd_vel to /cmd_vel\n"
+    members += "  connect /drive to /drive\n"
+    topics = f"{TOPICS}  external topic /drive\n"
+    assert _findings(PLANNER + GATE + members, topics, RULES + second) == []
+
+
+def test_generation_comes_before_the_wiring() -> None:
+    """A gate that is not wired yet keeps nobody from generating its node; ``check`` does fail."""
+    assert _codes(PLANNER + DRIVE, TOPICS.replace("  topic /stop\n", "")) == ["DRS340"]
+    assert deros("check", "s.deros").code == 1
+    outcome = deros("generate", "s.deros", "--target", "python", "-o", "out")
+    assert "DRS340" in outcome.err
+    assert outcome.code == 0, outcome.err
