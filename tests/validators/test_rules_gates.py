@@ -15,7 +15,8 @@ from tests.support.cli import deros
 NODES = {
     "planner.rnd": "node planner : demo\npublishes\n  topic wish : geometry_msgs.Twist\n",
     "drive.rnd": "node drive : demo\nsubscribes\n  topic cmd_vel : geometry_msgs.Twist\n",
-    "cmd_vel_gate.rnd": "node cmd_vel_gate : demo\npublishes\n  topic /cmd_vel : geometry_msgs.Twist\n"
+    "cmd_vel_gate.rnd": "node cmd_vel_gate : demo\n"
+    "publishes\n  topic /cmd_vel : geometry_msgs.Twist\n"
     "subscribes\n  topic /nav : geometry_msgs.Twist\n  topic /stop : std_msgs.Bool\n",
 }
 PLANNER = "node planner : planner\nwirings\n  connect wish to /nav\n"
