@@ -162,7 +162,7 @@ def _run(
     everything = [each.progress for each in at_once] + [each.progress for each in later]
     with Line(sys.stderr) as line:
         line.show("waiting for all nodes to meet")
-        driver.meet(seconds=60.0)
+        driver.meet(60.0, processes.check)
 
         def watch() -> None:
             processes.check()

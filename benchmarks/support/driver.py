@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
@@ -117,8 +117,8 @@ class Driver:
         self._channels.append(channel)
         return channel
 
-    def meet(self, seconds: float) -> None:
-        """Wait until there is somebody at the other end of everything.
+    def meet(self, seconds: float, watch: Callable[[], None]) -> None:
+        """Wait until there is somebody at the other end of everything; ``watch`` is called often.
 
         Raises:
             TimeoutError: if there still is not after so many seconds.
@@ -127,6 +127,7 @@ class Driver:
         while missing := self._missing():
             if time.monotonic() > end:
                 raise TimeoutError(f"nobody has come to {', '.join(missing)}")
+            watch()
             self._spin_once(20_000_000)
 
     def _missing(self) -> list[str]:
