@@ -38,6 +38,8 @@ CASES = [
     ("a.deros", "entity e { r: x > -«-»3; }", "a name"),
     ("a.deros", "use «robot» import Robot", 'a text in "quotes"'),
     ("a.deros", "const x = «;»", "a number"),
+    ("a.deros", 'entity «"a\u00a0b"» {', r'found "a\u00a0b"'),
+    ("a.deros", "gate /a -> /b : c.D rate 1 Hz { stop: limit x «ot» [0, 1]; }", "'to'"),
     ("a.deros", "input x = topic /a.b«.»roll() timeout 3 sec", "a function is applied where"),
 ]
 

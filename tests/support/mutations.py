@@ -18,6 +18,11 @@ action stop publishes true on /stop : std_msgs.Bool reset_by ok latched "d";
 input s = topic /scan.ranges[2] timeout 0.5 sec
 entity e { r: (not /a.b.c(1, -2 deg).d() >= -x.y for 2 sec) or s in (0, 1 m] and t; }
 behaviour b: if e.r then { stop; if e.r then { log_state("a\\"b"); }; };
+optional behaviour c: if e.r for 2 sec then { stop };
+gate /nav -> /cmd : a.B rate 20 Hz "d" {
+  stop: limit x.y[2] to [-s, 1 m/s] m/s, z to [0, 1]; low: zero
+  lost heartbeat for 0.3 sec: zero; lost input for 0.5 sec: zero;
+}
 """
 _SYSTEM = """\
 system S imports import "n/*.rnd" topics external topic /t : a.B qos reliable "d"
@@ -31,9 +36,10 @@ TEXTS = {
 }
 """Sound models by the suffix of their files."""
 
-_WORDS = "not for in if topic node subsystem connect qos 0 1e9 é \u00a0 \x0c \U0001f916"
-_SIGNS = '" \\ /* */ // ( ) [ ] { } ; : . , - ~ / ='
-PIECES = st.sampled_from(["", " ", "\n", *_WORDS.split(" "), *_SIGNS.split(" ")])
+_WORDS = "not for in if topic node subsystem connect qos gate lost limit optional"
+_OTHERS = "0 1e9 é \u00a0 \x0c \U0001f916"
+_SIGNS = '" \\ /* */ // ( ) [ ] { } ; : . , - -> ~ / ='
+PIECES = st.sampled_from(["", " ", "\n", *f"{_WORDS} {_OTHERS} {_SIGNS}".split(" ")])
 """Words and signs of the languages, and what is none of them."""
 
 

@@ -90,6 +90,8 @@ def _missing(expected: list[str]) -> str:
 
 
 def _described(text: str) -> str:
+    if len(text) > 1:
+        text = "".join(each if each.isprintable() else f"\\u{ord(each):04x}" for each in text)
     if text.isprintable() and not text.isspace():
         return f"found {text if text.startswith(chr(34)) else repr(text)}"
     name = unicodedata.name(text, "control character").lower()
