@@ -287,7 +287,6 @@ def _imports(base: NodeView, node: NodeType, used: Iterable[InterfaceType]) -> l
     imports |= {
         "rclpy.clock": {"Clock", "ClockType", "JumpThreshold", "TimeJump"},
         "rclpy.duration": {"Duration"},
-        "rclpy.event_handler": {"QoSRequestedIncompatibleQoSInfo"},
         "rclpy.serialization": {"deserialize_message"},
         node.package: {f"{base.module}_{module} as {module}" for module in own},
         f"{node.package}.{base.base_module}": {base.base_class},

@@ -1,0 +1,265 @@
+"""Generated gates on the real middleware; the test plays the rest of the robot."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import signal
+import statistics
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.gate_nodes import World, running_gate, write_gates
+from tests.support.ros import LIMIT, Peer
+
+pytestmark = pytest.mark.ros
+
+GATE = "cmd_vel_gate"
+PERIOD = 0.05
+STILL = (0.0, 0.0, 0.0)
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """Give the package of the generated gates."""
+    return write_gates(tmp_path)
+
+
+@pytest.fixture
+def world(ros_peer: Peer) -> World:
+    """Give all that is around the gate."""
+    return World(ros_peer)
+
+
+def test_commands_pass_as_the_bytes_they_came_in(
+    package: Path, ros_env: dict[str, str], world: World
+) -> None:
+    """With no action active, every command comes out at once, to the byte."""
+    with running_gate(package, GATE, ros_env):
+        world.meet()
+        world.release()
+        delays = []
+        for number in range(200):
+            before = len(world.heard)
+            sent = time.monotonic()
+            data = world.wish(0.001 * number, y=-0.0)
+            world.hear_after(before)
+            assert world.heard[before][1] == data
+            delays.append(world.heard[before][0] - sent)
+    assert statistics.median(delays) < 0.01
+
+
+def test_it_holds_the_robot_until_it_is_known_to_be_safe(
+    package: Path, ros_env: dict[str, str], world: World
+) -> None:
+    """Zeros come before anything is known, without a command, and on through commands."""
+    world.beating.cancel()
+    with running_gate(package, GATE, ros_env):
+        world.meet()
+        world.wish_until(0.3, lambda: len(world.heard) > 5)
+        world.beat()
+        world.wish_until(0.3, lambda: len(world.heard) > 10)
+    assert {world.speeds(data) for _, data in world.heard} == {STILL}
+
+
+def test_a_stop_commands_zero_at_once_and_steadily(
+    package: Path, ros_env: dict[str, str], world: World
+) -> None:
+    """The first zero comes with the stop, the rest with the rate, whether commands come or not."""
+    with running_gate(package, GATE, ros_env):
+        world.meet()
+        world.release()
+        before = len(world.heard)
+        stopped = world.stop(True)
+        world.hear_after(before)
+        assert world.heard[before][0] - stopped < 0.02
+        world.peer.until(lambda: len(world.heard) >= before + 20)
+        world.wish_until(0.3, lambda: len(world.heard) >= before + 40)
+        zeros = world.heard[before:]
+    assert {world.speeds(data) for _, data in zeros} == {STILL}
+    times = [heard for heard, _ in zeros]
+    gaps = [after - before for before, after in itertools.pairwise(times)]
+    assert statistics.median(gaps) == pytest.approx(PERIOD, abs=0.005)
+
+
+def test_no_old_command_is_replayed_when_a_stop_ends(
+    package: Path, ros_env: dict[str, str], world: World
+) -> None:
+    """After a stop the gate is silent until somebody commands something."""
+    with running_gate(package, GATE, ros_env):
+        world.meet()
+        world.release()
+        world.stop(True)
+        world.wish_until(0.3, lambda: world.last == STILL)
+        world.wish(0.0, 0.1)
+        world.stop(False)
+        passed = len(world.heard)
+        world.wish_until(0.2, lambda: world.last == (0.2, 0.0, 0.0))
+    assert {world.speeds(data) for _, data in world.heard[passed:]} <= {STILL, (0.2, 0.0, 0.0)}
+
+
+def test_limits_hold_at_once_and_field_by_field(
+    package: Path, ros_env: dict[str, str], world: World
+) -> None:
+    """What is being executed is limited without another command, and so are those to come."""
+    with running_gate(package, GATE, ros_env):
+        world.meet()
+        world.release()
+        world.wish(0.9, turn=-0.7, y=0.5)
+        world.peer.until(lambda: world.last == (0.9, 0.5, -0.7))
+        world.mode(1)
+        world.peer.until(lambda: world.last == (0.4, 0.5, -0.2))
+        world.mode(2)
+        world.peer.until(lambda: world.last == (0.1, 0.5, -0.2))
+        unchanged = world.wish(-0.1, turn=3.0)
+        world.peer.until(lambda: world.heard[-1][1] == unchanged)
+        world.mode(0)
+        world.wish(-0.9)
+        world.peer.until(lambda: world.last == (-0.9, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_a_command_that_is_no_number_is_refused(
+    package: Path, ros_env: dict[str, str], world: World, bad: float
+) -> None:
+    """It counts as lost input: zeros at once, until the next good command; it is counted, too."""
+    with running_gate(package, GATE, ros_env):
+        world.meet()
+        world.release()
+        before = len(world.heard)
+        sent = time.monotonic()
+        world.wish(0.3, y=bad)
+        world.hear_after(before)
+        assert world.heard[before][0] - sent < 0.02
+        assert world.last == STILL
+        world.peer.until(
+            lambda: "a NaN or an infinite number" in world.status.get("refused_last", "")
+        )
+        assert world.status["refused"] == "1"
+        world.wish_until(0.25, lambda: world.last == (0.25, 0.0, 0.0))
+    assert not [data for _, data in world.heard if not math.isfinite(world.speeds(data)[1])]
+
+
+@pytest.mark.parametrize("data", [b"", b"\x00\x01\x00\x00", b"\x00\x01\x00\x00" + bytes(17)])
+def test_what_is_no_command_is_refused(
+    package: Path, ros_env: dict[str, str], world: World, data: bytes
+) -> None:
+    """Bytes that are no command end nothing but the command."""
+    with running_gate(package, GATE, ros_env):
+        world.meet()
+        world.release()
+        before = len(world.heard)
+        world.wish_bytes(data)
+        world.hear_after(before)
+        assert world.last == STILL
+        world.wish_until(0.25, lambda: world.last == (0.25, 0.0, 0.0))
+
+
+def test_silence_of_the_input_or_of_the_heartbeat_is_zero(
+    package: Path, ros_env: dict[str, str], world: World
+) -> None:
+    """The time counts from the last message, and the zero comes by itself."""
+    with running_gate(package, GATE, ros_env):
+        world.meet()
+        world.release()
+        last, _ = world.heard[-1]
+        world.peer.until(lambda: world.last == STILL)
+        assert world.heard[-1][0] - last == pytest.approx(0.5, abs=0.05)
+
+        world.release()
+        world.beating.cancel()
+        world.beat()
+        beaten = time.monotonic()
+        world.wish_until(0.3, lambda: world.last == STILL)
+        assert world.heard[-1][0] - beaten == pytest.approx(0.3, abs=0.05)
+        world.stop(False)
+        world.mode(0)
+        world.beat()
+        world.wish_until(0.3, lambda: world.last == (0.3, 0.0, 0.0))
+
+
+def test_it_tells_what_it_does_and_why(
+    package: Path, ros_env: dict[str, str], world: World
+) -> None:
+    """One status on /diagnostics, every second and soon after a change."""
+    with running_gate(package, GATE, ros_env) as process:
+        world.meet()
+        world.release()
+        world.wish_until(0.3, lambda: world.status.get("message") == "commands pass")
+        assert world.status["level"] == "0"
+        world.stop(True)
+        told = "stop: zero (gates.deros:24)"
+        world.wish_until(0.3, lambda: world.status["message"] == told)
+        assert world.status["level"] == "1"
+        assert world.status["name"] == f"/{GATE}"
+        first = world.status["since_ns"]
+        seen = world.reports
+        world.wish_until(0.3, lambda: world.reports >= seen + 2)
+        assert world.status["since_ns"] == first
+        process.send_signal(signal.SIGTERM)
+        output, _ = process.communicate(timeout=LIMIT)
+    assert process.returncode == 0
+    assert told in output
+    assert "Traceback" not in output
+
+
+def test_a_second_one_does_not_run(package: Path, ros_env: dict[str, str], world: World) -> None:
+    """It ends at once and names the first; the first goes on."""
+    with running_gate(package, GATE, ros_env) as first:
+        world.meet()
+        with running_gate(package, GATE, ros_env) as second:
+            output, _ = second.communicate(timeout=LIMIT)
+        assert second.returncode == 1
+        assert str(first.pid) in output
+        assert "Traceback" not in output
+        world.release()
+
+
+def test_simulated_time_pauses_and_steps_back(
+    package: Path, ros_env: dict[str, str], world: World
+) -> None:
+    """Deadlines follow /clock; after a step back everything has to be heard anew."""
+    from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
+
+    clock = world.peer.node.create_publisher(Clock, "/clock", 10)
+    world.beating.cancel()
+    seconds = 1000.0
+
+    def tick(step: float) -> None:
+        nonlocal seconds
+        seconds += step
+        message: Any = Clock()
+        message.clock.sec, message.clock.nanosec = int(seconds), int(seconds % 1 * 1e9)
+        clock.publish(message)
+
+    def ticking(step: float, condition: Any) -> None:
+        def once() -> Any:
+            tick(step)
+            world.beat()
+            world.wish(0.3)
+            return condition()
+
+        world.peer.until(once)
+
+    with running_gate(package, GATE, ros_env, "use_sim_time:=true"):
+        world.peer.until(clock.get_subscription_count)
+        ticking(0.01, lambda: world.heard)
+        world.stop(False)
+        world.mode(0)
+        ticking(0.01, lambda: world.last == (0.3, 0.0, 0.0))
+        passed = len(world.heard)
+        world.peer.until(
+            lambda: world.silence(1.0) == 0
+        )  # the time stands still, so nothing is lost
+        assert {world.speeds(data) for _, data in world.heard[passed:]} <= {(0.3, 0.0, 0.0)}
+        tick(-500.0)
+        world.peer.until(lambda: world.last == STILL)
+        ticking(0.01, lambda: world.speeds(world.heard[-1][1]) == STILL)
+        world.stop(False)
+        world.mode(0)
+        ticking(0.01, lambda: world.last == (0.3, 0.0, 0.0))
+        tick(0.6)
+        world.peer.until(lambda: world.last == STILL)

@@ -1,0 +1,169 @@
+"""Generated gates as processes, and the rest of the robot as a test plays it."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from subprocess import Popen
+from typing import Any
+
+from deros.generators.gate_python import gate_files, gate_nodes
+from deros.generators.rosnode_python.generate import package_files
+from deros.generators.safety_python.node import safety_node
+from deros.generators.writer import write
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from deros.monitor.build import build
+from tests.support.ros import Peer, running
+
+MODELS = Path(__file__).resolve().parent.parent / "generators" / "gate_python" / "models"
+PACKAGE = "gates_safety"
+SAFETY_NODE = "gates_safety_node"
+
+
+def write_gates(folder: Path, name: str = "gates") -> Path:
+    """Generate the gates of a model, without the safety node, and return their package."""
+    store, repository = InterfaceStore(), Repository()
+    model = repository.load(MODELS / f"{name}.deros").model
+    assert isinstance(model, Rules)
+    built = build(model, store)
+    assert built.program is not None, built.diagnostics
+    safety = safety_node(built.program, built.topics, {}, model.source)
+    nodes = gate_nodes(built.program, built.topics, safety)
+    files = package_files(nodes, {}, raw={node.name for node in nodes})
+    write(files | gate_files(built.program, nodes, safety, store), folder)
+    return folder / safety.package
+
+
+@contextmanager
+def running_gate(
+    package: Path, gate: str, env: dict[str, str], *parameters: str
+) -> Iterator[Popen[str]]:
+    """Run a gate out of its source tree."""
+    command = [sys.executable, "-m", f"{package.name}.{gate}"]
+    arguments = [word for each in parameters for word in ("-p", each)]
+    ros = ["--ros-args", *arguments] if arguments else []
+    with running([*command, *ros], {**env, "PYTHONPATH": str(package)}) as process:
+        yield process
+
+
+class World:
+    """All that is around a gate of commands for a drive: who commands, the drive, the rules.
+
+    Attributes:
+        heard: what the gate published, serialized, with the time at which it was heard.
+        status: its last status on /diagnostics: name, level, message, and all values.
+        reports: how many of these there have been.
+    """
+
+    def __init__(self, peer: Peer) -> None:
+        """Open the topics; the gate's node may come later."""
+        from diagnostic_msgs.msg import DiagnosticArray
+        from geometry_msgs.msg import Twist
+        from rclpy.clock import Clock
+        from rclpy.clock_type import ClockType
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+        from std_msgs.msg import Bool, UInt8, UInt64
+
+        self.peer = peer
+        self.heard: list[tuple[float, bytes]] = []
+        self.status: dict[str, str] = {}
+        self.reports = 0
+        self._types = Twist, Bool, UInt8, UInt64
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node = peer.node
+        self._wish = node.create_publisher(Twist, "/cmd_vel_nav", 10)
+        self._stop = node.create_publisher(Bool, "/stop", kept)
+        self._mode = node.create_publisher(UInt8, "/mode", kept)
+        self._heartbeat = node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
+        node.create_subscription(Twist, "/cmd_vel", self._take, 10, raw=True)
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        node.create_subscription(DiagnosticArray, "/diagnostics", self._take_status, 10)
+        self.beating = node.create_timer(0.05, self.beat, clock=steady)
+
+    def _take_status(self, message: Any) -> None:
+        (status,) = message.status
+        self.reports += 1
+        self.status = {each.key: each.value for each in status.values}
+        self.status |= {"name": status.name, "message": status.message}
+        self.status["level"] = str(status.level[0])
+
+    def _take(self, data: bytes) -> None:
+        self.heard.append((time.monotonic(), data))
+
+    def meet(self) -> None:
+        """Wait until all ends know each other."""
+        ends = (self._wish, self._stop, self._mode, self._heartbeat)
+        self.peer.until(lambda: all(each.get_subscription_count() for each in ends))
+        self.peer.until(lambda: self.heard)
+
+    def hear_after(self, count: int) -> None:
+        """Wait until more than ``count`` commands were heard."""
+        self.peer.until(lambda: len(self.heard) > count)
+
+    def beat(self) -> None:
+        """Be the safety node's heartbeat, once."""
+        self._heartbeat.publish(self._types[3]())
+
+    def stop(self, active: bool) -> float:
+        """Publish whether the stop is active, and return when that was."""
+        before = time.monotonic()
+        self._stop.publish(self._types[1](data=active))
+        return before
+
+    def mode(self, value: int) -> None:
+        """Publish which limits are active: 1 those of slow, 2 those of slower, 0 none."""
+        self._mode.publish(self._types[2](data=value))
+
+    def wish(self, x: float, turn: float = 0.0, y: float = 0.0) -> bytes:
+        """Command a speed, and return the command as it goes out."""
+        from rclpy.serialization import serialize_message
+
+        message = self._types[0]()
+        message.linear.x, message.linear.y, message.angular.z = x, y, turn
+        data: bytes = serialize_message(message)
+        self._wish.publish(data)
+        return data
+
+    def wish_bytes(self, data: bytes) -> None:
+        """Publish what may be no command at all."""
+        self._wish.publish(data)
+
+    @property
+    def last(self) -> tuple[float, float, float]:
+        """What the drive does: forward, sideways, turning."""
+        return self.speeds(self.heard[-1][1])
+
+    def speeds(self, data: bytes) -> tuple[float, float, float]:
+        """Return what a command says."""
+        from rclpy.serialization import deserialize_message
+
+        message: Any = deserialize_message(data, self._types[0])
+        return message.linear.x, message.linear.y, message.angular.z
+
+    def release(self) -> None:
+        """Say that nothing is active, and wish until all that was wished has come out."""
+        self.stop(False)
+        self.mode(0)
+        self.wish_until(0.3, lambda: self.last == (0.3, 0.0, 0.0))
+        last = self.wish(0.3, y=0.001)
+        self.peer.until(lambda: self.heard[-1][1] == last)
+
+    def silence(self, seconds: float) -> int:
+        """Return how many messages the gate publishes while nobody commands anything."""
+        before, end = len(self.heard), time.monotonic() + seconds
+        self.peer.until(lambda: time.monotonic() > end)
+        return len(self.heard) - before
+
+    def wish_until(self, x: float, condition: Any, turn: float = 0.0) -> None:
+        """Command a speed again and again until something happens."""
+
+        def once() -> Any:
+            self.wish(x, turn)
+            return condition()
+
+        self.peer.until(once)
