@@ -41,6 +41,22 @@ def test_a_step_of_the_wall_clock_changes_nothing(
         robot.until_stopped("/halt", limit=0.5 + 1.0)
 
 
+def test_timers_outlive_a_step_of_the_wall_clock(robot: Robot, tmp_path: Path) -> None:
+    """Set back by a year, with no message coming in, the node beats on and meets its deadlines."""
+    wall_clock = WallClock(tmp_path)
+    with robot.safety_node(**wall_clock.env), robot.sensors(TOPICS, **wall_clock.env) as sensors:
+        for seconds in (400 * DAY, 0, -400 * DAY):
+            wall_clock.step(seconds)
+            beats = len(robot.beats)
+            robot.spin(1.0)
+            assert len(robot.beats) >= beats + 5, "the heartbeat stood still"
+        sensors.drive()
+        robot.until_free()
+        sensors.freeze()
+        wall_clock.step(-800 * DAY)
+        robot.until_stopped("/halt", limit=0.5 + 1.0)
+
+
 SIMULATED = "use_sim_time:=true"
 WITH_CLOCK = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}
 

@@ -80,6 +80,7 @@ class Process:
     ) -> None:
         """Start the command."""
         self.name = log.stem
+        self.command, self.env = command, env
         self._log = log
         with log.open("w") as file:
             self.popen = subprocess.Popen(
@@ -136,9 +137,12 @@ class Sensors:
         self._answer()
 
     def match(self, *topics: str) -> None:
-        """Wait until somebody listens to each of the topics."""
+        """Wait until the safety node listens to each of the topics.
+
+        The test's end listens to the speed, too.
+        """
         for topic in topics:
-            self._do({"match": topic})
+            self._do({"match": topic, "count": 2 if topic == "/speed" else 1})
 
     def play(self, topic: str, *messages: Any, rate: float = 50.0) -> None:
         """Publish the messages in turn, again and again."""
@@ -224,6 +228,7 @@ class Robot:
         self.beats: list[int] = []
         self._heard: list[float] = []  # the speeds
         self._prober: Sensors | None = None
+        self._node: Process | None = None
         self._processes: list[Process] = []
         for topic, seen in self.states.items():
             self._listen(Bool, topic, seen)
@@ -284,9 +289,12 @@ class Robot:
         """Start a node of the generated package; whoever starts it ends it."""
         words = [word for each in parameters for word in ("-p", each)]
         ros = ["--ros-args", *words] if words else []
-        log = self.folder / f"{module}.{len(self._processes)}.log"
         command = [sys.executable, "-m", f"{PACKAGE}.{module}", *ros]
-        process = Process(command, {**self.env, **env}, log)
+        return self._start(command, {**self.env, **env}, module)
+
+    def _start(self, command: Sequence[str], env: Mapping[str, str], name: str) -> Process:
+        number = len(self._processes)
+        process = Process(command, env, self.folder / f"{name.split('.')[0]}.{number}.log")
         self._processes.append(process)
         return process
 
@@ -300,30 +308,63 @@ class Robot:
         node ends by SIGINT, with 0; and nothing that it has printed looks like a failure.
         """
         try:
-            self._prober = Sensors({"/speed": TOPICS["/speed"]}, self.env)
-            node = self.start(NODE, parameters, **env)
-            self.until_alive()
+            self._node = self.start(NODE, parameters, **env)
+            self._prepare()
             self.until_stopped("/halt")
-            yield node
+            yield self._node
             self.assert_protects()
-            node.end()
+            self._node.end()
         finally:
             self.clear()
 
+    def restart(self) -> Process:
+        """Start the safety node again, as it was started before, once it has ended."""
+        assert self._node is not None
+        assert self._node.popen.poll() is not None
+        self._node = self._start(self._node.command, self._node.env, self._node.name)
+        self._prepare()
+        return self._node
+
+    def _prepare(self) -> None:
+        """Have the safety node know whom the test breaks rules with; wait until it beats."""
+        if self._prober is not None:
+            self._prober.close()  # it still counts a node that was killed
+        self._prober = Sensors({"/speed": TOPICS["/speed"]}, self.env)
+        self._prober.match("/speed")
+        self.until_alive()
+
+    def violate(self) -> None:
+        """Break the rule of the latched stop for a moment, and see the stop come.
+
+        Raises:
+            AssertionError: if the stop is missed.
+        """
+        assert self._prober is not None
+        self._heard.clear()
+        self._prober.play("/speed", speed(VIOLATION))
+        self.until(lambda: VIOLATION in self._heard)
+        self.until_stopped(limit=PROMPT)
+        self._prober.play("/speed", speed(0.1))
+        self.until(lambda: 0.1 in self._heard)
+
+    def reset(self) -> tuple[bool, str]:
+        """Call the reset service; return whether it was done, and what it says."""
+        from std_srvs.srv import Trigger
+
+        client = self.peer.node.create_client(Trigger, f"/{NODE}/reset")
+        response = self.peer.call(client, Trigger.Request())
+        self.peer.node.destroy_client(client)
+        return response.success, response.message
+
     def assert_protects(self) -> None:
-        """Break a rule, and see the stop come; where it is active, see that the node lives.
+        """See that the node lives, and that a violation stops the robot unless it is stopped.
 
         Raises:
             AssertionError: if the stop is missed.
         """
         self.until_alive()
-        if self.is_active("/stop"):
-            return
-        assert self._prober is not None
-        self._prober.match("/speed")
-        self._prober.play("/speed", speed(VIOLATION))
-        self.until(lambda: VIOLATION in self._heard)
-        self.until_stopped(limit=PROMPT)
+        if not self.is_active("/stop"):
+            self.violate()
 
     def clear(self) -> None:
         """Kill what still runs, and show what all have printed, should the test fail."""

@@ -4,7 +4,7 @@
 
 Each line of the input is a command in JSON, and is answered by one line when it is done:
 
-    {"match": TOPIC}                                     wait until somebody listens
+    {"match": TOPIC, "count": N}                         wait until so many listen
     {"play": TOPIC, "messages": [BASE64, …], "rate": HZ} publish them in turn, for ever
     {"quiet": TOPIC}                                     play nothing any more; answer how many
     {"send": TOPIC, "messages": [BASE64, …], "times": N, "rate": HZ}
@@ -75,7 +75,7 @@ def obey(command: dict[str, Any], players: dict[str, Player]) -> None:
     (verb,) = command.keys() & {"match", "play", "quiet", "send"}
     player = players[command[verb]]
     if verb == "match":
-        while player.publisher.get_subscription_count() == 0:
+        while player.publisher.get_subscription_count() < command["count"]:
             time.sleep(0.01)  # the graph has no event that a process without executor could await
         answer(1)
     elif verb == "send":

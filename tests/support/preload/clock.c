@@ -1,8 +1,9 @@
 // Steps the wall clock of one process, by LD_PRELOAD: CLOCK_REALTIME is off by as many seconds as
 // the file named by WALL_CLOCK_OFFSET says, whenever it is asked. No other clock is touched.
 //
-// The kernel does not know of the step, so waits until a time of the wall clock are cut into short
-// ones, and the clock is looked at in between, as the kernel does when the real clock is set.
+// The kernel does not know of the step, but it would end or prolong the waits until a time of the
+// wall clock when the real one is set. So a thread looks at the file, and has such waits on condition
+// variables started anew; those on semaphores and locks, which forget nothing, are cut into short ones.
 
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -15,7 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define SLICE_NS 20000000L
+#define SLICE_NS 5000000L
 #define OLDEST_WALL_TIME 1000000000L  // seconds; no steady clock has come that far
 
 static int (*real_clock_gettime)(clockid_t, struct timespec *);
@@ -27,6 +28,37 @@ static int (*real_sem_clockwait)(sem_t *, clockid_t, const struct timespec *);
 static int (*real_mutex_timedlock)(pthread_mutex_t *, const struct timespec *);
 static int offset_file = -1;
 
+struct waiter {
+  pthread_cond_t *condition;
+  struct waiter *next;
+};
+
+static struct waiter *waiters;
+static pthread_mutex_t waiters_lock = PTHREAD_MUTEX_INITIALIZER;
+static volatile long known_offset;
+
+static long offset(void) {
+  char text[32];
+  ssize_t length = offset_file < 0 ? -1 : pread(offset_file, text, sizeof text - 1, 0);
+  if (length <= 0) return 0;
+  text[length] = 0;
+  return strtol(text, NULL, 10);
+}
+
+static void *watch(void *unused) {
+  const struct timespec slice = {0, SLICE_NS};
+  for (;;) {
+    nanosleep(&slice, NULL);
+    if (offset() == known_offset) continue;
+    pthread_mutex_lock(&waiters_lock);
+    known_offset = offset();
+    for (struct waiter *each = waiters; each; each = each->next)
+      pthread_cond_broadcast(each->condition);
+    pthread_mutex_unlock(&waiters_lock);
+  }
+  return unused;
+}
+
 __attribute__((constructor)) static void set_up(void) {
   real_clock_gettime = dlsym(RTLD_NEXT, "clock_gettime");
   real_cond_timedwait = dlvsym(RTLD_NEXT, "pthread_cond_timedwait", "GLIBC_2.3.2");  // x86-64 keeps an older
@@ -36,15 +68,11 @@ __attribute__((constructor)) static void set_up(void) {
   real_sem_clockwait = dlsym(RTLD_NEXT, "sem_clockwait");
   real_mutex_timedlock = dlsym(RTLD_NEXT, "pthread_mutex_timedlock");
   const char *path = getenv("WALL_CLOCK_OFFSET");
-  if (path) offset_file = open(path, O_RDONLY | O_CLOEXEC);
-}
-
-static long offset(void) {
-  char text[32];
-  ssize_t length = offset_file < 0 ? -1 : pread(offset_file, text, sizeof text - 1, 0);
-  if (length <= 0) return 0;
-  text[length] = 0;
-  return strtol(text, NULL, 10);
+  if (!path || offset_file >= 0) return;
+  offset_file = open(path, O_RDONLY | O_CLOEXEC);
+  known_offset = offset();
+  pthread_t thread;
+  pthread_create(&thread, NULL, watch, NULL);
 }
 
 int clock_gettime(clockid_t clock, struct timespec *now) {
@@ -91,12 +119,23 @@ static int next_slice(const struct timespec *until, struct timespec *slice) {
 int pthread_cond_timedwait(pthread_cond_t *restrict condition, pthread_mutex_t *restrict mutex,
                            const struct timespec *restrict until) {
   if (until->tv_sec < OLDEST_WALL_TIME) return real_cond_timedwait(condition, mutex, until);
-  for (;;) {
-    struct timespec slice;
-    int last = next_slice(until, &slice);
-    int result = real_cond_timedwait(condition, mutex, &slice);
-    if (result != ETIMEDOUT || last) return result;
-  }
+  pthread_mutex_lock(&waiters_lock);
+  struct waiter self = {condition, waiters};
+  waiters = &self;
+  int result;
+  long believed;
+  do {
+    believed = known_offset;
+    pthread_mutex_unlock(&waiters_lock);
+    struct timespec target = {until->tv_sec - believed, until->tv_nsec};
+    result = real_cond_timedwait(condition, mutex, &target);
+    pthread_mutex_lock(&waiters_lock);
+  } while (known_offset != believed);
+  struct waiter **link = &waiters;
+  while (*link != &self) link = &(*link)->next;
+  *link = self.next;
+  pthread_mutex_unlock(&waiters_lock);
+  return result;
 }
 
 int pthread_cond_clockwait(pthread_cond_t *condition, pthread_mutex_t *mutex, clockid_t clock,
