@@ -13,7 +13,7 @@ from typing import Any
 
 from deros.generators.cdr_python import Topic, render_decoders
 from deros.interfaces.types import FieldType, InterfaceType
-from tests.support.messages import STORE, Path
+from tests.support.messages import STORE, Path, Store, fields
 
 _LETTERS = {"bool": "?", "byte": "B", "char": "B", "int8": "b", "uint8": "B"} | {
     "int16": "h",
@@ -27,9 +27,9 @@ _LETTERS = {"bool": "?", "byte": "B", "char": "B", "int8": "b", "uint8": "B"} | 
 }
 
 
-def serialize(message: Any, kind: InterfaceType, big_endian: bool) -> bytes:
+def serialize(message: Any, kind: InterfaceType, big_endian: bool, store: Store = STORE) -> bytes:
     """Return a message with its encapsulation, as it goes over the wire."""
-    writer = _Writer(">" if big_endian else "<")
+    writer = _Writer(">" if big_endian else "<", store)
     writer.message(message, kind)
     return bytes([0, 0 if big_endian else 1, 0, 0]) + bytes(writer.data)
 
@@ -37,14 +37,14 @@ def serialize(message: Any, kind: InterfaceType, big_endian: bool) -> bytes:
 @dataclass
 class _Writer:
     order: str
+    store: Store
     data: bytearray = field(default_factory=bytearray)
 
     def message(self, message: Any, kind: InterfaceType) -> None:
-        definition = STORE.message(kind)
-        assert definition is not None, kind
-        for name, type_ in definition.fields:
+        known = fields(self.store, kind)
+        for name, type_ in known:
             self.field(getattr(message, name), type_)
-        if not definition.fields:
+        if not known:
             self.data.append(0)
 
     def field(self, value: Any, type_: FieldType) -> None:
@@ -101,10 +101,10 @@ class Decoder:
         return [_plain(each) for each in (result if isinstance(result, tuple) else (result,))]
 
 
-def decoder(kind: InterfaceType, paths: Sequence[Path]) -> Decoder:
+def decoder(kind: InterfaceType, paths: Sequence[Path], store: Any = STORE) -> Decoder:
     """Generate the decoder for some fields, and load it; it returns a tuple even for one path."""
     topic = Topic("topic", kind, paths)
-    text = render_decoders([topic], STORE)
+    text = render_decoders([topic], store)
     module: dict[str, Any] = {}
     exec(compile(text, "decoders.py", "exec"), module)
     function = module[topic.function]

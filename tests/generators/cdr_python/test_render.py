@@ -13,7 +13,7 @@ from deros.generators.protocol import File
 from deros.interfaces.types import InterfaceType
 from tests.support.golden import Golden
 from tests.support.lint import assert_lint_clean
-from tests.support.messages import STORE, message_types, random_path
+from tests.support.messages import STORE, message_types, random_paths
 
 
 def _topic(name: str, kind: str, *paths: tuple[str | int, ...]) -> Topic:
@@ -55,8 +55,7 @@ def test_linters_find_nothing(tmp_path: Path) -> None:
     packages = ("std_msgs", "sensor_msgs", "nav_msgs", "test_msgs", "geometry_msgs")
     topics = []
     for kind in message_types(*packages):
-        drawn = (random_path(kind, rng) for _ in range(4))
-        paths = list(dict.fromkeys(path for path in drawn if path is not None))
+        paths = random_paths(STORE, kind, rng)
         topics.append(Topic(f"{kind.package}_{kind.name}", kind, paths))
         (tmp_path / f"only_{len(topics)}.py").write_text(render_decoders(topics[-1:], STORE))
     (tmp_path / "decoders.py").write_text(render_decoders(topics, STORE))
