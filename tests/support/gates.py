@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from deros.diagnostics import SourceFile, Span
 from deros.generators.gate_python import gate_nodes
-from deros.generators.gate_python.generate import render
+from deros.generators.gate_python.generate import MODULES, render
 from deros.generators.gate_python.view import GateView, gate_view
 from deros.generators.safety_python.node import safety_node
 from deros.interfaces.fields import ResolvedField, resolve
@@ -186,12 +186,21 @@ def view_of(gate: Gate, actions: tuple[Action, ...] = ACTIONS) -> GateView:
     return gate_view(gate, node, program, STORE, safety)
 
 
+def modules_of(view: GateView) -> dict[str, dict[str, Any]]:
+    """Return the names in the generated modules that need no ROS 2, by the module."""
+    modules: dict[str, dict[str, Any]] = {}
+    for module in MODULES:
+        modules[module] = {"__name__": module}
+        exec(compile(render(module, view), module, "exec"), modules[module])
+    return modules
+
+
 class GeneratedGate:
     """The generated logic and message functions of a gate, joined as the generated node does.
 
     Attributes:
         outputs: all that has been published since the start, in order.
-        texts: the generated modules, by the end of their names.
+        text: of the generated logic.
     """
 
     def __init__(self, gate: Gate, start_ns: int = 0) -> None:
@@ -199,11 +208,8 @@ class GeneratedGate:
         self.outputs: list[Output] = []
         self._type = gate.type
         self._view = view_of(gate)
-        self.texts = {module: render(module, self._view) for module in ("logic", "message")}
-        modules: dict[str, dict[str, Any]] = {}
-        for module, text in self.texts.items():
-            modules[module] = {"__name__": module}
-            exec(compile(text, module, "exec"), modules[module])
+        self.text = render("logic", self._view)
+        modules = modules_of(self._view)
         self._logic, self._functions = modules["logic"], modules["message"]
         self._gate = self._logic["Gate"](start_ns, self._publish)
         self._command: Message | None = None

@@ -28,7 +28,7 @@ def test_same_commands(data: st.DataObject) -> None:
     gate = data.draw(gates())
     engine = GateEngine(gate, ACTIONS, STORE, START_NS)
     generated = GeneratedGate(gate, START_NS)
-    note(generated.texts["logic"])
+    note(generated.text)
     t_ns = START_NS
     for each in data.draw(happenings(gate)):
         t_ns = max(0, t_ns + each.wait_ns)
