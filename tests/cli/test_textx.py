@@ -124,6 +124,21 @@ def test_textx_generate_writes_nothing_from_a_bad_model(
     assert not (tmp_path / "out").exists()
 
 
+def test_textx_generates_the_gate_that_the_system_still_lacks(
+    installed: Environment, tmp_path: Path
+) -> None:
+    """A gate that no system holds yet is an error to ``check`` and none in ``generate``'s way."""
+    rules = CASES / "DRS340_gate_not_in_system.deros"
+    done = installed.run("textx", "check", rules, cwd=tmp_path)
+    assert (done.returncode, "error[DRS340]" in done.stderr) == (1, True)
+    for program in ("textx", "deros"):
+        command = ("generate", rules, "--target", "python", "-o", program)
+        done = installed.run(program, *command, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert "error[DRS340]" in done.stderr
+        assert list((tmp_path / program).rglob("cmd_vel_gate.rnd"))
+
+
 def test_our_commands_are_textx_commands(installed: Environment, models: Path) -> None:
     """``textx deros check`` is ``deros check``."""
     done = installed.run("textx", "deros", "check", "rules/courier.deros", cwd=models)

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.options import FINDINGS, UNUSABLE, exit_code, interfaces_option
+from deros.cli.options import (
+    FINDINGS,
+    UNUSABLE,
+    exit_code,
+    in_the_way_of_generating,
+    interfaces_option,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -80,7 +86,7 @@ def generate(
     loaded = repository.load(file)
     findings = check_loaded([loaded], repository, store)
     _show(findings)
-    code = exit_code(_in_the_way(findings, loaded))
+    code = exit_code(in_the_way_of_generating(findings, file))
     if code or loaded.language is None:
         ctx.exit(code or FINDINGS)
     generator = discover().find(loaded.language, target)
@@ -117,14 +123,6 @@ def _pairs(arguments: Sequence[str]) -> dict[str, str]:
             value = left.pop(0)
         pairs[name] = value
     return pairs
-
-
-def _in_the_way(findings: Sequence[Diagnostic], loaded: LoadedFile) -> list[Diagnostic]:
-    """Return the findings without those that can be mended only with what is to be generated."""
-    from deros.codes import MENDED_AFTER_GENERATION
-
-    mended = MENDED_AFTER_GENERATION if loaded.language == "deros" else frozenset()
-    return [each for each in findings if each.code not in mended]
 
 
 def _unknown_target(registry: Registry, loaded: LoadedFile, target: str) -> Diagnostic:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -42,3 +42,12 @@ def exit_code(diagnostics: Iterable[Diagnostic], *, strict: bool = False) -> int
         if diagnostic.is_error or (strict and diagnostic.severity is Severity.WARNING):
             code = FINDINGS
     return code
+
+
+def in_the_way_of_generating(findings: Sequence[Diagnostic], path: str) -> list[Diagnostic]:
+    """Return the findings without those that only what ``path`` generates can mend.
+
+    A system is to contain the gates that its rules declare, and those are generated from the rules.
+    """
+    mended = codes.MENDED_AFTER_GENERATION if path.endswith(".deros") else frozenset()
+    return [each for each in findings if each.code not in mended]

@@ -92,6 +92,8 @@ topics
   topic /resume
   topic /stop_robot
   topic /heartbeat
+  external topic /safety/events   // for recorders
+  external topic /diagnostics     // for the operator's tools
 
 subsystem Robot {
   node robot : ${name}_robot
@@ -109,6 +111,8 @@ subsystem Safety {
     connect /resume to /resume
     connect /stop_robot to /stop_robot
     connect ~/heartbeat to /heartbeat
+    connect ~/events to /safety/events
+    connect /diagnostics to /diagnostics
 }
 """
 
@@ -119,10 +123,22 @@ node ${name}_safety_node : ${name}_safety "Watches the safety rules of $name"
 parameters
   name publish_freq : double = 10.0 [Hz] in (0.0, 1000.0] read_only \
 "How often the states of the actions and the heartbeat are published"
+  name startup_grace : double = 0.0 [s] in [0.0, 86400.0] read_only \
+"How long inputs may be late at the start; until they have come there is no heartbeat"
+  name diagnostics_freq : double = 1.0 [Hz] in (0.0, 100.0] read_only \
+"How often the state is published without a change"
+  name realtime_priority : integer = 0 in [0, 99] read_only \
+"Priority under SCHED_FIFO; 0 leaves the scheduling as it is"
+  name lock_memory : bool = false read_only "Whether the memory is never paged out"
+  name garbage_collection : bool = true read_only "Whether Python looks for unused cycles"
 publishes
   topic /stop_robot : std_msgs.Bool qos reliable transient_local depth 1 "Active: stop"
   topic ~/heartbeat : std_msgs.UInt64 qos reliable depth 1 \
 "Counts up at publish_freq: stop when it stops"
+  topic ~/events : diagnostic_msgs.DiagnosticStatus qos reliable depth 1000 \
+"Tells of each action, reset and fault"
+  topic /diagnostics : diagnostic_msgs.DiagnosticArray qos reliable depth 10 \
+"State of the node, of its actions and of its rules"
 subscribes
   topic /odom : nav_msgs.Odometry qos best_effort depth 10
   topic /resume : std_msgs.Bool qos best_effort depth 10

@@ -48,16 +48,21 @@ def _checked_metamodel(language: Language) -> Any:
 
 
 def _check(file_name: str) -> None:
-    """Check one file; warnings go to standard error.
+    """Check one file; what is not in the way goes to standard error.
 
     Raises:
-        TextXError: with all findings as its text, if one of them is an error.
+        TextXError: with all findings as its text, if one of them is in the way.
     """
+    import click
+
     from deros.cli.check import find
+    from deros.cli.options import in_the_way_of_generating
     from deros.diagnostics import has_errors
 
     findings, _ = find([file_name], ())
-    if has_errors(findings):
+    command = click.get_current_context(silent=True)
+    generates = command is not None and command.info_name == "generate"
+    if has_errors(in_the_way_of_generating(findings, file_name) if generates else findings):
         raise TextXError(f"{file_name} has errors\n{_render(findings).rstrip()}")
     if findings:
         sys.stderr.write(_render(findings))
@@ -65,9 +70,11 @@ def _check(file_name: str) -> None:
 
 def _errors(loaded: LoadedFile, context: Context) -> list[Diagnostic]:
     """Check a file that a generator was asked for; its warnings were shown when it was loaded."""
+    from deros.cli.options import in_the_way_of_generating
     from deros.validators.check import check
 
-    return [d for d in check([loaded], context.repository, context.store) if d.is_error]
+    findings = check([loaded], context.repository, context.store)
+    return [d for d in in_the_way_of_generating(findings, loaded.path) if d.is_error]
 
 
 def _render(diagnostics: Sequence[Diagnostic]) -> str:
