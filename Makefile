@@ -28,6 +28,10 @@ demo: $(READY)  ## Generate the feeding robot, start it, play its fifteen test c
 test: $(READY)  ## Run all tests, those on the real middleware included
 	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) --dist worksteal
 
+.PHONY: property
+property: $(READY)  ## Compare generated monitors with the reference on 100,000 random pairs (nightly)
+	@$(ALONE) $(BIN)/python tools/property.py --jobs $(JOBS)
+
 .PHONY: lint
 lint: $(READY)  ## Check format, style, types and the layering of the packages
 	$(BIN)/ruff format --check $(CHECKED)

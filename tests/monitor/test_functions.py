@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import functools
 import math
 import shutil
 import struct
@@ -11,6 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
@@ -26,7 +28,12 @@ BEAMS = st.lists(st.floats(width=32), max_size=20)
 
 def _namespace() -> dict[str, Any]:
     """Execute all Python texts as a generated module would hold them."""
-    found: dict[str, Any] = {"math": math, "Sequence": Sequence}
+    found: dict[str, Any] = {
+        "functools": functools,
+        "math": math,
+        "np": np,
+        "Sequence": Sequence,
+    }
     for row in FUNCTIONS.values():
         exec(row.python, found)
         if row.guard is not None:
@@ -38,9 +45,29 @@ NAMESPACE = _namespace()
 
 
 def text_of(name: str) -> Callable[..., float | None]:
-    """Return what the Python text of a function calls."""
-    found: Callable[..., float | None] = eval(FUNCTIONS[name].python_call, NAMESPACE)
+    """Return what the Python text of a function calls; of a quaternion, made into a function."""
+    row = FUNCTIONS[name]
+    if row.python_of_unit:
+        return of_quaternion(row.python_of_unit)
+    found: Callable[..., float | None] = eval(row.python_call, NAMESPACE)
     return found
+
+
+def of_quaternion(lines: Sequence[str]) -> Callable[..., float | None]:
+    """Return the function that a handler works out in place, normalising as it does."""
+    body = [*lines[:-1], f"return {lines[-1]}"]
+    text = "\n    ".join(["def of_unit(ux: float, uy: float, uz: float, uw: float):", *body])
+    found: dict[str, Any] = {"math": math}
+    exec(text, found)
+
+    def evaluate(x: float, y: float, z: float, w: float) -> float | None:
+        length = math.hypot(x, y, z, w)
+        if not 0.0 < length < math.inf:
+            return None
+        result: float = found["of_unit"](x / length, y / length, z / length, w / length)
+        return result
+
+    return evaluate
 
 
 def same(a: float | None, b: float | None) -> bool:
@@ -184,7 +211,8 @@ def test_python_of_arrays(array: list[float]) -> None:
     for name in ("min", "max", "count"):
         evaluate = FUNCTIONS[name].evaluate
         assert evaluate is not None
-        assert same(text_of(name)(array), evaluate(array))
+        for given_as in (array, np.array(array)):
+            assert text_of(name)(given_as) == evaluate(array)
 
 
 SCANS = st.tuples(
@@ -195,17 +223,23 @@ SCANS = st.tuples(
 @given(arguments=SCANS)
 def test_python_of_a_scan(arguments: tuple[Any, ...]) -> None:
     """Nearest agrees on scans of every kind, and so does the test that a scan is usable."""
-    assert same(text_of("nearest")(*arguments), values.nearest(*arguments))
-    usable = NAMESPACE["scan_usable"](arguments[0], arguments[3])
-    assert usable is values.scan_usable(arguments[0], arguments[3])
-    assert usable or values.nearest(*arguments) is None
+    ranges, angle_min, increment, *rest = arguments
+    limits = [float(np.float32(limit)) for limit in rest[:2]]  # as they come in a message
+    nearest = values.nearest(ranges, angle_min, increment, *limits, *rest[2:])
+    usable = values.scan_usable(ranges, limits[0])
+    assert usable or nearest is None
+    for given_as in (ranges, np.array(ranges, "<f4"), np.array(ranges, ">f4")):
+        found = text_of("nearest")(given_as, angle_min, increment, *limits, *rest[2:])
+        assert found == nearest
+        assert NAMESPACE["scan_usable"](given_as, limits[0]) is usable
 
 
 def test_every_function_of_values_has_its_texts() -> None:
     """What the monitor evaluates, each target can call."""
     for row in FUNCTIONS.values():
         if row.evaluate is not None:
-            assert row.python_call in NAMESPACE or row.python_call in ("abs", "len", "math.hypot")
+            built_in = ("abs", "len", "math.hypot")
+            assert row.python_of_unit or row.python_call in (*NAMESPACE, *built_in)
             assert row.c_call == "fabs" or f" {row.c_call}(" in row.c
 
 

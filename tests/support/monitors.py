@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Any
 
-from hypothesis import note
+import numpy as np
+from hypothesis import currently_in_test_context, note
 
 from deros.generators.monitor_python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
@@ -28,20 +31,28 @@ def compare(
 ) -> None:
     """Drive both with the same calls; they must answer alike at each.
 
+    The engine gets arrays as lists of Python's numbers, the generated monitor as those of numpy.
+
     Raises:
         AssertionError: they do not.
     """
-    note(f"{start}")
+    remark(f"{start}")
     engine = Engine(program, START_NS, start.grace_ns, start.latched)
     generated = GeneratedMonitor(program, START_NS, text, start.grace_ns, start.latched)
     for t_ns, step in timed(steps):
-        note(f"at {t_ns} {step}")
-        assert call(generated, t_ns, step) == call(engine, t_ns, step)
+        remark(f"at {t_ns} {step}")
+        assert call(generated, t_ns, _with_arrays(program, step)) == call(engine, t_ns, step)
         assert generated.events == engine.events
         assert [e.span for e in generated.events] == [e.span for e in engine.events]
         assert generated.waiting == engine.waiting
         assert generated.explain() == engine.explain()
         _compare_deadlines(engine.next_deadline, generated.next_deadline, t_ns)
+
+
+def remark(text: str) -> None:
+    """Show a text with the example that fails, if there are examples."""
+    if currently_in_test_context():
+        note(text)
 
 
 def call(monitor: Engine | GeneratedMonitor, t_ns: int, step: Step) -> bool | None:
@@ -56,6 +67,16 @@ def call(monitor: Engine | GeneratedMonitor, t_ns: int, step: Step) -> bool | No
         case "reset":
             return monitor.reset(t_ns)
     return None
+
+
+def _with_arrays(program: Program, step: Step) -> Step:
+    """Return a step with arrays in the form in which messages are decoded."""
+    leaves: dict[int, Any] = dict(step.leaves)
+    for index, value in leaves.items():
+        leaf = program.leaves[index].type
+        if leaf.is_array and leaf.base in ("float32", "float64") and not isinstance(value, str):
+            leaves[index] = np.array(value, leaf.base)
+    return replace(step, leaves=leaves)
 
 
 def _compare_deadlines(reference: int | None, generated: int | None, now_ns: int) -> None:

@@ -33,7 +33,10 @@ def span(line: int) -> Span:
 
 NUMBERS = (-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0)
 floats = st.sampled_from((*NUMBERS, *NUMBERS, math.nan, math.inf, -math.inf)) | st.floats()
-unit_floats = st.sampled_from((-1.0, -0.5, 0.0, 0.1, 0.5, 1.0, 1.0, math.nan, math.inf))
+unit_floats = st.sampled_from((-1.0, -0.5, -0.0, 0.0, 0.1, 0.5, 1.0, 1.0, math.nan, math.inf))
+# What 32 bits hold, as numbers of a message with 32 bits are.
+ranges = st.sampled_from((*NUMBERS, *NUMBERS, math.nan, math.inf, -math.inf)) | st.floats(width=32)
+scan_floats = st.sampled_from((-1.0, -0.5, 0.0, 0.125, 0.5, 1.0, 1.0, math.nan, math.inf))
 small_ints = st.integers(0, 4)
 texts = st.sampled_from(("", "auto", "manual", "it's"))
 durations = st.integers(0, 12)
@@ -114,8 +117,8 @@ KINDS: Mapping[str, Kind] = {
         InterfaceType("sensor_msgs", "msg", "LaserScan"),
         (),
         (
-            (("ranges",), FieldType("float32", "unbounded"), st.lists(floats, max_size=4)),
-            *(((name,), FieldType("float32"), unit_floats) for name in _ANGLES),
+            (("ranges",), FieldType("float32", "unbounded"), st.lists(ranges, max_size=9)),
+            *(((name,), FieldType("float32"), scan_floats) for name in _ANGLES),
         ),
         nan_is_unknown=False,
     ),
@@ -131,6 +134,7 @@ class _Drawing:
 
     draw: Draw
     writable: bool = False
+    choice: tuple[str, ...] = tuple(KINDS)
     kinds: list[str] = field(default_factory=list)
     inputs: list[ir.Input] = field(default_factory=list)
     leaves: list[ir.Leaf] = field(default_factory=list)
@@ -142,7 +146,7 @@ class _Drawing:
     triggered_by: dict[int, list[int]] = field(default_factory=dict)
 
     def input(self) -> None:
-        name = self.draw(st.sampled_from(sorted(KINDS)))
+        name = self.draw(st.sampled_from(self.choice))
         kind, index = KINDS[name], len(self.inputs)
         first = len(self.leaves)
         for number, (path, type_, _) in enumerate(kind.leaves):
@@ -319,12 +323,15 @@ unit_bearing = st.sampled_from((-1.0, -0.5, 0.0, 0.5, 1.0))
 
 
 @st.composite
-def programs(draw: Draw, writable: bool = False) -> ir.Program:
+def programs(
+    draw: Draw, writable: bool = False, kinds: tuple[str, ...] = tuple(KINDS)
+) -> ir.Program:
     """Draw a program: up to four inputs, five rules, nested behaviours, actions with resets.
 
-    A ``writable`` one is one that a text in DeRoS can mean (:mod:`tests.support.rules_text`).
+    A ``writable`` one is one that a text in DeRoS can mean (:mod:`tests.support.rules_text`). The
+    inputs are of the given ``kinds``.
     """
-    drawing = _Drawing(draw, writable)
+    drawing = _Drawing(draw, writable, kinds)
     for _ in range(draw(st.integers(1, 4))):
         drawing.input()
     rules = tuple(drawing.rule() for _ in range(draw(st.integers(1, 5))))

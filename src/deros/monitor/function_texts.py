@@ -21,16 +21,29 @@ static double deros_{name}(double x, double y, double z, double w)
 """
 
 
-PYTHON_OF_UNIT: dict[str, str] = {
-    "roll": "math.atan2(2.0 * (uw * ux + uy * uz), 1.0 - 2.0 * (ux * ux + uy * uy))",
-    "pitch": (
-        "math.asin(sine if -1.0 <= (sine := 2.0 * (uw * uy - uz * ux)) <= 1.0"
-        " else math.copysign(1.0, sine))"
+PYTHON_OF_UNIT: dict[str, tuple[str, ...]] = {
+    "roll": (
+        "sine = 2.0 * (uw * ux + uy * uz)",
+        "cosine = 1.0 - 2.0 * (ux * ux + uy * uy)",
+        "math.atan2(sine, cosine)",
     ),
-    "yaw": "math.atan2(2.0 * (uw * uz + ux * uy), 1.0 - 2.0 * (uy * uy + uz * uz))",
-    "tilt": "2.0 * math.atan2(math.hypot(ux, uy), math.hypot(uz, uw))",
+    "pitch": (
+        "sine = 2.0 * (uw * uy - uz * ux)",
+        "if not -1.0 <= sine <= 1.0:",
+        "    sine = math.copysign(1.0, sine)",
+        "math.asin(sine)",
+    ),
+    "yaw": (
+        "sine = 2.0 * (uw * uz + ux * uy)",
+        "cosine = 1.0 - 2.0 * (uy * uy + uz * uz)",
+        "math.atan2(sine, cosine)",
+    ),
+    "tilt": ("2.0 * math.atan2(math.hypot(ux, uy), math.hypot(uz, uw))",),
 }
-"""Expressions by the function's name, on a quaternion of length 1 with the parts ux, uy, uz, uw."""
+"""Lines by the function's name, on a quaternion of length 1 with the parts ux, uy, uz, uw.
+
+The last one is the result, an expression.
+"""
 
 PYTHON: dict[str, str] = {
     "rate": '''\

@@ -97,8 +97,8 @@ class Function:
         guard: what a message must satisfy to count at all.
         python_call: what Python text calls with the arguments in order.
         python: the definition that Python text needs; empty for what Python has built in.
-        python_of_unit: of a function of a quaternion, in place of both, its expression on the parts
-            ux, uy, uz, uw of the quaternion brought to length 1.
+        python_of_unit: of a function of a quaternion, in place of both, lines on the parts ux, uy,
+            uz, uw of the quaternion brought to length 1; the last is the result.
         c_call: what C text calls.
         c: the definition that C text needs.
     """
@@ -117,7 +117,7 @@ class Function:
     guard: Guard | None = None
     python_call: str = ""
     python: str = ""
-    python_of_unit: str = ""
+    python_of_unit: tuple[str, ...] = ()
     c_call: str = ""
     c: str = ""
 

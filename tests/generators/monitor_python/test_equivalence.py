@@ -17,12 +17,19 @@ from deros.metamodels.rules import Rules
 from deros.monitor.build import build
 from deros.monitor.engine import Engine, Event
 from deros.monitor.ir import Program
+from tests.support import counterexamples
+from tests.support.counterexamples import Pair, pairs
 from tests.support.monitors import START_NS, call, compare, timed
 from tests.support.rules_text import NODE_TEXT, SYSTEM_TEXT, rules_text
-from tests.support.strategies import Step, programs, starts, traces
+from tests.support.strategies import Step, programs, traces
 
 EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "500"))
-"""Examples per property; set, they are drawn anew in every run, else they are always the same."""
+"""Examples per property; set, they are drawn anew in every run, else they are always the same.
+
+There are four properties; many more examples are drawn by ``make property``.
+"""
+
+COUNTEREXAMPLES = sorted(counterexamples.FOLDER.glob("*.json"))
 
 thorough = settings(
     max_examples=EXAMPLES,
@@ -33,13 +40,44 @@ thorough = settings(
 
 
 @thorough
-@given(st.data())
-def test_same_events(data: st.DataObject) -> None:
+@given(programs().flatmap(pairs))
+def test_same_events(pair: Pair) -> None:
     """Both give the same events, at the same nanosecond, in the same order."""
-    program = data.draw(programs())
-    text = render_monitor(program)
-    note(text)
-    compare(program, data.draw(traces(program)), text, data.draw(starts(program)))
+    pair.compare()
+
+
+@thorough
+@given(programs(kinds=("scan", "array", "element")).flatmap(pairs))
+def test_same_events_of_arrays(pair: Pair) -> None:
+    """That holds of arrays as messages bring them, and of what is not in them."""
+    pair.compare()
+
+
+@thorough
+@given(programs(kinds=("number", "boolean")).flatmap(pairs))
+def test_same_events_of_few_values(pair: Pair) -> None:
+    """That holds where conditions often change, and messages often repeat what was known."""
+    pair.compare()
+
+
+@pytest.mark.parametrize("path", COUNTEREXAMPLES, ids=lambda path: path.stem)
+def test_counterexample(path: Path) -> None:
+    """Wherever the two once differed they do not any more."""
+    counterexamples.read(path).compare()
+
+
+def test_counterexamples_can_be_kept(tmp_path: Path) -> None:
+    """What is read is what was written."""
+
+    @settings(thorough, max_examples=50, derandomize=True)
+    @given(programs().flatmap(pairs))
+    def check(pair: Pair) -> None:
+        path = counterexamples.write(pair, tmp_path)
+        kept = counterexamples.read(path)
+        assert kept.program == pair.program
+        assert counterexamples.write(kept, tmp_path) == path  # whose name tells the content
+
+    check()
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +98,7 @@ def _build(text: str, folder: Path) -> Program:
     return result.program
 
 
-@settings(thorough, max_examples=EXAMPLES // 3)
+@settings(thorough, max_examples=EXAMPLES)
 @given(data=st.data())
 def test_same_events_from_text(data: st.DataObject, robot: Path) -> None:
     """Rules written as a text mean what they were written from, and so does what they generate."""

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from deros.generators.monitor_python import render_monitor
 from tests.support.monitors import compare
-from tests.support.strategies import programs, traces
+from tests.support.strategies import programs, starts, traces
 
 SLIPS = {
     "for is exclusive": (r"t >= (\w+_due)", r"t > \1"),
@@ -32,6 +32,14 @@ SLIPS = {
         r"        self.\1 = getattr(self, '\1', NEVER)",
     ),
     "the first event is not the first": (r"^        if not self\._started:", "        if False:"),
+    "the grace is not given": (r"_heard = t \+ grace$", "_heard = t"),
+    "a latch is lost": (r"'\w+' in latched$", "False"),
+    "a disabled behaviour acts": (r"'\w+' not in self\._disabled", "True"),
+    "to enable is no event": (r"^( +)self\._disabled\.remove\(behaviour\)$", r"\g<0>\n\1return"),
+    "news are overlooked": (r"^( +)if (?:not fresh|\w+ == self\._\w+):$", r"\1if True:"),
+    "what was missing stays so": (r"_silent = self\._\w+_missing = False", "_silent = False"),
+    "a scan's form is kept": (r"scan_beams\(len\(ranges\), ", "scan_beams(4, "),
+    "a rule's change has no time": (r"^( +)self\._\w+_since = t$", r"\g<1>pass"),
     "rates look at the wrong time": (r"t - self\._(\w+_last_t)", r"t + self._\1"),
 }
 """Slips by name: a pattern of the generated text, and what it is replaced by."""
@@ -57,7 +65,7 @@ def test_slip_is_found(slip: str) -> None:
         text = render_monitor(program)
         mutant = re.sub(pattern, replacement, text, flags=re.MULTILINE)
         if mutant != text:
-            compare(program, data.draw(traces(program)), mutant)
+            compare(program, data.draw(traces(program)), mutant, data.draw(starts(program)))
 
     with pytest.raises(AssertionError):
         search()

@@ -212,7 +212,8 @@ class _Writer:
             row = FUNCTIONS[function.function]
             if row.python_of_unit and function.arguments == parts:
                 name = self._locals[function] = self._names.new(self._layout.values[function].name)
-                results.append(f"{blank}    {name} = {row.python_of_unit}")
+                results += [f"{blank}    {line}" for line in row.python_of_unit[:-1]]
+                results.append(f"{blank}    {name} = {row.python_of_unit[-1]}")
                 names.append(name)
         return [
             *lay_out_call(indent, "length = math.hypot(", texts),
@@ -241,8 +242,8 @@ class _Writer:
         ]
         if each.timeout_ns is not None:
             statements += self._heard(each, each.timeout_ns, bool(slots))
-        statements += self._news(slots)
-        return [f"{' ' * indent}{statement}" for statement in statements]
+        lines = [f"{' ' * indent}{statement}" for statement in statements]
+        return lines + self._news(slots, indent)
 
     def _heard(self, each: Input, timeout_ns: int, has_values: bool) -> list[str]:
         """Return the statements that start the timeout anew."""
@@ -259,16 +260,18 @@ class _Writer:
             return [*lines, f"    {_FRESH}"]
         return [*lines, "else:", "    return"] if self._tells_news else lines
 
-    def _news(self, slots: Sequence[tuple[str, str]]) -> list[str]:
+    def _news(self, slots: Sequence[tuple[str, str]], indent: int) -> list[str]:
         """Return the statements that take the values over, after a look whether they differ."""
-        stores = [f"{attribute} = {local}" for attribute, local in slots]
+        blank = " " * indent
+        stores = [f"{blank}{attribute} = {local}" for attribute, local in slots]
         if not slots or not self._tells_news:
             return stores
         if self._counts_news:
             test: Logic = any_of(Atom(f"{local} != {attribute}") for attribute, local in slots)
-            return [*lay_out(0, "if ", test, ":"), *(f"    {each}" for each in (*stores, _FRESH))]
+            inner = [*stores, f"{blank}{_FRESH}"]
+            return [*lay_out(indent, "if ", test, ":"), *(f"    {line}" for line in inner)]
         test = all_of(Atom(f"{local} == {attribute}") for attribute, local in slots)
-        return [*lay_out(0, "if ", test, ":"), "    return", *stores]
+        return [*lay_out(indent, "if ", test, ":"), f"{blank}    return", *stores]
 
     def _local(self, value: ValueExpression) -> str:
         if value in self._locals:

@@ -24,7 +24,7 @@ METHOD_NAMES = frozenset(
 LOCAL_NAMES = frozenset(
     {
         *("changed", "due", "emit", "fresh", "now", "self", "started", "t", "verdict"),
-        *("length", "sine", "ux", "uy", "uz", "uw"),
+        *("cosine", "length", "sine", "ux", "uy", "uz", "uw"),
     }
 )
 

@@ -1,0 +1,135 @@
+"""Compare the generated monitor with the reference engine on very many random pairs.
+
+Rules and traces are drawn anew in every run. Where the two differ, the pair is made as small as it
+can be and kept as a file (see ``tests/support/counterexamples.py``), which ``make test`` compares
+from then on. Exit code 1 says that one was found.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import os
+import secrets
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from tests.support import counterexamples
+from tests.support.counterexamples import Pair, pairs
+from tests.support.strategies import KINDS, programs
+
+CHUNK = 200
+"""Pairs that a process draws before it tells how far it is."""
+
+FOCUSES: tuple[tuple[str, ...], ...] = (
+    tuple(KINDS),
+    tuple(KINDS),
+    ("scan", "array", "element"),
+    ("number", "boolean"),
+)
+"""The kinds of inputs that chunks draw, in turn."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a chunk: how many pairs passed, and the smallest that did not."""
+
+    passed: int
+    failed: Pair | None
+    why: str = ""
+
+
+def check(number: int, chunk_seed: int, pairs_wanted: int) -> Outcome:
+    """Draw and compare one chunk of pairs."""
+    passed = 0
+    failures: list[Pair] = []
+
+    @seed(chunk_seed)
+    @settings(
+        max_examples=pairs_wanted,
+        database=None,
+        deadline=None,
+        phases=(Phase.generate, Phase.shrink),
+        suppress_health_check=list(HealthCheck),
+        report_multiple_bugs=False,
+        print_blob=False,
+    )
+    @given(programs(kinds=FOCUSES[number % len(FOCUSES)]).flatmap(pairs))
+    def compare(pair: Pair) -> None:
+        nonlocal passed
+        try:
+            pair.compare()
+        except Exception:
+            failures.append(pair)  # the smallest comes last
+            raise
+        passed += 1
+
+    try:
+        compare()
+    except Exception as error:
+        if not failures:
+            raise
+        return Outcome(passed, failures[-1], f"{type(error).__name__}: {error}")
+    return Outcome(passed, None)
+
+
+def outcomes(wanted: int, jobs: int, first_seed: int) -> Iterator[Outcome]:
+    """Yield the outcome of each chunk as it comes in."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(jobs, context) as executor:
+        futures = [
+            executor.submit(check, number, first_seed + number, min(CHUNK, wanted - begun))
+            for number, begun in enumerate(range(0, wanted, CHUNK))
+        ]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        finally:
+            executor.shutdown(cancel_futures=True)
+
+
+def main() -> int:
+    """Print how many pairs passed; return 1 at the first that did not."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--pairs", type=int, default=100_000)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--seed", type=int, help="repeats an earlier run")
+    arguments = parser.parse_args()
+    first_seed = secrets.randbelow(1 << 48) if arguments.seed is None else arguments.seed
+
+    console = Console()
+    console.print(f"seed {first_seed}")
+    columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    passed = 0
+    with Progress(TextColumn("pairs"), *columns, console=console) as progress:
+        task = progress.add_task("pairs", total=arguments.pairs)
+        for outcome in outcomes(arguments.pairs, arguments.jobs, first_seed):
+            passed += outcome.passed
+            progress.update(task, completed=passed)
+            if outcome.failed is not None:
+                path = counterexamples.write(outcome.failed)
+                console.print(outcome.why, markup=False)
+                console.print(f"the two differ; kept as {path}", markup=False, soft_wrap=True)
+                return 1
+    console.print(f"{passed} pairs passed")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
