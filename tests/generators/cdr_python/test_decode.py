@@ -22,7 +22,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import Imu, JointState, LaserScan, PointCloud2, PointField
 from test_msgs.msg import UnboundedSequences, WStrings
 
-from deros.interfaces.types import InterfaceType
+from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from tests.support.cdr import Decoder, decoder, serialize
 from tests.support.messages import (
     STORE,
@@ -92,6 +92,26 @@ def test_reads_whatever_a_message_may_be(seed: int, big_endian: bool) -> None:
     expected = [read(types, message, types.last, path) for path in paths]
     assert _same(decode.values(data), expected), (types, paths, decode.text)
     _check_truncated(decode, data, rng)
+
+
+@pytest.mark.parametrize("big_endian", [False, True])
+@pytest.mark.parametrize("length", [0, 1, 2, 3])
+@pytest.mark.parametrize(
+    "element", ["uint8", "float64", "uint8 uint16", "uint8 float64", "uint16 float64 uint8"]
+)
+def test_what_follows_an_array_is_found(element: str, length: int, big_endian: bool) -> None:
+    """However many elements there are, of whatever alignment and size."""
+    item, kind = (InterfaceType("made_up", "msg", name) for name in ("Item", "Message"))
+    parts = tuple((f"part_{n}", FieldType(base)) for n, base in enumerate(element.split()))
+    for base in ("uint8", "uint32", "float64"):
+        whole = (("array", FieldType(item, "unbounded")), ("after", FieldType(base)))
+        types = Definitions(
+            {item: MessageDefinition(item, parts), kind: MessageDefinition(kind, whole)}
+        )
+        items = [SimpleNamespace(**{name: n for name, _ in parts}) for n in range(length)]
+        data = serialize(SimpleNamespace(array=items, after=42), kind, big_endian, types)
+        decode = decoder(kind, [("after",), ("array",)], types)
+        assert decode.values(data) == [42, length]
 
 
 @settings(max_examples=100, deadline=None)

@@ -86,17 +86,12 @@ class Steps:
 
     def read_gathered(self) -> None:
         """Write the lines that read what has been gathered."""
-        run: list[_Read] = []
-        for read in sorted(self._gathered, key=lambda each: each.offset):
+        gathered = sorted(self._gathered, key=lambda each: each.offset)
+        for read in gathered:
             if read.is_tuple:
                 self._read([read])
-                continue
-            if run and read.offset < run[-1].offset + run[-1].size:
-                self._read(run)
-                run = []
-            run.append(read)
-        if run:
-            self._read(run)
+        if scalars := [read for read in gathered if not read.is_tuple]:
+            self._read(scalars)
         self._gathered = []
 
     def _read(self, run: list[_Read]) -> None:
