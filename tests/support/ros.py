@@ -43,10 +43,10 @@ def own_domain() -> Iterator[int]:
 
 
 @pytest.fixture
-def ros_env() -> Iterator[dict[str, str]]:
-    """Give the environment for ROS 2 processes of one test: loopback, in a domain of their own."""
+def ros_env(tmp_path: Path) -> Iterator[dict[str, str]]:
+    """Give the environment for ROS 2 processes of one test: loopback, domain and home their own."""
     with own_domain() as domain:
-        yield environment(domain)
+        yield environment(domain) | {"ROS_HOME": str(tmp_path / "ros_home")}
 
 
 def environment(domain: int) -> dict[str, str]:

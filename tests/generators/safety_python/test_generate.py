@@ -46,7 +46,8 @@ def test_the_files_are_as_kept(name: str, golden: Golden) -> None:
 
     The rest comes from the generators of nodes and of monitors, and is kept with their tests.
     """
-    own = {f"{name}_safety_node{end}" for end in (".rnd", ".py", "_actions.py", "_actions_base.py")}
+    ends = (".rnd", ".py", "_actions.py", "_actions_base.py")
+    own = {"origins.py", *(f"{name}_safety_node{end}" for end in ends)}
     files = {path: file for path, file in files_of(name).items() if Path(path).name in own}
     assert len(files) == len(own)
     golden.check(f"safety_python/{name}", files)
@@ -133,8 +134,9 @@ def test_bound_actions_need_no_file_of_actions() -> None:
 def test_the_output_needs_nothing_of_deros() -> None:
     """Every import is of ROS 2, the standard library or the package itself."""
     allowed = {
-        "__future__", "abc", "collections", "contextlib", "ctypes", "dataclasses", "functools",
-        "gc", "math", "numpy", "os", "signal", "struct", "sys", "time", "traceback", "typing",
+        "__future__", "abc", "collections", "contextlib", "ctypes", "dataclasses", "fcntl",
+        "functools", "gc", "hashlib", "itertools", "math", "numpy", "os", "select", "signal",
+        "struct", "sys", "tempfile", "threading", "time", "traceback", "types", "typing",
         "glob", "pathlib", "setuptools", "launch", "launch_ros", "ament_index_python", "pytest",
         "ament_flake8", "ament_pep257", "rclpy", "rcl_interfaces", "every_thing_safety",
         "std_msgs", "std_srvs", "nav_msgs", "sensor_msgs", "diagnostic_msgs",

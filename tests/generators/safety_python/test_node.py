@@ -74,6 +74,8 @@ def test_it_has_the_ports_that_the_rules_ask_for() -> None:
         (PortKind.PUBLISHER, "/stop", "std_msgs.Bool"),
         (PortKind.PUBLISHER, "/limit", "std_msgs.Float64"),
         (PortKind.PUBLISHER, "~/heartbeat", "std_msgs.UInt64"),
+        (PortKind.PUBLISHER, "~/events", "diagnostic_msgs.DiagnosticStatus"),
+        (PortKind.PUBLISHER, "~/diagnostics", "diagnostic_msgs.DiagnosticArray"),
         (PortKind.SUBSCRIPTION, "/speed", "std_msgs.Float64"),
         (PortKind.SUBSCRIPTION, "/odom", "nav_msgs.Odometry"),
         (PortKind.SUBSCRIPTION, "/imu", "sensor_msgs.Imu"),
@@ -82,8 +84,28 @@ def test_it_has_the_ports_that_the_rules_ask_for() -> None:
         (PortKind.SUBSCRIPTION, "/mode", "std_msgs.UInt8"),
         (PortKind.SERVICE, "~/reset", "std_srvs.Trigger"),
     ]
-    (parameter,) = node.parameters
-    assert (parameter.name, parameter.default, parameter.read_only) == ("publish_freq", 10.0, True)
+
+
+def test_the_diagnostics_are_on_their_usual_topic_unless_the_rules_need_it() -> None:
+    """A node description could not tell two ports of one name apart."""
+    assert node_of("two_rules").port("/diagnostics") is not None
+    assert node_of("every_thing").port("~/diagnostics") is not None
+
+
+def test_its_parameters_are_fixed_but_for_optional_behaviours() -> None:
+    """What is latched has a file; what is optional can be switched while the node runs."""
+    read_only = {each.name: each.read_only for each in node_of("every_thing").parameters}
+    assert read_only == {
+        "publish_freq": True,
+        "startup_grace": True,
+        "state_file": True,
+        "diagnostics_freq": True,
+        "realtime_priority": True,
+        "lock_memory": True,
+        "garbage_collection": True,
+        "behaviours.speeding.enabled": False,
+    }
+    assert node_of("two_rules").parameter("state_file") is None
 
 
 def test_without_latches_there_is_no_reset_service() -> None:
@@ -126,8 +148,8 @@ def test_places_of_ports_are_in_the_rules() -> None:
 
 
 def test_an_empty_program_makes_a_node_all_the_same() -> None:
-    """Without rules there is a heartbeat and nothing else."""
+    """Without rules there is a heartbeat, and nothing to act upon."""
     node = named("empty")
-    assert [port.name for port in node.ports] == ["~/heartbeat"]
+    assert [port.name for port in node.ports] == ["~/heartbeat", "~/events", "/diagnostics"]
     assert node.ports[0].type == InterfaceType("std_msgs", "msg", "UInt64")
     assert node.span == Span(RULES, 0, 0)

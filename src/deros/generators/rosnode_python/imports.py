@@ -24,9 +24,7 @@ def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
         dict(node.interfaces), (kind for kind, _ in node.interfaces)
     )
     add = _Adder(rest)
-    if node.raw:
-        _raw_imports(node, standard, add)
-    else:
+    if not node.raw:
         add("rclpy")
     if node.lifecycle:
         add("rclpy.lifecycle", "LifecycleNode")
@@ -62,15 +60,6 @@ def user_imports(package: PackageView, node: NodeView) -> list[str]:
         add("rclpy.action.server", "ServerGoalHandle")
     add(f"{package.name}.{node.base_module}", node.base_class, "run")
     return import_lines(rest)
-
-
-def _raw_imports(node: NodeView, standard: dict[str, set[str]], add: _Adder) -> None:
-    if node.subscriptions:
-        standard["functools"] = set()
-        standard["typing"].add("Callable")
-        names = ("QoSRequestedIncompatibleQoSInfo", "SubscriptionEventCallbacks")
-        add("rclpy.event_handler", *names)
-        add("rclpy.qos", "QoSProfile")
 
 
 def _parameter_imports(node: NodeView, add: _Adder) -> None:

@@ -14,7 +14,7 @@ from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 
 _HOOKS = ("on_parameters_changed",)
-_RAW_HOOKS = ("on_named", "on_incompatible_qos")
+_RAW_HOOKS = ("on_named",)
 _LIFECYCLE_HOOKS = (
     "on_activate",
     "on_cleanup",
@@ -59,13 +59,11 @@ _TAKEN = frozenset(
         "ParameterDescriptor",
         "Parameters",
         "QoSProfile",
-        "QoSRequestedIncompatibleQoSInfo",
         "ReentrantCallbackGroup",
         "ReliabilityPolicy",
         "ServerGoalHandle",
         "SetParametersResult",
         "SimpleManagedEntity",
-        "SubscriptionEventCallbacks",
     )
 )
 

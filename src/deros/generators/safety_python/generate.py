@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib import resources
 
 from deros.generators.cdr_python import render_decoders
+from deros.generators.gate_python import gate_files, gate_nodes
 from deros.generators.monitor_python import render_monitor
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.python_source import call, expression, mark_long_lines
@@ -34,16 +35,20 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     node = safety_node(built.program, built.topics, options, model.source)
     view = safety_view(model, built.program, node, context.store)
     copyright_line = options.get("copyright", "")
-    files = package_files([node], options, raw={node.name})
+    gates = gate_nodes(built.program, built.topics, node)
+    nodes = [node, *gates]
+    files = package_files(nodes, options, raw={each.name for each in nodes})
     root = f"{view.package}/{view.package}"
     files[f"{view.package}/{node.name}.rnd"] = File(node_description(node))
     files[f"{root}/monitor.py"] = File(_licensed(render_monitor(built.program), copyright_line))
     files[f"{root}/{view.node.module}.py"] = File(_render("node.py", view, copyright_line))
+    files[f"{root}/origins.py"] = File(_render("origins.py", view, copyright_line))
     for module in view.runtime:
         files[f"{root}/{module}.py"] = File(_licensed(_runtime(module), copyright_line))
     if view.handlers:
         decoders = render_decoders([each.decoded for each in view.handlers], context.store)
         files[f"{root}/decoding.py"] = File(_licensed(decoders, copyright_line))
+    files |= gate_files(built.program, gates, node, context.store, copyright_line)
     if view.actions:
         base = _render("actions_base.py", view, copyright_line)
         user = _render("actions.py", view, copyright_line)

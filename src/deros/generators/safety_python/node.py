@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span, report
 from deros.generators.protocol import GenerationError, Options
 from deros.interfaces.names import check_node_name, check_package_name
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.common import Interval, QosProfile
+from deros.metamodels.common import Interval, QosProfile, Scalar
 from deros.metamodels.node import NodeType, Parameter, ParameterType, Port, PortKind
+from deros.monitor import walk
 from deros.monitor.ir import Program
 from deros.monitor.topics import SystemTopics
 
 HEARTBEAT = "~/heartbeat"
+EVENTS = "~/events"
+DIAGNOSTICS = "/diagnostics"
 RESET = "~/reset"
 
 _UINT64 = InterfaceType("std_msgs", "msg", "UInt64")
 _TRIGGER = InterfaceType("std_srvs", "srv", "Trigger")
+_STATUS = InterfaceType("diagnostic_msgs", "msg", "DiagnosticStatus")
+_STATUSES = InterfaceType("diagnostic_msgs", "msg", "DiagnosticArray")
 _STATE_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1)
 _HEARTBEAT_QOS = QosProfile(reliability="reliable", depth=1)
+_EVENTS_QOS = QosProfile(reliability="reliable", depth=1000)
+_DIAGNOSTICS_QOS = QosProfile(reliability="reliable", depth=10)
 _INPUT_DEPTH = 10
 _RELIABLE_PRESETS = frozenset({"services", "parameters"})
 
@@ -57,7 +65,7 @@ def safety_node(
         start,
         start,
         description=f"Watches the safety rules of {program.name}",
-        parameters=(_publish_freq(start),),
+        parameters=tuple(_parameters(program, start)),
         ports=tuple(_ports(program, topics, start)),
     )
 
@@ -92,18 +100,79 @@ def _package(program: Program, options: Options) -> str:
     return stem if stem.endswith("safety") else f"{stem}_safety"
 
 
-def _publish_freq(span: Span) -> Parameter:
-    return Parameter(
+def enabled_parameter(behaviour: str) -> str:
+    """Return the name of the parameter that enables an optional behaviour."""
+    return f"behaviours.{behaviour}.enabled"
+
+
+def _parameters(program: Program, span: Span) -> Iterator[Parameter]:
+    kinds = ParameterType
+
+    def fixed(
+        name: str,
+        kind: ParameterType,
+        default: Scalar,
+        description: str,
+        unit: str | None = None,
+        interval: Interval | None = None,
+    ) -> Parameter:
+        return Parameter(
+            name,
+            kind,
+            default,
+            span,
+            span,
+            unit=unit,
+            interval=interval,
+            read_only=True,
+            description=description,
+        )
+
+    yield fixed(
         "publish_freq",
-        ParameterType.DOUBLE,
+        kinds.DOUBLE,
         10.0,
-        span,
-        span,
-        unit="Hz",
-        interval=Interval(0.0, 1000.0, lower_closed=False),
-        read_only=True,
-        description="How often the states of the actions and the heartbeat are published",
+        "How often the states of the actions and the heartbeat are published",
+        "Hz",
+        Interval(0.0, 1000.0, lower_closed=False),
     )
+    yield fixed(
+        "startup_grace",
+        kinds.DOUBLE,
+        0.0,
+        "How long inputs may be late at the start; until they have come there is no heartbeat",
+        "s",
+        Interval(0.0, 86400.0),
+    )
+    if any(action.latched for action in program.actions):
+        yield fixed(
+            "state_file",
+            kinds.STRING,
+            "",
+            "Where latched actions outlive the process; empty: in deros below $ROS_HOME or ~/.ros",
+        )
+    yield fixed(
+        "diagnostics_freq",
+        kinds.DOUBLE,
+        1.0,
+        "How often the state is published without a change",
+        "Hz",
+        Interval(0.0, 100.0, lower_closed=False),
+    )
+    yield fixed(
+        "realtime_priority",
+        kinds.INTEGER,
+        0,
+        "Priority under SCHED_FIFO; 0 leaves the scheduling as it is",
+        interval=Interval(0, 99),
+    )
+    yield fixed("lock_memory", kinds.BOOL, False, "Whether the memory is never paged out")
+    yield fixed("garbage_collection", kinds.BOOL, True, "Whether Python looks for unused cycles")
+    for behaviour in walk.behaviours(program):
+        if behaviour.optional:
+            name = enabled_parameter(behaviour.name)
+            description = f"Whether the behaviour {behaviour.name} is watched"
+            yield Parameter(name, kinds.BOOL, True, span, span, description=description)
 
 
 def _ports(program: Program, topics: SystemTopics, start: Span) -> list[Port]:
@@ -117,6 +186,11 @@ def _ports(program: Program, topics: SystemTopics, start: Span) -> list[Port]:
         ports.append(_port(PortKind.PUBLISHER, topic, kind, span, _STATE_QOS, description))
     description = "Counts up at publish_freq: stop when it stops"
     ports.append(_port(PortKind.PUBLISHER, HEARTBEAT, _UINT64, start, _HEARTBEAT_QOS, description))
+    description = "Tells of each action, reset and fault"
+    ports.append(_port(PortKind.PUBLISHER, EVENTS, _STATUS, start, _EVENTS_QOS, description))
+    description = "State of the node, of its actions and of its rules"
+    name = _diagnostics_name(program)
+    ports.append(_port(PortKind.PUBLISHER, name, _STATUSES, start, _DIAGNOSTICS_QOS, description))
     spans = {each.topic: each.span for each in reversed(program.inputs)}
     for topic, kind in program.topics.items():
         qos = _input_qos(topics, topic)
@@ -125,6 +199,12 @@ def _ports(program: Program, topics: SystemTopics, start: Span) -> list[Port]:
         description = "Resets the latched actions that no behaviour calls for"
         ports.append(_port(PortKind.SERVICE, RESET, _TRIGGER, start, None, description))
     return ports
+
+
+def _diagnostics_name(program: Program) -> str:
+    """Return the usual topic, or one of the node's own where the rules need the usual one."""
+    bound = (action.binding.topic for action in program.actions if action.binding is not None)
+    return f"~{DIAGNOSTICS}" if DIAGNOSTICS in {*program.topics, *bound} else DIAGNOSTICS
 
 
 def bound_actions(program: Program, topic: str) -> list[str]:

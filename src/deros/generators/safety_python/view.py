@@ -19,15 +19,28 @@ from deros.generators.python_source import (
 )
 from deros.generators.rosnode_python.view import NodeView, interface_imports, node_view
 from deros.generators.safety_python.messages import is_stamped, literal
+from deros.generators.safety_python.node import HEARTBEAT, RESET, enabled_parameter
 from deros.interfaces.fields import ResolvedField, format_path, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, PortKind
 from deros.metamodels.rules import Rules
 from deros.monitor import walk
-from deros.monitor.ir import Action, Behaviour, Binding, Program, Trigger
+from deros.monitor.ir import Action, Binding, Program, RuleRef, Scalar, Trigger
 
 LOG_STATE = "log_state"
+RUNTIME = (
+    "alarm",
+    "diagnostics",
+    "events",
+    "instance",
+    "machine",
+    "process",
+    "siblings",
+    "waker",
+    "watch",
+)
+"""The modules of every safety node that are the same for all programs."""
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _CONDITION = re.compile(r"\bif\b(.*?)\bthen\b", re.DOTALL)
@@ -92,6 +105,22 @@ class ActionView:
 
 
 @dataclass(frozen=True, slots=True)
+class BehaviourView:
+    """What people want to know of a behaviour.
+
+    Attributes:
+        origin: file and line.
+        condition: as written, on one line.
+        rules: those that it depends on, also through the behaviours around it.
+    """
+
+    name: str
+    origin: str
+    condition: Text
+    rules: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class SafetyView:
     """All that the templates print.
 
@@ -99,7 +128,9 @@ class SafetyView:
         rules: the file name of the rules.
         imports: the statements that import the interfaces.
         channels_of: of each bound action, the channel that carries its state.
-        behaviours: of each behaviour, where it stands and its condition.
+        lasting: of each action, whether it has a state.
+        latched: the latched actions, with the arguments that the rules call each with first.
+        optional: the behaviours that can be disabled, with the field of their parameter.
         callers: of each action that can be refused a reset, the behaviours that call for it.
         trigger: the service class of ``~/reset`` as the module names it; empty without latches.
     """
@@ -113,17 +144,29 @@ class SafetyView:
     channels: tuple[ChannelView, ...]
     channels_of: tuple[tuple[str, str], ...]
     actions: tuple[ActionView, ...]
-    behaviours: tuple[Text, ...]
+    lasting: tuple[tuple[str, bool], ...]
+    latched: tuple[tuple[str, tuple[Scalar, ...]], ...]
+    optional: tuple[tuple[str, str], ...]
+    behaviours: tuple[BehaviourView, ...]
     callers: tuple[tuple[str, tuple[str, ...]], ...]
     heartbeat: str
     trigger: str
     rule_count: int
-    logs: bool
 
     @property
     def runtime(self) -> tuple[str, ...]:
         """The modules that are the same for every program that needs them."""
-        return ("alarm", "machine", "process", *(("states",) if self.channels else ()))
+        needed = {
+            "latches": bool(self.latched),
+            "publishers": bool(self.handlers),
+            "states": bool(self.channels),
+        }
+        return (*RUNTIME, *(module for module, is_needed in needed.items() if is_needed))
+
+    @property
+    def latched_code(self) -> bool:
+        """Whether a latched action is robot code."""
+        return bool({name for name, _ in self.latched} & {action.name for action in self.actions})
 
     @property
     def actions_module(self) -> str:
@@ -164,17 +207,19 @@ def safety_view(
         node=base,
         rules=origin_file(model),
         name=one_line(program.name),
-        imports=tuple(_imports(base, node, channels, bool(actions))),
+        imports=tuple(_imports(program, base, node, channels, bool(actions))),
         handlers=handlers,
         channels=channels,
         channels_of=tuple((name, c.identifier) for c in channels for name in c.actions),
         actions=actions,
-        behaviours=tuple(_behaviour(each) for each in walk.behaviours(program)),
+        lasting=tuple((a.name, _lasts(a)) for a in program.actions if a.name != LOG_STATE),
+        latched=tuple(_latched(program)),
+        optional=tuple(_optional(program)),
+        behaviours=tuple(_behaviours(program)),
         callers=tuple(_callers(program)),
-        heartbeat=_alias(base, node, "~/heartbeat"),
-        trigger=_alias(base, node, "~/reset"),
+        heartbeat=_alias(base, node, HEARTBEAT),
+        trigger=_alias(base, node, RESET),
         rule_count=len(program.rules),
-        logs=any(action.name == LOG_STATE for action in program.actions),
     )
     _check_names(view, program, node)
     return view
@@ -197,7 +242,9 @@ def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
     ]
     methods = [Emitted(a.method, f"action {a.name!r}", spans[a.name]) for a in view.actions]
     check_collisions([*reserved, *methods], f"the class {view.actions_class}")
-    modules = ["monitor", view.node.module, view.node.base_module]
+    modules = ["monitor", "origins", *view.runtime, view.node.module, view.node.base_module]
+    if view.handlers:
+        modules.append("decoding")
     if view.actions:
         modules += [view.actions_module, f"{view.actions_module}_base"]
     emitted = (Emitted(name, f"module {name!r}", node.name_span) for name in modules)
@@ -205,25 +252,38 @@ def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
 
 
 def _imports(
-    base: NodeView, node: NodeType, channels: tuple[ChannelView, ...], has_actions: bool
+    program: Program,
+    base: NodeView,
+    node: NodeType,
+    channels: tuple[ChannelView, ...],
+    has_actions: bool,
 ) -> list[str]:
-    kinds = (PortKind.PUBLISHER, PortKind.SERVICE)
-    used = [port.type for kind in kinds for port in node.ports_of(kind)]
+    named = {channel.topic for channel in channels} | {HEARTBEAT, RESET}
+    used = [port.type for port in node.ports if port.name in named]
     imports = interface_imports(dict(base.interfaces), used)
     package = node.package
     imports |= {
-        "rclpy.clock": {"Clock", "ClockType", "JumpThreshold", "TimeJump"},
-        "rclpy.duration": {"Duration"},
-        package: {"monitor", "process"},
+        package: {"machine", "monitor", "process"},
         f"{package}.alarm": {"Alarm"},
+        f"{package}.diagnostics": {"Diagnostics"},
+        f"{package}.events": {"Events", "OK", "WARN", "ERROR"},
+        f"{package}.instance": {"claim"},
+        f"{package}.origins": {"ACTIONS", "BEHAVIOURS", "CALLERS", "RULES"},
+        f"{package}.siblings": {"Siblings"},
+        f"{package}.watch": {"Watch"},
         f"{package}.{base.base_module}": {base.base_class},
     }
     if base.subscriptions:
         imports[package].add("decoding")
-        imports["rclpy.event_handler"] = {"QoSRequestedIncompatibleQoSInfo"}
-        imports["rclpy.qos"] = {"qos_policy_name_from_kind"}
+        imports[f"{package}.publishers"] = {"Publishers"}
     if channels:
         imports[f"{package}.states"] = {"StateTopic"}
+    if any(action.latched for action in program.actions):
+        imports[f"{package}.instance"].add("file_stem")
+        imports[f"{package}.latches"] = {"LatchFile", "Latches", "default_path"}
+        imports[f"{package}.origins"].add("LATCHED")
+    if any(each.optional for each in walk.behaviours(program)):
+        imports[f"{package}.{base.base_module}"].add("Parameters")
     if has_actions:
         imports[f"{package}.{base.module}_actions"] = {f"{base.class_name}Actions"}
     return import_lines(imports)
@@ -332,11 +392,42 @@ def _argument_types(action: Action, program: Program) -> list[str]:
     return [" | ".join(sorted(types)) or "object" for types in given]
 
 
-def _behaviour(behaviour: Behaviour) -> Text:
-    text = _COMMENT.sub(" ", header(behaviour.span.text))
-    condition = _CONDITION.search(text)
-    shown = one_line(condition[1] if condition else text)
-    return Text(f"{behaviour.name!r}: ", f"{origin(behaviour.span)}: if {shown}")
+def _lasts(action: Action) -> bool:
+    return action.binding is not None or action.latched or action.reset_by is not None
+
+
+def _latched(program: Program) -> Iterator[tuple[str, tuple[Scalar, ...]]]:
+    for action in program.actions:
+        if action.latched:
+            calls = (
+                item.arguments
+                for behaviour in walk.behaviours(program)
+                for item in behaviour.body
+                if isinstance(item, Trigger) and item.action == action.index
+            )
+            yield action.name, next(calls, ())
+
+
+def _optional(program: Program) -> Iterator[tuple[str, str]]:
+    for each in walk.behaviours(program):
+        if each.optional:
+            yield each.name, python_identifier(enabled_parameter(each.name))
+
+
+def _behaviours(program: Program) -> Iterator[BehaviourView]:
+    rules: dict[int, tuple[str, ...]] = {}
+    for each in walk.behaviours(program):
+        around = rules[each.parent] if each.parent is not None else ()
+        own = (
+            program.rules[part.rule].full_name
+            for part in walk.parts(each.condition)
+            if isinstance(part, RuleRef)
+        )
+        rules[each.index] = tuple(dict.fromkeys((*around, *own)))
+        text = _COMMENT.sub(" ", header(each.span.text))
+        condition = _CONDITION.search(text)
+        shown = Text("", one_line(condition[1] if condition else text))
+        yield BehaviourView(each.name, origin(each.span), shown, rules[each.index])
 
 
 def _callers(program: Program) -> list[tuple[str, tuple[str, ...]]]:
@@ -344,5 +435,5 @@ def _callers(program: Program) -> list[tuple[str, tuple[str, ...]]]:
     return [
         (action.name, tuple(names[index] for index in action.triggered_by))
         for action in program.actions
-        if action.latched or action.reset_by is not None
+        if (action.latched or action.reset_by is not None) and action.triggered_by
     ]

@@ -34,9 +34,10 @@ class Alarm:
         self._timer.reset()
 
     def repeat(self, period: int) -> None:
-        """Ring again a period after the last time; periods that have passed are left out."""
-        now = self._now()
-        self.ring_at(self.due + period if now < self.due + period else now + period)
+        """Ring again a period after the last time, or after now if either was long ago."""
+        latest = self._now() + period
+        due = self.due + period
+        self.ring_at(due if latest - period < due <= latest else latest)
 
     def _ring(self) -> None:
         self._timer.cancel()

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-import contextlib
 import gc
-import signal
+import sys
 
 import rclpy
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import ok, try_shutdown
 
+from .instance import Refusal
 from .machine import sharpen_timers
+from .waker import StopSignals, Waker
 
 WAIT = 1.0  # seconds; a wait without a limit is not woken by events in every release
 
@@ -22,31 +24,27 @@ def run(node_class: Callable[[], Node], args: list[str] | None = None) -> None:
     Run the node until SIGINT or SIGTERM, and end without an error then.
 
     All callbacks run in the calling thread. An exception of one of them ends the program: a node
-    that does not watch any more must not go on saying that it does.
+    that does not watch any more must not go on saying that it does. A Refusal ends it with its
+    text and exit code 1.
     """
     sharpen_timers()  # before any thread of the middleware starts, so that it inherits them
+    signals = StopSignals()
+    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     try:
-        rclpy.init(args=args)
-        try:
-            _spin(node_class)
-        except Exception:
-            if ok():
-                raise
-            # Otherwise the signal came in the middle of something that needs ROS 2.
-    except KeyboardInterrupt:
-        pass
+        _spin(node_class, signals)
+    except Refusal as refusal:
+        sys.exit(str(refusal))
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # told twice, by terminal and launcher
-        with contextlib.suppress(RuntimeError):  # the signal may do it at this very moment
-            try_shutdown()
+        try_shutdown()
 
 
-def _spin(node_class: Callable[[], Node]) -> None:
+def _spin(node_class: Callable[[], Node], signals: StopSignals) -> None:
     node = node_class()
     executor = EventsExecutor()
     executor.add_node(node)
-    # What is there now stays for good: no later collection has to look through it.
-    gc.collect()
-    gc.freeze()
-    while ok():
-        executor.spin_once(timeout_sec=WAIT)
+    with Waker(node):
+        # What is there now stays for good: no later collection has to look through it.
+        gc.collect()
+        gc.freeze()
+        while ok() and not signals.came:
+            executor.spin_once(timeout_sec=WAIT)

@@ -1,0 +1,185 @@
+"""The present state of a safety node on /diagnostics, for the tools that operators know."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+import dataclasses
+from dataclasses import dataclass
+import itertools
+import time
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.node import Node
+
+from .alarm import Alarm
+from .events import Behaviour, shown
+
+OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
+ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
+SOON = 50_000_000  # ns after a change, within which others are waited for
+CHUNK = 32  # statuses in one message: more of them would keep the monitor waiting for too long
+PAUSE = 1_000_000  # ns between the messages of one state
+
+
+@dataclass(frozen=True)
+class ActionState:
+    """An action: whether it is active, or that it ran, by which behaviour, and since when."""
+
+    lasts: bool  # whether it has a state, and is not just run
+    active: bool = False
+    cause: str = ''
+    since: int | None = None
+    runs: int = 0
+
+
+class Diagnostics:
+    """
+    Publishes one status for the node, one for each action and one for each rule.
+
+    All of it is published regularly, and soon after a change.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        behaviours: Mapping[str, Behaviour],
+        actions: Mapping[str, bool],
+        publish: Callable[[DiagnosticArray], None],
+        frequency: float,
+    ) -> None:
+        """Prepare; actions tells of each whether it has a state."""
+        self.faults: dict[str, str] = {}  # by what they are about
+        self.actions = {name: ActionState(lasts) for name, lasts in actions.items()}
+        self._node = node
+        self._behaviours = behaviours
+        self._publish = publish
+        self._period = round(1e9 / frequency)
+        self._rest: Iterator[DiagnosticStatus] | None = None
+        self._again = False
+        self._alarm = Alarm(
+            node, Clock(clock_type=ClockType.STEADY_TIME), time.monotonic_ns, self._ring
+        )
+
+    def begin(
+        self, explain: Callable[[], Any], now: Callable[[], int], summary: Callable[[], str]
+    ) -> None:
+        """
+        Start publishing.
+
+        explain returns the states of the rules and the behaviours that hold, now the time in which
+        they are told, and summary what the node is not ready for; empty if it watches.
+        """
+        self._explain, self._now, self._summary = explain, now, summary
+        self._alarm.ring_at(0)
+
+    def changed(self) -> None:
+        """Publish soon."""
+        soon = time.monotonic_ns() + SOON
+        if not self._alarm.is_set or self._alarm.due > soon:
+            self._alarm.ring_at(soon)
+        self._again = True
+
+    def ordered(self, event: Any) -> None:
+        """Follow an event of the monitor."""
+        before = self.actions.get(event.action)
+        if before is None or event.kind not in ('trigger', 'reset'):
+            return
+        active = event.kind == 'trigger'
+        runs = before.runs + active
+        if before.active and active:
+            after = dataclasses.replace(before, runs=runs)
+        else:
+            after = ActionState(
+                before.lasts, before.lasts and active, event.behaviour, event.t, runs
+            )
+        self.actions[event.action] = after
+
+    def latched(self, action: str) -> None:
+        """Show an action as active that was so before the start."""
+        self.actions[action] = ActionState(True, active=True, cause='active before the start')
+
+    def fault(self, subject: str, text: str) -> bool:
+        """Note or, with an empty text, forget a fault; tell whether this is another one now."""
+        if self.faults.get(subject, '') == text:
+            return False
+        self.faults.pop(subject, None)
+        if text:
+            self.faults[subject] = text
+        self.changed()
+        return True
+
+    def _ring(self) -> None:
+        if self._rest is None:
+            self._again = False
+            self._rest = self._statuses()
+        statuses = list(itertools.islice(self._rest, CHUNK))
+        now = time.monotonic_ns()
+        if len(statuses) == CHUNK:
+            self._alarm.ring_at(now + PAUSE)
+        else:
+            self._rest = None
+            self._alarm.ring_at(now + (SOON if self._again else self._period))
+        if statuses:
+            message = DiagnosticArray(status=statuses)
+            message.header.stamp = self._node.get_clock().now().to_msg()
+            self._publish(message)
+
+    def _statuses(self) -> Iterator[DiagnosticStatus]:
+        name = self._node.get_fully_qualified_name()
+        now = self._now()
+        rules, holding = self._explain()
+        yield self._node_status(name, rules)
+        for action, state in self.actions.items():
+            yield _action_status(f'{name}: action {action}', state, now)
+        blamed = {rule.name for behaviour in holding for rule in self._causes(behaviour, rules)}
+        for rule in rules:
+            yield _rule_status(f'{name}: {rule.name}', rule, rule.name in blamed, now)
+
+    def _causes(self, behaviour: str, rules: Any) -> list[Any]:
+        """Return the rules that make a behaviour hold: the true ones, else all it names."""
+        named = [rule for rule in rules if rule.name in self._behaviours[behaviour].rules]
+        return [rule for rule in named if rule.value] or named
+
+    def _node_status(self, name: str, rules: Any) -> DiagnosticStatus:
+        unready = self._summary()
+        level = ERROR if self.faults else WARN if unready else OK
+        message = '; '.join(self.faults.values()) or unready or f'watching {len(rules)} rules'
+        return _status(level, name, message, {'state': unready or 'watching', **self.faults})
+
+
+def _action_status(name: str, state: ActionState, now: int) -> DiagnosticStatus:
+    message = 'active' if state.active else 'inactive'
+    if not state.lasts:
+        message = f'run {state.runs} times'
+    values: dict[str, object] = {'runs': state.runs}
+    if state.cause:
+        values['cause'] = state.cause
+    if state.since is not None:
+        values |= _since(state.since, now)
+    return _status(WARN if state.active else OK, name, message, values)
+
+
+def _rule_status(name: str, rule: Any, blamed: bool, now: int) -> DiagnosticStatus:
+    true = ERROR if blamed else WARN
+    level = {None: STALE, False: ERROR if blamed else OK, True: true}[rule.value]
+    values = {term: shown(value) for term, value in rule.reads}
+    return _status(
+        level,
+        name,
+        f'{shown(rule.value)}: {rule.text}',
+        {**values, **_since(rule.since, now), 'line': rule.line},
+    )
+
+
+def _since(since: int, now: int) -> dict[str, object]:
+    return {'since': f'{max(now - since, 0) / 1e9:.3f} s ago', 'since_ns': since}
+
+
+def _status(
+    level: bytes, name: str, message: str, values: Mapping[str, object]
+) -> DiagnosticStatus:
+    pairs = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
+    return DiagnosticStatus(level=level, name=name, message=message, values=pairs)

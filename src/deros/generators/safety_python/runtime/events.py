@@ -1,0 +1,112 @@
+"""One structured message for everything that happens to a safety node, and a line in its log."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from rclpy.node import Node
+
+OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+
+
+class Behaviour(NamedTuple):
+    """What people want to know of a behaviour."""
+
+    origin: str  # file and line of the rules
+    condition: str
+    rules: tuple[str, ...]  # that it depends on, also through the behaviours around it
+
+
+class Events:
+    """Tells what happened, to the log and on a topic; always after it has been acted upon."""
+
+    def __init__(
+        self,
+        node: Node,
+        rules: str,
+        behaviours: Mapping[str, Behaviour],
+        publish: Callable[[DiagnosticStatus], None],
+    ) -> None:
+        """Prepare; rules is the name of their file."""
+        self._node = node
+        self._rules = rules
+        self._behaviours = behaviours
+        self._publish = publish
+
+    def ordered(
+        self, event: Any, done: int, states: Sequence[Any], holding: Sequence[str]
+    ) -> None:
+        """
+        Tell of an event of the monitor.
+
+        done is when it was acted upon, in the monitor's time; states and holding are what the
+        monitor explains after it.
+        """
+        message, level = self._described(event, holding)
+        told = {
+            'action': event.action,
+            'origin': f'{self._rules}:{event.line}' if event.line else '',
+            'time_ns': event.t,
+            'published_ns': done,
+        }
+        if event.arguments:
+            told['arguments'] = ', '.join(map(repr, event.arguments))
+        behaviour = self._behaviours.get(event.behaviour)
+        if behaviour is not None:
+            told |= {
+                'behaviour': event.behaviour,
+                'origin': behaviour.origin,
+                'condition': behaviour.condition,
+            }
+            for state in states:
+                if state.name in behaviour.rules:
+                    told[f'rule {state.name}'] = shown(state.value)
+                    told |= {f'value {term}': shown(value) for term, value in state.reads}
+        self.tell(event.kind, level, message, **told)
+
+    def tell(self, kind: str, level: bytes, message: str, **values: object) -> None:
+        """Tell of anything."""
+        self._log(level, message)
+        told = {'kind': kind, **values, 'ros_time_ns': self._node.get_clock().now().nanoseconds}
+        self._publish(
+            DiagnosticStatus(
+                level=level,
+                name=self._node.get_fully_qualified_name(),
+                message=message,
+                values=[KeyValue(key=key, value=str(value)) for key, value in told.items()],
+            )
+        )
+
+    def origin(self, behaviour: str) -> str:
+        """Return a behaviour with its place in the rules and its condition."""
+        found = self._behaviours[behaviour]
+        return f'{behaviour} ({found.origin}: if {found.condition})'
+
+    def _log(self, level: bytes, message: str) -> None:
+        log = self._node.get_logger()
+        if level == OK:  # a line of its own for each severity, as rclpy demands
+            log.info(message)
+        elif level == WARN:
+            log.warning(message)
+        else:
+            log.error(message)
+
+    def _described(self, event: Any, holding: Sequence[str]) -> tuple[str, bytes]:
+        if event.kind == 'clock_step':
+            return 'the clock stepped back: all inputs are unknown until their next message', ERROR
+        if event.kind == 'reset':
+            return f'{event.action} is reset', OK
+        if event.kind == 'refused':
+            callers = ', '.join(map(self.origin, holding))
+            return f'{event.action} stays active, called for by {callers}', WARN
+        what = event.arguments[0] if event.action == 'log_state' else event.action
+        return f'{what}, by {self.origin(event.behaviour)}', WARN
+
+
+def shown(value: object) -> str:
+    """Return a value as people read it."""
+    if value is None:
+        return 'unknown'
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,0 +1,151 @@
+"""The file in which latched actions outlive the process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Set
+import contextlib
+import hashlib
+import os
+from pathlib import Path
+
+HEAD = 'deros latches 1'
+
+
+def default_path(stem: str) -> Path:
+    """Return where the file of a node is unless a parameter says otherwise."""
+    home = os.environ.get('ROS_HOME') or Path.home() / '.ros'
+    return Path(home) / 'deros' / f'{stem}.latches'
+
+
+class LatchFile:
+    """
+    A file with the names of the active actions, and a digest over them.
+
+    It is replaced as a whole, so it is never half written. Whatever cannot be read counts as
+    'all active': only a file that says so, or no file at all, lets an action begin inactive.
+    """
+
+    def __init__(self, path: Path, owner: str) -> None:
+        """Prepare; owner tells the node from others that are given the same file by mistake."""
+        self.path = path
+        self.owner = owner
+        self.saved: frozenset[str] | None = None  # what the file says, if that is known
+
+    def load(self, known: Collection[str]) -> tuple[frozenset[str], str]:
+        """Return which of the known actions are active, and why it is all if it should not be."""
+        try:
+            text = self.path.read_text(encoding='utf-8')
+        except FileNotFoundError:
+            return frozenset(), ''
+        except (OSError, UnicodeDecodeError) as error:
+            return frozenset(known), f'{self.path} cannot be read: {error}'
+        names = text.split('\n')[2:-2]
+        if text != self._text(names):
+            return frozenset(known), f'{self.path} is damaged, or not of {self.owner}'
+        strangers = sorted(set(names) - set(known))
+        if strangers:
+            return frozenset(known), f'{self.path} names {", ".join(strangers)}, unknown by now'
+        return frozenset(names), ''
+
+    def save(self, active: Set[str]) -> None:
+        """
+        Have the file say which actions are active, now and after a loss of power.
+
+        Raises OSError if that is impossible; what the file says then is not known.
+        """
+        if self.saved == active:
+            return
+        self.saved = None
+        folder = self.path.parent
+        folder.mkdir(parents=True, exist_ok=True)
+        new = self.path.with_name(f'{self.path.name}.new')
+        try:
+            with new.open('w', encoding='utf-8') as file:
+                file.write(self._text(sorted(active)))
+                file.flush()
+                os.fsync(file.fileno())
+            new.replace(self.path)
+        except OSError:
+            with contextlib.suppress(OSError):
+                new.unlink()
+            raise
+        entry = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(entry)
+        finally:
+            os.close(entry)
+        self.saved = frozenset(active)
+
+    def spoil(self) -> None:
+        """
+        Empty the file, which needs no space: it counts as 'all active' then.
+
+        Raises OSError if that is impossible, too.
+        """
+        descriptor = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+    def _text(self, names: Collection[str]) -> str:
+        body = ''.join(f'{line}\n' for line in (HEAD, self.owner, *names))
+        return f'{body}{hashlib.sha256(body.encode()).hexdigest()}\n'
+
+
+class Latches:
+    """The latched actions that are active, in this process and in the file."""
+
+    def __init__(
+        self, file: LatchFile, known: Collection[str], tell: Callable[[str, str], None]
+    ) -> None:
+        """
+        Begin as the file says; if it cannot be read or written, with all known actions active.
+
+        tell takes what is wrong with the file, empty if nothing is any more.
+        """
+        self._file = file
+        self._tell = tell
+        active, problem = file.load(known)
+        self.active: frozenset[str] = active
+        self._known = frozenset(known)
+        try:
+            file.save(self.active)
+        except OSError as error:
+            self.active = frozenset(known)
+            problem = f'{file.path} cannot be written: {error}'
+        if problem:
+            tell('latches', f'{problem}; all latched actions are active')
+
+    def follow(self, kind: str, action: str) -> None:
+        """Follow an event of the monitor."""
+        if action in self._known:
+            self.active = self.active - {action} if kind == 'reset' else self.active | {action}
+
+    def keep(self) -> str:
+        """Have the file say what is active; return why it does not. To be tried again then."""
+        if self._file.saved == self.active:
+            return ''
+        try:
+            self._file.save(self.active)
+        except OSError as error:
+            text = f'{self._file.path} cannot be written: {error}'
+            try:
+                self._file.spoil()
+                text += '; after a restart all latched actions are active'
+            except OSError as second:
+                text += f'; nor emptied: {second}'
+            self._tell('latches', text)
+            return text
+        self._tell('latches', '')
+        return ''
+
+    def allow_reset(self, remaining: Set[str]) -> str:
+        """Have the file say what a reset will leave active, in advance, or return why not."""
+        try:
+            self._file.save(remaining)
+        except OSError as error:
+            self.keep()
+            return f'nothing is reset, because {self._file.path} cannot be written: {error}'
+        self._tell('latches', '')
+        return ''

@@ -1,0 +1,126 @@
+"""A monitor in time: it is told what time it is, and what it orders is done at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import time
+import traceback
+from typing import Any
+
+from rclpy.clock import Clock, JumpThreshold, TimeJump
+from rclpy.clock_type import ClockType
+from rclpy.duration import Duration
+from rclpy.node import Node
+
+from .alarm import Alarm
+
+
+class Watch:
+    """
+    Runs a monitor on steady time, which never steps, or on ROS time under use_sim_time.
+
+    The owner hands messages to the monitor, with the time of now(), and calls settle() then.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        begin: Callable[[int, Callable[[Any], None]], Any],
+        do: Callable[[Any], None],
+        after: Callable[[list[Any], list[int]], None],
+        stepped: Callable[[], None],
+    ) -> None:
+        """
+        Prepare; start() comes next.
+
+        begin makes a monitor that starts at a time and hands its events to a function; it is
+        called again when simulated time begins. do does what an event asks for. after is called
+        with the events that have been dealt with, and when each of them was done. stepped is
+        called when simulated time has begun or stepped back.
+        """
+        self.began_at = 0
+        self.monitor: Any = None
+        self._node = node
+        self._begin = begin
+        self._do = do
+        self._after = after
+        self._stepped = stepped
+        self._ordered: list[Any] = []
+        self.now, self.clock = self._choose_clock()
+        self._deadline = Alarm(node, self.clock, self.now, self._on_deadline)
+
+    def start(self) -> None:
+        """Start the monitor: its timeouts count from now."""
+        self.began_at = self.now()
+        self.monitor = self._begin(self.began_at, self._ordered.append)
+        self._arm()
+
+    def settle(self) -> None:
+        """Do what the monitor ordered, in order, and wake up for its next deadline."""
+        if self._ordered:
+            self._carry_out()
+        self._arm()
+
+    def advance(self) -> int:
+        """Settle all that is due, and return the time that it is now."""
+        now = self.now()
+        try:
+            self.monitor.advance(now)
+        finally:
+            self.settle()
+        return now
+
+    def _choose_clock(self) -> tuple[Callable[[], int], Clock]:
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        if not self._node.get_parameter('use_sim_time').value:
+            return time.monotonic_ns, steady  # what that clock shows, in a thirtieth of the time
+        # The callback of a jump may not do much, so it leaves the rest to an alarm due at once.
+        self._step = Alarm(self._node, steady, time.monotonic_ns, self._on_step)
+        jumps = JumpThreshold(
+            min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
+        )
+        clock = self._node.get_clock()
+        self._jumps = clock.create_jump_callback(jumps, post_callback=self._on_clock_jump)
+        return lambda: clock.now().nanoseconds, clock
+
+    def _on_clock_jump(self, jump: TimeJump) -> None:
+        """Start when simulated time begins, and settle a step back without waiting."""
+        begins = self.began_at == 0 and self.monitor is not None
+        if begins:
+            self.start()
+        if begins or jump.delta.nanoseconds < 0:
+            self._step.ring_at(0)
+
+    def _on_step(self) -> None:
+        self._stepped()
+        self._on_deadline()
+
+    def _on_deadline(self) -> None:
+        self._deadline.is_set = False
+        self.advance()
+
+    def _arm(self) -> None:
+        """Set the alarm to the monitor's next deadline; one that rings earlier may stay."""
+        deadline = self.monitor.next_deadline
+        alarm = self._deadline
+        if deadline is not None and not (alarm.is_set and alarm.due <= deadline):
+            alarm.ring_at(deadline)
+
+    def _carry_out(self) -> None:
+        """Do all that was ordered, then have it told, and only then fail if something failed."""
+        events = self._ordered.copy()
+        self._ordered.clear()
+        failures: list[Exception] = []
+        done: list[int] = []
+        for event in events:
+            try:
+                self._do(event)
+            except Exception as error:
+                self._node.get_logger().fatal(
+                    f'action {event.action} failed:\n{traceback.format_exc()}'
+                )
+                failures.append(error)
+            done.append(self.now())
+        self._after(events, done)
+        if failures:
+            raise failures[0]  # the heartbeat stops with the node
