@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.gate_nodes import World, running_gate, write_gates
+from tests.support.gate_nodes import SAFETY_NODE, World, running_gate, write_gates
 from tests.support.ros import LIMIT, Peer
 
 pytestmark = pytest.mark.ros
@@ -263,3 +263,79 @@ def test_simulated_time_pauses_and_steps_back(
         ticking(0.01, lambda: world.last == (0.3, 0.0, 0.0))
         tick(0.6)
         world.peer.until(lambda: world.last == STILL)
+
+
+def test_a_gate_of_numbers_alone(package: Path, ros_env: dict[str, str], ros_peer: Peer) -> None:
+    """Int32: what cannot be NaN passes, and a zero is steady, though nothing can be lost."""
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from std_msgs.msg import Bool, Int32
+
+    heard: list[int] = []
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    wish = ros_peer.node.create_publisher(Int32, "/lamp/goal", 10)
+    stop = ros_peer.node.create_publisher(Bool, "/stop", kept)
+    ros_peer.node.create_subscription(
+        Int32, "/lamp/command", lambda message: heard.append(message.data), 10
+    )
+    with running_gate(package, "lamp_command_gate", ros_env) as process:
+        ros_peer.until(lambda: wish.get_subscription_count() and stop.get_subscription_count())
+        ros_peer.until(lambda: heard)
+        stop.publish(Bool(data=False))
+
+        def wished() -> bool:
+            wish.publish(Int32(data=7))
+            return heard[-1] == 7
+
+        ros_peer.until(wished)
+        stop.publish(Bool(data=True))
+        ros_peer.until(lambda: heard[-2:] == [0, 0])
+        process.send_signal(signal.SIGINT)
+        output, _ = process.communicate(timeout=LIMIT)
+    assert process.returncode == 0
+    assert "Traceback" not in output
+
+
+def test_a_zero_keeps_the_form_of_the_command(
+    package: Path, ros_env: dict[str, str], ros_peer: Peer
+) -> None:
+    """JointTrajectory: names, frame and lengths stay, numbers are zero, the stamp is fresh."""
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from std_msgs.msg import Bool, UInt8, UInt64
+    from trajectory_msgs.msg import (  # type: ignore[import-untyped]
+        JointTrajectory,
+        JointTrajectoryPoint,
+    )
+
+    heard: list[Any] = []
+    node = ros_peer.node
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    wish = node.create_publisher(JointTrajectory, "/arm/goal", 10)
+    stop = node.create_publisher(Bool, "/stop", kept)
+    mode = node.create_publisher(UInt8, "/mode", kept)
+    heartbeat = node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
+    node.create_timer(0.05, lambda: heartbeat.publish(UInt64()))
+    node.create_subscription(JointTrajectory, "/arm/command", heard.append, 10)
+    point = JointTrajectoryPoint(positions=[1.0, 2.0], velocities=[0.8, -3.0])
+    message = JointTrajectory(joint_names=["lift", "turn"], points=[point])
+    message.header.frame_id = "arm"
+    message.header.stamp.sec = 5
+    stop.publish(Bool(data=False))
+    mode.publish(UInt8(data=0))
+    with running_gate(package, "arm_command_gate", ros_env):
+        ros_peer.until(lambda: heard and wish.get_subscription_count())
+
+        def wished() -> bool:
+            wish.publish(message)
+            return bool(heard[-1] == message)
+
+        ros_peer.until(wished)
+        mode.publish(UInt8(data=1))
+        ros_peer.until(lambda: list(heard[-1].points[0].velocities) == [0.5, -0.5])
+        mode.publish(UInt8(data=0))
+        stop.publish(Bool(data=True))
+        ros_peer.until(lambda: heard[-1].points and not any(heard[-1].points[0].velocities))
+    zero = heard[-1]
+    assert zero.joint_names == ["lift", "turn"]
+    assert zero.header.frame_id == "arm"
+    assert zero.header.stamp.sec > 5
+    assert list(zero.points[0].positions) == [0.0, 0.0]

@@ -17,7 +17,16 @@ from deros.monitor.ir import Program
 MODULES = ("logic", "message")
 """The modules of a gate besides that of its node, by the end of their names."""
 
-RUNTIME = ("alarm", "gate_report", "instance", "machine", "process", "publishers", "waker")
+RUNTIME = (
+    "alarm",
+    "gate_report",
+    "gate_watch",
+    "instance",
+    "machine",
+    "process",
+    "publishers",
+    "waker",
+)
 """The modules that are the same for all gates, most of which the safety node has as well."""
 
 

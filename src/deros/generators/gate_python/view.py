@@ -96,7 +96,7 @@ class StateView:
     @property
     def arguments(self) -> tuple[str, ...]:
         """The arguments for it, of a message ``msg`` that may be ``None``."""
-        return ("self._now()", *(f"msg is None or {action.test}" for action in self.actions))
+        return ("self._watch.now()", *(f"msg is None or {action.test}" for action in self.actions))
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,20 +283,16 @@ def _port(ports: Iterable[PortView], name: str) -> PortView:
 
 def _imports(base: NodeView, node: NodeType, used: Iterable[InterfaceType]) -> list[str]:
     imports = interface_imports(dict(base.interfaces), used)
-    own = ["logic", "message"]
+    own = {f"{base.module}_{module} as {module}" for module in ("logic", "message")}
     imports |= {
-        "rclpy.clock": {"Clock", "ClockType", "JumpThreshold", "TimeJump"},
-        "rclpy.duration": {"Duration"},
         "rclpy.serialization": {"deserialize_message"},
-        node.package: {f"{base.module}_{module} as {module}" for module in own},
+        node.package: {*own, "machine"},
         f"{node.package}.{base.base_module}": {base.base_class},
-        f"{node.package}.alarm": {"Alarm"},
         f"{node.package}.gate_report": {"decoded", "Report"},
+        f"{node.package}.gate_watch": {"GateWatch"},
         f"{node.package}.instance": {"claim"},
         f"{node.package}.process": {"run"},
     }
-    if node.parameters:
-        imports[node.package].add("machine")
     return import_lines(imports)
 
 

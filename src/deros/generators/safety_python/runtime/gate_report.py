@@ -28,7 +28,7 @@ def decoded(data: bytes, kind: type) -> Any:
         return None
 
 
-class Gate(Protocol):
+class Applying(Protocol):
     """What is reported of the logic of a gate."""
 
     applying: tuple[bool, ...]
@@ -41,7 +41,7 @@ class Report:
     def __init__(
         self,
         node: Node,
-        gate: Gate,
+        gate: Applying,
         lines: Sequence[str],
         now: Callable[[], int],
         publish: Callable[[DiagnosticArray], None],

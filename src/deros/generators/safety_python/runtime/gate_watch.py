@@ -1,0 +1,73 @@
+"""The logic of a gate in time: it is told what time it is, also when nothing comes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import time
+from typing import Protocol
+
+from rclpy.clock import Clock, JumpThreshold, TimeJump
+from rclpy.clock_type import ClockType
+from rclpy.duration import Duration
+from rclpy.node import Node
+
+from .alarm import Alarm
+
+NEVER = 1 << 62  # or later, in nanoseconds; timers cannot wait for that
+
+
+class Gate(Protocol):
+    """What the logic of a gate does by itself."""
+
+    @property
+    def next_deadline(self) -> int:
+        """Return when to call advance() at the latest."""
+
+    def advance(self, t: int) -> None:
+        """Do what is due up to and including t."""
+
+
+class GateWatch:
+    """
+    Runs a gate on steady time, which never steps, or on ROS time under use_sim_time.
+
+    The owner hands to the gate what comes, with the time of now(), and calls settle() then.
+    """
+
+    def __init__(self, node: Node) -> None:
+        """Prepare; start() comes next."""
+        self._node = node
+        self.now, clock = self._choose_clock()
+        self._deadline = Alarm(node, clock, self.now, self.advance)
+
+    def start(self, gate: Gate, settled: Callable[[], None]) -> None:
+        """Start with a gate; settled is called whenever something has happened to it."""
+        self._gate = gate
+        self._settled = settled
+        self.advance()
+
+    def advance(self) -> None:
+        """Do what is due."""
+        self._gate.advance(self.now())
+        self.settle()
+
+    def settle(self) -> None:
+        """Wake up for the next deadline; an alarm that rings earlier may stay."""
+        due = self._gate.next_deadline
+        if due < NEVER and not (self._deadline.is_set and self._deadline.due <= due):
+            self._deadline.ring_at(due)
+        self._settled()
+
+    def _choose_clock(self) -> tuple[Callable[[], int], Clock]:
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        if not self._node.get_parameter('use_sim_time').value:
+            return time.monotonic_ns, steady  # what that clock shows, in a thirtieth of the time
+        # The callback of a jump may not do much, so it leaves the rest to an alarm due at once.
+        self._step = Alarm(self._node, steady, time.monotonic_ns, self.advance)
+        jumps = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
+        clock = self._node.get_clock()
+        self._jumps = clock.create_jump_callback(jumps, post_callback=self._on_clock_jump)
+        return lambda: clock.now().nanoseconds, clock
+
+    def _on_clock_jump(self, _jump: TimeJump) -> None:
+        self._step.ring_at(0)
