@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from subprocess import Popen
@@ -167,3 +167,60 @@ class World:
             return condition()
 
         self.peer.until(once)
+
+
+class Drive:
+    """A robot that measures its speed and is told to move, all the time.
+
+    Attributes:
+        speed: what it measures, and publishes.
+    """
+
+    def __init__(self, peer: Peer) -> None:
+        """Start to publish; safety node and gate may come later."""
+        from geometry_msgs.msg import Twist
+        from rclpy.clock import Clock
+        from rclpy.clock_type import ClockType
+        from std_msgs.msg import Float64
+
+        self.peer = peer
+        self.speed = 0.05
+        self._heard: list[tuple[float, bool]] = []
+        self._float = Float64
+        self._wish = peer.node.create_publisher(Twist, "/cmd_vel_nav", 10)
+        self._measured = peer.node.create_publisher(Float64, "/speed", 10)
+        self._message = Twist()
+        self._message.linear.x = 0.3
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        peer.node.create_timer(0.02, self._live, clock=steady)
+        peer.node.create_subscription(Twist, "/cmd_vel", self._take, 10)
+
+    def _live(self) -> None:
+        self.measure(self.speed)
+        self._wish.publish(self._message)
+
+    def _take(self, message: Any) -> None:
+        self._heard.append((time.monotonic(), message.linear.x != 0.0))
+
+    def measure(self, speed: float) -> None:
+        """Measure a speed from now on."""
+        self.speed = speed
+        self._measured.publish(self._float(data=speed))
+
+    def until_moving(self) -> None:
+        """Wait until commands pass."""
+        self._heard.clear()
+        self.peer.until(lambda: self._heard and self._heard[-1][1])
+
+    def until_zero(self, happens: Callable[[], Any]) -> float:
+        """Let something happen, and return after how many seconds the first zero came.
+
+        After it there are zeros only, as far as can be told in a quarter of a second.
+        """
+        happened = time.monotonic()
+        happens()
+        self.peer.until(lambda: self._heard and not self._heard[-1][1])
+        first = self._heard[-1][0]
+        self.peer.until(lambda: time.monotonic() > first + 0.25)
+        assert not any(moves for heard, moves in self._heard if heard > first)
+        return first - happened

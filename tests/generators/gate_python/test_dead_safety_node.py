@@ -1,0 +1,113 @@
+"""Whatever ends the safety node, the gate stops the robot in time; again and again."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import statistics
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+from subprocess import Popen
+
+import pytest
+
+from deros.generators.protocol import Context
+from deros.generators.safety_python.generate import generate
+from deros.generators.writer import write
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from tests.support.gate_nodes import MODELS, PACKAGE, SAFETY_NODE, Drive, running_gate
+from tests.support.ros import Peer, running
+
+pytestmark = pytest.mark.ros
+
+REPEATS = int(os.environ.get("DEROS_REPEATS", "5"))
+"""How often each thing happens; a proof takes a hundred."""
+
+LIMIT_S = 0.3 + 0.05
+"""The time of the line about the heartbeat, and what the machine may add."""
+
+StartSafety = Callable[[], AbstractContextManager[Popen[str]]]
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """Give the package of the safety node and its gates."""
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(MODELS / "gates.deros").model
+    assert isinstance(model, Rules)
+    write(generate(model, context, {}), tmp_path)
+    return tmp_path / PACKAGE
+
+
+@pytest.fixture
+def drive(package: Path, ros_env: dict[str, str], ros_peer: Peer) -> Iterator[Drive]:
+    """Give a robot whose gate runs, and whose safety node is to come."""
+    with running_gate(package, "cmd_vel_gate", ros_env):
+        yield Drive(ros_peer)
+
+
+@pytest.fixture
+def start_safety(package: Path, ros_env: dict[str, str]) -> StartSafety:
+    """Give a function that runs the safety node."""
+    command = [sys.executable, "-m", f"{PACKAGE}.{SAFETY_NODE}"]
+    return lambda: running(command, {**ros_env, "PYTHONPATH": str(package)})
+
+
+def report(what: str, delays: list[float]) -> None:
+    """Print how long it took, and hold the longest to the limit."""
+    milliseconds = sorted(1000 * delay for delay in delays)
+    print(
+        f"\n{what}, {len(delays)} times: zero after {milliseconds[0]:.1f} ms at least,"
+        f" {statistics.median(milliseconds):.1f} in the median, {milliseconds[-1]:.1f} at most"
+    )
+    assert milliseconds[-1] <= 1000 * LIMIT_S
+
+
+def at_some_moment(drive: Drive) -> None:
+    """Let part of the time between two heartbeats pass, as chance will have it."""
+    end = time.monotonic() + random.uniform(0.0, 0.1)
+    drive.peer.until(lambda: time.monotonic() > end)
+
+
+def test_a_killed_safety_node(drive: Drive, start_safety: StartSafety) -> None:
+    """SIGKILL: from then on, zero within 0.3 s and 50 ms, every time; a new one takes over."""
+    delays: list[float] = []
+    for _ in range(REPEATS):
+        with start_safety() as safety:
+            drive.until_moving()
+            at_some_moment(drive)
+            delays.append(drive.until_zero(safety.kill))
+            safety.wait()
+            safety.returncode = 0  # as it was meant
+    report("killed", delays)
+
+
+def test_a_stopped_safety_node(drive: Drive, start_safety: StartSafety) -> None:
+    """SIGSTOP: the same; once it goes on, its next states are believed again."""
+    delays: list[float] = []
+    with start_safety() as safety:
+        for _ in range(REPEATS):
+            drive.until_moving()
+            at_some_moment(drive)
+            delays.append(drive.until_zero(lambda: safety.send_signal(signal.SIGSTOP)))
+            safety.send_signal(signal.SIGCONT)
+    report("stopped", delays)
+
+
+def test_a_rule_that_is_broken(drive: Drive, start_safety: StartSafety) -> None:
+    """From the sensor's message to the zero, through safety node and gate, in a moment."""
+    delays: list[float] = []
+    with start_safety():
+        for _ in range(REPEATS):
+            drive.until_moving()
+            at_some_moment(drive)
+            delays.append(drive.until_zero(lambda: drive.measure(2.0)))
+            drive.speed = 0.05
+    report("rule broken", delays)
+    assert statistics.median(delays) < 0.02
