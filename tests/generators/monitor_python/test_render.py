@@ -6,6 +6,7 @@ import ast
 import keyword
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -199,3 +200,21 @@ def test_absent_element_is_given_as_nan(present: float | None) -> None:
     monitor = GeneratedMonitor(program)
     monitor.message(1, "/scan", {0: present})
     assert len(monitor.events) == (present is not None)
+
+
+@pytest.mark.parametrize("function", ["count", "min"])
+def test_absent_array_is_given_as_nan(function: str) -> None:
+    """So is an array in an element that is not there: the input is unknown then, like any other."""
+    rules = f"""use "robot.system" import Robot
+action stop publishes true on /stop : std_msgs.Bool latched;
+input ranges = topic /scan.ranges timeout 1 sec
+entity e {{ some: ranges.{function}() > 0; none: ranges.missing(); }}
+if e.some or e.none then {{ stop; }};
+"""
+    program = timelines.program(rules)
+    leaves = (replace(program.leaves[0], path=("scans", 0, "ranges")),)
+    monitor = GeneratedMonitor(replace(program, leaves=leaves))
+    monitor.message(1, "/scan", {0: None})
+    assert not monitor.events
+    monitor.advance(1_000_000_000)
+    assert [each.action for each in monitor.events] == ["stop"]

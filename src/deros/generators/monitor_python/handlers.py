@@ -163,6 +163,8 @@ class _Writer:
             is_float = leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown
             if leaf.type.is_array and is_float:
                 tests.append(Atom(f"not np.isnan({name}).any()"))
+            elif leaf.type.is_array and _has_index(leaf):
+                tests.append(Atom(f"not isinstance({name}, float)"))
             elif not leaf.type.is_array and (is_float or _has_index(leaf)):
                 tests.append(Atom(f"{name} == {name}"))
         return tests
