@@ -27,10 +27,7 @@ from support.progress import Line
 from support.usage import Meter, memory_mib
 
 if TYPE_CHECKING:
-    from support.cost_loads import Load, Talker
-
-_SETTLE = 0.7
-"""Seconds at the start of each turn that do not count; longer than the rules' timeouts."""
+    from support.cost_loads import Talker
 
 _BUSY = 0.3
 
@@ -70,12 +67,19 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--seconds", type=float, default=2.0, metavar="S", help="of each turn (%(default)s)"
     )
+    parser.add_argument(
+        "--settle",
+        type=float,
+        default=0.7,  # longer than the rules' timeouts
+        metavar="S",
+        help="at the start of each turn, which do not count (%(default)s)",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all results there, too")
     parser.add_argument(
         "--assert", action="store_true", dest="must_hold", help="exit with 1 if a bar fails"
     )
     options = parser.parse_args(arguments)
-    if options.turns < 2 or options.seconds <= 0.0:
+    if options.turns < 2 or options.seconds <= 0.0 or options.settle < 0.0:
         parser.error("at least two turns of some length are needed")
     return options
 
@@ -94,7 +98,7 @@ def _measure(options: argparse.Namespace, folder: Path) -> Results:
 
         talker = Talker(tuple(NODES))
         line.show("waiting for all nodes to meet")
-        talker.meet(seconds=60.0)
+        talker.meet(60.0, processes.check)
         for node in NODES:  # what is loaded with the first messages belongs to the start
             talker.feed(node, LOADS[-1], 1.0)
         pids = {node: processes.pid(node) for node in NODES}
@@ -136,19 +140,13 @@ def _take_turns(
         for load in LOADS:
             for node in order:
                 line.show(f"turn {turn + 1} of {options.turns}: {load.name}; {NODES[node]}")
-                percent = _turn(processes, talker, node, load, options.seconds)
-                percents.setdefault((load.name, node), []).append(percent)
+                processes.check()
+                talker.feed(node, load, options.settle)
+                meter = Meter.start(processes.pid(node))
+                talker.feed(node, load, options.seconds)
+                percents.setdefault((load.name, node), []).append(meter.percent())
         order.append(order.pop(0))
     return percents
-
-
-def _turn(processes: Processes, talker: Talker, node: str, load: Load, seconds: float) -> float:
-    """Return the processor's use by a node that is under a load."""
-    processes.check()
-    talker.feed(node, load, _SETTLE)
-    meter = Meter.start(processes.pid(node))
-    talker.feed(node, load, seconds)
-    return meter.percent()
 
 
 if __name__ == "__main__":

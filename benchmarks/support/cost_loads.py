@@ -6,6 +6,7 @@ import heapq
 import math
 import random
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import cycle
 from typing import Any
@@ -71,8 +72,8 @@ class Talker:
         }
         self.sent = dict.fromkeys(namespaces, 0)
 
-    def meet(self, seconds: float) -> None:
-        """Wait until every topic has a subscriber.
+    def meet(self, seconds: float, watch: Callable[[], None]) -> None:
+        """Wait until every topic has a subscriber; ``watch`` is called meanwhile.
 
         Raises:
             TimeoutError: if one still has none after so many seconds.
@@ -85,6 +86,7 @@ class Talker:
         ]:
             if time.monotonic() > end:
                 raise TimeoutError(f"nobody has come to {', '.join(missing)}")
+            watch()
             rclpy.spin_once(self._node, timeout_sec=0.02)
 
     def feed(self, namespace: str, load: Load, seconds: float) -> None:

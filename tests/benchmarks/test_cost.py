@@ -1,0 +1,74 @@
+"""The benchmark of the safety node's cost: its arithmetic, and that it runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from benchmarks.support.cost_results import FASTEST, NODES, SAFETY, USUAL, Results, Use
+from benchmarks.support.usage import Meter, memory_mib, processor_time_ns
+
+COST = Path(__file__).resolve().parents[2] / "benchmarks" / "cost.py"
+
+
+def _results(percents: dict[tuple[str, str], tuple[float, float]]) -> Results:
+    uses = tuple(Use(load, node, each) for (load, node), each in percents.items())
+    return Results({"paper": 170.0, "scan": 210.0}, uses, (), 2.0, {}, stopped=True)
+
+
+def test_the_safety_node_is_compared_with_both_receivers() -> None:
+    """What counts is the difference of means; a scan costs what the safety node alone takes."""
+    results = _results(
+        {
+            ("paper", SAFETY): (3.0, 5.0),
+            ("paper", USUAL): (7.0, 8.0),
+            ("paper", FASTEST): (1.0, 2.0),
+            ("scan", SAFETY): (5.5, 6.5),
+        }
+    )
+    verdicts = list(results.verdicts("paper", "scan"))
+    assert [each.percent for each in verdicts] == [-3.5, 2.5, 2.0]
+    assert [each.held for each in verdicts] == [True, False, False]
+
+
+def test_processor_time_is_that_of_all_threads() -> None:
+    """It agrees with what the process says of itself, and does not go on while it sleeps."""
+    before = processor_time_ns(os.getpid())
+    own = time.process_time_ns()
+    after = processor_time_ns(os.getpid())
+    assert before <= own <= after
+    with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as child:
+        while memory_mib(child.pid) < 5.0:  # until the interpreter stands
+            assert child.poll() is None
+        meter = Meter.start(os.getpid())
+        while time.process_time_ns() < own + 20_000_000:
+            pass
+        assert 0.0 < meter.percent() <= 100.0 * (os.cpu_count() or 1)
+        assert processor_time_ns(child.pid) > 0
+        child.communicate(b"\n")
+    with pytest.raises(OSError, match="Invalid argument"):
+        processor_time_ns(child.pid)
+
+
+@pytest.mark.ros
+def test_it_runs(tmp_path: Path) -> None:
+    """A short run measures every node under every load, and the safety node still stops."""
+    output = tmp_path / "cost.json"
+    short = ["--turns", "2", "--seconds", "0.1", "--settle", "0.1"]
+    command = [sys.executable, str(COST), *short, "--json", str(output)]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert result.returncode == 0, result.stderr
+    found = json.loads(output.read_text())
+    assert found["stopped"]
+    assert len(found["verdicts"]) == 3
+    for load in found["loads"]:
+        assert set(load["percent_of_one_core"]) == set(NODES)
+    kilohertz = found["loads"][-1]["percent_of_one_core"]
+    assert all(kilohertz[node]["mean"] > 0.5 for node in NODES)
+    assert min(found["received"].values()) > 0.5
