@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import os
 from pathlib import Path
+from typing import IO
 
 HEAD = 'deros latches 1'
 
@@ -30,6 +31,7 @@ class LatchFile:
         self.path = path
         self.owner = owner
         self.saved: frozenset[str] | None = None  # what the file says, if that is known
+        self._opened: IO[bytes] | None = None
 
     def load(self, known: Collection[str]) -> tuple[frozenset[str], str]:
         """Return which of the known actions are active, and why it is all if it should not be."""
@@ -59,22 +61,37 @@ class LatchFile:
         folder = self.path.parent
         folder.mkdir(parents=True, exist_ok=True)
         new = self.path.with_name(f'{self.path.name}.new')
+        file = new.open('wb')
         try:
-            with new.open('w', encoding='utf-8') as file:
-                file.write(self._text(sorted(active)))
-                file.flush()
-                os.fsync(file.fileno())
+            file.write(self._text(sorted(active)).encode())
+            file.flush()
+            os.fsync(file.fileno())
             new.replace(self.path)
         except OSError:
             with contextlib.suppress(OSError):
+                file.close()
+            with contextlib.suppress(OSError):
                 new.unlink()
             raise
+        self._opened = file
         entry = os.open(folder, os.O_RDONLY)
         try:
             os.fsync(entry)
         finally:
             os.close(entry)
         self.saved = frozenset(active)
+
+    def doubt(self) -> None:
+        """
+        Have the file count as 'all active' until it is saved again.
+
+        This takes microseconds, because it does not wait for the disk: it outlives the process,
+        however that ends, though not a loss of power.
+        """
+        self.saved = None
+        if self._opened is not None:
+            with contextlib.suppress(OSError):
+                os.pwrite(self._opened.fileno(), b'?', 0)
 
     def spoil(self) -> None:
         """
@@ -116,6 +133,11 @@ class Latches:
             problem = f'{file.path} cannot be written: {error}'
         if problem:
             tell('latches', f'{problem}; all latched actions are active')
+
+    def foresee(self, action: str) -> None:
+        """Make sure, before an action is carried out, that no end of the process forgets it."""
+        if action in self._known and action not in self.active:
+            self._file.doubt()
 
     def follow(self, kind: str, action: str) -> None:
         """Follow an event of the monitor."""
