@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.faults import PROMPT, TOPICS, Robot, imu, load, speed, ticks
+from tests.support.faults import PROMPT, Robot
+from tests.support.played import TOPICS, imu, load, speed, ticks
 from tests.support.preload import WallClock
 
 pytestmark = pytest.mark.ros
@@ -31,7 +32,9 @@ def test_a_step_of_the_wall_clock_changes_nothing(
         beats = len(robot.beats)
         robot.spin(1.0)
         assert len(robot.beats) >= beats + 5, "the heartbeat stood still"
-        assert not any(robot.states["/halt"][halts:]), "stopped without a cause"
+        assert not any(each.value for each in robot.states["/halt"][halts:]), (
+            "stopped without a cause"
+        )
         sensors.play("/imu", imu(TILTED))
         robot.until_stopped("/halt", limit=0.4 + 1.0)
         sensors.play("/imu", imu())

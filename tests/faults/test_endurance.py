@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.faults import Robot, load
+from tests.support.faults import Robot
+from tests.support.played import load
 from tests.support.ros import LIMIT
 
 pytestmark = pytest.mark.ros

@@ -7,7 +7,8 @@ import time
 
 import pytest
 
-from tests.support.faults import PROMPT, Robot, button, imu, load, scan, speed
+from tests.support.faults import PROMPT, Robot
+from tests.support.played import button, imu, load, scan, speed
 
 pytestmark = pytest.mark.ros
 

@@ -7,7 +7,9 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.support.faults import Robot, Sensors, imu, speed
+from tests.support.faults import Robot
+from tests.support.played import imu, speed
+from tests.support.victims import Sensors
 
 pytestmark = pytest.mark.ros
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-_SOURCES = Path(__file__).with_name("preload")
+_SOURCES = Path(__file__).with_name("shims")
 _STRICT = ["-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC"]
 
 

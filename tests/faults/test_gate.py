@@ -1,0 +1,181 @@
+"""Faults around the gate: nobody who should watch over the robot, or command it, is there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from tests.support.faults import GATE, PROMPT, Heard, Robot
+from tests.support.played import COMMANDER, SENSES, TOPICS, command, load
+from tests.support.preload import WallClock
+from tests.support.victims import Process, Sensors
+
+pytestmark = pytest.mark.ros
+
+LOST_HEARTBEAT, LOST_INPUT = 0.3, 0.5
+"""When the gate takes somebody for lost, in s; see the rules."""
+
+LIMIT = 0.1
+"""The speed, in m/s, to which the gate limits commands while the arm is overloaded."""
+
+LATE = 0.05
+"""By how much, in s, a zero may come later."""
+
+PERIOD = 0.05
+DAY = 86400
+
+
+def lateness(messages: list[Heard], period: float) -> float:
+    """Return how late, in s, the machine itself made periodic messages, at the worst."""
+    return max(after.sent - before.sent - period for before, after in pairwise(messages))
+
+
+def assert_zeros_only(robot: Robot, first: int) -> None:
+    """See that from the command of that index on, the drive gets zeros, and gets them steadily."""
+    commands = len(robot.commands)
+    robot.spin(0.5)
+    assert len(robot.commands) >= commands + 5, "the gate fell silent"
+    assert not any(each.value for each in robot.commands[first:])
+
+
+@pytest.mark.parametrize("fault", [Process.kill, Process.freeze])
+def test_a_safety_node_that_dies_or_hangs_stops_the_robot(
+    robot: Robot, fault: Callable[[Process], None]
+) -> None:
+    """The last command that is no zero leaves the gate 0.3 s after the last heartbeat."""
+    with robot.safety_node() as node, robot.gate(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_driving()
+        driving = len(robot.commands)
+        robot.until(lambda: len(robot.commands) > driving + 10)
+        fault(node)
+        robot.until(lambda: robot.commands[-1].value == 0.0)
+        zero = next(n for n, each in enumerate(robot.commands) if n >= driving and not each.value)
+        late = robot.commands[zero].sent - robot.beats[-1].sent - LOST_HEARTBEAT
+        assert late < LATE + lateness(robot.commands[driving:zero], PERIOD)
+        assert_zeros_only(robot, zero)
+        node.kill()
+        robot.restart()
+        robot.until_driving()
+
+
+def test_a_latched_stop_holds_through_any_crash(robot: Robot) -> None:
+    """From the stop to its reset the drive gets zeros only, whoever dies meanwhile."""
+    with robot.safety_node() as node, robot.sensors() as sensors:
+        gate = robot.start(GATE)
+        sensors.drive()
+        robot.until_driving()
+        robot.violate()
+        robot.until(lambda: robot.commands[-1].value == 0.0)
+        stopped = len(robot.commands)
+        node.kill()
+        robot.restart()
+        assert_zeros_only(robot, stopped)
+        gate.kill()
+        gate = robot.start(GATE)
+        before = len(robot.commands)
+        robot.until(lambda: len(robot.commands) > before)
+        robot.spin(1.0)
+        assert_zeros_only(robot, stopped)
+        robot.until(lambda: robot.reset()[0])
+        robot.until_driving()
+        gate.end()
+
+
+def test_a_gate_without_a_safety_node_commands_zero(robot: Robot) -> None:
+    """Started alone it lets nothing through, for there is nobody to say that it may."""
+    with robot.sensors() as sensors:
+        sensors.play("/cmd_vel_nav", command(), rate=20.0)
+        gate = robot.start(GATE)
+        robot.until(lambda: robot.commands)
+        robot.spin(2 * LOST_HEARTBEAT)
+        assert_zeros_only(robot, 0)
+        gate.end()
+
+
+@pytest.mark.parametrize("fault", [Sensors.kill, Sensors.freeze])
+def test_who_commands_and_dies_or_hangs_is_followed_by_zeros(
+    robot: Robot, fault: Callable[[Sensors], None]
+) -> None:
+    """Without a command for 0.5 s, the drive is told to stand; no sensor need be missing."""
+    with (
+        robot.safety_node(),
+        robot.gate(),
+        robot.sensors(SENSES) as sensors,
+        robot.sensors(COMMANDER) as commander,
+    ):
+        sensors.drive()
+        commander.drive()
+        robot.until_driving()
+        fault(commander)
+        robot.until(lambda: robot.commands[-1].value == 0.0, limit=LOST_INPUT + PROMPT)
+        assert_zeros_only(robot, len(robot.commands))
+        assert not robot.is_active("/halt")
+
+
+def test_a_command_of_nan_is_a_lost_one(robot: Robot) -> None:
+    """Not one NaN reaches the drive; a zero does, at once."""
+    with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_driving()
+        sensors.play("/cmd_vel_nav", command(math.nan), rate=20.0)
+        robot.until(lambda: robot.commands[-1].value == 0.0, limit=PROMPT)
+        sensors.play("/cmd_vel_nav", command(math.inf), command(-math.inf), rate=20.0)
+        robot.spin(1.0)
+        assert {each.value for each in robot.commands[-10:]} == {0.0}
+        sensors.play("/cmd_vel_nav", command(), rate=20.0)
+        robot.until_driving()
+
+
+def test_a_flood_of_commands_starves_no_stop(robot: Robot) -> None:
+    """Twenty thousand commands a second do not keep a stop from becoming a zero."""
+    with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_driving()
+        sensors.play("/cmd_vel_nav", command(), rate=20_000.0)
+        robot.spin(1.0)
+        robot.violate()
+        robot.until(lambda: robot.commands[-1].value == 0.0, limit=PROMPT)
+        sensors.play("/cmd_vel_nav", command(), rate=20.0)
+        robot.spin(0.5)  # what had been sent before is through
+        assert_zeros_only(robot, len(robot.commands))
+
+
+def test_a_limit_gives_way_to_zero_when_the_safety_node_dies(robot: Robot) -> None:
+    """Nobody creeps on under a limit that nobody watches over any more."""
+    with robot.safety_node() as node, robot.gate(), robot.sensors() as sensors:
+        sensors.drive()
+        sensors.match("/load")
+        robot.until_driving()
+        sensors.send("/load", load(99.0))
+        robot.until(lambda: robot.commands[-1].value == LIMIT, limit=PROMPT)
+        limited = len(robot.commands)
+        robot.spin(0.5)
+        assert {each.value for each in robot.commands[limited:]} == {LIMIT}
+        node.kill()
+        robot.until(lambda: robot.commands[-1].value == 0.0, limit=LOST_HEARTBEAT + PROMPT)
+        assert_zeros_only(robot, len(robot.commands))
+        robot.restart()
+
+
+def test_the_zeros_outlive_a_step_of_the_wall_clock(robot: Robot, tmp_path: Path) -> None:
+    """Set back by a year, with no message coming in, the gate still notices, and still commands."""
+    wall_clock = WallClock(tmp_path)
+    env = wall_clock.env
+    with (
+        robot.safety_node(**env) as node,
+        robot.gate(**env),
+        robot.sensors(TOPICS, **env) as sensors,
+    ):
+        sensors.drive()
+        robot.until_driving()
+        wall_clock.step(-400 * DAY)
+        sensors.freeze()
+        node.freeze()
+        robot.until(lambda: robot.commands[-1].value == 0.0, limit=LOST_HEARTBEAT + PROMPT)
+        assert_zeros_only(robot, len(robot.commands))
+        node.thaw()

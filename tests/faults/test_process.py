@@ -1,0 +1,100 @@
+"""Faults of the safety node itself: killed, hung, started again, started twice."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import pytest
+
+from tests.support.faults import PROMPT, Robot
+from tests.support.played import imu, speed
+
+pytestmark = pytest.mark.ros
+
+TILTED = math.radians(20.0)
+BEAT = 0.1
+"""The period of the heartbeat, in s."""
+
+
+def until_silent(robot: Robot) -> None:
+    """Wait until what the safety node sent before is heard, and see that nothing follows."""
+    robot.spin(3 * BEAT)
+    beats, states = len(robot.beats), len(robot.states["/stop"])
+    robot.spin(5 * BEAT)
+    assert (len(robot.beats), len(robot.states["/stop"])) == (beats, states)
+
+
+def test_a_killed_node_falls_silent(robot: Robot) -> None:
+    """Nothing repeats its heartbeat or its states in its place, so whoever listens can tell."""
+    with robot.safety_node() as node:
+        node.kill()
+        until_silent(robot)
+        robot.restart()
+
+
+def test_a_hung_node_falls_silent_and_goes_on_where_it_was(robot: Robot) -> None:
+    """A hang silences the heartbeat; afterwards a violation that lasts still stops the robot."""
+    with robot.safety_node() as node, robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_free()
+        node.freeze()
+        sensors.play("/speed", speed(2.0))
+        until_silent(robot)
+        assert not robot.is_active("/stop")
+        node.thaw()
+        robot.until_stopped(limit=PROMPT)
+
+
+def test_a_deadline_that_passes_in_a_hang_is_met_late_not_lost(robot: Robot) -> None:
+    """The 'for' of a rule ends while the node hangs; the halt comes when it goes on."""
+    with robot.safety_node() as node, robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_free()
+        sensors.play("/imu", imu(TILTED))
+        robot.spin(0.1)
+        node.freeze()
+        robot.spin(1.0)
+        node.thaw()
+        robot.until_stopped("/halt", limit=PROMPT)
+
+
+def test_a_latched_stop_survives_a_kill(robot: Robot) -> None:
+    """The node that is started again says from its first message on that the robot is stopped."""
+    with robot.safety_node() as node:
+        robot.violate()
+        robot.until_alive()  # what it does after the stop, it has done now
+        node.kill()
+        until_silent(robot)
+        seen = len(robot.states["/stop"])
+        node = robot.restart()
+        assert all(each.value for each in robot.states["/stop"][seen:]), (
+            "the stop was undone by a restart"
+        )
+
+        assert robot.reset()[0]
+        robot.until(lambda: not robot.is_active("/stop"))
+        node.kill()
+        node = robot.restart()
+        assert not robot.is_active("/stop"), "the reset was undone by a restart"
+
+
+def test_no_kill_at_any_moment_makes_a_node_that_does_not_start(robot: Robot) -> None:
+    """Wherever in its work it is killed, it can be started again, and watches."""
+    with robot.safety_node() as node:
+        for moment in range(5):
+            robot.violate()
+            time.sleep(moment * 0.0005)  # the moment is what is varied
+            node.kill()
+            node = robot.restart()
+            robot.until(lambda: robot.reset()[0])
+            robot.until(lambda: not robot.is_active("/stop"))
+
+
+def test_a_second_node_refuses_to_run(robot: Robot) -> None:
+    """The second ends at once and names the first, which goes on."""
+    with robot.safety_node() as node:
+        second = robot.start()
+        assert second.popen.wait(PROMPT + 10.0) == 1
+        assert str(node.popen.pid) in second.output()
+        assert "Traceback" not in second.output()
