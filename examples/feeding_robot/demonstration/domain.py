@@ -1,4 +1,4 @@
-"""A ROS domain of the demo's own, on the loopback alone."""
+"""A ROS domain and a ROS home of the demo's own, on the loopback alone."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LOCKS = Path(tempfile.gettempdir()) / "deros-test-domains"  # shared with the p
 
 @contextlib.contextmanager
 def own_domain() -> Iterator[None]:
-    """Confine this process and its children to a domain that nobody else here uses.
+    """Confine this process and its children to a domain and a home that nobody else here uses.
 
     Raises:
         RuntimeError: if all domains are taken.
@@ -29,6 +29,8 @@ def own_domain() -> Iterator[None]:
             except BlockingIOError:
                 continue
             os.environ["ROS_DOMAIN_ID"] = str(number)
-            yield
+            # What the safety node remembers over a restart is not to be of an earlier run.
+            with tempfile.TemporaryDirectory() as os.environ["ROS_HOME"]:
+                yield
             return
     raise RuntimeError("all ROS domains are in use")

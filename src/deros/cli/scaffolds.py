@@ -135,7 +135,7 @@ publishes
   topic /stop_robot : std_msgs.Bool qos reliable transient_local depth 1 "Active: stop"
   topic ~/heartbeat : std_msgs.UInt64 qos reliable depth 1 \
 "Counts up at publish_freq: stop when it stops"
-  topic ~/events : diagnostic_msgs.DiagnosticStatus qos reliable depth 1000 \
+  topic ~/events : diagnostic_msgs.DiagnosticStatus qos reliable transient_local depth 1000 \
 "Tells of each action, reset and fault"
   topic /diagnostics : diagnostic_msgs.DiagnosticArray qos reliable depth 10 \
 "State of the node, of its actions and of its rules"

@@ -5,136 +5,16 @@ from __future__ import annotations
 import itertools
 import re
 import signal
-import subprocess
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from deros.generators.protocol import Context
-from deros.generators.safety_python.generate import generate
-from deros.generators.writer import write
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from tests.support.ros import LIMIT, Peer, running
+from tests.support.ros import LIMIT
+from tests.support.safety_node import NODE, Robot, Start, end, result_of
 
 pytestmark = pytest.mark.ros
-
-MODELS = Path(__file__).resolve().parent / "models"
-NODE = "every_thing_safety_node"
-
-Process = subprocess.Popen[str]
-Start = Callable[..., AbstractContextManager[Process]]
-
-
-@pytest.fixture
-def package(tmp_path: Path) -> Path:
-    """Give the folder of the generated package."""
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(MODELS / "every_thing.deros").model
-    assert isinstance(model, Rules)
-    write(generate(model, context, {}), tmp_path)
-    return tmp_path / "every_thing_safety"
-
-
-@pytest.fixture
-def start(package: Path, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs the node out of its source tree."""
-    env = {**ros_env, "PYTHONPATH": str(package)}
-
-    @contextmanager
-    def run(*parameters: str) -> Iterator[Process]:
-        arguments = [word for each in parameters for word in ("-p", each)]
-        command = [sys.executable, "-m", f"every_thing_safety.{NODE}"]
-        ros = ["--ros-args", *arguments] if arguments else []
-        with running([*command, *ros], env) as process:
-            yield process
-
-    return run
-
-
-class Robot:
-    """The test's end of the topics: what it published last, and all that it heard."""
-
-    def __init__(self, peer: Peer) -> None:
-        """Subscribe to what the safety node publishes, and publish what it watches."""
-        from rclpy.qos import DurabilityPolicy, QoSProfile
-        from std_msgs.msg import Bool, Float64, UInt8, UInt64
-
-        self.peer = peer
-        self.stop: list[bool] = []
-        self.limit: list[float] = []
-        self.beats: list[int] = []
-        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        node = peer.node
-        node.create_subscription(Bool, "/stop", lambda m: self.stop.append(m.data), kept)
-        node.create_subscription(Float64, "/limit", lambda m: self.limit.append(m.data), kept)
-        node.create_subscription(
-            UInt64, f"/{NODE}/heartbeat", lambda m: self.beats.append(m.data), 10
-        )
-        self._speed = node.create_publisher(Float64, "/speed", 5)
-        self._mode = node.create_publisher(UInt8, "/mode", kept)
-        self._message, self._mode_message = Float64, UInt8
-
-    def meet(self) -> None:
-        """Wait until both ends know each other."""
-        self.peer.until(lambda: self._speed.get_subscription_count() == 1)
-        self.peer.until(lambda: self._mode.get_subscription_count() == 1)
-        self.peer.until(lambda: self.beats and self.stop and self.limit)
-
-    def drive(self, speed: float) -> None:
-        """Publish a speed."""
-        self._speed.publish(self._message(data=speed))
-
-    def drive_until(self, speed: float, condition: Callable[[], Any]) -> None:
-        """Publish a speed again and again, well within its timeout, until something happens."""
-
-        def once() -> Any:
-            self.drive(speed)
-            return condition()
-
-        self.peer.until(once)
-
-    def take_over(self, mode: int) -> None:
-        """Publish the operator's mode."""
-        self._mode.publish(self._mode_message(data=mode))
-
-    def reset(self) -> Any:
-        """Call the reset service and return its response."""
-        from std_srvs.srv import Trigger
-
-        client = self.peer.node.create_client(Trigger, f"/{NODE}/reset")
-        return self.peer.call(client, Trigger.Request())
-
-
-@pytest.fixture
-def robot(ros_peer: Peer) -> Robot:
-    """Give the test's end of the topics."""
-    return Robot(ros_peer)
-
-
-def end(
-    process: Process, robot: Robot, number: signal.Signals = signal.SIGTERM
-) -> tuple[int, list[str]]:
-    """Send a signal, and return what :func:`result_of` does.
-
-    The node acts first and logs then, so it is left alone until it has beaten again.
-    """
-    beats = len(robot.beats)
-    robot.peer.until(lambda: len(robot.beats) >= beats + 2)
-    process.send_signal(number)
-    return result_of(process)
-
-
-def result_of(process: Process) -> tuple[int, list[str]]:
-    """Wait for the end, and return the exit code and the lines printed, without their time."""
-    output, _ = process.communicate(timeout=LIMIT)
-    lines = [line.partition(f"[{NODE}]: ")[2] or line for line in output.splitlines()]
-    return process.returncode, lines
 
 
 def test_a_violation_stops_the_robot_until_it_is_reset(start: Start, robot: Robot) -> None:

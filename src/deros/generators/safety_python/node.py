@@ -27,7 +27,7 @@ _STATUS = InterfaceType("diagnostic_msgs", "msg", "DiagnosticStatus")
 _STATUSES = InterfaceType("diagnostic_msgs", "msg", "DiagnosticArray")
 _STATE_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1)
 _HEARTBEAT_QOS = QosProfile(reliability="reliable", depth=1)
-_EVENTS_QOS = QosProfile(reliability="reliable", depth=1000)
+_EVENTS_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1000)
 _DIAGNOSTICS_QOS = QosProfile(reliability="reliable", depth=10)
 _INPUT_DEPTH = 10
 _RELIABLE_PRESETS = frozenset({"services", "parameters"})

@@ -8,6 +8,7 @@ import ctypes
 import gc
 import os
 from pathlib import Path
+import resource
 import sys
 
 PR_SET_TIMERSLACK = 29
@@ -47,9 +48,18 @@ def _raise_priority(priority: int) -> Iterator[str]:
         yield f'realtime_priority {priority} is not permitted: {error}'
 
 
+def may_lock_all() -> bool:
+    """Tell whether locked memory can grow: a limit would fail later what is asked for then."""
+    limit, _ = resource.getrlimit(resource.RLIMIT_MEMLOCK)
+    return limit == resource.RLIM_INFINITY or os.geteuid() == 0
+
+
 def _lock_memory() -> Iterator[str]:
     if not ON_LINUX:
         yield f'lock_memory is not there on {sys.platform}'
+        return
+    if not may_lock_all():
+        yield 'lock_memory is not permitted: it needs an unlimited RLIMIT_MEMLOCK'
         return
     library = ctypes.CDLL(None, use_errno=True)
     if library.mlockall(MCL_CURRENT | MCL_FUTURE) != 0:

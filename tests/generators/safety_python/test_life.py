@@ -1,0 +1,291 @@
+"""The life of a generated safety node: start, faults, reports, restart; on the real middleware."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.ros import LIMIT, running
+from tests.support.safety_node import NODE, Process, Robot, Start, end
+
+pytestmark = pytest.mark.ros
+
+OK, WARN, ERROR, STALE = range(4)
+
+
+def state_file(ros_env: dict[str, str]) -> Path:
+    """Return the file in which the node keeps what is latched."""
+    name = f"{NODE}.{ros_env['ROS_DOMAIN_ID']}.latches"
+    return Path(ros_env["ROS_HOME"]) / "deros" / name
+
+
+def break_the_rule(robot: Robot) -> None:
+    """Drive too fast until the robot is stopped."""
+    robot.meet()
+    robot.drive_until(0.9, lambda: robot.stop[-1])
+
+
+def kill(process: Process) -> None:
+    """Kill the node, as a crash would."""
+    process.kill()
+    process.wait(LIMIT)
+
+
+# Start ----------------------------------------------------------------------------------------
+
+
+def test_there_is_no_heartbeat_until_the_inputs_have_come(start: Start, robot: Robot) -> None:
+    """Within the grace, whoever heeds the heartbeat holds the robot, and an operator sees why."""
+    with start("startup_grace:=60.0") as process:
+        robot.peer.until(lambda: robot.stop and robot.statuses)
+        states = len(robot.stop)
+        robot.peer.until(lambda: len(robot.stop) >= states + 5)
+        assert robot.beats == []
+        assert robot.status().level == WARN
+        assert robot.status().message.startswith("starting")
+        robot.peer.until(lambda: robot._speed.get_subscription_count() == 1)
+        robot.drive_until(0.1, lambda: robot.beats)
+        robot.peer.until(lambda: robot.status().values["state"] == "watching")
+        code, lines = end(process, robot)
+    assert code == 0
+    assert not [line for line in lines if line.startswith("crawl")]
+
+
+def test_a_grace_ends_with_inputs_that_are_missing(start: Start, robot: Robot) -> None:
+    """The timeouts count from its end; then the node beats, and has done what the rules say."""
+    with start("startup_grace:=0.5"):
+        robot.peer.until(lambda: robot.beats)
+        robot.peer.until(lambda: robot.limit and robot.limit[-1] == 0.2)
+        assert int(robot.event("trigger")["time_ns"]) > 0
+
+
+def test_a_second_instance_is_refused(start: Start, robot: Robot) -> None:
+    """It ends at once and names the first, which goes on."""
+    with start() as first:
+        robot.meet()
+        with start() as second:
+            output, _ = second.communicate(timeout=LIMIT)
+        assert second.returncode == 1
+        assert f"/{NODE} runs already in domain" in output
+        assert f"as process {first.pid}" in output
+        assert "Traceback" not in output
+        beats = len(robot.beats)
+        robot.peer.until(lambda: len(robot.beats) > beats + 2)
+        assert robot.status().values.keys() == {"state"}
+
+
+def test_a_second_heartbeat_ends_the_younger_node(start: Start, robot: Robot) -> None:
+    """A node on another machine cannot be locked out, but it is seen."""
+    from std_msgs.msg import UInt64
+
+    robot.peer.node.create_publisher(UInt64, f"/{NODE}/heartbeat", 10)
+    with start() as process:
+        output, _ = process.communicate(timeout=LIMIT)
+    assert process.returncode == 1
+    assert "this one started last and ends now" in output
+
+
+def test_what_the_machine_does_not_permit_is_said(start: Start, robot: Robot) -> None:
+    """With all options on, the node runs: with them, or without them and with a warning."""
+    options = ("realtime_priority:=20", "lock_memory:=true", "garbage_collection:=false")
+    with start(*options) as process:
+        break_the_rule(robot)
+        code, lines = end(process, robot)
+    assert code == 0
+    assert all("not permitted" in line for line in lines if line.startswith(options[0][:8]))
+
+
+# Reports --------------------------------------------------------------------------------------
+
+
+def test_each_trigger_is_one_event_with_its_cause(start: Start, robot: Robot) -> None:
+    """Action, behaviour, place, condition, instant, and the values that made it true."""
+    with start():
+        break_the_rule(robot)
+        event = robot.event("trigger")
+    assert (
+        event.items()
+        >= {
+            "action": "stop",
+            "behaviour": "speeding",
+            "origin": "every_thing.deros:28",
+            "condition": "drive.fast for 100 ms",
+            "rule drive.fast": "true",
+            "value speed": "0.9",
+        }.items()
+    )
+    assert event["message"] == "stop, by speeding (every_thing.deros:28: if drive.fast for 100 ms)"
+    assert 0 <= int(event["published_ns"]) - int(event["time_ns"]) < 1_000_000_000
+
+
+def test_the_diagnostics_show_rules_actions_and_values(start: Start, robot: Robot) -> None:
+    """An operator sees what is true and why, what is active since when, and what is unknown."""
+    with start("diagnostics_freq:=20.0"):
+        break_the_rule(robot)
+        robot.peer.until(lambda: robot.status("drive.fast").level == ERROR)
+        rule, action = robot.status("drive.fast"), robot.status("action stop")
+        assert rule.message == "true: fast: speed > limit;"
+        assert rule.values["speed"] == "0.9"
+        assert rule.values["line"] == "16"
+        assert (action.level, action.message) == (WARN, "active")
+        assert action.values["cause"] == "speeding"
+        assert action.values["since"].endswith(" s ago")
+        assert robot.status("action beep").message == "run 1 times"
+        assert robot.status("body.tilted").level == STALE
+        assert robot.status().message == "watching 8 rules"
+        robot.drive(0.1)
+        robot.peer.until(lambda: robot.status("drive.fast").level == OK)
+
+
+def test_a_change_shows_before_the_next_period(start: Start, robot: Robot) -> None:
+    """Who looks at the diagnostics does not wait for seconds."""
+    with start("diagnostics_freq:=0.001"):
+        break_the_rule(robot)
+        robot.peer.until(lambda: robot.status("action stop").message == "active")
+
+
+def test_data_that_cannot_be_read_counts_for_nothing(start: Start, robot: Robot) -> None:
+    """It is reported once, keeps no timeout from passing, and harms nothing."""
+    with start() as process:
+        robot.meet()
+
+        def send() -> Any:
+            robot._speed.publish(b"\x00\x01\x00\x00\x01")
+            return robot.limit[-1] == 0.2
+
+        robot.peer.until(send)
+        event = robot.event("undecodable")
+        assert event["topic"] == "/speed"
+        robot.drive_until(0.9, lambda: robot.stop[-1])
+        robot.peer.until(lambda: robot.status().level == ERROR)
+        code, lines = end(process, robot)
+    assert code == 0
+    assert len([each for each in robot.events if each["kind"] == "undecodable"]) == 1
+    assert "Traceback" not in "\n".join(lines)
+
+
+def test_publishers_that_are_not_heard_are_reported(
+    start: Start, robot: Robot, ros_env: dict[str, str]
+) -> None:
+    """Another type, or a best-effort publisher of a topic that is to be reliable."""
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+    from std_msgs.msg import Float64
+
+    unfit = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    with start():
+        robot.meet()
+        publisher = robot.peer.node.create_publisher(Float64, "/speed", unfit)
+        event = robot.event("fault")
+        assert event["subject"] == "/speed"
+        assert "offers a QoS on it that is not heard" in event["message"]
+        robot.peer.until(lambda: "/speed" in robot.status().values)
+        robot.peer.node.destroy_publisher(publisher)
+        robot.peer.until(lambda: "/speed" not in robot.status().values)
+        robot.events.clear()
+        with stranger("/imu", ros_env):
+            event = robot.event("fault")
+        assert event["subject"] == "/imu"
+        assert "publishes std_msgs/msg/String on it" in event["message"]
+
+
+def stranger(topic: str, env: dict[str, str]) -> Any:
+    """Publish another type on a topic from another process, until the block ends."""
+    code = (
+        "import sys, rclpy; from rclpy.node import Node; from std_msgs.msg import String;"
+        "rclpy.init(); node = Node('stranger');"
+        f"node.create_publisher(String, {topic!r}, 10); rclpy.spin(node)"
+    )
+    return running([sys.executable, "-c", code], env)
+
+
+# Optional behaviours --------------------------------------------------------------------------
+
+
+def test_an_optional_behaviour_can_be_disabled_and_enabled(start: Start, robot: Robot) -> None:
+    """Disabled it does nothing and the operator is told; enabled it acts at once if it holds."""
+    with start("behaviours.speeding.enabled:=false", "diagnostics_freq:=20.0"):
+        robot.meet()
+        robot.drive_until(0.9, lambda: robot.status("drive.fast").level != STALE)
+        robot.peer.until(lambda: robot.status().message == "disabled: speeding")
+        for _ in range(20):
+            robot.drive(0.9)
+            robot.peer.until(lambda: len(robot.beats) % 2 == 0)
+            robot.peer.until(lambda: len(robot.beats) % 2 == 1)
+        assert not robot.stop[-1]
+        robot.drive(0.9)
+        robot.set_parameter("behaviours.speeding.enabled", True)
+        robot.drive_until(0.9, lambda: robot.stop[-1])
+        assert robot.event("enabled")["behaviour"] == "speeding"
+        robot.set_parameter("behaviours.speeding.enabled", False)
+        assert robot.event("disabled")["message"] == "speeding is disabled"
+        assert robot.reset().success
+
+
+# Latched actions ------------------------------------------------------------------------------
+
+
+def test_a_latched_action_survives_the_death_of_the_node(start: Start, robot: Robot) -> None:
+    """Killed or ended, the next process begins with it, until somebody resets it."""
+    with start() as process:
+        break_the_rule(robot)
+        kill(process)
+    robot.stop.clear()
+    with start() as process:
+        robot.peer.until(lambda: robot.stop)
+        assert all(robot.stop)
+        assert robot.event("latched")["action"] == "stop"
+        robot.peer.until(lambda: robot.beats)
+        assert robot.reset().message == "stop is reset"
+        robot.peer.until(lambda: not robot.stop[-1])
+        kill(process)
+    robot.stop.clear()
+    with start():
+        robot.peer.until(lambda: robot.stop)
+        assert not any(robot.stop)
+
+
+def test_a_damaged_state_file_means_active(
+    start: Start, robot: Robot, ros_env: dict[str, str]
+) -> None:
+    """The robot stands until a person has looked, and reset it."""
+    state_file(ros_env).parent.mkdir(parents=True)
+    state_file(ros_env).write_text("stop\n")
+    with start():
+        robot.peer.until(lambda: robot.stop)
+        assert all(robot.stop)
+        assert "is damaged" in robot.event("fault")["message"]
+        assert robot.reset().success
+        robot.peer.until(lambda: not robot.stop[-1])
+
+
+def test_without_a_state_file_nothing_can_be_reset(
+    start: Start, robot: Robot, tmp_path: Path
+) -> None:
+    """What cannot be remembered is taken as active, and the refusal says what to mend."""
+    (tmp_path / "file").write_text("")
+    with start(f"state_file:={tmp_path}/file/robot.latches"):
+        robot.peer.until(lambda: robot.stop)
+        assert all(robot.stop)
+        answer = robot.reset()
+        assert not answer.success
+        assert answer.message.startswith("nothing is reset, because")
+        assert robot.stop[-1]
+
+
+def test_a_stopped_node_does_not_beat(start: Start, robot: Robot) -> None:
+    """The heartbeat is the monitor's own: while that does nothing, there is none."""
+    with start() as process:
+        robot.meet()
+        process.send_signal(signal.SIGSTOP)
+        beats = len(robot.beats) + 2  # with those under way
+        try:
+            with pytest.raises(AssertionError, match="did not come"):
+                robot.peer.until(lambda: len(robot.beats) > beats, limit=1.0)
+        finally:
+            process.send_signal(signal.SIGCONT)
+        beats = len(robot.beats)
+        robot.peer.until(lambda: len(robot.beats) > beats)
