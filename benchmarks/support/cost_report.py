@@ -26,7 +26,8 @@ def show(results: Results, verdicts: Sequence[Verdict], console: Console) -> Non
         console.print(Text("The safety node did not stop the robot at the end.", style="bold red"))
     for each in verdicts:
         mark = Text("holds", style="green") if each.held else Text("FAILS", style="bold red")
-        found = f"  {each.what}: {each.percent:+.2f} % (asked for: less than {each.limit:g} %)"
+        limit = f"{each.limit:g} {each.unit}"
+        found = f"  {each.what}: {each.found:+.2f} {each.unit} (asked for: less than {limit})"
         console.print(Text.assemble(mark, found), soft_wrap=True)
 
 

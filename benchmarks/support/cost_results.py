@@ -9,6 +9,9 @@ from dataclasses import dataclass
 LIMIT_PERCENT = 2.0
 """What the safety node may take of one core above a node that only receives, and for a scan."""
 
+LIMIT_GROWTH_MIB = 1.0
+"""By how much its resident memory may grow in a run; Python takes memory in pieces of this size."""
+
 SAFETY, USUAL, FASTEST = "safety", "usual", "fastest"
 """The nodes, by their namespaces."""
 
@@ -53,13 +56,14 @@ class Verdict:
     """One thing that is asked for: what was found, what is allowed, and whether it holds."""
 
     what: str
-    percent: float
+    found: float
     limit: float
+    unit: str = "%"
 
     @property
     def held(self) -> bool:
         """Tell whether it is kept."""
-        return self.percent < self.limit
+        return self.found < self.limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,3 +99,6 @@ class Results:
             yield Verdict(what, self.above(paper, node), LIMIT_PERCENT)
         added = self.use(second_scan, SAFETY).mean - self.use(paper, SAFETY).mean
         yield Verdict("a 2,000-range scan at 40 Hz adds", added, LIMIT_PERCENT)
+        for each in self.memory:
+            if each.node == SAFETY:
+                yield Verdict("its memory grows by", each.end - each.start, LIMIT_GROWTH_MIB, "MiB")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.support.cost_results import FASTEST, NODES, SAFETY, USUAL, Results, Use
+from benchmarks.support.cost_results import FASTEST, NODES, SAFETY, USUAL, Memory, Results, Use
 from benchmarks.support.usage import Meter, memory_mib, processor_time_ns
 
 COST = Path(__file__).resolve().parents[2] / "benchmarks" / "cost.py"
@@ -19,7 +19,8 @@ COST = Path(__file__).resolve().parents[2] / "benchmarks" / "cost.py"
 
 def _results(percents: dict[tuple[str, str], tuple[float, float]]) -> Results:
     uses = tuple(Use(load, node, each) for (load, node), each in percents.items())
-    return Results({"paper": 170.0, "scan": 210.0}, uses, (), 2.0, {}, stopped=True)
+    memory = (Memory(SAFETY, 70.0, 70.5), Memory(USUAL, 70.0, 90.0))
+    return Results({"paper": 170.0, "scan": 210.0}, uses, memory, 2.0, {}, stopped=True)
 
 
 def test_the_safety_node_is_compared_with_both_receivers() -> None:
@@ -33,8 +34,8 @@ def test_the_safety_node_is_compared_with_both_receivers() -> None:
         }
     )
     verdicts = list(results.verdicts("paper", "scan"))
-    assert [each.percent for each in verdicts] == [-3.5, 2.5, 2.0]
-    assert [each.held for each in verdicts] == [True, False, False]
+    assert [each.found for each in verdicts] == [-3.5, 2.5, 2.0, 0.5]
+    assert [each.held for each in verdicts] == [True, False, False, True]
 
 
 def test_processor_time_is_that_of_all_threads() -> None:
@@ -66,7 +67,7 @@ def test_it_runs(tmp_path: Path) -> None:
     assert result.returncode == 0, result.stderr
     found = json.loads(output.read_text())
     assert found["stopped"]
-    assert len(found["verdicts"]) == 3
+    assert len(found["verdicts"]) == 4
     for load in found["loads"]:
         assert set(load["percent_of_one_core"]) == set(NODES)
     kilohertz = found["loads"][-1]["percent_of_one_core"]
