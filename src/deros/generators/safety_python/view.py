@@ -263,6 +263,8 @@ def _imports(
     imports = interface_imports(dict(base.interfaces), used)
     package = node.package
     imports |= {
+        "rclpy.clock": {"Clock"},
+        "rclpy.clock_type": {"ClockType"},
         package: {"machine", "monitor", "process"},
         f"{package}.alarm": {"Alarm"},
         f"{package}.diagnostics": {"Diagnostics"},

@@ -11,7 +11,6 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from .alarm import Alarm
@@ -45,6 +44,7 @@ class Diagnostics:
     def __init__(
         self,
         node: Node,
+        steady: Clock,
         behaviours: Mapping[str, Behaviour],
         actions: Mapping[str, bool],
         publish: Callable[[DiagnosticArray], None],
@@ -59,9 +59,7 @@ class Diagnostics:
         self._period = round(1e9 / frequency)
         self._rest: Iterator[DiagnosticStatus] | None = None
         self._again = False
-        self._alarm = Alarm(
-            node, Clock(clock_type=ClockType.STEADY_TIME), time.monotonic_ns, self._ring
-        )
+        self._alarm = Alarm(node, steady, time.monotonic_ns, self._ring)
 
     def begin(
         self, explain: Callable[[], Any], now: Callable[[], int], summary: Callable[[], str]

@@ -8,7 +8,6 @@ import traceback
 from typing import Any
 
 from rclpy.clock import Clock, JumpThreshold, TimeJump
-from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.node import Node
 
@@ -25,6 +24,7 @@ class Watch:
     def __init__(
         self,
         node: Node,
+        steady: Clock,
         begin: Callable[[int, Callable[[Any], None]], Any],
         do: Callable[[Any], None],
         after: Callable[[list[Any], list[int]], None],
@@ -46,7 +46,7 @@ class Watch:
         self._after = after
         self._stepped = stepped
         self._ordered: list[Any] = []
-        self.now, self.clock = self._choose_clock()
+        self.now, self.clock = self._choose_clock(steady)
         self._deadline = Alarm(node, self.clock, self.now, self._on_deadline)
 
     def start(self) -> None:
@@ -70,8 +70,7 @@ class Watch:
             self.settle()
         return now
 
-    def _choose_clock(self) -> tuple[Callable[[], int], Clock]:
-        steady = Clock(clock_type=ClockType.STEADY_TIME)
+    def _choose_clock(self, steady: Clock) -> tuple[Callable[[], int], Clock]:
         if not self._node.get_parameter('use_sim_time').value:
             return time.monotonic_ns, steady  # what that clock shows, in a thirtieth of the time
         # The callback of a jump may not do much, so it leaves the rest to an alarm due at once.
