@@ -58,11 +58,25 @@ def test_a_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
 
 
 def test_another_type_on_the_topic_is_not_taken_for_the_sensor(robot: Robot) -> None:
-    """A publisher of another type is not heard, harms nobody, and does not hide the silence."""
-    with robot.safety_node(), robot.sensors({"/speed": "std_msgs/msg/Bool"}) as stranger:
+    """A publisher of another type is reported, harms nobody, and does not hide the silence."""
+    with robot.safety_node() as node, robot.sensors({"/speed": "std_msgs/msg/Bool"}) as stranger:
         stranger.play("/speed", button(True))
+        robot.until(lambda: "std_msgs/msg/Bool" in node.output())
         with robot.sensors() as sensors:
             sensors.drive()
             robot.until_free()
             sensors.quiet("/speed")
             robot.until_stopped("/halt", limit=0.5 + PROMPT)
+
+
+@pytest.mark.parametrize("garbage", [b"\x00\x01\x00\x00", b"\xff" * 400])
+def test_garbage_counts_as_silence(robot: Robot, garbage: bytes) -> None:
+    """What cannot be decoded is reported once, and counts for nothing, however often it comes."""
+    with robot.safety_node() as node, robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_free()
+        sensors.play("/imu", garbage, rate=100.0)
+        robot.until_stopped("/halt", limit=0.5 + PROMPT)
+        assert node.output().count("/imu has carried data that cannot be read") == 1
+        sensors.play("/imu", imu())
+        robot.until_free()
