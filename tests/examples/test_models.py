@@ -27,24 +27,26 @@ def test_every_model_checks_without_a_finding(model: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("rules", "description"),
+    ("rules", "folder"),
     [
-        ("feeding_robot/feeding_robot.deros", "nodes/feeding_robot_safety_node.rnd"),
-        ("intelligent_one/intelligent_one.deros", "intelligent_one_safety_node.rnd"),
+        ("feeding_robot/feeding_robot.deros", "nodes"),
+        ("intelligent_one/intelligent_one.deros", "."),
     ],
 )
-def test_the_safety_nodes_description_is_what_its_rules_generate(
-    rules: str, description: str, tmp_path: Path
+def test_the_generated_nodes_are_described_as_their_rules_have_them(
+    rules: str, folder: str, tmp_path: Path
 ) -> None:
-    """If this fails: generate the rules' package and copy its .rnd over the one in the example."""
+    """If this fails: generate the rules' package and copy its .rnd files over those there."""
     path = EXAMPLES / rules
     repository = Repository()
     generator = discover().find("deros", "python")
     assert generator is not None
     loaded = repository.load(str(path))
     write(generator(loaded.model, Context(InterfaceStore(), repository)), tmp_path)
-    (generated,) = tmp_path.rglob("*.rnd")
-    assert (path.parent / description).read_text() == generated.read_text()
+    generated = list(tmp_path.rglob("*.rnd"))
+    assert len(generated) == 2  # the safety node and its gate
+    for each in generated:
+        assert (path.parent / folder / each.name).read_text() == each.read_text()
 
 
 def test_the_rules_of_the_feeding_robot_cite_every_requirement() -> None:

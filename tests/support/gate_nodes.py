@@ -199,8 +199,8 @@ class Drive:
         self.measure(self.speed)
         self._wish.publish(self._message)
 
-    def _take(self, message: Any) -> None:
-        self._heard.append((time.monotonic(), message.linear.x != 0.0))
+    def _take(self, message: Any, info: dict[str, int]) -> None:
+        self._heard.append((info["source_timestamp"] / 1e9, message.linear.x != 0.0))
 
     def measure(self, speed: float) -> None:
         """Measure a speed from now on."""
@@ -213,14 +213,17 @@ class Drive:
         self.peer.until(lambda: self._heard and self._heard[-1][1])
 
     def until_zero(self, happens: Callable[[], Any]) -> float:
-        """Let something happen, and return after how many seconds the first zero came.
+        """Let something happen, and return after how many seconds the gate commanded zero.
 
         After it there are zeros only, as far as can be told in a quarter of a second.
         """
-        happened = time.monotonic()
+        happened = time.time()
         happens()
-        self.peer.until(lambda: self._heard and not self._heard[-1][1])
-        first = self._heard[-1][0]
-        self.peer.until(lambda: time.monotonic() > first + 0.25)
-        assert not any(moves for heard, moves in self._heard if heard > first)
+
+        def zeros() -> list[float]:
+            return [sent for sent, moves in self._heard if sent > happened and not moves]
+
+        first = self.peer.until(zeros)[0]
+        self.peer.until(lambda: time.time() > first + 0.25)
+        assert not any(moves for sent, moves in self._heard if sent > first)
         return first - happened

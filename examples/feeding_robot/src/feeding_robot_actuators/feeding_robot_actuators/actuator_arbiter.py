@@ -1,4 +1,4 @@
-"""Decides between what the mission wants and what the safety node demands."""
+"""Moves the actuators as the gate lets it, and only where software is to move them."""
 
 from __future__ import annotations
 
@@ -6,46 +6,27 @@ from feeding_robot_actuators.actuator_arbiter_base import ActuatorArbiterBase, r
 from feeding_robot_actuators.arbitration import Arbiter, Limits
 from geometry_msgs.msg import Twist
 from rclpy.clock import Clock, ClockType
-from std_msgs.msg import Bool, Float64, UInt64, UInt8
+from std_msgs.msg import Float64, UInt8
 
 
 class ActuatorArbiter(ActuatorArbiterBase):
-    """Moves the pedal at a fixed rate, and at once when a safety action changes."""
+    """Moves the pedal at a fixed rate, and at once when a command comes."""
 
     def __init__(self) -> None:
-        """Hold the robot until everybody has been heard."""
+        """Hold the robot until the gate and the mode switch have been heard."""
         super().__init__()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        limits = Limits(
-            self.parameters.top_speed,
-            self.parameters.low_speed_limit,
-            self.parameters.command_timeout,
-            self.parameters.heartbeat_timeout,
-        )
-        now = self._now()
-        self._arbiter = Arbiter(limits, heartbeat_at=now, command_at=now)
+        limits = Limits(self.parameters.top_speed, self.parameters.command_timeout)
+        self._arbiter = Arbiter(limits, command_at=self._now())
 
     def on_command(self, msg: Twist) -> None:
-        """Take a command of the mission."""
+        """Obey the gate."""
         self._arbiter.command(msg.linear.x, msg.angular.z, self._now())
+        self._move()
 
     def on_mode(self, msg: UInt8) -> None:
         """Follow the mode switch."""
         self._arbiter.mode = msg.data
-
-    def on_low_speed(self, msg: Bool) -> None:
-        """Obey the safety node."""
-        self._arbiter.low_speed = msg.data
-        self._move()
-
-    def on_stop(self, msg: Bool) -> None:
-        """Obey the safety node."""
-        self._arbiter.stop = msg.data
-        self._move()
-
-    def on_safety_heartbeat(self, _msg: UInt64) -> None:
-        """Note that the safety node lives."""
-        self._arbiter.heartbeat_at = self._now()
 
     def on_control(self) -> None:
         """Move the pedal, whether or not anything was heard."""

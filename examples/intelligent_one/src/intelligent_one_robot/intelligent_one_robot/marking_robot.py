@@ -1,14 +1,14 @@
-"""The marking robot, simulated: it drives while the safety node lives and does not stop it."""
+"""The marking robot, simulated: it follows its route as far as the gate in between lets it."""
 
 from __future__ import annotations
 
 import math
 
+from geometry_msgs.msg import Twist
 from intelligent_one_robot.marking_robot_base import MarkingRobotBase, run
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import Imu
-from std_msgs.msg import Bool, UInt64
 
 CRUISING, RACING = 0.4, 0.7
 """Speeds in m/s: as planned, and with the fault."""
@@ -16,44 +16,39 @@ CRUISING, RACING = 0.4, 0.7
 LEANING = math.radians(14.0)
 """Roll, in rad, with the fault."""
 
-SILENCE = 0.5
-"""Seconds without a heartbeat after which the safety node is taken to be dead."""
-
 
 class MarkingRobot(MarkingRobotBase):
-    """Shows its speed and its attitude, and obeys the stop."""
+    """Wishes to drive, drives as commanded, and shows its speed and its attitude."""
 
     def __init__(self) -> None:
-        """Wait for the first heartbeat."""
+        """Stand until there is a command."""
         super().__init__()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._set_off: float | None = None
-        self._heartbeat = -math.inf
-        self._stopped = False
+        self._driving = False
 
-    def on_heartbeat(self, _msg: UInt64) -> None:
-        """Note that the safety node lives, and set off when it has come to life."""
-        self._heartbeat = self._now()
-        if self._set_off is None:
-            self._set_off = self._heartbeat
+    def on_command(self, msg: Twist) -> None:
+        """Drive or stand."""
+        driving = msg.linear.x != 0.0
+        if driving and self._set_off is None:
+            self._set_off = self._now()
             self.get_logger().info(f'driving at {CRUISING} m/s')
-
-    def on_stop(self, msg: Bool) -> None:
-        """Stand still while the safety node says so."""
-        if msg.data and not self._stopped:
-            self.get_logger().warning('stopped by the safety node')
-        self._stopped = msg.data
+        if self._driving and not driving:
+            self.get_logger().warning('stopped by the gate')
+        self._driving = driving
 
     def on_cycle(self) -> None:
-        """Measure speed and attitude."""
-        now = self._now()
-        driving = not self._stopped and now - self._heartbeat < SILENCE
-        faulty = self._set_off is not None and now - self._set_off >= self.parameters.fault_after
+        """Go on along the route, and measure speed and attitude."""
+        wish = Twist()
+        wish.linear.x = CRUISING
+        self.publish_wish(wish)
+        since = self._set_off
+        faulty = since is not None and self._now() - since >= self.parameters.fault_after
         racing = faulty and self.parameters.fault == 'speed'
         if racing:
             self.get_logger().warning(f'the throttle sticks at {RACING} m/s', once=True)
         odometry = Odometry()
-        if driving:
+        if self._driving:
             odometry.twist.twist.linear.x = RACING if racing else CRUISING
         self.publish_odometry(odometry)
         roll = LEANING if faulty and self.parameters.fault == 'tilt' else 0.0
