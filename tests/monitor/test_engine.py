@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from deros.monitor.engine import Engine, Event
@@ -109,3 +111,111 @@ def test_unknown_topic_is_refused(latched: Program) -> None:
     """Calling it with a topic that no input is on is the caller's mistake."""
     with pytest.raises(ValueError, match="/odometry"):
         Engine(latched).message(1, "/odometry", {})
+
+
+def test_grace_delays_the_first_timeouts() -> None:
+    """Timeouts count from the end of the grace, but from a message as soon as one comes."""
+    engine = Engine(program(TIMED), start_ns=100, grace_ns=50)
+    assert engine.next_deadline == 150 + 10**9
+    _speed(engine, 120, 0.1)
+    assert engine.next_deadline == 120 + 10**9
+
+
+def test_grace_is_for_the_start_alone() -> None:
+    """After a step of the clock timeouts count from the new time."""
+    engine = Engine(program(TIMED), start_ns=100, grace_ns=50)
+    engine.advance(10)
+    assert engine.next_deadline == 10 + 10**9
+
+
+def test_waiting_ends_with_the_first_message_or_its_absence() -> None:
+    """A monitor waits for inputs with a timeout, until they come or go missing."""
+    heard, unheard = Engine(program(TIMED)), Engine(program(TIMED))
+    assert heard.waiting
+    _speed(heard, 1, 0.1)
+    assert not heard.waiting
+    unheard.advance(10**9 - 1)
+    assert unheard.waiting
+    unheard.advance(10**9)
+    assert not unheard.waiting
+
+
+def test_nan_is_no_first_message(latched: Program) -> None:
+    """A message that does not count is still waited for; without a timeout nothing is."""
+    engine = Engine(program(TIMED))
+    _speed(engine, 1, math.nan)
+    assert engine.waiting
+    assert not Engine(latched).waiting
+
+
+def test_latched_actions_can_be_active_from_the_start(latched: Program) -> None:
+    """Such an action makes no event until it is reset; names of others are ignored."""
+    engine = Engine(latched, latched={"stop", "gone"})
+    assert engine.events == []
+    assert engine.reset(1) is True
+    assert [(e.kind, e.action) for e in engine.events] == [("reset", "stop")]
+
+
+OPTIONAL = LATCHED.replace("if e.fast then", "optional behaviour fast: if e.fast for 5 ns then")
+
+
+def test_disabled_behaviour_does_not_act() -> None:
+    """Its condition counts as false, so that it neither acts nor keeps a reset from being done."""
+    engine = Engine(program(OPTIONAL))
+    _speed(engine, 1, 0.6)
+    engine.advance(6)
+    assert engine.reset(7) is False
+    assert engine.enable(8, "fast", False) == []
+    assert engine.reset(9) is True
+
+
+def test_intervals_of_a_disabled_behaviour_go_on() -> None:
+    """Enabled while its condition is true, for long enough, a behaviour acts at once."""
+    engine = Engine(program(OPTIONAL))
+    engine.enable(0, "fast", False)
+    _speed(engine, 1, 0.6)
+    assert engine.advance(6) == []
+    assert [(e.t_ns, e.action) for e in engine.enable(7, "fast", True)] == [(7, "stop")]
+    assert engine.enable(8, "fast", True) == []
+
+
+def test_only_optional_behaviours_can_be_disabled() -> None:
+    """To disable another is refused, whether there is one or not."""
+    engine = Engine(program(OPTIONAL))
+    for name in ("behaviour_2", "nobody"):
+        with pytest.raises(ValueError, match=name):
+            engine.enable(1, name, False)
+
+
+def test_explain_tells_values_and_since_when() -> None:
+    """A rule that is not true is false only if all that it reads is known."""
+    engine = Engine(program(TIMED), start_ns=5)
+    fast, old, gone = engine.explain()
+    assert (fast.name, fast.value, fast.since, fast.reads) == ("e.fast", None, 5, (("v", None),))
+    assert (old.value, old.reads) == (None, (("v.age()", None),))
+    assert (gone.line, gone.text) == (4, "gone: v.missing();")
+    assert (gone.value, gone.reads) == (False, (("v.missing()", False),))
+    _speed(engine, 10, 0.6)
+    engine.advance(10 + 10**9)
+    fast, old, gone = engine.explain()
+    assert (fast.value, old.value, old.reads) == (None, False, (("v.age()", 1.0),))
+    assert (gone.value, gone.since) == (True, 10 + 10**9)
+
+
+def test_explain_names_terms_as_rules_do() -> None:
+    """A function stands behind what it is applied to; bearings are in radians."""
+    rules = """use "robot.system" import Robot
+    action stop;
+    input scan = topic /scan
+    input q = topic /imu.orientation
+    input v = topic /speed.data
+    entity e {  // a comment
+      r: scan.nearest(-1 rad, 0.5 rad) < 1 or q.roll() > v  // another
+         or v.rate() > 2;
+    }
+    if e.r then { stop; };
+    """
+    (state,) = Engine(program(rules)).explain()
+    names = [name for name, _ in state.reads]
+    assert names == ["scan.nearest(-1, 0.5)", "q.roll()", "v", "v.rate()"]
+    assert state.text == "r: scan.nearest(-1 rad, 0.5 rad) < 1 or q.roll() > v or v.rate() > 2;"

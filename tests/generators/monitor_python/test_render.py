@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import ast
 import keyword
+import math
 import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -218,3 +220,36 @@ if e.some or e.none then {{ stop; }};
     assert not monitor.events
     monitor.advance(1_000_000_000)
     assert [each.action for each in monitor.events] == ["stop"]
+
+
+REPEATED = """use "robot.system" import Robot
+action stop;
+input v = topic /speed.data timeout 1 sec
+input on = topic /flag.data
+entity e { fast: v > 0.5 for 2 sec; on: on; }
+if e.fast or e.on then { stop; };
+"""
+
+
+def test_message_that_repeats_is_not_judged() -> None:
+    """Where nothing new is said no rule is evaluated; the timeout starts anew all the same."""
+    text = render_monitor(timelines.program(REPEATED))
+    module: dict[str, Any] = {}
+    exec(text.replace("Evaluate the rules on", 'Evaluate"""; JUDGED.append(t); """'), module)
+    judged = module["JUDGED"] = []
+    monitor = module["Monitor"](0, [].append)
+    for t, value in enumerate((0.4, 0.4, 0.4, 0.6, 0.6, math.nan, math.nan, 0.6)):
+        monitor.on_speed(t, value)
+    assert judged == [0, 3, 5, 6, 7]
+    assert monitor.next_deadline == 10**9
+    monitor.advance(10**9)
+    assert monitor.next_deadline == 10**9 + 7
+
+
+def test_rules_of_behaviours() -> None:
+    """A monitor says which rules the condition of each behaviour names."""
+    module: dict[str, Any] = {}
+    exec(render_monitor(timelines.program(EVERYTHING)), module)
+    assert module["Monitor"].rules_of is module["RULES_OF"]
+    assert module["RULES_OF"]["behaviour_1"] == ("drive.too_fast", "controller.auto")
+    assert module["RULES_OF"]["behaviour_3"] == ("controller.manual",)
