@@ -152,6 +152,20 @@ def test_the_output_needs_nothing_of_deros() -> None:
     assert imported <= allowed
 
 
+@pytest.mark.parametrize(("field", "needed"), [("position.max()", True), ("position[0]", False)])
+def test_numpy_is_a_dependency_where_arrays_are_read(field: str, needed: bool) -> None:
+    """The package says what its modules import."""
+    rules = (
+        'use "robot.system" import Robot\naction stop;\n'
+        f"input j = topic /joints timeout 1 sec\nentity e {{ high: j.{field} > 1; }}\n"
+        "if e.high then { stop; };\n"
+    )
+    files = files_of_text(rules)
+    (package,) = (file.text for path, file in files.items() if Path(path).name == "package.xml")
+    assert ("<exec_depend>python3-numpy</exec_depend>" in package) == needed
+    assert any("import numpy" in file.text for file in files.values()) == needed
+
+
 def test_the_output_does_not_depend_on_where_the_rules_are(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -37,7 +37,10 @@ def generate(model: NodeType, context: Context, options: Options) -> Files:
 
 
 def package_files(
-    models: Sequence[NodeType], options: Options, raw: Collection[str] = ()
+    models: Sequence[NodeType],
+    options: Options,
+    raw: Collection[str] = (),
+    needs: Collection[str] = (),
 ) -> dict[str, File]:
     """Return the files of the package that ``models``, all of one package, make up.
 
@@ -46,6 +49,7 @@ def package_files(
         options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder.
         raw: the names of the nodes whose subscriptions hand over serialized messages. Of such a
             node there is no user's module: the caller adds its class and its ``main``.
+        needs: what the modules that the caller adds import, by the keys of rosdep.
 
     Raises:
         GenerationError: if names collide, or a construct has no counterpart in rclpy.
@@ -55,7 +59,7 @@ def package_files(
     for model in ordered:
         _check_supported(model)
     copyright_line = options.get("copyright", "")
-    package = package_view(ordered, _maintainer(options), copyright_line, raw)
+    package = package_view(ordered, _maintainer(options), copyright_line, raw, needs)
     files = _package_level(package)
     for node in package.nodes:
         root = f"{package.name}/{package.name}"

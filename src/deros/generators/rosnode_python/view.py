@@ -329,6 +329,7 @@ def package_view(
     maintainer: tuple[str, str],
     copyright_line: str,
     raw: Collection[str] = (),
+    needs: Collection[str] = (),
 ) -> PackageView:
     """Return the view of the package that ``models``, all of one package, make up.
 
@@ -337,6 +338,7 @@ def package_view(
         maintainer: name and address.
         copyright_line: years and holder, or nothing.
         raw: the names of the nodes that are raw (see :class:`NodeView`).
+        needs: further packages, which the caller's own modules import.
 
     Raises:
         GenerationError: if two names collide, in a node or between the nodes' modules.
@@ -349,7 +351,7 @@ def package_view(
     check_collisions(modules, f"the modules of package {models[0].package}")
     nodes = tuple(node_view(model, model.name in raw) for model in models)
     description = " ".join(node.summary for node in nodes)
-    needed = {"ament_index_python", "launch", "launch_ros", "rclpy"}
+    needed = {"ament_index_python", "launch", "launch_ros", "rclpy", *needs}
     needed |= {port.type.package for model in models for port in model.ports}
     if any(node.parameters for node in nodes):
         needed.add("rcl_interfaces")

@@ -37,16 +37,18 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     copyright_line = options.get("copyright", "")
     gates = gate_nodes(built.program, built.topics, node)
     nodes = [node, *gates]
-    files = package_files(nodes, options, raw={each.name for each in nodes})
+    monitor = render_monitor(built.program)
+    decoders = render_decoders([each.decoded for each in view.handlers], context.store)
+    needs = {"python3-numpy"} if "import numpy" in monitor + decoders else frozenset()
+    files = package_files(nodes, options, {each.name for each in nodes}, needs)
     root = f"{view.package}/{view.package}"
     files[f"{view.package}/{node.name}.rnd"] = File(node_description(node))
-    files[f"{root}/monitor.py"] = File(_licensed(render_monitor(built.program), copyright_line))
+    files[f"{root}/monitor.py"] = File(_licensed(monitor, copyright_line))
     files[f"{root}/{view.node.module}.py"] = File(_render("node.py", view, copyright_line))
     files[f"{root}/origins.py"] = File(_render("origins.py", view, copyright_line))
     for module in view.runtime:
         files[f"{root}/{module}.py"] = File(_licensed(_runtime(module), copyright_line))
     if view.handlers:
-        decoders = render_decoders([each.decoded for each in view.handlers], context.store)
         files[f"{root}/decoding.py"] = File(_licensed(decoders, copyright_line))
     files |= gate_files(built.program, gates, node, context.store, copyright_line)
     if view.actions:
