@@ -44,12 +44,15 @@ MOST_RULES = {"rtamt, own topics": 100}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the table; return 1 if a bar is missed, 2 if the two monitors of the robot differ."""
+    """Print the table; return 1 if a bar has to hold and does not, 2 if two monitors differ."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rules", type=int, nargs="+", default=[1, RULES_OF_A_ROBOT, 100, 1000])
     parser.add_argument("--repeat", type=int, default=15, help="the median of so many runs counts")
     parser.add_argument("--seconds", type=float, default=60.0, help="how long the drive is")
     parser.add_argument("--json", type=Path, help="write the results to this file too")
+    parser.add_argument(
+        "--assert", action="store_true", dest="strict", help="exit with 1 if a bar does not hold"
+    )
     options = parser.parse_args(arguments)
 
     drive = messages(options.seconds)
@@ -71,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.json is not None:
         text = json.dumps(as_json(rows), indent=1) + "\n"
         options.json.write_text(text, encoding="utf-8")
-    return 0 if all(bar.held for bar in bars(rows)) else 1
+    return 1 if options.strict and not all(bar.held for bar in bars(rows)) else 0
 
 
 def _names() -> tuple[str, ...]:
