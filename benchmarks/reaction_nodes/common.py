@@ -20,7 +20,7 @@ STATE_QOS = QoSProfile(
 """As the safety node publishes the state of an action."""
 
 RECORD_QOS = QoSProfile(reliability=ReliabilityPolicy.RELIABLE, depth=1000)
-"""As the safety node publishes its events."""
+"""For events: none of them is to be lost while the driver has something else to do."""
 
 
 def spin(node: Any) -> None:
