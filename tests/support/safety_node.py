@@ -103,11 +103,12 @@ class Robot:
         """Return the last status of a rule, an action (``action NAME``) or the node itself."""
         return self.statuses.get(name, Status(-1, "", {}))
 
-    def event(self, kind: str) -> dict[str, str]:
-        """Wait for the first event of a kind, and return it."""
+    def event(self, kind: str, **values: str) -> dict[str, str]:
+        """Wait for the first event of a kind with the given values, and return it."""
+        wanted = {"kind": kind, **values}.items()
 
         def first() -> dict[str, str] | None:
-            return next((each for each in self.events if each["kind"] == kind), None)
+            return next((each for each in self.events if each.items() >= wanted), None)
 
         found: dict[str, str] = self.peer.until(first)
         return found

@@ -28,6 +28,7 @@ class Watch:
         begin: Callable[[int, Callable[[Any], None]], Any],
         do: Callable[[Any], None],
         after: Callable[[list[Any], list[int]], None],
+        tell: Callable[[], None],
         stepped: Callable[[], None],
     ) -> None:
         """
@@ -35,8 +36,9 @@ class Watch:
 
         begin makes a monitor that starts at a time and hands its events to a function; it is
         called again when simulated time begins. do does what an event asks for. after is called
-        with the events that have been dealt with, and when each of them was done. stepped is
-        called when simulated time has begun or stepped back.
+        with the events that have been dealt with, and when each of them was done; tell before an
+        action's failure ends the node. stepped is called when simulated time has begun or stepped
+        back.
         """
         self.began_at = 0
         self.monitor: Any = None
@@ -44,6 +46,7 @@ class Watch:
         self._begin = begin
         self._do = do
         self._after = after
+        self._tell = tell
         self._stepped = stepped
         self._ordered: list[Any] = []
         self.now, self.clock = self._choose_clock(steady)
@@ -106,7 +109,7 @@ class Watch:
             alarm.ring_at(deadline)
 
     def _carry_out(self) -> None:
-        """Do all that was ordered, then have it told, and only then fail if something failed."""
+        """Do all that was ordered, and only then fail if something failed."""
         events = self._ordered.copy()
         self._ordered.clear()
         failures: list[Exception] = []
@@ -122,4 +125,5 @@ class Watch:
             done.append(self.now())
         self._after(events, done)
         if failures:
+            self._tell()
             raise failures[0]  # the heartbeat stops with the node
