@@ -51,6 +51,40 @@ def running_gate(
         yield process
 
 
+_PROFILES = """<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <transport_descriptors>
+    <transport_descriptor>
+      <transport_id>udp</transport_id>
+      <type>UDPv4</type>
+      <interfaceWhiteList><address>127.0.0.1</address></interfaceWhiteList>
+    </transport_descriptor>
+    <transport_descriptor><transport_id>shm</transport_id><type>SHM</type></transport_descriptor>
+  </transport_descriptors>
+  <participant profile_name="loopback" is_default_profile="true">
+    <rtps>
+      <userTransports>{}</userTransports>
+      <useBuiltinTransports>false</useBuiltinTransports>
+    </rtps>
+  </participant>
+</profiles>
+"""
+
+
+def transports(folder: Path, *names: str) -> dict[str, str]:
+    """Return an environment for processes on the loopback that talk by these transports alone.
+
+    With the discovery range LOCALHOST, rmw_fastrtps would choose the transports itself.
+    """
+    path = folder / f"{'_'.join(names)}.xml"
+    chosen = "".join(f"<transport_id>{name}</transport_id>" for name in names)
+    path.write_text(_PROFILES.format(chosen), encoding="utf-8")
+    return {
+        "FASTRTPS_DEFAULT_PROFILES_FILE": str(path),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
+    }
+
+
 class World:
     """All that is around a gate of commands for a drive: who commands, the drive, the rules.
 
@@ -223,7 +257,7 @@ class Drive:
         def zeros() -> list[float]:
             return [sent for sent, moves in self._heard if sent > happened and not moves]
 
-        first = self.peer.until(zeros)[0]
+        first: float = self.peer.until(zeros)[0]
         self.peer.until(lambda: time.time() > first + 0.25)
         assert not any(moves for sent, moves in self._heard if sent > first)
         return first - happened

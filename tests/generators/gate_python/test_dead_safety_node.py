@@ -21,7 +21,14 @@ from deros.generators.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
-from tests.support.gate_nodes import MODELS, PACKAGE, SAFETY_NODE, Drive, running_gate
+from tests.support.gate_nodes import (
+    MODELS,
+    PACKAGE,
+    SAFETY_NODE,
+    Drive,
+    running_gate,
+    transports,
+)
 from tests.support.ros import Peer, running
 
 pytestmark = pytest.mark.ros
@@ -36,6 +43,17 @@ StartSafety = Callable[[], AbstractContextManager[Popen[str]]]
 
 
 @pytest.fixture
+def ros_env(
+    ros_env: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> dict[str, str]:
+    """Give an environment in which all but the gate use shared memory, as they do by default."""
+    env = transports(tmp_path, "udp", "shm")
+    for name, value in env.items():
+        monkeypatch.setenv(name, value)
+    return {**ros_env, **env}
+
+
+@pytest.fixture
 def package(tmp_path: Path) -> Path:
     """Give the package of the safety node and its gates."""
     context = Context(InterfaceStore(), Repository())
@@ -46,9 +64,12 @@ def package(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def drive(package: Path, ros_env: dict[str, str], ros_peer: Peer) -> Iterator[Drive]:
+def drive(
+    package: Path, ros_env: dict[str, str], ros_peer: Peer, tmp_path: Path
+) -> Iterator[Drive]:
     """Give a robot whose gate runs, and whose safety node is to come."""
-    with running_gate(package, "cmd_vel_gate", ros_env):
+    env = {**ros_env, **transports(tmp_path, "udp")}
+    with running_gate(package, "cmd_vel_gate", env):
         yield Drive(ros_peer)
 
 
