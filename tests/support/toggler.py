@@ -51,6 +51,8 @@ def main(source: str, target: str, broken: str, kept: str, times: str) -> None:
         executor.spin_once(timeout_sec=0.1)
         if done >= 0 and time.monotonic() - asked > ANSWER_S:
             sys.exit(f"no answer to number {done + 1}")
+    node.destroy_node()
+    rclpy.shutdown()
 
 
 if __name__ == "__main__":
