@@ -1,0 +1,74 @@
+"""Publishers that a node cannot hear, and those that speak in its name."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import Mock
+
+import pytest
+
+pytest.importorskip("rclpy")
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+from deros.generators.safety_python.runtime.instance import Refusal
+from deros.generators.safety_python.runtime.publishers import Publishers
+from deros.generators.safety_python.runtime.siblings import EARLY, Siblings
+
+RELIABLE = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
+BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+def publisher(kind: str = "std_msgs/msg/Bool", qos: QoSProfile = RELIABLE) -> Any:
+    """Return what the middleware tells of a publisher."""
+    return SimpleNamespace(
+        node_name="driver", node_namespace="/arm", topic_type=kind, qos_profile=qos
+    )
+
+
+def report(*publishers: Any) -> tuple[str, str]:
+    """Return what is reported of a topic with some publishers."""
+    from std_msgs.msg import Bool
+
+    subscription = SimpleNamespace(topic_name="/go", msg_type=Bool, qos_profile=RELIABLE)
+    node = Mock(subscriptions=[subscription])
+    node.get_publishers_info_by_topic.return_value = list(publishers)
+    found = Mock()
+    Publishers(node, found).look()
+    topic, text = found.call_args.args
+    return topic, text
+
+
+def test_a_publisher_that_is_heard_is_no_fault() -> None:
+    """Nothing is wrong with it, nor with a topic that has none."""
+    assert report(publisher()) == ("/go", "")
+    assert report() == ("/go", "")
+
+
+def test_another_type_and_a_lesser_quality_are_faults() -> None:
+    """Each is named, with its node."""
+    _, text = report(publisher("std_msgs/msg/String"), publisher(qos=BEST_EFFORT), publisher())
+    first, second = text.split("; ", 1)
+    assert first == "/arm/driver publishes std_msgs/msg/String on it, which is not heard"
+    assert second.startswith("/arm/driver offers a QoS on it that is not heard:")
+
+
+def test_a_node_without_subscriptions_has_nothing_to_look_at() -> None:
+    """It just looks on."""
+    Publishers(Mock(subscriptions=[]), Mock(side_effect=AssertionError)).look()
+
+
+def test_a_young_node_gives_way_and_an_old_one_reports() -> None:
+    """Who has been there first goes on."""
+    node, found = Mock(), Mock()
+    node.count_publishers.return_value = 2
+    siblings = Siblings(node, "/safety/heartbeat", found)
+    with pytest.raises(Refusal, match="this one started last"):
+        siblings.look()
+    found.assert_not_called()
+    siblings._give_way_until -= EARLY
+    siblings.look()
+    assert found.call_args.args[1].startswith("another node publishes this heartbeat")
+    node.count_publishers.return_value = 1
+    siblings.look()
+    assert found.call_args.args == ("/safety/heartbeat", "")
