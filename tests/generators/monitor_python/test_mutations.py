@@ -39,7 +39,7 @@ SLIPS = {
     "news are overlooked": (r"^( +)if (?:not fresh|\w+ == self\._\w+):$", r"\1if True:"),
     "what was missing stays so": (r"_silent = self\._\w+_missing = False", "_silent = False"),
     "a scan's form is kept": (r"scan_beams\(len\(ranges\), ", "scan_beams(4, "),
-    "a rule's change has no time": (r"^( +)self\._\w+_since = t$", r"\g<1>pass"),
+    "a rule's change has no time": (r"^( {12,})self\._\w+_since = t$", r"\g<1>pass"),
     "rates look at the wrong time": (r"t - self\._(\w+_last_t)", r"t + self._\1"),
 }
 """Slips by name: a pattern of the generated text, and what it is replaced by."""
