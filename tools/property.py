@@ -122,6 +122,8 @@ def main() -> int:
         for outcome in outcomes(arguments.pairs, arguments.jobs, first_seed):
             passed += outcome.passed
             progress.update(task, completed=passed)
+            if not console.is_terminal and passed // 2000 > (passed - outcome.passed) // 2000:
+                console.print(f"{passed} pairs so far")
             if outcome.failed is not None:
                 path = counterexamples.write(outcome.failed)
                 console.print(outcome.why, markup=False)
