@@ -50,12 +50,21 @@ class Owner:
             node,
             Mock(),
             lambda _start, emit: Monitor(list(actions), emit, failing),
+            self.show,
             self.do,
             self.after,
             lambda: self.calls.append("tell"),
             lambda: self.calls.append("stepped"),
         )
         self.watch.start()
+
+    def show(self, event: Event) -> bool:
+        """Show a stop at once; whatever else is ordered is code, to be done later."""
+        if event.action == "unshowable":
+            raise OSError("no publisher")
+        if event.action == "stop":
+            self.calls.append("show stop")
+        return event.action == "stop"
 
     def do(self, event: Event) -> None:
         """Do what is ordered, unless it is bad."""
@@ -73,7 +82,21 @@ def test_all_is_done_before_anything_is_told() -> None:
     """The actions come first, in their order."""
     owner = Owner("stop", "beep")
     owner.watch.advance()
-    assert owner.calls == ["do stop", "do beep", "after 2"]
+    assert owner.calls == ["show stop", "do beep", "after 2"]
+
+
+def test_nothing_overtakes_what_was_ordered_before() -> None:
+    """What could be shown at once waits for code that is to run before it."""
+    owner = Owner("beep", "stop")
+    owner.watch.advance()
+    assert owner.calls == ["do beep", "do stop", "after 2"]
+
+
+def test_what_cannot_be_shown_is_done_later_and_stops_nothing() -> None:
+    """A failure in the middle of an evaluation is no failure of the monitor."""
+    owner = Owner("unshowable", "stop")
+    owner.watch.advance()
+    assert owner.calls == ["do unshowable", "do stop", "after 2"]
 
 
 def test_a_failing_action_keeps_no_other_from_being_done() -> None:
@@ -86,15 +109,15 @@ def test_a_failing_action_keeps_no_other_from_being_done() -> None:
 
 def test_what_a_failing_monitor_has_ordered_is_done() -> None:
     """An error in the rules ends the node, but not before the stop is out."""
-    owner = Owner("stop", failing=True)
+    owner = Owner("stop", "beep", failing=True)
     with pytest.raises(ArithmeticError):
         owner.watch.advance()
-    assert owner.calls == ["do stop", "after 1"]
+    assert owner.calls == ["show stop", "do beep", "after 2"]
 
 
 def test_what_is_done_is_done_once() -> None:
     """A second look finds nothing ordered."""
-    owner = Owner("stop")
+    owner = Owner("stop", "beep")
     owner.watch.advance()
     owner.watch.settle()
-    assert owner.calls == ["do stop", "after 1"]
+    assert owner.calls == ["show stop", "do beep", "after 2"]

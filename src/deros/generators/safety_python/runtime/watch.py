@@ -26,6 +26,7 @@ class Watch:
         node: Node,
         steady: Clock,
         begin: Callable[[int, Callable[[Any], None]], Any],
+        show: Callable[[Any], bool],
         do: Callable[[Any], None],
         after: Callable[[list[Any], list[int]], None],
         tell: Callable[[], None],
@@ -35,32 +36,36 @@ class Watch:
         Prepare; start() comes next.
 
         begin makes a monitor that starts at a time and hands its events to a function; it is
-        called again when simulated time begins. do does what an event asks for. after is called
-        with the events that have been dealt with, and when each of them was done; tell before an
-        action's failure ends the node. stepped is called when simulated time has begun or stepped
-        back.
+        called again when simulated time begins. show does what an event asks for if that takes no
+        time, in the middle of an evaluation, and tells whether it has; do does whatever it is.
+        after is called with the events that have been dealt with, and when each of them was done;
+        tell before an action's failure ends the node. stepped is called when simulated time has
+        begun or stepped back.
         """
         self.began_at = 0
         self.monitor: Any = None
         self._node = node
         self._begin = begin
+        self._show = show
         self._do = do
         self._after = after
         self._tell = tell
         self._stepped = stepped
-        self._ordered: list[Any] = []
+        self._ordered: list[Any] = []  # and not done yet
+        self._dealt_with: list[Any] = []
+        self._done: list[int] = []  # when each of these was done
         self.now, self.clock = self._choose_clock(steady)
         self._deadline = Alarm(node, self.clock, self.now, self._on_deadline)
 
     def start(self) -> None:
         """Start the monitor: its timeouts count from now."""
         self.began_at = self.now()
-        self.monitor = self._begin(self.began_at, self._ordered.append)
+        self.monitor = self._begin(self.began_at, self._take)
         self._arm()
 
     def settle(self) -> None:
         """Do what the monitor ordered, in order, and wake up for its next deadline."""
-        if self._ordered:
+        if self._ordered or self._done:
             self._carry_out()
         self._arm()
 
@@ -108,13 +113,23 @@ class Watch:
         if deadline is not None and not (alarm.is_set and alarm.due <= deadline):
             alarm.ring_at(deadline)
 
+    def _take(self, event: Any) -> None:
+        """Show at once what an event asks for, unless others before it are still to be done."""
+        try:
+            is_shown = not self._ordered and self._show(event)
+        except Exception:
+            is_shown = False  # it is tried again, and reported, when the monitor is through
+        if is_shown:
+            self._done.append(self.now())
+            self._dealt_with.append(event)
+        else:
+            self._ordered.append(event)
+
     def _carry_out(self) -> None:
-        """Do all that was ordered, and only then fail if something failed."""
-        events = self._ordered.copy()
-        self._ordered.clear()
+        """Do all that is left of what was ordered, and only then fail if something failed."""
+        ordered, self._ordered = self._ordered, []
         failures: list[Exception] = []
-        done: list[int] = []
-        for event in events:
+        for event in ordered:
             try:
                 self._do(event)
             except Exception as error:
@@ -122,7 +137,9 @@ class Watch:
                     f'action {event.action} failed:\n{traceback.format_exc()}'
                 )
                 failures.append(error)
-            done.append(self.now())
+            self._done.append(self.now())
+        events, done = self._dealt_with + ordered, self._done
+        self._dealt_with, self._done = [], []
         self._after(events, done)
         if failures:
             self._tell()
