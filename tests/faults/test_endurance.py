@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import statistics
 import subprocess
 import sys
@@ -11,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.faults import Robot
+from tests.support.faults import NODE, PACKAGE, Robot
 from tests.support.played import load
 from tests.support.ros import LIMIT
 from tests.support.victims import Process
@@ -20,6 +21,8 @@ pytestmark = pytest.mark.ros
 
 TOGGLER = Path(__file__).resolve().parents[1] / "support" / "toggler.py"
 TRIGGERS = 10_000
+UNREAD = 200
+"""So many triggers say more than a pipe takes that nobody reads."""
 
 SOAK_MESSAGES = int(os.environ.get("DEROS_SOAK_MESSAGES", "50_000"))
 """How many messages the soak lasts; hours find what seconds do not."""
@@ -74,6 +77,29 @@ def test_ten_thousand_triggers_in_a_row_are_all_carried_out(robot: Robot) -> Non
         robot.until_alive()
         assert triggers() == TRIGGERS
         assert grown < 4 * LEAST_OBJECT
+
+
+def test_output_that_nobody_reads_holds_nothing_up(robot: Robot) -> None:
+    """A launcher that hangs leaves the output in a full pipe; the node loses it, and acts."""
+    command = [sys.executable, "-m", f"{PACKAGE}.{NODE}"]
+    with (
+        subprocess.Popen(
+            command, env=robot.env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, pipesize=4096
+        ) as node,
+        toggler(robot, UNREAD) as toggling,
+    ):
+        try:
+            output, _ = toggling.communicate(timeout=LIMIT)
+            assert toggling.returncode == 0, output
+            robot.until_alive()
+            node.send_signal(signal.SIGINT)
+            assert node.wait(LIMIT) == 0
+            assert node.stdout is not None
+            unread = node.stdout.read()
+            assert len(unread) <= 4096
+            assert b"slow, by heavy" in unread
+        finally:
+            node.kill()
 
 
 def test_memory_does_not_grow(robot: Robot) -> None:

@@ -227,7 +227,9 @@ class Drive:
         self._message.linear.x = 0.3
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         peer.node.create_timer(0.02, self._live, clock=steady)
-        peer.node.create_subscription(Twist, "/cmd_vel", self._take, 10)
+        # Deep enough to lose none of them should this process itself be kept waiting, as shared
+        # memory can keep all who write into it when a reader is stopped.
+        peer.node.create_subscription(Twist, "/cmd_vel", self._take, 1000)
 
     def _live(self) -> None:
         self.measure(self.speed)

@@ -22,6 +22,9 @@ import pytest
 LIMIT = 30.0
 """Seconds after which an awaited event is taken not to come; discovery alone may need three."""
 
+_PIPE_BYTES = 1 << 20
+"""What a process may print before anybody reads it; most that Linux lets a user have."""
+
 _DOMAINS = range(1, 102)  # the ports of higher ones may be taken by outgoing connections
 
 
@@ -69,7 +72,12 @@ def running(command: Sequence[str], env: dict[str, str]) -> Iterator[subprocess.
         AssertionError: if it does not end by SIGINT.
     """
     with subprocess.Popen(
-        command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        command,
+        env=env,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        pipesize=_PIPE_BYTES,
     ) as process:
         try:
             yield process

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ctypes
 import gc
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from unittest.mock import Mock
 
@@ -82,3 +84,18 @@ def test_sharp_timers_are_asked_of_the_kernel() -> None:
     """The slack of this thread's timers is what Linux allows least."""
     machine.sharpen_timers()
     assert ctypes.CDLL(None).prctl(30, 0, 0, 0, 0) == 1  # PR_GET_TIMERSLACK
+
+
+def test_a_full_pipe_is_not_waited_for() -> None:
+    """What does not fit is lost; whoever shares the pipe goes on waiting for its reader."""
+    reader, writer = os.pipe()
+    code = (
+        "import os; from deros.generators.safety_python.runtime import machine\n"
+        "machine.never_wait_for_readers()\n"
+        "try:\n while True: os.write(2, bytes(4096))\nexcept BlockingIOError: os._exit(7)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], stderr=writer, timeout=60)
+    assert done.returncode == 7
+    assert os.get_blocking(writer)
+    for end in (reader, writer):
+        os.close(end)

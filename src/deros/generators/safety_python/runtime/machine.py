@@ -9,6 +9,7 @@ import gc
 import os
 from pathlib import Path
 import resource
+import stat
 import sys
 
 PR_SET_TIMERSLACK = 29
@@ -20,6 +21,21 @@ def sharpen_timers() -> None:
     """Have the kernel wake this thread, and those it starts, without the usual 50 us of slack."""
     if ON_LINUX:
         ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0)
+
+
+def never_wait_for_readers() -> None:
+    """
+    Lose what is written to a full pipe as output, rather than wait until somebody reads it.
+
+    A launcher that hangs would hang the node, too. The pipes are opened anew, because the flag
+    would else hold for all who share them.
+    """
+    for number in (1, 2):
+        with contextlib.suppress(OSError):  # closed, or of another user: it stays as it is
+            if stat.S_ISFIFO(os.fstat(number).st_mode):
+                opened = os.open(f'/proc/self/fd/{number}', os.O_WRONLY | os.O_NONBLOCK)
+                os.dup2(opened, number)
+                os.close(opened)
 
 
 def prepare(priority: int, lock_memory: bool, garbage_collection: bool) -> list[str]:

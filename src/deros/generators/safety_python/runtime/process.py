@@ -13,7 +13,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import ok, try_shutdown
 
 from .instance import Refusal
-from .machine import sharpen_timers
+from .machine import never_wait_for_readers, sharpen_timers
 from .waker import StopSignals, Waker
 
 WAIT = 1.0  # seconds; a wait without a limit is not woken by events in every release
@@ -27,6 +27,7 @@ def run(node_class: Callable[[], Node], args: list[str] | None = None) -> None:
     that does not watch any more must not go on saying that it does. A Refusal ends it with its
     text and exit code 1.
     """
+    never_wait_for_readers()
     sharpen_timers()  # before any thread of the middleware starts, so that it inherits them
     signals = StopSignals()
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
