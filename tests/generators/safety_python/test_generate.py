@@ -136,8 +136,8 @@ def test_the_output_needs_nothing_of_deros() -> None:
     allowed = {
         "__future__", "abc", "collections", "contextlib", "ctypes", "dataclasses", "fcntl",
         "functools", "gc", "hashlib", "itertools", "math", "numpy", "os", "resource", "select",
-        "signal", "struct", "sys", "tempfile", "threading", "time", "traceback", "types", "typing",
-        "glob", "pathlib", "setuptools", "launch", "launch_ros", "ament_index_python", "pytest",
+        "signal", "stat", "struct", "sys", "tempfile", "threading", "time", "traceback", "types",
+        "typing", "glob", "pathlib", "setuptools", "launch", "launch_ros", "ament_index_python", "pytest",
         "ament_flake8", "ament_pep257", "rclpy", "rcl_interfaces", "every_thing_safety",
         "std_msgs", "std_srvs", "nav_msgs", "sensor_msgs", "diagnostic_msgs",
     }  # fmt: skip
