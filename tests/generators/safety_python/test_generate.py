@@ -137,9 +137,9 @@ def test_the_output_needs_nothing_of_deros() -> None:
         "__future__", "abc", "collections", "contextlib", "ctypes", "dataclasses", "fcntl",
         "functools", "gc", "hashlib", "itertools", "math", "numpy", "os", "resource", "select",
         "signal", "stat", "struct", "sys", "tempfile", "threading", "time", "traceback", "types",
-        "typing", "glob", "pathlib", "setuptools", "launch", "launch_ros", "ament_index_python", "pytest",
-        "ament_flake8", "ament_pep257", "rclpy", "rcl_interfaces", "every_thing_safety",
-        "std_msgs", "std_srvs", "nav_msgs", "sensor_msgs", "diagnostic_msgs",
+        "typing", "glob", "pathlib", "setuptools", "launch", "launch_ros", "ament_index_python",
+        "pytest", "ament_flake8", "ament_pep257", "rclpy", "rcl_interfaces",
+        "every_thing_safety", "std_msgs", "std_srvs", "nav_msgs", "sensor_msgs", "diagnostic_msgs",
     }  # fmt: skip
     imported: set[str] = set()
     for path, file in files_of("every_thing").items():
