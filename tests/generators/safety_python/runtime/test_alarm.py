@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from deros.generators.safety_python.runtime.alarm import Alarm
+from deros.generators.safety_python.runtime.alarm import PATIENCE, Alarm
 
 
 class Clockwork:
@@ -22,7 +22,9 @@ class Clockwork:
         self.rung: list[int] = []
         self.timer = Mock()
         self.expire: Callable[[], None] = lambda: None
-        self.alarm = Alarm(self, Mock(), lambda: self.now, self.ring)  # type: ignore[arg-type]
+        self.busy = 0
+        node: Any = self
+        self.alarm = Alarm(node, Mock(), lambda: self.now, self.ring, lambda: self.busy)
 
     def create_timer(
         self, _period: float, callback: Callable[[], None], *, clock: Any, autostart: bool
@@ -81,3 +83,26 @@ def test_repeating_keeps_the_rhythm_but_for_pauses_and_steps(now: int, due: int)
     it.now = now
     it.alarm.repeat(100)
     assert it.alarm.due == due
+
+
+def test_it_is_put_off_while_something_goes_before_it() -> None:
+    """It asks again when told to; what it was due for stays as it was."""
+    it = Clockwork()
+    it.alarm.ring_at(1500)
+    it.busy = 300
+    it.expire_at(1510)
+    assert (it.rung, it.timer.timer_period_ns, it.alarm.due) == ([], 300, 1500)
+    it.busy = 0
+    it.expire_at(1810)
+    assert it.rung == [1810]
+
+
+def test_it_is_not_put_off_for_ever() -> None:
+    """A node that is always busy tells, after a while, all the same."""
+    it = Clockwork()
+    it.alarm.ring_at(1500)
+    it.busy = 300
+    it.expire_at(1500 + PATIENCE - 1)
+    assert it.rung == []
+    it.expire_at(1500 + PATIENCE)
+    assert it.rung == [1500 + PATIENCE]

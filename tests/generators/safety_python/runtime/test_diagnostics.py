@@ -51,7 +51,7 @@ class Shown:
         behaviours = {"stopping": Behaviour("robot.deros:7", "drive.fast", named)}
         actions = {"stop": True, "beep": False}
         self.diagnostics = Diagnostics(
-            self.node, Mock(), behaviours, actions, self.messages.append, 1.0
+            self.node, Mock(), behaviours, actions, self.messages.append, 1.0, lambda: 0
         )
         self.unready = ""
         self.diagnostics.begin(

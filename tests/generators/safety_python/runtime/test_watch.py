@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 from unittest.mock import Mock
@@ -10,7 +11,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from deros.generators.safety_python.runtime.watch import Watch
+from deros.generators.safety_python.runtime.watch import AFTER, NEAR, Watch
 
 
 class Event(NamedTuple):
@@ -44,11 +45,12 @@ class Owner:
     def __init__(self, *actions: str, failing: bool = False) -> None:
         """Start a watch off simulated time."""
         self.calls: list[str] = []
+        self.steady = Mock()
         node = Mock()
         node.get_parameter.return_value.value = False
         self.watch = Watch(
             node,
-            Mock(),
+            self.steady,
             lambda _start, emit: Monitor(list(actions), emit, failing),
             self.show,
             self.do,
@@ -121,3 +123,17 @@ def test_what_is_done_is_done_once() -> None:
     owner.watch.advance()
     owner.watch.settle()
     assert owner.calls == ["show stop", "do beep", "after 2"]
+
+
+def test_what_can_wait_waits_while_a_deadline_is_near() -> None:
+    """From shortly before it until shortly after it, and not on account of one that is far."""
+    owner = Owner()
+    watch = owner.watch
+    assert watch.put_off() <= AFTER
+    now = time.monotonic_ns()
+    watch.now = lambda: now
+    for left, pause in ((NEAR + 10**9, 0), (NEAR - 10**6, NEAR - 10**6 + AFTER), (-(10**9), 0)):
+        watch.monitor.next_deadline = now + left
+        assert max(watch.put_off(), 0) == pause
+    watch.monitor.next_deadline = None
+    assert watch.put_off() == 0

@@ -19,7 +19,7 @@ from .events import Behaviour, shown
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 SOON = 50_000_000  # ns after a change, within which others are waited for
-CHUNK = 32  # statuses in one message: more of them would keep the monitor waiting for too long
+CHUNK = 8  # statuses in one message: more of them would keep the monitor waiting for too long
 PAUSE = 1_000_000  # ns between the messages of one state
 
 
@@ -49,8 +49,9 @@ class Diagnostics:
         actions: Mapping[str, bool],
         publish: Callable[[DiagnosticArray], None],
         frequency: float,
+        put_off: Callable[[], int],
     ) -> None:
-        """Prepare; actions tells of each whether it has a state."""
+        """Prepare; actions tells of each whether it has a state, put_off what goes before."""
         self.faults: dict[str, str] = {}  # by what they are about
         self.actions = {name: ActionState(lasts) for name, lasts in actions.items()}
         self._node = node
@@ -59,7 +60,7 @@ class Diagnostics:
         self._period = round(1e9 / frequency)
         self._rest: Iterator[DiagnosticStatus] | None = None
         self._again = False
-        self._alarm = Alarm(node, steady, time.monotonic_ns, self._ring)
+        self._alarm = Alarm(node, steady, time.monotonic_ns, self._ring, put_off)
 
     def begin(
         self, explain: Callable[[], Any], now: Callable[[], int], summary: Callable[[], str]

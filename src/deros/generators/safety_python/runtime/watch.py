@@ -13,6 +13,9 @@ from rclpy.node import Node
 
 from .alarm import Alarm
 
+NEAR = 2_000_000  # ns before a deadline in which nothing is begun that can wait
+AFTER = 1_000_000  # ns after it in which what it orders is done
+
 
 class Watch:
     """
@@ -45,6 +48,7 @@ class Watch:
         self.began_at = 0
         self.monitor: Any = None
         self._node = node
+        self._steady = steady
         self._begin = begin
         self._show = show
         self._do = do
@@ -77,6 +81,14 @@ class Watch:
         finally:
             self.settle()
         return now
+
+    def put_off(self) -> int:
+        """Return for how long what can wait has to, in nanoseconds, as a deadline is near."""
+        deadline = self.monitor.next_deadline
+        if deadline is None or self.clock is not self._steady:
+            return 0
+        left: int = deadline - self.now()
+        return left + AFTER if left < NEAR else 0
 
     def _choose_clock(self, steady: Clock) -> tuple[Callable[[], int], Clock]:
         if not self._node.get_parameter('use_sim_time').value:
