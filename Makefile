@@ -7,6 +7,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 DOCS_READY := $(VENV)/.ready-docs
+BENCH_READY := $(VENV)/.ready-bench
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # Runs a command and, however it ends, leaves none of its descendants behind.
 ALONE := $(BIN)/python tools/supervise.py
@@ -45,7 +46,7 @@ docs: $(DOCS_READY)  ## Build the documentation into site/; a warning is an erro
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 
 .PHONY: bench
-bench: $(READY)  ## Measure; prints ratios against a floor measured in the same run
+bench: $(BENCH_READY)  ## Measure; prints ratios against a floor measured in the same run
 	@for each in $(BENCHMARKS); do echo "== $$each"; $(ALONE) $(BIN)/python $$each || exit 1; done
 
 .PHONY: golden
@@ -65,6 +66,10 @@ $(BIN)/python:
 
 $(READY): pyproject.toml | $(BIN)/python
 	@$(PIP) install --editable '.[dev]'
+	@touch $@
+
+$(BENCH_READY): pyproject.toml | $(READY)
+	@$(PIP) install --editable '.[bench]'
 	@touch $@
 
 $(DOCS_READY): pyproject.toml | $(READY)
