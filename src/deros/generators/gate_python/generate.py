@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib import resources
 
 from deros.generators.gate_python.view import GateView, gate_view
 from deros.generators.protocol import File
 from deros.generators.python_source import call, expression, mark_long_lines
+from deros.generators.rosnode_python.generate import licensed
 from deros.generators.safety_python.description import node_description
+from deros.generators.safety_python.verbatim import runtime_files
 from deros.generators.templates import environment
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType
@@ -58,7 +59,7 @@ def gate_files(
         for module in MODULES:
             files[f"{root}_{module}.py"] = File(render(module, view, copyright_line))
     if nodes:
-        files |= _runtime(nodes[0].package, copyright_line)
+        files |= runtime_files(nodes[0].package, RUNTIME, copyright_line)
     return files
 
 
@@ -66,19 +67,4 @@ def render(module: str, view: GateView, copyright_line: str = "") -> str:
     """Return the text of one module of a gate: its ``node``, or one of :data:`MODULES`."""
     loaded = environment("deros.generators.gate_python").get_template(f"{module}.py.j2")
     text = loaded.render(gate=view, node=view.node, call=call, expression=expression)
-    return mark_long_lines(_header(copyright_line) + text)
-
-
-def _runtime(package: str, copyright_line: str) -> dict[str, File]:
-    folder = resources.files("deros.generators.safety_python.runtime")
-    files: dict[str, File] = {}
-    for module in RUNTIME:
-        text = (folder / f"{module}.py").read_text(encoding="utf-8")
-        files[f"{package}/{package}/{module}.py"] = File(_header(copyright_line) + text)
-    return files
-
-
-def _header(copyright_line: str) -> str:
-    """Return the licence header of the node generator, if there is a holder."""
-    template = environment("deros.generators.rosnode_python").get_template("_header.j2")
-    return template.render(package={"copyright": copyright_line})
+    return mark_long_lines(licensed(text, copyright_line))

@@ -17,10 +17,8 @@ from deros.interfaces.types import (
     InterfaceType,
     MessageDefinition,
 )
+from deros.monitor.commands import HEADER, LAYOUT, QUATERNION
 
-_HEADER = InterfaceType("std_msgs", "msg", "Header")
-_QUATERNION = InterfaceType("geometry_msgs", "msg", "Quaternion")
-_SHAPE = InterfaceType("std_msgs", "msg", "MultiArrayLayout")  # commands nothing by itself
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -82,13 +80,13 @@ def _view(
     assert definition is not None, kind
     nested = [f.base for _, f in definition.fields if isinstance(f.base, InterfaceType)]
     for base in nested:
-        if base not in found and base not in (_HEADER, _SHAPE):
+        if base not in found and base not in (HEADER, LAYOUT):  # they command nothing
             _view(store, base, found, _prefix(base, found))
     finite = tuple(_finite(definition, found))
     zeros = tuple(_zeros(definition, found))
     if finite or zeros:
         parts = [found.get(base) for base in nested]
-        stamped = _HEADER in nested or any(part.stamped for part in parts if part)
+        stamped = HEADER in nested or any(part.stamped for part in parts if part)
         found[kind] = TypeView(kind, prefix, finite, zeros, stamped)
 
 
@@ -116,13 +114,13 @@ def _zeros(definition: MessageDefinition, found: dict[InterfaceType, TypeView]) 
         if field.base in STRING_TYPES:
             continue
         each = "each" if field.is_array else f"msg.{name}"
-        if definition.type == _QUATERNION and name == "w":
+        if definition.type == QUATERNION and name == "w":
             yield "msg.w = 1.0  # zero would be no rotation at all"
             continue
         if isinstance(field.base, str):
             yield _zero_of_primitive(f"msg.{name}", field)
             continue
-        if field.base == _HEADER:
+        if field.base == HEADER:
             statement = f"{each}.stamp = stamp"
         elif (view := found.get(field.base)) and view.zeros:
             statement = f"{view.prefix}make_zero({each}{', stamp' if view.stamped else ''})"

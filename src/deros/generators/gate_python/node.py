@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from deros import codes
-from deros.diagnostics import Related, SourceFile, Span, report
+from deros.diagnostics import Related, SourceFile, report
 from deros.generators.protocol import GenerationError
-from deros.generators.safety_python.node import is_reliable
-from deros.interfaces.types import InterfaceType
+from deros.generators.safety_python.node import (
+    DIAGNOSTICS,
+    DIAGNOSTICS_QOS,
+    DIAGNOSTICS_TYPE,
+    HEARTBEAT_TYPE,
+    STATE_QOS,
+    are_reliable,
+    made_port,
+    stated_qos,
+)
 from deros.metamodels.common import QosProfile
 from deros.metamodels.node import NodeType, Port, PortKind
 from deros.monitor.gates import gate_node_name
@@ -16,12 +24,6 @@ from deros.monitor.topics import SystemTopics
 PROCESS_PARAMETERS = ("realtime_priority", "lock_memory", "garbage_collection")
 """The parameters that a gate has in common with the safety node."""
 
-DIAGNOSTICS = "/diagnostics"
-"""The topic on which a gate tells what it does."""
-
-_DIAGNOSTICS = InterfaceType("diagnostic_msgs", "msg", "DiagnosticArray")
-_UINT64 = InterfaceType("std_msgs", "msg", "UInt64")
-_STATE_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1)
 _RELIABLE_QOS = QosProfile(reliability="reliable", depth=10)
 _BEST_EFFORT_QOS = QosProfile(reliability="best_effort", depth=10)
 
@@ -69,44 +71,38 @@ def _node(gate: Gate, program: Program, topics: SystemTopics, safety_node: NodeT
 
 def _ports(gate: Gate, program: Program, topics: SystemTopics, safety_node: NodeType) -> list[Port]:
     description = "What safety lets through"
-    target = _port(
+    target = made_port(
         PortKind.PUBLISHER, gate.target, gate.type, gate.span, _RELIABLE_QOS, description
     )
     qos = _source_qos(topics, gate.source)
-    source = _port(
+    source = made_port(
         PortKind.SUBSCRIPTION, gate.source, gate.type, gate.span, qos, "What is asked for"
     )
     ports = {source.name: source}
     for line in gate.lines:
         binding = program.actions[line.action].binding if line.action is not None else None
-        if binding is not None and binding.topic not in ports:
-            topic, kind = binding.topic, binding.type
-            port = _port(PortKind.SUBSCRIPTION, topic, kind, line.span, _STATE_QOS, "")
-            ports[port.name] = port
+        if binding is not None:
+            state = made_port(
+                PortKind.SUBSCRIPTION, binding.topic, binding.type, line.span, STATE_QOS, ""
+            )
+            ports.setdefault(state.name, state)
         if line.lost == "heartbeat":
             name = heartbeat_port(safety_node)
-            kept = ports.get(name)
-            port = _port(PortKind.SUBSCRIPTION, name, _UINT64, line.span, _RELIABLE_QOS, "")
-            ports[name] = kept or port
-    diagnostics = _port(
-        PortKind.PUBLISHER, DIAGNOSTICS, _DIAGNOSTICS, gate.span, _RELIABLE_QOS, "What applies"
+            beat = made_port(
+                PortKind.SUBSCRIPTION, name, HEARTBEAT_TYPE, line.span, _RELIABLE_QOS, ""
+            )
+            ports.setdefault(name, beat)
+    diagnostics = made_port(
+        PortKind.PUBLISHER,
+        DIAGNOSTICS,
+        DIAGNOSTICS_TYPE,
+        gate.span,
+        DIAGNOSTICS_QOS,
+        "What applies",
     )
     return [target, diagnostics, *ports.values()]
 
 
-def _port(
-    kind: PortKind,
-    name: str,
-    interface: InterfaceType,
-    span: Span,
-    qos: QosProfile,
-    description: str,
-) -> Port:
-    return Port(kind, name, interface, span, span, span, qos=qos, description=description)
-
-
 def _source_qos(topics: SystemTopics, topic: str) -> QosProfile:
     """Return a profile that every publisher meets; never one that has an old command replayed."""
-    known = topics.get(topic)
-    stated = [flat.port.qos for flat in known.publishers] if known else []
-    return _RELIABLE_QOS if stated and all(map(is_reliable, stated)) else _BEST_EFFORT_QOS
+    return _RELIABLE_QOS if are_reliable(stated_qos(topics, topic)) else _BEST_EFFORT_QOS

@@ -96,6 +96,11 @@ def _package_level(package: PackageView) -> dict[str, File]:
     return files
 
 
+def licensed(text: str, copyright_line: str) -> str:
+    """Put the licence header of a package's modules above a text, if there is a holder."""
+    return _render("_header", package={"copyright": copyright_line}) + text
+
+
 def _render(template: str, **names: object) -> str:
     loaded = environment("deros.generators.rosnode_python").get_template(f"{template}.j2")
     text = loaded.render(names, call=call, expression=expression)

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from importlib import resources
-
 from deros.generators.cdr_python import render_decoders
 from deros.generators.gate_python import gate_files, gate_nodes
 from deros.generators.monitor_python import render_monitor
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.python_source import call, expression, mark_long_lines
-from deros.generators.rosnode_python.generate import package_files
+from deros.generators.rosnode_python.generate import licensed, package_files
 from deros.generators.safety_python.description import node_description
 from deros.generators.safety_python.node import safety_node
+from deros.generators.safety_python.verbatim import runtime_files
 from deros.generators.safety_python.view import SafetyView, safety_view
 from deros.generators.templates import environment
 from deros.metamodels.rules import Rules
@@ -43,13 +42,12 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     files = package_files(nodes, options, {each.name for each in nodes}, needs)
     root = f"{view.package}/{view.package}"
     files[f"{view.package}/{node.name}.rnd"] = File(node_description(node))
-    files[f"{root}/monitor.py"] = File(_licensed(monitor, copyright_line))
+    files[f"{root}/monitor.py"] = File(licensed(monitor, copyright_line))
     files[f"{root}/{view.node.module}.py"] = File(_render("node.py", view, copyright_line))
     files[f"{root}/origins.py"] = File(_render("origins.py", view, copyright_line))
-    for module in view.runtime:
-        files[f"{root}/{module}.py"] = File(_licensed(_runtime(module), copyright_line))
+    files |= runtime_files(view.package, view.runtime, copyright_line)
     if view.handlers:
-        files[f"{root}/decoding.py"] = File(_licensed(decoders, copyright_line))
+        files[f"{root}/decoding.py"] = File(licensed(decoders, copyright_line))
     files |= gate_files(built.program, gates, node, context.store, copyright_line)
     if view.actions:
         base = _render("actions_base.py", view, copyright_line)
@@ -62,17 +60,4 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
 def _render(template: str, view: SafetyView, copyright_line: str) -> str:
     loaded = environment("deros.generators.safety_python").get_template(f"{template}.j2")
     text = loaded.render(safety=view, node=view.node, call=call, expression=expression)
-    return mark_long_lines(_licensed(text, copyright_line))
-
-
-def _licensed(text: str, copyright_line: str) -> str:
-    """Put the licence header of the node generator above a module, if there is a holder."""
-    package = {"copyright": copyright_line}
-    header = environment("deros.generators.rosnode_python").get_template("_header.j2")
-    return header.render(package=package) + text
-
-
-def _runtime(module: str) -> str:
-    """Return the text of a module that is the same in every package."""
-    folder = resources.files("deros.generators.safety_python.runtime")
-    return (folder / f"{module}.py").read_text(encoding="utf-8")
+    return mark_long_lines(licensed(text, copyright_line))

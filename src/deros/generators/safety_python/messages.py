@@ -6,9 +6,8 @@ import math
 
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
+from deros.monitor.commands import HEADER
 from deros.monitor.ir import Scalar
-
-_HEADER = InterfaceType("std_msgs", "msg", "Header")
 
 
 def literal(kind: FieldType, value: Scalar) -> str:
@@ -26,4 +25,4 @@ def literal(kind: FieldType, value: Scalar) -> str:
 def is_stamped(store: InterfaceStore, kind: InterfaceType) -> bool:
     """Tell whether messages of a type have a header with a time stamp."""
     definition = store.message(kind)
-    return definition is not None and definition.field("header") == FieldType(_HEADER)
+    return definition is not None and definition.field("header") == FieldType(HEADER)

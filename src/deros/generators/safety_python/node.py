@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span, report
@@ -21,14 +21,14 @@ EVENTS = "~/events"
 DIAGNOSTICS = "/diagnostics"
 RESET = "~/reset"
 
-_UINT64 = InterfaceType("std_msgs", "msg", "UInt64")
+HEARTBEAT_TYPE = InterfaceType("std_msgs", "msg", "UInt64")
 _TRIGGER = InterfaceType("std_srvs", "srv", "Trigger")
 _STATUS = InterfaceType("diagnostic_msgs", "msg", "DiagnosticStatus")
-_STATUSES = InterfaceType("diagnostic_msgs", "msg", "DiagnosticArray")
-_STATE_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1)
+DIAGNOSTICS_TYPE = InterfaceType("diagnostic_msgs", "msg", "DiagnosticArray")
+STATE_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1)
 _HEARTBEAT_QOS = QosProfile(reliability="reliable", depth=1)
 _EVENTS_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1000)
-_DIAGNOSTICS_QOS = QosProfile(reliability="reliable", depth=10)
+DIAGNOSTICS_QOS = QosProfile(reliability="reliable", depth=10)
 _INPUT_DEPTH = 10
 _RELIABLE_PRESETS = frozenset({"services", "parameters"})
 
@@ -183,21 +183,25 @@ def _ports(program: Program, topics: SystemTopics, start: Span) -> list[Port]:
         span = action.span or start
         topic, kind = action.binding.topic, action.binding.type
         description = f"Active: {' or '.join(bound_actions(program, topic))}"
-        ports.append(_port(PortKind.PUBLISHER, topic, kind, span, _STATE_QOS, description))
+        ports.append(made_port(PortKind.PUBLISHER, topic, kind, span, STATE_QOS, description))
     description = "Counts up at publish_freq: stop when it stops"
-    ports.append(_port(PortKind.PUBLISHER, HEARTBEAT, _UINT64, start, _HEARTBEAT_QOS, description))
+    ports.append(
+        made_port(PortKind.PUBLISHER, HEARTBEAT, HEARTBEAT_TYPE, start, _HEARTBEAT_QOS, description)
+    )
     description = "Tells of each action, reset and fault"
-    ports.append(_port(PortKind.PUBLISHER, EVENTS, _STATUS, start, _EVENTS_QOS, description))
+    ports.append(made_port(PortKind.PUBLISHER, EVENTS, _STATUS, start, _EVENTS_QOS, description))
     description = "State of the node, of its actions and of its rules"
     name = _diagnostics_name(program)
-    ports.append(_port(PortKind.PUBLISHER, name, _STATUSES, start, _DIAGNOSTICS_QOS, description))
+    ports.append(
+        made_port(PortKind.PUBLISHER, name, DIAGNOSTICS_TYPE, start, DIAGNOSTICS_QOS, description)
+    )
     spans = {each.topic: each.span for each in reversed(program.inputs)}
     for topic, kind in program.topics.items():
         qos = _input_qos(topics, topic)
-        ports.append(_port(PortKind.SUBSCRIPTION, topic, kind, spans[topic], qos, ""))
+        ports.append(made_port(PortKind.SUBSCRIPTION, topic, kind, spans[topic], qos, ""))
     if any(action.latched for action in program.actions):
         description = "Resets the latched actions that no behaviour calls for"
-        ports.append(_port(PortKind.SERVICE, RESET, _TRIGGER, start, None, description))
+        ports.append(made_port(PortKind.SERVICE, RESET, _TRIGGER, start, None, description))
     return ports
 
 
@@ -212,7 +216,7 @@ def bound_actions(program: Program, topic: str) -> list[str]:
     return [a.name for a in program.actions if a.binding is not None and a.binding.topic == topic]
 
 
-def _port(
+def made_port(
     kind: PortKind,
     name: str,
     interface: InterfaceType,
@@ -220,13 +224,24 @@ def _port(
     qos: QosProfile | None,
     description: str,
 ) -> Port:
+    """Return a port that nobody has written: its places are those of what it comes from."""
     return Port(kind, name, interface, span, span, span, qos=qos, description=description)
 
 
-def _input_qos(topics: SystemTopics, topic: str) -> QosProfile:
+def stated_qos(topics: SystemTopics, topic: str) -> list[QosProfile | None]:
+    """Return what each publisher of a topic in the used systems is stated to offer."""
     known = topics.get(topic)
-    stated = [flat.port.qos for flat in known.publishers] if known else []
-    reliable = bool(stated) and all(map(is_reliable, stated))
+    return [flat.port.qos for flat in known.publishers] if known else []
+
+
+def are_reliable(stated: Sequence[QosProfile | None]) -> bool:
+    """Tell whether there are publishers, and all of them are stated to be reliable."""
+    return bool(stated) and all(map(_is_reliable, stated))
+
+
+def _input_qos(topics: SystemTopics, topic: str) -> QosProfile:
+    stated = stated_qos(topics, topic)
+    reliable = are_reliable(stated)
     durable = bool(stated) and all(
         q is not None and q.durability == "transient_local" for q in stated
     )
@@ -238,8 +253,7 @@ def _input_qos(topics: SystemTopics, topic: str) -> QosProfile:
     )
 
 
-def is_reliable(qos: QosProfile | None) -> bool:
-    """Tell whether a publisher is stated to be reliable."""
+def _is_reliable(qos: QosProfile | None) -> bool:
     if qos is None:
         return False
     if qos.reliability is not None:
