@@ -7,21 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.options import (
-    FINDINGS,
-    UNUSABLE,
-    exit_code,
-    in_the_way_of_generating,
-    interfaces_option,
-)
+from deros.cli.options import interfaces_option
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from deros.diagnostics import Diagnostic
-    from deros.generators.registry import Generator, Registry
     from deros.generators.writer import WriteReport
-    from deros.metamodels.load import LoadedFile
 
 
 class _GenerateCommand(click.Command):
@@ -60,6 +52,26 @@ class _GenerateCommand(click.Command):
 )
 @click.option("--overwrite", is_flag=True, help="Replace generated files that were edited by hand.")
 @interfaces_option
+@click.option(
+    "--depfile",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write what the output rests on as a rule of Make, for build systems.",
+)
+@click.option(
+    "--stamp",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write this file last, for build systems; what only an earlier run made is removed.",
+)
+@click.option(
+    "--source",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Folder of the package's hand-written files, which are joined with the output.",
+)
+@click.option(
+    "--scaffold",
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Write to this folder only what a package generated at build time keeps in its source.",
+)
 @click.pass_context
 def generate(
     ctx: click.Context,
@@ -68,38 +80,40 @@ def generate(
     output: Path,
     overwrite: bool,
     interfaces: tuple[Path, ...],
+    depfile: Path | None,
+    stamp: Path | None,
+    source: Path | None,
+    scaffold: Path | None,
 ) -> None:
     """Generate code, launch files or parameters from the model in FILE.
 
     The model is checked first, and nothing is written if an error is found. Files that are made
     for you to fill in are written once and never again.
     """
-    from deros.generators.protocol import Context, GenerationError
-    from deros.generators.registry import discover
+    from deros.cli import produce
+    from deros.generators.source_tree import SourceTreeError
     from deros.generators.writer import WriteError, write
-    from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.load import Repository
-    from deros.validators.check import check as check_loaded
 
-    given = _pairs(ctx.args)
-    store, repository = InterfaceStore(interfaces), Repository()
-    loaded = repository.load(file)
-    findings = check_loaded([loaded], repository, store)
-    _show(findings)
-    code = exit_code(in_the_way_of_generating(findings, file))
-    if code or loaded.language is None:
-        ctx.exit(code or FINDINGS)
-    generator = discover().find(loaded.language, target)
-    if generator is None:
-        _show([_unknown_target(discover(), loaded, target)])
-        ctx.exit(UNUSABLE)
-    _know_options(generator, given)
+    started = produce.now_ns()
+    request = produce.Request(file, target, _pairs(ctx.args), interfaces)
     try:
-        files = generator(loaded.model, Context(store, repository), given)
-        written = write(files, output, overwrite=overwrite)
-    except GenerationError as error:
-        _show(error.diagnostics)
-        ctx.exit(FINDINGS)
+        made = produce.make(request)
+        _show(made.findings)
+        if scaffold is not None:
+            files = produce.scaffold_files(made, request, scaffold)
+            written = write(files, scaffold, overwrite=overwrite)
+        else:
+            where = produce.Place(output, overwrite, source, depfile, stamp)
+            written = produce.put(made, where, started)
+    except produce.Refused as refused:
+        _show(refused.diagnostics)
+        ctx.exit(refused.code)
+    except produce.UnknownOption as error:
+        raise click.NoSuchOption(error.option, str(error)) from error
+    except SourceTreeError as error:
+        hint = produce.scaffold_command(request, source or Path())
+        mend = f"\n  to mend it: {hint}" if error.mended_by_scaffold else ""
+        raise click.ClickException(f"{error}{mend}") from error
     except WriteError as error:
         raise click.ClickException(str(error)) from error
     except ValueError as error:
@@ -123,34 +137,6 @@ def _pairs(arguments: Sequence[str]) -> dict[str, str]:
             value = left.pop(0)
         pairs[name] = value
     return pairs
-
-
-def _unknown_target(registry: Registry, loaded: LoadedFile, target: str) -> Diagnostic:
-    from deros import codes
-    from deros.diagnostics import SourceFile, Span
-    from deros.diagnostics import report as finding
-    from deros.validators.hints import did_you_mean
-
-    assert loaded.language is not None
-    targets = registry.targets(loaded.language)
-    hint = did_you_mean(target, targets, f"it has {', '.join(targets)}" if targets else "")
-    for broken in registry.broken:
-        hint += f"; {broken.entry_point} of {broken.distribution} is unusable: {broken.reason}"
-    source = loaded.source or SourceFile(loaded.path, "")
-    message = f"no generator makes '{target}' from {loaded.language}"
-    return finding(codes.UNKNOWN_TARGET, message, Span(source, 0, 0), hint.removeprefix("; "))
-
-
-def _know_options(generator: Generator, given: dict[str, str]) -> None:
-    from deros.validators.hints import did_you_mean
-
-    known = [f"--{option.name}" for option in generator.options]
-    for name in given:
-        if f"--{name}" not in known:
-            hint = did_you_mean(f"--{name}", [*known, "--overwrite", "--interfaces"])
-            raise click.NoSuchOption(
-                f"--{name}", f"No such option: --{name}" + (f"; {hint}" if hint else "")
-            )
 
 
 def _show(diagnostics: Sequence[Diagnostic]) -> None:

@@ -55,6 +55,10 @@ class EmbeddedSource:
         fields = _rosbags().get(str(kind))
         return None if fields is None else (_from_rosbags(kind, fields),)
 
+    def inputs(self) -> tuple[Path, ...]:
+        """Return nothing: the embedded definitions are part of deros."""
+        return ()
+
 
 def _from_rosbags(kind: InterfaceType, definition: Any) -> MessageDefinition:
     constants, fields = definition

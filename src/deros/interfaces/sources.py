@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -54,6 +55,10 @@ class Source(Protocol):
         """Return the parts of the definition of ``kind``."""
         ...
 
+    def inputs(self) -> Iterable[Path]:
+        """Return the files and folders of the user that the answers given so far rest on."""
+        ...
+
 
 class FolderSource:
     """Definitions in the source tree of a workspace, of one package, or an install space.
@@ -64,6 +69,7 @@ class FolderSource:
     def __init__(self, root: Path) -> None:
         """Remember the folder; it is searched at the first question."""
         self._root = root
+        self._inputs: list[Path] = []
 
     @cached_property
     def _folders(self) -> dict[tuple[str, str], Path]:
@@ -72,6 +78,7 @@ class FolderSource:
         for directory, below, names in os.walk(self._root):
             below[:] = sorted(b for b in below if not b.startswith(".") and b not in _NOT_SEARCHED)
             here = Path(directory)
+            self._inputs.append(here)
             if here.name in SECTIONS and any(name.endswith(f".{here.name}") for name in names):
                 found.setdefault((_package_name(here.resolve().parent), here.name), here)
         return found
@@ -92,7 +99,15 @@ class FolderSource:
     def definition(self, kind: InterfaceType) -> Definition:
         """Read the definition of ``kind`` from its file."""
         folder = self._folders.get((kind.package, kind.kind))
-        return read_definition(folder / f"{kind.name}.{kind.kind}", kind) if folder else None
+        if folder is None:
+            return None
+        path = folder / f"{kind.name}.{kind.kind}"
+        self._inputs.append(path)
+        return read_definition(path, kind)
+
+    def inputs(self) -> Iterable[Path]:
+        """Return the folders searched, where another package may appear, and the files read."""
+        return tuple(self._inputs)
 
 
 class AmentSource:
@@ -104,6 +119,7 @@ class AmentSource:
     def __init__(self, prefix: Path) -> None:
         """Remember the prefix."""
         self._prefix = prefix
+        self._inputs: list[Path] = []
 
     def has_package(self, package: str) -> bool:
         """Tell whether the index of the prefix lists interfaces of ``package``."""
@@ -122,8 +138,13 @@ class AmentSource:
 
     def definition(self, kind: InterfaceType) -> Definition:
         """Read the definition of ``kind`` from the package's share folder."""
-        folder = self._prefix / "share" / kind.package / kind.kind
-        return read_definition(folder / f"{kind.name}.{kind.kind}", kind)
+        path = self._prefix / "share" / kind.package / kind.kind / f"{kind.name}.{kind.kind}"
+        self._inputs.append(path)
+        return read_definition(path, kind)
+
+    def inputs(self) -> Iterable[Path]:
+        """Return the files read."""
+        return tuple(self._inputs)
 
 
 def read_definition(path: Path, kind: InterfaceType) -> Definition:

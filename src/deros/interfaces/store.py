@@ -81,6 +81,13 @@ class InterfaceStore:
         owner = self._owner(package)
         return owner.names(package, kind) if owner else frozenset()
 
+    def inputs(self) -> tuple[Path, ...]:
+        """Return the files and folders on disk that the answers given so far rest on.
+
+        What is embedded in deros is not among them, nor what was looked for in vain.
+        """
+        return tuple(path for source in self._sources for path in source.inputs())
+
     @cached_property
     def _sources(self) -> list[Source]:
         from deros.interfaces.embedded import EmbeddedSource

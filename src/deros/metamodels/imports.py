@@ -41,6 +41,25 @@ def find_files(
     return (shown_path(path),)
 
 
+def listed_folders(importer: str, pattern: str) -> tuple[str, ...]:
+    """Return the folders whose content decides what ``pattern`` means in the file ``importer``.
+
+    Of a path they are none. Of a glob they are those where a new file, or a new folder, may match.
+    """
+    parent = Path(importer).parent
+    if not glob.has_magic(pattern) or _is_file(os.path.normpath(parent / pattern)):
+        return ()
+    parts = Path(pattern).parts
+    first = next(number for number, part in enumerate(parts) if glob.has_magic(part))
+    found: dict[str, None] = {}
+    for length in range(first, len(parts)):
+        above = os.path.normpath(Path(glob.escape(str(parent)), *parts[:length]))
+        for each in sorted(glob.iglob(above, recursive=True)):  # noqa: PTH207 - as in find_files
+            if Path(each).is_dir():
+                found[shown_path(each)] = None
+    return tuple(found)
+
+
 def shown_path(path: str) -> str:
     """Return a path as diagnostics show it: relative where it lies below the current directory."""
     if Path(path).is_absolute():

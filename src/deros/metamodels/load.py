@@ -18,7 +18,7 @@ from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
 from deros.metamodels.convert_node import NodeConverter
 from deros.metamodels.convert_rules import RulesConverter
 from deros.metamodels.convert_system import SystemConverter
-from deros.metamodels.imports import find_files
+from deros.metamodels.imports import find_files, listed_folders, shown_path
 from deros.metamodels.languages import LANGUAGES, Language, language_of, quick_metamodel
 from deros.metamodels.matching import Token
 from deros.metamodels.node import NodeType
@@ -65,6 +65,7 @@ class Repository:
     def __init__(self) -> None:
         self._files: dict[str, LoadedFile] = {}
         self._open: list[_Open] = []
+        self._folders: dict[str, None] = {}
 
     @property
     def files(self) -> list[LoadedFile]:
@@ -75,6 +76,16 @@ class Repository:
     def diagnostics(self) -> list[Diagnostic]:
         """The findings of all files loaded so far."""
         return [each for loaded in self._files.values() for each in loaded.diagnostics]
+
+    @property
+    def folders(self) -> list[str]:
+        """Every folder whose content decided what was loaded: those of globs in imports."""
+        return list(self._folders)
+
+    def listing(self, folder: Path, pattern: str) -> list[Path]:
+        """Return the files of a folder that match, by name; the folder joins :attr:`folders`."""
+        self._folders[shown_path(str(folder))] = None
+        return sorted(folder.glob(pattern))
 
     def load(self, path: str | Path) -> LoadedFile:
         """Load the model in the file ``path`` and everything that it imports.
@@ -121,6 +132,13 @@ class Repository:
             found = explain(error, source)
             return LoadedFile(source.path, language, source, None, (found,))
         return LoadedFile(source.path, language, source, model, tuple(loading.diagnostics))
+
+    def find(
+        self, importer: str, pattern: str, span: Span, suffixes: tuple[str, ...]
+    ) -> tuple[str, ...] | Diagnostic:
+        """Find the files that an import means; the folders of a glob join :attr:`folders`."""
+        self._folders.update(dict.fromkeys(listed_folders(importer, pattern)))
+        return find_files(importer, pattern, span, suffixes)
 
     def follow(self, importer: _Open, path: str) -> LoadedFile | Diagnostic:
         """Load the file ``path`` for an import; a cycle of imports is a diagnostic."""
@@ -202,7 +220,7 @@ class _Loading:
         token: Token = statement.path
         span = Span(self._source, token.start, token.end)
         pattern = str(token[1:-1])
-        found = find_files(self._source.path, pattern, span, suffixes)
+        found = self._repository.find(self._source.path, pattern, span, suffixes)
         if isinstance(found, Diagnostic):
             self.diagnostics.append(found)
             index.complete = False

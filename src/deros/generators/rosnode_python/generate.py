@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 from deros import codes
-from deros.diagnostics import has_errors, report
+from deros.diagnostics import report
 from deros.generators.names import python_identifier
+from deros.generators.node_package import maintainer, nodes_beside, refuse_legacy, unsupported
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.python_source import call, expression, mark_long_lines
 from deros.generators.rosnode_python.imports import base_imports, user_imports
 from deros.generators.rosnode_python.view import PackageView, package_view
 from deros.generators.templates import environment
-from deros.metamodels.node import NodeType, PortKind
-
-if TYPE_CHECKING:
-    from deros.metamodels.load import LoadedFile
-
-_MAINTAINER = re.compile(r"\s*([^<>]*?)\s*<([^<>\s]+@[^<>\s]+)>\s*")
+from deros.metamodels.node import NodeType
 
 
 def generate(model: NodeType, context: Context, options: Options) -> Files:
@@ -32,8 +25,8 @@ def generate(model: NodeType, context: Context, options: Options) -> Files:
     Raises:
         GenerationError: if the node, or one beside it, cannot be made.
     """
-    _refuse_legacy(model)
-    return package_files([model, *_beside(model, context)], options)
+    refuse_legacy(model)
+    return package_files([model, *nodes_beside(model, context)], options)
 
 
 def package_files(
@@ -59,7 +52,7 @@ def package_files(
     for model in ordered:
         _check_supported(model)
     copyright_line = options.get("copyright", "")
-    package = package_view(ordered, _maintainer(options), copyright_line, raw, needs)
+    package = package_view(ordered, maintainer(options), copyright_line, raw, needs)
     files = _package_level(package)
     for node in package.nodes:
         root = f"{package.name}/{package.name}"
@@ -107,90 +100,13 @@ def _render(template: str, **names: object) -> str:
     return mark_long_lines(text) if template.endswith(".py") else text
 
 
-# What belongs together ----------------------------------------------------------------------------
-
-
-def _beside(model: NodeType, context: Context) -> list[NodeType]:
-    """Return the other nodes of the model's package that are described in its folder.
-
-    Nodes with a program of their own need no skeleton.
-
-    Raises:
-        GenerationError: if a file that seems to belong to the package has an error; without it, the
-            package would lose a node that it had.
-    """
-    found: list[NodeType] = []
-    own = Path(model.source.path)
-    for path in sorted(own.parent.glob("*.rnd")):
-        if path.name == own.name:
-            continue
-        loaded = context.repository.load(path)
-        if _belongs(loaded, model.package) and has_errors(loaded.diagnostics):
-            raise GenerationError(loaded.diagnostics)
-        other = loaded.model
-        if (
-            isinstance(other, NodeType)
-            and other.package == model.package
-            and other.name != model.name
-            and other.executable is None
-        ):
-            found.append(other)
-    return found
-
-
-def _belongs(loaded: LoadedFile, package: str) -> bool:
-    """Tell whether a file describes a node of ``package``, as far as it can be told."""
-    if isinstance(loaded.model, NodeType):
-        return loaded.model.package == package
-    text = loaded.source.text if loaded.source else ""
-    return re.search(rf":\s*{re.escape(package)}\b", text) is not None
-
-
 # What the target refuses --------------------------------------------------------------------------
 
 
-def _refuse_legacy(model: NodeType) -> None:
-    if model.executable is None:
-        return
-    raise GenerationError(
-        [
-            report(
-                codes.UNSUPPORTED_BY_TARGET,
-                f"node {model.name!r} runs the existing program {model.executable!r}: "
-                "there is no skeleton to generate",
-                model.name_span,
-                hint="remove the line 'executable' to have the node generated",
-            )
-        ]
-    )
-
-
 def _check_supported(model: NodeType) -> None:
-    found = []
+    found = unsupported(model)
     if python_identifier(model.package) != model.package:
         message = f"package name {model.package!r} is no Python module name"
-        found.append(report(codes.UNSUPPORTED_BY_TARGET, message, model.package_span))
-    for parameter in model.parameters:
-        if parameter.name in ("use_sim_time", "start_type_description_service"):
-            message = f"parameter {parameter.name!r} is declared by every ROS 2 node itself"
-            hint = "remove it; it can be set all the same"
-            span = parameter.name_span
-            found.append(report(codes.UNSUPPORTED_BY_TARGET, message, span, hint))
-    for port in model.ports:
-        action = port.kind in (PortKind.ACTION, PortKind.ACTION_CLIENT)
-        if action and port.qos is not None:
-            message = f"an action has five services and topics, {port.name!r} gives one QoS profile"
-            hint = "leave the QoS of actions to ROS 2"
-            found.append(report(codes.UNSUPPORTED_BY_TARGET, message, port.span, hint))
+        found.insert(0, report(codes.UNSUPPORTED_BY_TARGET, message, model.package_span))
     if found:
         raise GenerationError(found)
-
-
-def _maintainer(options: Options) -> tuple[str, str]:
-    text = options.get("maintainer")
-    if text is None:
-        return "maintainer", "maintainer@example.com"
-    match = _MAINTAINER.fullmatch(text)
-    if match is None:
-        raise ValueError(f"maintainer {text!r} does not read 'Name <address>'")
-    return match[1] or match[2], match[2]

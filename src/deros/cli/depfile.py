@@ -1,0 +1,102 @@
+"""What a build system keeps of a run: the files it rests on, and those it made."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+from collections.abc import Iterable, Iterator
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from deros.generators.writer import WriteError
+
+if TYPE_CHECKING:
+    from deros.generators.protocol import Context
+    from deros.generators.registry import Generator
+
+_SPECIAL = re.compile(r"[ \t#]")
+
+
+def inputs(context: Context, generator: Generator, more: Iterable[Path] = ()) -> list[str]:
+    """Return the absolute paths of all that a run has read and whose change asks for another.
+
+    These are the models; the folders that globs have searched, whose change says that a file came
+    or went; the definitions of messages; ``more``; and deros and the generator themselves.
+    """
+    models = [loaded.path for loaded in context.repository.files if loaded.source is not None]
+    named: list[str | Path] = [*models, *context.repository.folders, *context.store.inputs(), *more]
+    named += _program("deros", "deros")
+    module = generator.function.__module__.partition(".")[0]
+    if module != "deros":
+        named += _program(module, generator.project_name)
+    return sorted({os.path.abspath(each) for each in named})  # noqa: PTH100 - links stay links
+
+
+def _program(module: str, project: str | None) -> Iterator[Path]:
+    """Find the files of a program: its package, and the record of its version.
+
+    An installer may give files the time of their making, so that an upgrade would not show. But
+    the record lies in a folder that is named after the version, and is gone with it.
+    """
+    found = importlib.util.find_spec(module)
+    if found is not None:
+        for root in found.submodule_search_locations or ():
+            for directory, below, names in os.walk(root):
+                below[:] = [each for each in below if each != "__pycache__"]
+                yield from (Path(directory, name) for name in names)
+        if found.origin is not None:
+            yield Path(found.origin)
+    try:
+        files = distribution(project).files if project else None
+    except PackageNotFoundError:
+        files = None
+    yield from (Path(str(each.locate())) for each in files or () if each.name == "METADATA")
+
+
+def depfile(targets: Iterable[str], prerequisites: Iterable[str]) -> str:
+    """Return a Makefile rule for ``targets``, with a line for each prerequisite."""
+    head = " ".join(map(_escaped, targets))
+    return " \\\n  ".join([f"{head}:", *map(_escaped, prerequisites)]) + "\n"
+
+
+def _escaped(path: str) -> str:
+    return _SPECIAL.sub(r"\\\g<0>", path.replace("$", "$$"))
+
+
+def write_if_changed(path: Path, text: str) -> None:
+    """Write a file, unless it holds the text already.
+
+    Raises:
+        WriteError: if it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if not path.is_file() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise WriteError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
+    """Write the stamp of a run: what it made, and, as the file's time, when it began.
+
+    A model that is saved while deros runs is then newer than the stamp, and not overlooked.
+
+    Raises:
+        WriteError: if it cannot be written.
+    """
+    write_if_changed(path, "".join(f"{each}\n" for each in made))
+    try:
+        os.utime(path, ns=(started_ns, started_ns))
+    except OSError as error:
+        raise WriteError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+def stamped(path: Path) -> list[str]:
+    """Return what the run before made, as its stamp says; nothing if there was none."""
+    try:
+        return path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return []

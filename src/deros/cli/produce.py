@@ -1,0 +1,236 @@
+"""From a model's file to generated files on the disk, as commands and build systems ask for it."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from deros.cli.options import FINDINGS, UNUSABLE, exit_code, in_the_way_of_generating
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from deros.diagnostics import Diagnostic
+    from deros.generators.protocol import Context, File, Files
+    from deros.generators.registry import Generator, Registry
+    from deros.generators.writer import WriteReport
+    from deros.metamodels.load import LoadedFile
+
+
+class Refused(Exception):  # noqa: N818 - it carries findings, and is no fault of the program
+    """Nothing is generated; the diagnostics say why, ``code`` is what to exit with."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic], code: int) -> None:
+        """Carry the findings."""
+        self.diagnostics = tuple(diagnostics)
+        self.code = code
+        super().__init__("; ".join(each.message for each in self.diagnostics))
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What to generate: a model, a target of it, and what both need.
+
+    Attributes:
+        file: the model's path, as diagnostics are to show it.
+        target: which generator.
+        options: those of the generator.
+        interfaces: folders with message definitions.
+    """
+
+    file: str
+    target: str
+    options: Mapping[str, str] = field(default_factory=dict)
+    interfaces: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """The files of a model, not written yet, with what they were made by and what was found."""
+
+    files: Files
+    context: Context
+    generator: Generator
+    findings: tuple[Diagnostic, ...]
+
+
+def make(request: Request) -> Made:
+    """Load, check and generate.
+
+    Raises:
+        Refused: if the model has an error, or the target cannot be made from it.
+        ValueError: if the generator cannot read an option; ``UnknownOption`` if it has none such.
+    """
+    from deros.generators.protocol import Context, GenerationError
+    from deros.generators.registry import discover
+    from deros.interfaces.store import InterfaceStore
+    from deros.metamodels.load import Repository
+    from deros.validators.check import check as check_loaded
+
+    context = Context(InterfaceStore(request.interfaces), Repository())
+    loaded = context.repository.load(request.file)
+    findings = check_loaded([loaded], context.repository, context.store)
+    code = exit_code(in_the_way_of_generating(findings, request.file))
+    if code or loaded.language is None:
+        raise Refused(findings, code or FINDINGS)
+    generator = discover().find(loaded.language, request.target)
+    if generator is None:
+        unknown = _unknown_target(discover(), loaded, request.target)
+        raise Refused([*findings, unknown], UNUSABLE)
+    _know_options(generator, request.options)
+    try:
+        files = generator(loaded.model, context, request.options)
+    except GenerationError as error:
+        raise Refused([*findings, *error.diagnostics], FINDINGS) from error
+    return Made(files, context, generator, tuple(findings))
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where files go, and what a build system is to know of it.
+
+    Attributes:
+        output: the folder to write to.
+        overwrite: whether files of the generator that a hand has edited are replaced.
+        source: where the hand-written files of the package are, if not in the output.
+        depfile: where to write what the output rests on, as a rule of Make.
+        stamp: the file that stands for the whole output; the rule's target.
+    """
+
+    output: Path
+    overwrite: bool = False
+    source: Path | None = None
+    depfile: Path | None = None
+    stamp: Path | None = None
+
+
+def put(made: Made, where: Place, started_ns: int) -> WriteReport:
+    """Write the files, and last what the build system is to know.
+
+    Args:
+        made: what :func:`make` returned.
+        where: the places.
+        started_ns: when the run began, by ``time.time_ns``.
+
+    Raises:
+        WriteError: if something cannot be written.
+        SourceTreeError: if the source tree lacks a file, or has one that is in the way.
+    """
+    from deros.cli.depfile import depfile, inputs, stamp, stamped, write_if_changed
+    from deros.generators.protocol import Owner
+    from deros.generators.source_tree import Merged, merge, place, remove_stale
+    from deros.generators.writer import write
+
+    merged = Merged(made.files, (), ())
+    if where.source is not None:
+        merged = merge(made.files, where.source)
+    written = write(merged.files, where.output, overwrite=where.overwrite)
+    place(merged.placed, where.output)
+    ours = {path for path, file in merged.files.items() if file.owner is Owner.GENERATOR}
+    ours |= {each.path for each in merged.placed}
+    if where.depfile is not None:
+        everything = [str(where.output / path) for path in sorted(ours)]
+        targets = everything if where.stamp is None else [str(where.stamp)]
+        absolute = map(os.path.abspath, targets)
+        found = inputs(made.context, made.generator, merged.inputs)
+        write_if_changed(where.depfile, depfile(absolute, found))
+    if where.stamp is not None:
+        stale = sorted(set(stamped(where.stamp)) - ours)
+        remove_stale(stale, where.output, overwrite=where.overwrite)
+        stamp(where.stamp, sorted(ours), started_ns)
+    return written
+
+
+def now_ns() -> int:
+    """Return the time of the files' clock."""
+    return time.time_ns()
+
+
+def scaffold_files(made: Made, request: Request, source: Path) -> dict[str, File]:
+    """Return what the source tree of a package has that is generated while it is built.
+
+    The script that has it generated is part of it; it is the user's once it is written.
+    """
+    from deros.generators.protocol import File, Owner
+    from deros.generators.source_tree import package_folder, scaffold
+
+    files = scaffold(made.files, source)
+    top = package_folder(made.files)
+    model = Path(os.path.relpath(request.file, source)).as_posix()
+    if f"{top}/CMakeLists.txt" in made.files:
+        files["CMakeLists.txt"] = File(_cmake_script(top, model, request), Owner.USER)
+    elif f"{top}/setup.py" in made.files:
+        files["setup.py"] = File(_setup_script(model, request), Owner.USER)
+    return files
+
+
+def scaffold_command(request: Request, source: Path) -> str:
+    """Return the command that makes, or mends, what a package has in its source tree."""
+    words = ["deros", "generate", request.file, "--target", request.target]
+    for name, value in request.options.items():
+        words += [f"--{name}", value]
+    for folder in request.interfaces:
+        words += ["--interfaces", str(folder)]
+    return shlex.join([*words, "--scaffold", str(source)])
+
+
+def _cmake_script(package: str, model: str, request: Request) -> str:
+    more = "".join(
+        f'\n  OPTIONS "--{name}={value}"' for name, value in sorted(request.options.items())
+    )
+    return (
+        "cmake_minimum_required(VERSION 3.22)\n"
+        f"project({package})\n\n"
+        "find_package(deros REQUIRED)\n"
+        f'deros_package(MODEL "{model}" GENERATOR {request.target}{more})\n'
+    )
+
+
+def _setup_script(model: str, request: Request) -> str:
+    arguments = [repr(model)]
+    if request.target != "python":
+        arguments.append(f"target={request.target!r}")
+    if request.options:
+        arguments.append(f"options={dict(sorted(request.options.items()))!r}")
+    return f"from deros.build import setup\n\nsetup({', '.join(arguments)})\n"
+
+
+class UnknownOption(ValueError):  # noqa: N818 - named after what it is
+    """The generator has no option of that name."""
+
+    def __init__(self, name: str, hint: str) -> None:
+        """Name it, with the nearest ones."""
+        self.option = f"--{name}"
+        super().__init__(f"No such option: --{name}" + (f"; {hint}" if hint else ""))
+
+
+def _unknown_target(registry: Registry, loaded: LoadedFile, target: str) -> Diagnostic:
+    from deros import codes
+    from deros.diagnostics import SourceFile, Span
+    from deros.diagnostics import report as finding
+    from deros.validators.hints import did_you_mean
+
+    assert loaded.language is not None
+    targets = registry.targets(loaded.language)
+    hint = did_you_mean(target, targets, f"it has {', '.join(targets)}" if targets else "")
+    for broken in registry.broken:
+        hint += f"; {broken.entry_point} of {broken.distribution} is unusable: {broken.reason}"
+    source = loaded.source or SourceFile(loaded.path, "")
+    message = f"no generator makes '{target}' from {loaded.language}"
+    return finding(codes.UNKNOWN_TARGET, message, Span(source, 0, 0), hint.removeprefix("; "))
+
+
+def _know_options(generator: Generator, given: Mapping[str, str]) -> None:
+    from deros.validators.hints import did_you_mean
+
+    known = [f"--{option.name}" for option in generator.options]
+    for name in given:
+        if f"--{name}" not in known:
+            raise UnknownOption(
+                name, did_you_mean(f"--{name}", [*known, "--overwrite", "--interfaces"])
+            )
