@@ -23,6 +23,7 @@ BROKEN_PIPE = 141
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "check": ("deros.cli.check:check", "Check models and report every finding."),
+    "cmake-dir": ("deros.cli.cmake_dir:cmake_dir", "Print the folder for CMake's deros_DIR."),
     "generate": ("deros.cli.generate:generate", "Generate code, launch files or parameters."),
     "graph": ("deros.cli.graph:graph", "Show who talks to whom in a system."),
     "new": ("deros.cli.new:new", "Start a new model that checks clean."),

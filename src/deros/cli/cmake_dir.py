@@ -1,0 +1,18 @@
+"""``deros cmake-dir``: where CMake finds deros, in an environment that it does not search itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command("cmake-dir")
+def cmake_dir() -> None:
+    """Print the folder for CMake's deros_DIR.
+
+    It is needed only where find_package(deros) does not find deros by itself:
+
+      cmake -B build -Dderos_DIR=$(deros cmake-dir)
+    """
+    click.echo(Path(__file__).resolve().parents[1] / "cmake")
