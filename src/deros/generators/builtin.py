@@ -62,3 +62,12 @@ def deros_python(model: Rules, context: Context, options: Options) -> Files:
     from deros.generators.safety_python.generate import generate
 
     return generate(model, context, options)
+
+
+@generator("deros", "c")
+def deros_c(model: Rules, context: Context, options: Options) -> Files:
+    """The monitor as freestanding C99: a header and a source, for a PLC or a microcontroller."""
+    from deros.generators.monitor_c.generate import generate
+
+    assert not options
+    return generate(model, context)

@@ -9,14 +9,33 @@ from __future__ import annotations
 
 def _c_of_quaternion(name: str, value: str) -> str:
     return f"""\
-static double deros_{name}(double x, double y, double z, double w)
+static double {name}(double x, double y, double z, double w)
 {{
   const double length = hypot(hypot(x, y), hypot(z, w));
-  if (!(length > 0.0 && length < INFINITY)) {{
-    return NAN;
+  double angle = NAN;
+  if ((length > 0.0) && (length < INFINITY)) {{
+    const double ux = x / length;
+    const double uy = y / length;
+    const double uz = z / length;
+    const double uw = w / length;
+    angle = {value};
   }}
-  x /= length, y /= length, z /= length, w /= length;
-  return {value};
+  return angle;
+}}
+"""
+
+
+def _c_extreme(name: str, relation: str) -> str:
+    return f"""\
+static RESULT {name}_BASE(const ELEMENT * values, size_t count)
+{{
+  RESULT found = NONE;
+  for (size_t i = 0U; i < count; ++i) {{
+    if ((i == 0U) || (values[i] {relation} found)) {{
+      found = values[i];
+    }}
+  }}
+  return found;
 }}
 """
 
@@ -111,85 +130,89 @@ def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
 """Definitions in Python by the function's name; ``None`` is *unknown*."""
 
 C: dict[str, str] = {
-    "roll": _c_of_quaternion("roll", "atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))"),
-    "pitch": _c_of_quaternion("pitch", "asin(fmax(-1.0, fmin(1.0, 2.0 * (w * y - z * x))))"),
-    "yaw": _c_of_quaternion("yaw", "atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))"),
-    "tilt": _c_of_quaternion("tilt", "2.0 * atan2(hypot(x, y), hypot(z, w))"),
+    "roll": _c_of_quaternion(
+        "roll", "atan2(2.0 * ((uw * ux) + (uy * uz)), 1.0 - (2.0 * ((ux * ux) + (uy * uy))))"
+    ),
+    "pitch": _c_of_quaternion("pitch", "asin(clamped(2.0 * ((uw * uy) - (uz * ux))))"),
+    "yaw": _c_of_quaternion(
+        "yaw", "atan2(2.0 * ((uw * uz) + (ux * uy)), 1.0 - (2.0 * ((uy * uy) + (uz * uz))))"
+    ),
+    "tilt": _c_of_quaternion("tilt", "2.0 * atan2(hypot(ux, uy), hypot(uz, uw))"),
+    "clamped": """\
+static double clamped(double sine)
+{
+  return (sine > 1.0) ? 1.0 : ((sine < -1.0) ? -1.0 : sine);
+}
+""",
     "norm": """\
-static double deros_norm(double x, double y, double z)
+static double norm(double x, double y, double z)
 {
   return hypot(hypot(x, y), z);
 }
 """,
     "rate": """\
-static double deros_rate(double value, double previous, long long elapsed_ns)
+static double rate(double value, int64_t t, double * last, int64_t * last_t)
 {
-  return elapsed_ns == 0 ? NAN : (value - previous) / ((double)elapsed_ns / 1e9);
+  const int64_t elapsed = t - *last_t;
+  const double change = (elapsed == 0) ? NAN : ((value - *last) / ((double)elapsed / 1e9));
+  *last = value;
+  *last_t = t;
+  return change;
 }
 """,
-    "min": """\
-static double deros_min(const double * values, size_t count)
+    "magnitude": """\
+static int64_t magnitude(int64_t value)
 {
-  double least = count ? values[0] : NAN;
-  for (size_t i = 1; i < count; ++i) {
-    least = fmin(least, values[i]);
-  }
-  return least;
+  return (value < 0) ? -value : value;
 }
 """,
-    "max": """\
-static double deros_max(const double * values, size_t count)
-{
-  double greatest = count ? values[0] : NAN;
-  for (size_t i = 1; i < count; ++i) {
-    greatest = fmax(greatest, values[i]);
-  }
-  return greatest;
-}
-""",
-    "count": """\
-static double deros_count(const void * values, size_t count)
-{
-  (void)values;
-  return (double)count;
-}
-""",
+    "min": _c_extreme("least", "<"),
+    "max": _c_extreme("greatest", ">"),
     "nearest": """\
-static double deros_nearest(
-  const double * ranges, size_t count, double angle_min, double angle_increment,
+static double nearest(
+  const float * ranges, size_t count, double angle_min, double angle_increment,
   double range_min, double range_max, double start, double end)
 {
   const double turn = 6.283185307179586;
-  const double width = end >= start ? end - start : end - start + turn;
+  const double width = (end >= start) ? (end - start) : ((end - start) + turn);
   double shortest = NAN;
-  for (size_t i = 0; i < count; ++i) {
-    double distance = ranges[i];
+  for (size_t i = 0U; i < count; ++i) {
+    const double offset = fmod((angle_min + ((double)i * angle_increment)) - start, turn);
+    const double beyond = (offset < 0.0) ? (offset + turn) : offset;
+    const bool inside = (beyond <= (width + 1e-6)) || (beyond >= (turn - 1e-6));
+    double distance = (double)ranges[i];
     if (distance == -INFINITY) {  /* too near to measure (REP 117) */
       distance = range_min;
-    } else if (!(distance >= range_min)) {  /* invalid */
-      continue;
-    } else if (distance > range_max) {
-      distance = INFINITY;
+    } else if (distance >= range_min) {
+      distance = (distance > range_max) ? INFINITY : distance;
+    } else {  /* invalid */
+      distance = NAN;
     }
-    double offset = fmod(angle_min + (double)i * angle_increment - start, turn);
-    offset += offset < 0.0 ? turn : 0.0;
-    if (offset <= width + 1e-6 || offset >= turn - 1e-6) {
-      shortest = fmin(shortest, distance);
+    if (inside && is_number(distance) && !(shortest <= distance)) {
+      shortest = distance;
     }
   }
   return shortest;
 }
 """,
     "scan_usable": """\
-static int deros_scan_usable(const double * ranges, size_t count, double range_min)
+static bool scan_usable(const float * ranges, size_t count, double range_min)
 {
-  for (size_t i = 0; i < count; ++i) {
-    if (ranges[i] >= range_min || ranges[i] == -INFINITY) {
-      return 1;
+  bool usable = false;
+  for (size_t i = 0U; i < count; ++i) {
+    if (((double)ranges[i] >= range_min) || ((double)ranges[i] == -INFINITY)) {
+      usable = true;
     }
   }
-  return 0;
+  return usable;
 }
 """,
 }
-"""Definitions in C99 by the function's name; ``NAN`` is *unknown*."""
+"""Definitions in C99 by the function's name; ``NAN`` is *unknown*.
+
+They need ``<math.h>``, the fixed-width integers and ``bool``, and of each other: ``pitch`` needs
+``clamped``, ``nearest`` needs ``is_number``, which says of a number that it is no NaN. Of those of
+arrays there is one per type of element: ``BASE`` stands for the name of the type in ROS 2,
+``ELEMENT`` for that in C, ``RESULT`` for the type of the result and ``NONE`` for what an empty array
+gives (``abs`` of an integer is ``magnitude``).
+"""

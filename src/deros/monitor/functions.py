@@ -135,7 +135,7 @@ def _of_quaternion(
         evaluate=evaluate,
         bounds=bounds,
         python_of_unit=texts.PYTHON_OF_UNIT[name],
-        c_call=f"deros_{name}",
+        c_call=name,
         c=texts.C[name],
     )
 
@@ -150,7 +150,7 @@ def _of_numbers(name: str, evaluate: Callable[..., float | None]) -> Function:
         evaluate=evaluate,
         python_call=f"array_{name}",
         python=texts.PYTHON[name],
-        c_call=f"deros_{name}",
+        c_call={"min": "least", "max": "greatest"}[name],
         c=texts.C[name],
     )
 
@@ -171,7 +171,7 @@ _ROWS = (
         evaluate=values.norm,
         bounds=(0.0, math.inf),
         python_call="math.hypot",
-        c_call="deros_norm",
+        c_call="norm",
         c=texts.C["norm"],
     ),
     Function(
@@ -193,7 +193,7 @@ _ROWS = (
         stateful=True,
         python_call="rate_per_second",
         python=texts.PYTHON["rate"],
-        c_call="deros_rate",
+        c_call="rate",
         c=texts.C["rate"],
     ),
     _of_numbers("min", values.least),
@@ -208,8 +208,6 @@ _ROWS = (
         nan_is_unknown=False,
         bounds=(0.0, math.inf),
         python_call="len",
-        c_call="deros_count",
-        c=texts.C["count"],
     ),
     Function(
         "nearest",
@@ -226,12 +224,12 @@ _ROWS = (
             values.scan_usable,
             "scan_usable",
             texts.PYTHON["scan_usable"],
-            "deros_scan_usable",
+            "scan_usable",
             texts.C["scan_usable"],
         ),
         python_call="scan_nearest",
         python=texts.PYTHON["nearest"],
-        c_call="deros_nearest",
+        c_call="nearest",
         c=texts.C["nearest"],
     ),
     Function("age", Argument.INPUT, Result.DURATION, UnitRule.FIXED, unit="s"),

@@ -1,0 +1,231 @@
+"""Values and conditions of the rules as expressions of C."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass, field
+
+from deros.generators.monitor_c.layout import Layout, compared, type_of
+from deros.generators.monitor_c.source import Call, Expression, Infix
+from deros.monitor.evaluate import COMPARE
+from deros.monitor.functions import FUNCTIONS, Argument
+from deros.monitor.ir import (
+    Age,
+    And,
+    Apply,
+    Compare,
+    Condition,
+    Const,
+    For,
+    Missing,
+    Not,
+    Operator,
+    Or,
+    Program,
+    Read,
+    RuleRef,
+    Scale,
+    Truth,
+    ValueExpression,
+    Within,
+)
+
+SYMBOLS: dict[Operator, str] = {
+    "=": "==",
+    "!=": "!=",
+    "<": "<",
+    "<=": "<=",
+    ">": ">",
+    ">=": ">=",
+}
+
+
+def number(value: float) -> str:
+    """Return the literal of a double: the shortest text that reads back as the same number."""
+    if math.isinf(value):
+        return "-INFINITY" if value < 0 else "INFINITY"
+    return repr(value)
+
+
+def integer(value: int) -> str:
+    """Return the literal of a 64-bit integer; one that no ``int64_t`` holds, of an unsigned."""
+    if value < -(2**63) + 1:
+        return "INT64_MIN"
+    return f"INT64_C({value})" if value < 2**63 else f"UINT64_C({value})"
+
+
+def literal(value: bool | int | float) -> str:
+    """Return the literal of a constant."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return integer(value) if isinstance(value, int) else number(value)
+
+
+class Conditions:
+    """Writes conditions as expressions of the type of verdicts."""
+
+    def __init__(self, program: Program, layout: Layout) -> None:
+        """Remember what is named how."""
+        self._program = program
+        self._layout = layout
+        self._intervals: dict[int, str] = {}
+
+    def interval(self, condition: For) -> str:
+        """Return the local constant that holds an interval's verdict."""
+        number = len(self._intervals) + 1
+        return self._intervals.setdefault(condition.index, f"for_{number}")
+
+    def verdict(self, condition: Condition) -> Expression:
+        """Return a condition; its intervals are local constants."""
+        macro = self._layout.macro
+        match condition:
+            case Truth(operand=Const(value=value)):
+                return f"{macro}_TRUE" if value else f"{macro}_FALSE"
+            case Truth() | Compare() | Within():
+                return self._known(condition)
+            case Missing():
+                return Call(
+                    "truth_of", ("true", f"m->{self._layout.inputs[condition.input].missing}")
+                )
+            case Age():
+                fields = self._layout.inputs[condition.input]
+                age = f"(m->now - m->{fields.base})"
+                held = f"{age} {SYMBOLS[condition.operator]} {integer(condition.bound_ns)}"
+                return Call("truth_of", (f"m->{fields.came}", held))
+            case Not():
+                return Call("negated", (self.verdict(condition.operand),))
+            case And():
+                return self._nested("both", condition.operands)
+            case Or():
+                return self._nested("either", condition.operands)
+            case For():
+                timed = condition.index in self._layout.since
+                return self.interval(condition) if timed else self.verdict(condition.operand)
+            case RuleRef():
+                return f"m->{self._layout.verdicts[condition.rule]}"
+
+    def _nested(self, function: str, operands: tuple[Condition, ...]) -> Expression:
+        return functools.reduce(
+            lambda first, second: Call(function, (first, second)), map(self.verdict, operands)
+        )
+
+    def _known(self, condition: Truth | Compare | Within) -> Expression:
+        flags = dict.fromkeys(
+            f"m->{self._layout.terms[value].known}" for value in compared(condition)
+        )
+        known = Infix("&&", tuple(flags))
+        return Call("truth_of", (known, self._holds(condition)))
+
+    def _holds(self, condition: Truth | Compare | Within) -> Expression:
+        match condition:
+            case Truth():
+                return self._operand(condition.operand)
+            case Compare():
+                return self._compare(condition.left, condition.operator, condition.right)
+            case Within():
+                lower: Operator = ">=" if condition.lower_closed else ">"
+                upper: Operator = "<=" if condition.upper_closed else "<"
+                above = self._compare(condition.operand, lower, condition.lower)
+                below = self._compare(condition.operand, upper, condition.upper)
+                return Infix("&&", (f"({above})", f"({below})"))
+
+    def _compare(self, left: ValueExpression, operator: Operator, right: ValueExpression) -> str:
+        kinds = {type_of(self._program, left), type_of(self._program, right)}
+        if "text" in kinds:
+            return self._compare_text(left, operator, right)
+        if kinds == {"bool"}:
+            return self._compare_truth(left, operator, right)
+        if "uint64_t" in kinds:
+            return self._compare_unsigned(left, operator, right)
+        cast = "double" if "double" in kinds and len(kinds) > 1 else ""
+        first, second = self._operand(left, cast), self._operand(right, cast)
+        return f"{first} {SYMBOLS[operator]} {second}"
+
+    def _operand(self, value: ValueExpression, cast: str = "") -> str:
+        if isinstance(value, Const):
+            assert not isinstance(value.value, str)
+            return literal(float(value.value) if cast else value.value)
+        term = self._layout.terms[value]
+        return f"m->{term.name}" if not cast or term.type == cast else f"({cast})m->{term.name}"
+
+    def _compare_truth(
+        self, left: ValueExpression, operator: Operator, right: ValueExpression
+    ) -> str:
+        for constant, other in ((left, right), (right, left)):
+            if isinstance(constant, Const):
+                straight = bool(constant.value) == (operator == "=")
+                return f"{'' if straight else '!'}{self._operand(other)}"
+        return f"{self._operand(left)} {SYMBOLS[operator]} {self._operand(right)}"
+
+    def _compare_unsigned(
+        self, left: ValueExpression, operator: Operator, right: ValueExpression
+    ) -> str:
+        """Compare a value with one of its type, or with a constant that may be none of it."""
+        if not isinstance(right, Const):
+            return f"{self._operand(left)} {SYMBOLS[operator]} {self._operand(right)}"
+        bound = right.value
+        assert isinstance(bound, (int, float))
+        if bound < 0 or bound != int(bound):
+            return literal(COMPARE[operator](0.5 if bound >= 0 else 1, 0))
+        return f"{self._operand(left)} {SYMBOLS[operator]} UINT64_C({int(bound)})"
+
+    def _compare_text(
+        self, left: ValueExpression, operator: Operator, right: ValueExpression
+    ) -> str:
+        value, constant = (right, left) if isinstance(left, Const) else (left, right)
+        term = self._layout.terms[value]
+        assert isinstance(constant, Const)
+        place = term.texts.index(str(constant.value)) + 1
+        return f"m->{term.name} {SYMBOLS[operator]} {place}U"
+
+
+@dataclass(frozen=True, slots=True)
+class Arguments:
+    """What is called how in a handler.
+
+    Attributes:
+        leaves: the arguments, by leaf; an array's elements stand with their count.
+        computed: the local constants that hold what functions with a memory give.
+    """
+
+    leaves: dict[int, str]
+    computed: dict[Apply, str] = field(default_factory=dict)
+
+
+def expression(value: ValueExpression, program: Program, arguments: Arguments) -> str:
+    """Return a value computed from the arguments of a handler."""
+    match value:
+        case Const():
+            assert not isinstance(value.value, str)
+            return literal(value.value)
+        case Read():
+            return arguments.leaves[value.leaf]
+        case Scale():
+            operand = as_double(value.operand, program, arguments)
+            scaled = f"({operand} * {number(value.factor)})"
+            return f"({scaled} + {number(value.offset)})" if value.offset else scaled
+        case Apply():
+            if value in arguments.computed:
+                return arguments.computed[value]
+            texts = [expression(each, program, arguments) for each in value.arguments]
+            if value.function == "count":
+                return f"(int64_t){texts[0]}"
+            return f"{function_name(value, program)}({', '.join(texts)})"
+
+
+def as_double(value: ValueExpression, program: Program, arguments: Arguments) -> str:
+    """Return a number, of whichever type it is, as a double."""
+    text = expression(value, program, arguments)
+    return text if type_of(program, value) == "double" else f"(double){text}"
+
+
+def function_name(value: Apply, program: Program) -> str:
+    """Return the name of the C function that computes a value; arrays have one per element type."""
+    row, first = FUNCTIONS[value.function], value.arguments[0]
+    if value.function == "abs" and type_of(program, first) != "double":
+        return "magnitude"
+    if row.argument is Argument.NUMBERS:
+        assert isinstance(first, Read)
+        return f"{row.c_call}_{program.leaves[first.leaf].type.base}"
+    return row.c_call

@@ -1,0 +1,296 @@
+"""What a message does to its inputs: one function per topic."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from deros.generators.monitor_c.expressions import Arguments, as_double, expression
+from deros.generators.monitor_c.layout import InputFields, Layout, Term, c_type
+from deros.generators.monitor_c.names import new_names
+from deros.generators.monitor_c.source import comment, lay_out_list
+from deros.generators.monitor_python.names import Names
+from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, STRING_TYPES
+from deros.monitor import walk
+from deros.monitor.engine import age_changes
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import Age, Apply, Input, Leaf, Program, Read, ValueExpression
+
+ELEMENTS = {
+    **{base: f"{base}_t" for base in INTEGER_RANGES},
+    "byte": "uint8_t",
+    "char": "uint8_t",
+    "float32": "float",
+    "float64": "double",
+    "bool": "bool",
+}
+"""The C type of an array's element, by the primitive type of ROS 2."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One field of the topic's message, as one to three parameters of C.
+
+    Attributes:
+        name: of the first; that of an array's or a text's length ends in ``_count`` or ``_length``,
+            that of a flag that the element is there in ``_given``.
+        declarations: of all, as C writes them.
+        path: the field, from the message's root.
+        leaves: the leaves of the program that it feeds.
+        form: what is passed: the value; an array's elements and count; its count alone; a text's
+            characters and length.
+        element: the C type of an array's elements; empty for others.
+        given: whether a flag follows that tells whether the message's array has the element; of
+            floating-point numbers a NaN says it.
+    """
+
+    name: str
+    declarations: tuple[str, ...]
+    path: tuple[str | int, ...]
+    leaves: tuple[int, ...]
+    form: str
+    element: str
+    given: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Handler:
+    """The function that takes a topic's messages.
+
+    Attributes:
+        topic: the topic as the rules name it; ``type`` its message type, as ROS 2 writes it.
+        function: the function's name; it takes the monitor, the time, then ``parameters``.
+        signature: its first line or lines, without what follows them.
+        observe: the lines that take the inputs' values.
+        inputs: what it changes.
+    """
+
+    topic: str
+    type: str
+    function: str
+    parameters: tuple[Parameter, ...]
+    signature: tuple[str, ...]
+    observe: tuple[str, ...]
+    inputs: tuple[int, ...]
+
+
+def handlers(program: Program, layout: Layout) -> tuple[Handler, ...]:
+    """Return the handlers of a program, in the order of its topics."""
+    names = new_names()
+    return tuple(_Writer(program, layout, topic).handler(names) for topic in program.topics)
+
+
+class _Writer:
+    """Writes the handler of one topic."""
+
+    def __init__(self, program: Program, layout: Layout, topic: str) -> None:
+        self._program = program
+        self._layout = layout
+        self._topic = topic
+        self._inputs = [each for each in program.inputs if each.topic == topic]
+        self._parameters = self._name_parameters()
+        self._arguments = Arguments(self._leaf_names())
+
+    def handler(self, names: Names) -> Handler:
+        prefix = self._layout.prefix
+        only = self._inputs[0].name if len(self._inputs) == 1 else self._topic
+        function = f"{prefix}_on_{names.new(only)}"
+        declarations = [
+            f"{prefix}_monitor *m",
+            "int64_t t",
+            *(text for each in self._parameters for text in each.declarations),
+        ]
+        return Handler(
+            self._topic,
+            str(self._program.topics[self._topic]),
+            function,
+            self._parameters,
+            tuple(lay_out_list(0, f"void {function}(", declarations, ")")),
+            tuple(line for each in self._inputs for line in self._observe(each)),
+            tuple(each.index for each in self._inputs),
+        )
+
+    # Parameters ---------------------------------------------------------------------------------
+
+    def _name_parameters(self) -> tuple[Parameter, ...]:
+        groups: dict[tuple[str | int, ...], list[Leaf]] = {}
+        for each in self._inputs:
+            for index in each.leaves:
+                leaf = self._program.leaves[index]
+                if self._is_needed(leaf):
+                    groups.setdefault(leaf.path, []).append(leaf)
+        names = new_names()
+        return tuple(self._parameter(names.new(*path), path, g) for path, g in groups.items())
+
+    def _parameter(self, name: str, path: tuple[str | int, ...], group: list[Leaf]) -> Parameter:
+        leaf = group[0]
+        element, base = "", leaf.type.base
+        counted = not any(self._reads_elements(each) for each in group)
+        if leaf.type.is_array and counted:
+            form, declarations = "count", [f"size_t {name}_count"]
+        elif leaf.type.is_array:
+            assert isinstance(base, str)
+            element = ELEMENTS[base]
+            form = "array"
+            declarations = [f"const {element} *{name}", f"size_t {name}_count"]
+        elif base in STRING_TYPES:
+            form, declarations = "text", [f"const char *{name}", f"size_t {name}_length"]
+        else:
+            form, declarations = "value", [f"{c_type(leaf.type)} {name}"]
+        given = _has_index(leaf) and (leaf.type.is_array or base not in FLOAT_TYPES)
+        if given:
+            declarations.append(f"bool {name}_given")
+        leaves = tuple(each.index for each in group)
+        return Parameter(name, tuple(declarations), path, leaves, form, element, given)
+
+    def _is_needed(self, leaf: Leaf) -> bool:
+        """Tell whether a condition reads a leaf, or the message would not count without it."""
+        if _has_index(leaf) or (leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown):
+            return True
+        return Read(leaf.index) in walk.values(walk.conditions(self._program))
+
+    def _reads_elements(self, leaf: Leaf) -> bool:
+        """Tell whether more than the length of an array is asked for."""
+        if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
+            return True
+        return any(
+            isinstance(value, Apply)
+            and value.function != "count"
+            and Read(leaf.index) in value.arguments
+            for value in walk.values(walk.conditions(self._program))
+        )
+
+    def _parameter_of(self, leaf: int) -> Parameter | None:
+        return next((each for each in self._parameters if leaf in each.leaves), None)
+
+    def _leaf_names(self) -> dict[int, str]:
+        names: dict[int, str] = {}
+        for each in self._parameters:
+            text = {
+                "array": f"{each.name}, {each.name}_count",
+                "count": f"{each.name}_count",
+            }.get(each.form, each.name)
+            names.update(dict.fromkeys(each.leaves, text))
+        return names
+
+    # One input ----------------------------------------------------------------------------------
+
+    def _observe(self, each: Input) -> list[str]:
+        fields = self._layout.inputs[each.index]
+        terms = self._layout.terms_of(each.index)
+        stores = [f"  {line}" for line in [*self._values(each, terms), *self._heard(each, fields)]]
+        if not stores:
+            return []
+        lines = comment(2, f"Input {each.name}", each.span)
+        tests = self._tests(each)
+        if not tests:
+            return [*lines, *(line[2:] for line in stores)]
+        lines += [*lay_out_test(tests), *stores]
+        if each.index in self._layout.forgets:
+            lines += ["  } else {", f"    {self._layout.forgets[each.index]}(m);"]
+        return [*lines, "  }"]
+
+    def _tests(self, each: Input) -> list[str]:
+        """Return what must hold for a message to count: no NaN, all elements there, guards met."""
+        tests: dict[str, None] = {}
+        for index in each.leaves:
+            leaf = self._program.leaves[index]
+            parameter = self._parameter_of(index)
+            if parameter is None:
+                continue
+            if parameter.given:
+                tests[f"{parameter.name}_given"] = None
+            if parameter.form == "array":
+                tests[f"({parameter.name}_count <= {self._layout.macro}_MOST_ELEMENTS)"] = None
+            if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
+                array = f"are_numbers_{leaf.type.base}({self._arguments.leaves[index]})"
+                single = f"is_number({parameter.name})"
+                tests[array if leaf.type.is_array else single] = None
+        for value in self._functions_of(each):
+            guard = FUNCTIONS[value.function].guard
+            if guard is not None:
+                arguments = [
+                    expression(value.arguments[n], self._program, self._arguments)
+                    for n in guard.arguments
+                ]
+                tests[f"{guard.c_call}({', '.join(arguments)})"] = None
+        return list(tests)
+
+    def _values(self, each: Input, terms: Sequence[Term]) -> Iterator[str]:
+        known = self._layout.inputs[each.index].known
+        if known:
+            yield f"  m->{known} = true;"
+        for value, memory in self._layout.memories_of(each.index).items():
+            operand = as_double(value.arguments[0], self._program, self._arguments)
+            name = f"{memory.last}_rate"
+            places = f"&m->{memory.last}, &m->{memory.last_t}"
+            yield f"  const double {name} = rate({operand}, m->now, {places});"
+            self._arguments.computed[value] = name
+        for term in terms:
+            yield from self._value(term)
+
+    def _value(self, term: Term) -> list[str]:
+        if term.texts:
+            name = self._arguments.leaves[_leaf_of(term.value)]
+            return [f"  m->{term.name} = which_{term.name}({name}, {name}_length);"]
+        text = expression(term.value, self._program, self._arguments)
+        lines = [f"  m->{term.name} = {text};"]
+        if not isinstance(term.value, Read):
+            lines.append(f"  m->{term.known} = {self._is_known(term)};")
+        return lines
+
+    def _is_known(self, term: Term) -> str:
+        value = term.value
+        if term.type == "double":
+            return f"is_number(m->{term.name})"
+        if isinstance(value, Apply) and value.function in ("min", "max"):
+            read = value.arguments[0]
+            assert isinstance(read, Read)
+            parameter = self._parameter_of(read.leaf)
+            assert parameter is not None
+            return f"({parameter.name}_count > 0U)"
+        return "true"
+
+    def _heard(self, each: Input, fields: InputFields) -> Iterator[str]:
+        if not fields.base:
+            return
+        yield f"  m->{fields.base} = m->now;"
+        yield f"  m->{fields.came} = true;"
+        if fields.missing:
+            yield f"  m->{fields.missing} = false;"
+        waits = [each.timeout_ns] if each.timeout_ns is not None else []
+        for condition in walk.conditions(self._program):
+            if isinstance(condition, Age) and condition.input == each.index:
+                waits += [change for change in age_changes(condition) if change > 0]
+        if waits:
+            soonest = f"m->now + INT64_C({min(waits)})"
+            yield f"  m->due = earlier(m->due, {soonest});"
+
+    def _functions_of(self, each: Input) -> list[Apply]:
+        return [
+            value
+            for value in walk.values(walk.conditions(self._program))
+            if isinstance(value, Apply) and value.input == each.index
+        ]
+
+
+def lay_out_test(tests: Sequence[str]) -> list[str]:
+    """Return the line or lines that open a block where all tests hold."""
+    line = f"  if ({' && '.join(tests)}) {{"
+    if len(line) <= 99:
+        return [line]
+    return [
+        f"  if ({tests[0]} &&",
+        *(f"    {test} &&" for test in tests[1:-1]),
+        f"    {tests[-1]})",
+        "  {",
+    ]
+
+
+def _has_index(leaf: Leaf) -> bool:
+    return any(isinstance(step, int) for step in leaf.path)
+
+
+def _leaf_of(value: ValueExpression) -> int:
+    assert isinstance(value, Read)
+    return value.leaf

@@ -1,0 +1,297 @@
+"""The functions that every monitor's text is made of, those that it does not call left out.
+
+Each text holds its contract. ``@`` stands for the prefix of public types, ``$`` for that of macros.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from deros.generators.monitor_c.handlers import ELEMENTS
+from deros.interfaces.types import FLOAT_TYPES
+from deros.monitor import walk
+from deros.monitor.function_texts import C
+from deros.monitor.ir import Apply, Program, Read
+
+_IS_NUMBER = """\
+/* Tells whether a number is one: no comparison holds of a NaN. */
+/*@ assigns \\nothing;
+    ensures \\result == 0 <==> \\is_NaN(value); */
+static bool is_number(double value)
+{
+  return (value <= 0.0) || (value > 0.0);
+}
+"""
+
+_ARE_NUMBERS = """\
+/* Tells whether no element is a NaN. */
+/*@ requires \\valid_read(values + (0 .. count - 1));
+    assigns \\nothing; */
+static bool are_numbers_BASE(const ELEMENT * values, size_t count)
+{
+  bool numbers = true;
+  /*@ loop invariant 0 <= i <= count;
+      loop assigns i, numbers;
+      loop variant count - i; */
+  for (size_t i = 0U; i < count; ++i) {
+    if (!is_number((double)values[i])) {
+      numbers = false;
+    }
+  }
+  return numbers;
+}
+"""
+
+_IS_TEXT = """\
+/* Tells whether a text is the expected one. */
+/*@ requires \\valid_read(text + (0 .. length - 1));
+    requires \\valid_read(expected + (0 .. expected_length - 1));
+    assigns \\nothing; */
+static bool is_text(
+  const char *text, size_t length, const char *expected, size_t expected_length)
+{
+  bool same = (length == expected_length);
+  /*@ loop invariant 0 <= i <= expected_length;
+      loop assigns i, same;
+      loop variant expected_length - i; */
+  for (size_t i = 0U; i < expected_length; ++i) {
+    if (same) {
+      same = (text[i] == expected[i]);
+    }
+  }
+  return same;
+}
+"""
+
+_TRUTH_OF = """\
+/* What holds, if it is known. */
+/*@ assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> known != 0 && holds != 0;
+    ensures \\result == $_FALSE <==> known != 0 && holds == 0; */
+static @_verdict truth_of(bool known, bool holds)
+{
+  const @_verdict verdict = holds ? $_TRUE : $_FALSE;
+  return known ? verdict : $_UNKNOWN;
+}
+"""
+
+_NEGATED = """\
+/* Kleene's negation. */
+/*@ requires is_verdict(operand);
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> operand == $_FALSE;
+    ensures \\result == $_FALSE <==> operand == $_TRUE; */
+static @_verdict negated(@_verdict operand)
+{
+  @_verdict verdict = $_UNKNOWN;
+  if (operand == $_TRUE) {
+    verdict = $_FALSE;
+  } else if (operand == $_FALSE) {
+    verdict = $_TRUE;
+  } else {
+    /* neither true nor false */
+  }
+  return verdict;
+}
+"""
+
+_BOTH = """\
+/* Kleene's conjunction: the less true of the two. */
+/*@ requires is_verdict(a) && is_verdict(b);
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> a == $_TRUE && b == $_TRUE;
+    ensures \\result == $_FALSE <==> a == $_FALSE || b == $_FALSE; */
+static @_verdict both(@_verdict a, @_verdict b)
+{
+  return (a < b) ? a : b;
+}
+"""
+
+_EITHER = """\
+/* Kleene's disjunction: the truer of the two. */
+/*@ requires is_verdict(a) && is_verdict(b);
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> a == $_TRUE || b == $_TRUE;
+    ensures \\result == $_FALSE <==> a == $_FALSE && b == $_FALSE; */
+static @_verdict either(@_verdict a, @_verdict b)
+{
+  return (a < b) ? b : a;
+}
+"""
+
+_LASTING = """\
+/* 'for': true once the operand has been true without a break for so long, since *since. */
+/*@ requires \\valid(m) && \\valid(since) && \\separated(since, &m->due, &m->now);
+    requires is_verdict(operand) && 0 <= m->now <= $_LATEST && 0 < duration <= $_LATEST;
+    requires *since == $_NEVER || 0 <= *since <= m->now;
+    assigns *since, m->due;
+    ensures operand != $_TRUE ==> *since == $_NEVER && \\result == operand;
+    ensures operand == $_TRUE && \\old(*since) == $_NEVER ==> *since == m->now;
+    ensures operand == $_TRUE && \\old(*since) != $_NEVER ==> *since == \\old(*since);
+    ensures operand == $_TRUE && m->now - *since >= duration ==> \\result == $_TRUE;
+    ensures operand == $_TRUE && m->now - *since < duration ==> \\result == $_FALSE;
+    ensures m->due <= \\old(m->due);
+    ensures operand == $_TRUE && \\old(*since) == $_NEVER ==> m->due <= m->now + duration;
+    ensures operand != $_TRUE || \\old(*since) != $_NEVER ==> m->due == \\old(m->due); */
+static @_verdict lasting(
+  @_monitor *m, int64_t *since, @_verdict operand, int64_t duration)
+{
+  @_verdict verdict = operand;
+  if (operand != $_TRUE) {
+    *since = $_NEVER;
+  } else {
+    if (*since == $_NEVER) {
+      *since = m->now;
+      m->due = earlier(m->due, m->now + duration);
+    }
+    verdict = ((m->now - *since) >= duration) ? $_TRUE : $_FALSE;
+  }
+  return verdict;
+}
+"""
+
+_TURNED = """\
+/* Takes a rule's verdict over, and tells whether it is another one than before. */
+/*@ requires \\valid(held) && \\valid(since) && \\separated(held, since);
+    assigns *held, *since;
+    ensures *held == verdict;
+    ensures \\result != 0 <==> verdict != \\old(*held); */
+static bool turned(@_verdict verdict, @_verdict *held, int64_t *since, int64_t now)
+{
+  const bool changed = (verdict != *held);
+  if ((verdict == $_TRUE) != (*held == $_TRUE)) {
+    *since = now;
+  }
+  *held = verdict;
+  return changed;
+}
+"""
+
+_EARLIER = """\
+/*@ assigns \\nothing;
+    ensures \\result <= a && \\result <= b && (\\result == a || \\result == b); */
+static int64_t earlier(int64_t a, int64_t b)
+{
+  return (a < b) ? a : b;
+}
+"""
+
+_AHEAD = """\
+/* The earlier of two deadlines, of which the second counts only if it lies ahead. */
+/*@ assigns \\nothing;
+    ensures \\result == due || (\\result == end && end > now);
+    ensures \\result <= due && (end > now ==> \\result <= end); */
+static int64_t ahead(int64_t now, int64_t due, int64_t end)
+{
+  return ((end > now) && (end < due)) ? end : due;
+}
+"""
+
+_BOUNDED = """\
+/* A time within the range that the monitor counts in. */
+/*@ assigns \\nothing;
+    ensures 0 <= \\result <= $_LATEST;
+    ensures 0 <= t <= $_LATEST ==> \\result == t; */
+static int64_t bounded(int64_t t)
+{
+  return (t < 0) ? 0 : earlier(t, $_LATEST);
+}
+"""
+
+_LOOP = """\
+  /*@ loop invariant 0 <= i <= count;
+      loop assigns LOOP;
+      loop variant count - i; */
+"""
+
+
+def helper_texts(program: Program, text: str) -> list[str]:
+    """Return the definitions that ``text`` needs, in an order in which each can be compiled."""
+    needed: list[str] = []
+    known = dict(_all(program))
+    wanted = text
+    for name in reversed(known):
+        if re.search(rf"\b{name}\(", wanted):
+            needed.append(known[name])
+            wanted += known[name]
+    return needed[::-1]
+
+
+def _all(program: Program) -> Iterator[tuple[str, str]]:
+    """Yield every helper by its name; none calls a later one."""
+    yield "is_number", _IS_NUMBER
+    yield "earlier", _EARLIER
+    yield "ahead", _AHEAD
+    yield "bounded", _BOUNDED
+    for base in sorted(FLOAT_TYPES):
+        yield f"are_numbers_{base}", _of_elements(_ARE_NUMBERS, base)
+    yield "is_text", _IS_TEXT
+    for name in ("clamped", "roll", "pitch", "yaw", "tilt", "norm"):
+        yield name, f"/*@ assigns \\nothing; */\n{C[name]}"
+    yield "magnitude", _MAGNITUDE + C["magnitude"]
+    yield "rate", _RATE + C["rate"]
+    for base in _extremes(program):
+        for name, call in (("min", "least"), ("max", "greatest")):
+            yield f"{call}_{base}", _of_elements(_ARRAY + _with_loop(C[name], "i, found"), base)
+    scan = _ARRAY.replace("values", "ranges")
+    yield "nearest", scan + _with_loop(C["nearest"], "i, shortest")
+    yield "scan_usable", scan + _with_loop(C["scan_usable"], "i, usable")
+    yield "truth_of", _TRUTH_OF
+    yield "negated", _NEGATED
+    yield "both", _BOTH
+    yield "either", _EITHER
+    yield "lasting", _LASTING
+    yield "turned", _TURNED
+
+
+_ARRAY = """\
+/*@ requires \\valid_read(values + (0 .. count - 1));
+    assigns \\nothing; */
+"""
+
+_MAGNITUDE = """\
+/*@ requires value > INT64_MIN;
+    assigns \\nothing;
+    ensures \\result == \\abs(value); */
+"""
+
+_RATE = """\
+/* The change per second since the message before; none between two of one instant. */
+/*@ requires \\valid(last) && \\valid(last_t) && \\separated(last, last_t);
+    requires 0 <= t <= INT64_MAX && 0 <= *last_t <= INT64_MAX;
+    assigns *last, *last_t;
+    ensures *last_t == t; */
+"""
+
+
+def _extremes(program: Program) -> list[str]:
+    """Return the element types of the arrays whose least or greatest element is asked for."""
+    found: set[str] = set()
+    for value in walk.values(walk.conditions(program)):
+        if isinstance(value, Apply) and value.function in ("min", "max"):
+            read = value.arguments[0]
+            assert isinstance(read, Read)
+            found.add(str(program.leaves[read.leaf].type.base))
+    return sorted(found)
+
+
+def _of_elements(text: str, base: str) -> str:
+    floats = base in FLOAT_TYPES
+    result = "double" if floats else ("uint64_t" if base == "uint64" else "int64_t")
+    return (
+        text.replace("BASE", base)
+        .replace("ELEMENT", ELEMENTS[base])
+        .replace("RESULT", result)
+        .replace("NONE", "NAN" if floats else "0")
+    )
+
+
+def _with_loop(text: str, assigned: str) -> str:
+    """Return a function's text with what is to be proved of its loop."""
+    start = text.index("  for (")
+    return text[:start] + _LOOP.replace("LOOP", assigned) + text[start:]

@@ -1,0 +1,170 @@
+"""The functions that judge rules and run behaviours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros.generators.monitor_c.expressions import Conditions, integer
+from deros.generators.monitor_c.layout import Layout
+from deros.generators.monitor_c.source import MAX_LINE, Call, comment, lay_out
+from deros.generators.monitor_python.source import header
+from deros.monitor import walk
+from deros.monitor.ir import Action, Behaviour, Condition, For, Program, Rule, Trigger
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """A place in the rules that makes an event: a call, or the declaration of an action."""
+
+    action: int
+    behaviour: int | None
+    line: int
+    arguments: tuple[bool | int | float | str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Sites:
+    """All places that make events, numbered; ``calls`` by behaviour and place in its body."""
+
+    rows: tuple[Site, ...]
+    calls: dict[tuple[int, int], int]
+    declarations: dict[int, int]
+
+
+def sites(program: Program) -> Sites:
+    """Return the places that make events: the calls from top to bottom, then the declarations."""
+    rows: list[Site] = []
+    calls: dict[tuple[int, int], int] = {}
+    for behaviour in walk.behaviours(program):
+        for place, item in enumerate(behaviour.body):
+            if isinstance(item, Trigger):
+                calls[behaviour.index, place] = len(rows)
+                line = item.span.line
+                rows.append(Site(item.action, behaviour.index, line, item.arguments))
+    declarations: dict[int, int] = {}
+    for action in program.actions:
+        if action.latched or action.reset_by is not None:
+            declarations[action.index] = len(rows)
+            rows.append(Site(action.index, None, action.span.line if action.span else 0))
+    return Sites(tuple(rows), calls, declarations)
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function of the emitted text: the comment above it, and the lines of its body."""
+
+    name: str
+    comment: tuple[str, ...]
+    body: tuple[str, ...]
+
+
+def judge(program: Program, layout: Layout, rule: Rule) -> Function:
+    """Return the function that judges a rule and tells whether its verdict has changed."""
+    conditions = Conditions(program, layout)
+    verdict = layout.verdicts[rule.index]
+    arguments = (f"&m->{verdict}", f"&m->{layout.turned[rule.index]}", "m->now")
+    found = conditions.verdict(rule.condition)
+    body = [
+        *_intervals(conditions, layout, rule.condition),
+        *lay_out(2, f"const {layout.prefix}_verdict verdict = ", found),
+        *lay_out(2, "return ", Call("turned", ("verdict", *arguments))),
+    ]
+    title = comment(0, f"Rule {rule.full_name}", rule.span)
+    return Function(layout.judges[rule.index], tuple(title), tuple(body))
+
+
+def _intervals(conditions: Conditions, layout: Layout, condition: Condition) -> Iterator[str]:
+    for part in walk.parts(condition):
+        if isinstance(part, For) and part.index in layout.since:
+            since = layout.since[part.index]
+            operand = conditions.verdict(part.operand)
+            duration = integer(part.duration_ns)
+            call = Call("lasting", ("m", f"&m->{since}", operand, duration))
+            name = conditions.interval(part)
+            yield from lay_out(2, f"const {layout.prefix}_verdict {name} = ", call)
+
+
+def behave(program: Program, layout: Layout, behaviour: Behaviour, places: Sites) -> Function:
+    """Return the function that runs a behaviour's body when its condition turns true."""
+    conditions = Conditions(program, layout)
+    holds = layout.holds[behaviour.index]
+    verdict = conditions.verdict(behaviour.condition)
+    tests = []
+    if behaviour.parent is not None:
+        tests.append(f"m->{layout.holds[behaviour.parent]}")
+    if behaviour.optional:
+        tests.append(f"m->{layout.enabled[behaviour.index]}")
+    tests.append(f"(verdict == {layout.macro}_TRUE)")
+    acts = any(isinstance(item, Trigger) for item in behaviour.body)
+    held = " && ".join(tests) if len(tests) > 1 else tests[0]
+    body = [
+        *_intervals(conditions, layout, behaviour.condition),
+        *lay_out(2, f"const {layout.prefix}_verdict verdict = ", verdict),
+        f"  const bool holds = {held};",
+        *([f"  const bool rises = holds && (!m->{holds});"] if acts else []),
+        f"  m->{holds} = holds;",
+        *_body(layout, behaviour, places, program),
+    ]
+    nested = any(isinstance(item, Behaviour) for item in behaviour.body)
+    text = header(behaviour.span.text) if nested else behaviour.span.text
+    title = comment(0, f"Behaviour {behaviour.name}", behaviour.span, text)
+    return Function(layout.behave[behaviour.index], tuple(title), tuple(body))
+
+
+def _body(layout: Layout, behaviour: Behaviour, places: Sites, program: Program) -> Iterator[str]:
+    opened = False
+    for place, item in enumerate(behaviour.body):
+        if isinstance(item, Behaviour):
+            if opened:
+                yield "  }"
+            opened = False
+            yield f"  {layout.behave[item.index]}(m);"
+            continue
+        if not opened:
+            yield "  if (rises) {"
+            opened = True
+        yield from _trigger(layout, item, places.calls[behaviour.index, place], program)
+    if opened:
+        yield "  }"
+
+
+def _trigger(layout: Layout, item: Trigger, site: int, program: Program) -> Iterator[str]:
+    if item.action in layout.active:
+        yield f"    m->{layout.active[item.action]} = true;"
+    if item.action in layout.ran:
+        yield f"    m->{layout.ran[item.action]} = true;"
+    name = program.actions[item.action].name
+    yield f"    {_emit(layout, 'TRIGGER', site)}  /* {name} */"
+
+
+def settle(layout: Layout, action: Action, places: Sites) -> list[str]:
+    """Return the lines that reset an active action, or refuse to while it is called for."""
+    site, active = places.declarations[action.index], layout.active[action.index]
+    reset = [f"m->{active} = false;", _emit(layout, "RESET", site)]
+    holds = [f"m->{layout.holds[each]}" for each in action.triggered_by]
+    if not holds:
+        return [f"  {line}" for line in reset]
+    return [
+        *_any_holds(holds),
+        f"    {_emit(layout, 'REFUSED', site)}",
+        "  } else {",
+        *(f"    {line}" for line in reset),
+        "  }",
+    ]
+
+
+def _any_holds(holds: list[str]) -> list[str]:
+    line = f"  if ({' || '.join(holds)}) {{"
+    if len(line) <= MAX_LINE:
+        return [line]
+    return [
+        f"  if ({holds[0]} ||",
+        *(f"    {each} ||" for each in holds[1:-1]),
+        f"    {holds[-1]})",
+        "  {",
+    ]
+
+
+def _emit(layout: Layout, kind: str, site: int) -> str:
+    return f"{layout.prefix}_emit(m->owner, m->now, {layout.macro}_{kind}, {site}U);"

@@ -1,0 +1,150 @@
+"""What a rule means, in ACSL: derived from the rule, not from the code that is emitted for it.
+
+A condition is given by two predicates, when it is true and when it is false; otherwise it is
+unknown. They read the struct as it is after an event. The code computes one verdict of three values
+instead, and the two are proved to agree.
+"""
+
+from __future__ import annotations
+
+from deros.generators.monitor_c.expressions import SYMBOLS, number
+from deros.generators.monitor_c.layout import Layout, compared
+from deros.monitor.ir import (
+    Age,
+    And,
+    Compare,
+    Condition,
+    Const,
+    For,
+    Missing,
+    Not,
+    Operator,
+    Or,
+    RuleRef,
+    Truth,
+    ValueExpression,
+    Within,
+)
+
+_OF_DOUBLES: dict[Operator, str] = {
+    "=": "\\eq_double",
+    "<": "\\lt_double",
+    "<=": "\\le_double",
+    ">": "\\gt_double",
+    ">=": "\\ge_double",
+}
+
+
+class Meaning:
+    """Writes conditions as predicates on ``m``."""
+
+    def __init__(self, layout: Layout) -> None:
+        """Remember what is named how."""
+        self._layout = layout
+
+    def true(self, condition: Condition) -> str:
+        """Return when a condition is true."""
+        match condition:
+            case Truth(operand=Const(value=value)):
+                return "\\true" if value else "\\false"
+            case Truth() | Compare() | Within():
+                return f"({self._known(condition)} && {self._holds(condition)})"
+            case Missing():
+                return f"m->{self._layout.inputs[condition.input].missing} != 0"
+            case Age():
+                return f"({self._came(condition)} && {self._age(condition)})"
+            case Not():
+                return self.false(condition.operand)
+            case And():
+                return _joined(" && ", [self.true(each) for each in condition.operands])
+            case Or():
+                return _joined(" || ", [self.true(each) for each in condition.operands])
+            case For():
+                operand = self.true(condition.operand)
+                return f"({operand} && {self.lasted(condition)})"
+            case RuleRef():
+                verdict = self._layout.verdicts[condition.rule]
+                return f"m->{verdict} == {self._layout.macro}_TRUE"
+
+    def false(self, condition: Condition) -> str:
+        """Return when a condition is false."""
+        match condition:
+            case Truth(operand=Const(value=value)):
+                return "\\false" if value else "\\true"
+            case Truth() | Compare() | Within():
+                return f"({self._known(condition)} && !{self._holds(condition)})"
+            case Missing():
+                return f"m->{self._layout.inputs[condition.input].missing} == 0"
+            case Age():
+                return f"({self._came(condition)} && !{self._age(condition)})"
+            case Not():
+                return self.true(condition.operand)
+            case And():
+                return _joined(" || ", [self.false(each) for each in condition.operands])
+            case Or():
+                return _joined(" && ", [self.false(each) for each in condition.operands])
+            case For():
+                true, false = self.true(condition.operand), self.false(condition.operand)
+                return f"({false} || ({true} && !{self.lasted(condition)}))"
+            case RuleRef():
+                verdict = self._layout.verdicts[condition.rule]
+                return f"m->{verdict} == {self._layout.macro}_FALSE"
+
+    def lasted(self, condition: For) -> str:
+        """Return when an interval whose operand is true has lasted for long enough."""
+        if condition.index not in self._layout.since:
+            return "\\true"
+        since = self._layout.since[condition.index]
+        return f"(m->now >= m->{since} + {condition.duration_ns})"
+
+    def _came(self, condition: Age) -> str:
+        return f"m->{self._layout.inputs[condition.input].came} != 0"
+
+    def _age(self, condition: Age) -> str:
+        base = self._layout.inputs[condition.input].base
+        return f"(m->now - m->{base} {SYMBOLS[condition.operator]} {condition.bound_ns})"
+
+    def _known(self, condition: Truth | Compare | Within) -> str:
+        flags = dict.fromkeys(self._layout.terms[value].known for value in compared(condition))
+        return " && ".join(f"m->{flag} != 0" for flag in flags)
+
+    def _holds(self, condition: Truth | Compare | Within) -> str:
+        match condition:
+            case Truth():
+                return f"(m->{self._layout.terms[condition.operand].name} != 0)"
+            case Compare():
+                return self._compare(condition.left, condition.operator, condition.right)
+            case Within():
+                lower: Operator = ">=" if condition.lower_closed else ">"
+                upper: Operator = "<=" if condition.upper_closed else "<"
+                above = self._compare(condition.operand, lower, condition.lower)
+                below = self._compare(condition.operand, upper, condition.upper)
+                return f"({above} && {below})"
+
+    def _compare(self, left: ValueExpression, operator: Operator, right: ValueExpression) -> str:
+        first, second = self._operand(left, right), self._operand(right, left)
+        if not self._is_double(left) and not self._is_double(right):
+            return f"({first} {SYMBOLS[operator]} {second})"
+        if operator == "!=":
+            return f"(!\\eq_double({first}, {second}))"
+        return f"{_OF_DOUBLES[operator]}({first}, {second})"
+
+    def _is_double(self, value: ValueExpression) -> bool:
+        if isinstance(value, Const):
+            return isinstance(value.value, float)
+        return self._layout.terms[value].type == "double"
+
+    def _operand(self, value: ValueExpression, other: ValueExpression) -> str:
+        if not isinstance(value, Const):
+            return f"m->{self._layout.terms[value].name}"
+        if isinstance(value.value, str):
+            return str(self._layout.terms[other].texts.index(value.value) + 1)
+        if isinstance(value.value, bool):
+            return "1" if value.value else "0"
+        if self._is_double(other) or isinstance(value.value, float):
+            return f"(double){number(float(value.value))}"
+        return str(value.value)
+
+
+def _joined(word: str, parts: list[str]) -> str:
+    return f"({word.join(parts)})"
