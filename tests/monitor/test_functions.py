@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import math
+import re
 import shutil
 import struct
 import subprocess
@@ -18,6 +19,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from deros.monitor import function_values as values
+from deros.monitor.function_texts import C
 from deros.monitor.functions import FUNCTIONS
 
 NUMBERS = st.floats(allow_nan=False)
@@ -240,10 +242,17 @@ def test_every_function_of_values_has_its_texts() -> None:
         if row.evaluate is not None:
             built_in = ("abs", "len", "math.hypot")
             assert row.python_of_unit or row.python_call in (*NAMESPACE, *built_in)
-            assert row.c_call == "fabs" or f" {row.c_call}(" in row.c
+            assert row.c or row.c_call in ("fabs", "")
+            assert not row.c or row.c_call in row.c
 
 
 # C --------------------------------------------------------------------------------------------
+
+
+IS_NUMBER = "static bool is_number(double value)\n{\n  return value == value;\n}\n"
+
+OF_ELEMENTS = (("BASE", "float64"), ("ELEMENT", "double"), ("RESULT", "double"), ("NONE", "NAN"))
+"""What the texts of arrays are made for here: the placeholders, and what stands for them."""
 
 
 @pytest.fixture(scope="module")
@@ -253,11 +262,11 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     if compiler is None:
         pytest.skip("no C compiler")
     directory: Path = tmp_path_factory.mktemp("functions")
-    texts = [row.c for row in FUNCTIONS.values() if row.c]
-    texts += [row.guard.c for row in FUNCTIONS.values() if row.guard]
-    exported = "\n".join(texts).replace("static ", "")
-    prototypes = [line + ";" for line in _signatures(exported)]
-    source = "\n".join(["#include <math.h>", "#include <stddef.h>", *prototypes, exported])
+    exported = "\n".join([IS_NUMBER, *C.values()]).replace("static ", "")
+    for placeholder, meant in OF_ELEMENTS:
+        exported = re.sub(rf"(?<![A-Z]){placeholder}(?![A-Z])", meant, exported)
+    includes = ["#include <math.h>", "#include <stdbool.h>", "#include <stdint.h>"]
+    source = "\n".join([*includes, "#include <stddef.h>", *_signatures(exported), exported])
     (directory / "functions.c").write_text(source)
     strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-O1"]
     subprocess.run(
@@ -269,9 +278,9 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
 
 
 def _signatures(source: str) -> list[str]:
-    return [
-        part.strip().rsplit("\n\n", 1)[-1].split("}\n")[-1] for part in source.split("\n{")[:-1]
-    ]
+    """Return the prototypes of all functions; none begins with a blank."""
+    heads = re.findall(r"^(\w[^;{}]*\))\n\{", source, flags=re.MULTILINE)
+    return [f"{head};" for head in heads]
 
 
 def call_c(library: ctypes.CDLL, name: str, *arguments: Any) -> float | None:
@@ -280,19 +289,28 @@ def call_c(library: ctypes.CDLL, name: str, *arguments: Any) -> float | None:
     function.restype = ctypes.c_double
     passed: list[Any] = []
     for each in arguments:
-        if isinstance(each, list):
-            passed += [(ctypes.c_double * len(each))(*each), ctypes.c_size_t(len(each))]
-        elif isinstance(each, int):
-            passed.append(ctypes.c_longlong(each))
+        if isinstance(each, ctypes.Array):
+            passed += [each, ctypes.c_size_t(len(each))]
         else:
             passed.append(ctypes.c_double(each))
     result: float = function(*passed)
     return None if math.isnan(result) else result
 
 
+def rate_in_c(library: ctypes.CDLL, value: float, previous: float, ns: int) -> float | None:
+    """Call rate(), which keeps the message before behind pointers."""
+    last, last_t = ctypes.c_double(previous), ctypes.c_int64(7)
+    library.rate.restype = ctypes.c_double
+    arguments = (ctypes.c_double(value), ctypes.c_int64(7 + ns))
+    result: float = library.rate(*arguments, ctypes.byref(last), ctypes.byref(last_t))
+    assert same(last.value, value)
+    assert last_t.value == 7 + ns
+    return None if math.isnan(result) else result
+
+
 def close(a: float | None, b: float | None) -> bool:
     """Tell whether results agree but for the last digits of the mathematical library."""
-    return a is b if a is None or b is None else a == pytest.approx(b, rel=1e-9, abs=1e-9)
+    return a is b if a is None or b is None else a == pytest.approx(b, rel=1e-15, abs=0.0)
 
 
 def same_angle(a: float | None, b: float | None) -> bool:
@@ -307,30 +325,46 @@ def same_angle(a: float | None, b: float | None) -> bool:
 def test_c_of_quaternions(library: ctypes.CDLL, x: float, y: float, z: float, w: float) -> None:
     """The C texts give the reference's angles; at a vertical pitch roll and yaw mean nothing."""
     pitch = values.pitch(x, y, z, w)
-    assert same_angle(call_c(library, "deros_pitch", x, y, z, w), pitch)
-    assert same_angle(call_c(library, "deros_tilt", x, y, z, w), values.tilt(x, y, z, w))
+    assert same_angle(call_c(library, "pitch", x, y, z, w), pitch)
+    assert same_angle(call_c(library, "tilt", x, y, z, w), values.tilt(x, y, z, w))
     assume(pitch is None or abs(pitch) < 1.57)
-    assert same_angle(call_c(library, "deros_roll", x, y, z, w), values.roll(x, y, z, w))
-    assert same_angle(call_c(library, "deros_yaw", x, y, z, w), values.yaw(x, y, z, w))
+    assert same_angle(call_c(library, "roll", x, y, z, w), values.roll(x, y, z, w))
+    assert same_angle(call_c(library, "yaw", x, y, z, w), values.yaw(x, y, z, w))
+
+
+@given(x=NUMBERS, y=NUMBERS, elapsed_ns=st.integers(0, 10**15))
+def test_c_of_rate(library: ctypes.CDLL, x: float, y: float, elapsed_ns: int) -> None:
+    """The C text of rate gives the reference's results to the last bit."""
+    assert same(rate_in_c(library, x, y, elapsed_ns), values.rate(x, y, elapsed_ns))
 
 
 @given(x=MODERATE, y=MODERATE, z=MODERATE)
-def test_c_of_numbers(library: ctypes.CDLL, x: float, y: float, z: float) -> None:
-    """The C texts of norm and rate give the reference's results."""
-    assert close(call_c(library, "deros_norm", x, y, z), values.norm(x, y, z))
-    assert close(call_c(library, "deros_rate", x, y, 1000), values.rate(x, y, 1000))
-    assert call_c(library, "deros_rate", x, y, 0) is None
+def test_c_of_norm(library: ctypes.CDLL, x: float, y: float, z: float) -> None:
+    """The C text of norm gives the reference's result but for the last digit."""
+    assert close(call_c(library, "norm", x, y, z), values.norm(x, y, z))
+
+
+@given(value=st.integers(-(2**63) + 1, 2**63 - 1))
+def test_c_of_magnitude(library: ctypes.CDLL, value: int) -> None:
+    """The C text of abs gives the reference's result of integers."""
+    library.magnitude.restype = ctypes.c_int64
+    assert library.magnitude(ctypes.c_int64(value)) == values.absolute(value)
 
 
 @given(array=st.lists(NUMBERS, max_size=8))
 def test_c_of_arrays(library: ctypes.CDLL, array: list[float]) -> None:
     """The C texts of arrays give the reference's results."""
-    assert call_c(library, "deros_min", array) == values.least(array)
-    assert call_c(library, "deros_max", array) == values.greatest(array)
-    assert call_c(library, "deros_count", array) == len(array)
+    elements = (ctypes.c_double * len(array))(*array)
+    assert call_c(library, "least_float64", elements) == values.least(array)
+    assert call_c(library, "greatest_float64", elements) == values.greatest(array)
 
 
 @given(arguments=SCANS)
 def test_c_of_a_scan(library: ctypes.CDLL, arguments: tuple[Any, ...]) -> None:
-    """The C text of nearest gives the reference's result."""
-    assert call_c(library, "deros_nearest", *arguments) == values.nearest(*arguments)
+    """The C texts of nearest, and of the test that a scan is usable, give the reference's."""
+    ranges, *rest = arguments
+    beams = (ctypes.c_float * len(ranges))(*ranges)
+    assert call_c(library, "nearest", beams, *rest) == values.nearest(*arguments)
+    library.scan_usable.restype = ctypes.c_bool
+    usable = library.scan_usable(beams, ctypes.c_size_t(len(beams)), ctypes.c_double(rest[2]))
+    assert usable is values.scan_usable(ranges, rest[2])
