@@ -1,4 +1,4 @@
-"""``deros cmake-dir``: where CMake finds deros, in an environment that it does not search itself."""
+"""``deros cmake-dir``: where CMake finds deros, if it does not find it by itself."""
 
 from __future__ import annotations
 

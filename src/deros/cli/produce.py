@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import posixpath
 import shlex
 import time
 from collections.abc import Mapping
@@ -159,9 +160,10 @@ def scaffold_files(made: Made, request: Request, source: Path) -> dict[str, File
     from deros.generators.protocol import File, Owner
     from deros.generators.source_tree import package_folder, scaffold
 
-    files = scaffold(made.files, source)
     top = package_folder(made.files)
     model = Path(os.path.relpath(request.file, source)).as_posix()
+    folder = posixpath.dirname(model)
+    files = scaffold(made.files, source, "" if folder.startswith("..") else folder)
     if f"{top}/CMakeLists.txt" in made.files:
         files["CMakeLists.txt"] = File(_cmake_script(top, model, request), Owner.USER)
     elif f"{top}/setup.py" in made.files:

@@ -101,8 +101,12 @@ def merge(files: Files, source: Path) -> Merged:
     names = list(_hand_written(source, folders)) if top else []
     if not top:
         names = [name for name, path in own.items() if files[path].owner is Owner.USER]
+    described = {PurePosixPath(name).name: files[path] for name, path in own.items()}
     for name in names:
-        _check_not_generated(files.get(own.get(name, "")), name, source)
+        if name.endswith(_MODELS):
+            _check_model(described.get(PurePosixPath(name).name), source / name)
+        elif name in own:
+            _check_not_generated(files[own[name]], name, source)
     if top:
         _check_manifest(files[f"{top}/{MANIFEST}"].text, source / MANIFEST)
     linked_part = "src/" if f"{top}/CMakeLists.txt" in files else ""
@@ -118,22 +122,30 @@ def merge(files: Files, source: Path) -> Merged:
     return Merged(written, placed, (*folders, *manifest, *copies))
 
 
-def scaffold(files: Files, source: Path) -> dict[str, File]:
+def scaffold(files: Files, source: Path, models: str) -> dict[str, File]:
     """Return what a package generated at build time has in its source tree, by its path there.
 
-    These are the hand-written files, the manifest, and the node descriptions, which models import;
-    besides, whatever of the generator's stands there already, to be refreshed.
+    These are the hand-written files, the manifest, and the node descriptions, which models import
+    and which therefore stand in their folder; besides, whatever of the generator's stands there
+    already, to be refreshed.
+
+    Args:
+        files: what the generator makes.
+        source: the source tree.
+        models: the folder of the models in it.
     """
     top = package_folder(files)
     kept: dict[str, File] = {}
     for path, file in files.items():
         name = str(PurePosixPath(path).relative_to(top))
-        there = (source / name).is_file()
         if name.endswith(_MODELS):
-            wanted = not there or _has_banner(source / name)
+            name = str(PurePosixPath(models) / PurePosixPath(name).name)
+            wanted = not (source / name).is_file() or _has_banner(source / name)
+        elif name in BUILD_SCRIPTS:
+            wanted = False
         else:
-            refreshed = there and bool(file.text) and name not in BUILD_SCRIPTS
-            wanted = refreshed or file.owner is Owner.USER or name == MANIFEST
+            there = bool(file.text) and (source / name).is_file()
+            wanted = there or file.owner is Owner.USER or name == MANIFEST
         if wanted:
             kept[name] = file
     return kept
@@ -196,20 +208,28 @@ def _belongs(folder: Path) -> bool:
     return not any((folder / name).exists() for name in _OTHERS_PLACE)
 
 
-def _check_not_generated(file: File | None, name: str, source: Path) -> None:
-    """Refuse a file in the source tree that the generator owns, unless it is what it writes.
+def _check_not_generated(file: File, name: str, source: Path) -> None:
+    """Refuse a file in the source tree that the generator owns, unless it is what it writes."""
+    if file.owner is Owner.USER or name in BUILD_SCRIPTS or name == MANIFEST or not file.text:
+        return
+    if (source / name).read_bytes() != with_banner(name, file.text).encode():
+        raise _in_the_way(source / name)
 
-    A model without a banner was written by hand, and is nobody else's.
+
+def _check_model(file: File | None, path: Path) -> None:
+    """Refuse a node description that deros has made of an earlier state of the rules.
+
+    One without a banner was written by hand, and is nobody else's.
     """
-    if file is None or file.owner is Owner.USER or name in BUILD_SCRIPTS or name == MANIFEST:
+    if file is None or not _has_banner(path):
         return
-    path = source / name
-    if not file.text or (name.endswith(_MODELS) and not _has_banner(path)):
-        return
-    if path.read_bytes() == with_banner(name, file.text).encode():
-        return
-    message = f"{path} is generated while the package is built, and differs: remove or refresh it"
-    raise SourceTreeError(message, mended_by_scaffold=True)
+    if path.read_bytes() != with_banner(path.name, file.text).encode():
+        raise _in_the_way(path)
+
+
+def _in_the_way(path: Path) -> SourceTreeError:
+    message = f"{path} was generated from something else than the model as it is: refresh it"
+    return SourceTreeError(message, mended_by_scaffold=True)
 
 
 def _has_banner(path: Path) -> bool:
