@@ -233,12 +233,12 @@ def _descriptor(
         bounds = f"from_value={float(interval.lower)!r}, to_value={float(interval.upper)!r}"
         arguments.append(f"floating_point_range=[FloatingPointRange({bounds})]")
     if interval is not None and parameter.type is ParameterType.INTEGER:
-        low, high = _integers(interval)
+        low, high = integer_bounds(interval)
         arguments.append(f"integer_range=[IntegerRange(from_value={low}, to_value={high})]")
     return arguments
 
 
-def _integers(interval: Interval) -> tuple[int, int]:
+def integer_bounds(interval: Interval) -> tuple[int, int]:
     """Return the least and greatest integer of an interval, which closes its open ends exactly."""
     low = math.ceil(max(interval.lower, _INT64[0]))
     high = math.floor(min(interval.upper, _INT64[1]))

@@ -1,0 +1,156 @@
+"""Node descriptions to an ament_cmake package."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from deros import codes
+from deros.diagnostics import report
+from deros.generators import python_source
+from deros.generators.cpp_source import (
+    arguments,
+    call,
+    comment,
+    cpp_string,
+    expression,
+    include_lines,
+    is_reserved,
+    mark_long_lines,
+    standard_headers,
+    statement,
+)
+from deros.generators.node_package import maintainer, nodes_beside, refuse_legacy, unsupported
+from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
+from deros.generators.rosnode_cpp.includes import base_header, base_source, user_header
+from deros.generators.rosnode_cpp.view import NodeView, PackageView, Provided, package_view
+from deros.generators.templates import environment
+from deros.metamodels.node import NodeType
+
+__all__ = ["Provided", "generate", "licensed", "package_files"]
+
+
+def generate(model: NodeType, context: Context, options: Options) -> Files:
+    """Return the package of ``model``, with the other nodes of that package described beside it.
+
+    A package is built as a whole: its CMakeLists.txt names the library and the program of every
+    node. So the node descriptions of the same package in the same folder are always generated
+    together.
+
+    Raises:
+        GenerationError: if the node, or one beside it, cannot be made.
+    """
+    refuse_legacy(model)
+    return package_files([model, *nodes_beside(model, context)], options)
+
+
+def package_files(
+    models: Sequence[NodeType],
+    options: Options,
+    provided: Mapping[str, Provided] | None = None,
+) -> dict[str, File]:
+    """Return the files of the package that ``models``, all of one package, make up.
+
+    Args:
+        models: one or more nodes; their order does not matter.
+        options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder.
+        provided: the nodes whose class the caller adds, by the name of the node type. Of such a
+            node there is no user's file.
+
+    Raises:
+        GenerationError: if names collide, or a construct has no counterpart in rclcpp.
+        ValueError: if an option cannot be read.
+    """
+    ordered = tuple(sorted(models, key=lambda model: model.name))
+    for model in ordered:
+        _check_supported(model)
+    holder = options.get("copyright", "")
+    package = package_view(ordered, maintainer(options), holder, provided or {})
+    root = package.name
+    files = {
+        f"{root}/package.xml": File(_render("package.xml", package=package)),
+        f"{root}/CMakeLists.txt": File(_render("CMakeLists.txt", package=package, mark="#")),
+    }
+    for node in package.nodes:
+        files |= _node_files(package, node)
+    return files
+
+
+def _node_files(package: PackageView, node: NodeView) -> dict[str, File]:
+    root, include = package.name, f"{package.name}/include/{package.name}"
+    header = _cpp("base.hpp", package, node, base_header(node))
+    source = _cpp("base.cpp", package, node, base_source(node))
+    files = {
+        f"{include}/{node.stem}_base.hpp": File(header),
+        f"{root}/src/{node.stem}_base.cpp": File(source),
+        f"{root}/launch/{node.name}.launch.py": File(_shared("launch.py", package, node)),
+    }
+    if node.parameters:
+        files[f"{root}/config/{node.name}.yaml"] = File(_shared("config.yaml", package, node))
+    if not (node.provided and node.provided.main):
+        files[f"{root}/src/{node.stem}_main.cpp"] = File(_cpp("main.cpp", package, node, ()))
+    if node.provided is None:
+        header = _cpp("node.hpp", package, node, user_header(package.name, node))
+        source = _cpp("node.cpp", package, node, ())
+        files[f"{include}/{node.stem}.hpp"] = File(header, Owner.USER)
+        files[f"{root}/src/{node.stem}.cpp"] = File(source, Owner.USER)
+    return files
+
+
+# Texts --------------------------------------------------------------------------------------------
+
+
+def licensed(text: str, copyright_line: str, mark: str = "//") -> str:
+    """Put the licence header of a package's files above a text, if there is a holder."""
+    return _render("_header", package={"copyright": copyright_line}, mark=mark) + text
+
+
+def _cpp(template: str, package: PackageView, node: NodeView, headers: Sequence[str]) -> str:
+    """Return a C++ file, which includes ``headers`` and what it uses of the standard library."""
+    suffix = "_base" if template == "base.hpp" else ""
+    names = {
+        "package": package,
+        "node": node,
+        "guard": f"{package.name}__{node.stem}{suffix}_hpp_".upper(),
+        "includes": include_lines(headers),
+        "mark": "//",
+    }
+    bare = _render(template, standard=[], **names)
+    return mark_long_lines(_render(template, standard=standard_headers(bare), **names))
+
+
+def _render(template: str, **names: object) -> str:
+    loaded = environment("deros.generators.rosnode_cpp").get_template(f"{template}.j2")
+    return loaded.render(
+        names,
+        arguments=arguments,
+        call=call,
+        comment=comment,
+        expression=expression,
+        statement=statement,
+        string=cpp_string,
+    )
+
+
+def _shared(template: str, package: PackageView, node: NodeView) -> str:
+    """Return a file that is the same whatever the language of the node."""
+    loaded = environment("deros.generators.rosnode_python").get_template(f"{template}.j2")
+    shown = {
+        "name": node.name,
+        "lifecycle": node.lifecycle,
+        "parameters": node.file_parameters,
+        "configured": any(p.yaml is not None for p in node.file_parameters),
+    }
+    text = loaded.render(package=package, node=shown)
+    return python_source.mark_long_lines(text) if template.endswith(".py") else text
+
+
+# What the target refuses --------------------------------------------------------------------------
+
+
+def _check_supported(model: NodeType) -> None:
+    found = unsupported(model)
+    if is_reserved(model.package) or model.package in ("std", "posix"):
+        message = f"package name {model.package!r} is no C++ namespace"
+        found.insert(0, report(codes.UNSUPPORTED_BY_TARGET, message, model.package_span))
+    if found:
+        raise GenerationError(found)

@@ -1,0 +1,382 @@
+"""What the templates of the C++ package see: the node description in terms of rclcpp."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from deros.generators.cpp_source import (
+    Call,
+    Chain,
+    cpp_header,
+    cpp_identifier,
+    cpp_string,
+    cpp_type,
+)
+from deros.generators.names import Emitted, camel_case, check_collisions
+from deros.generators.python_source import one_line, sentence
+from deros.generators.rosnode_cpp.parameters import ParameterView, cpp_parameter_views
+from deros.generators.rosnode_cpp.qos import qos_expression
+from deros.generators.rosnode_python.parameters import ParameterView as FileParameter
+from deros.generators.rosnode_python.parameters import parameter_views
+from deros.generators.rosnode_python.view import duration_text
+from deros.metamodels.node import NodeType, Port, PortKind
+
+_HOOKS = ("on_parameters_changed",)
+_LIFECYCLE_HOOKS = (
+    "on_activate",
+    "on_cleanup",
+    "on_configure",
+    "on_deactivate",
+    "on_error",
+    "on_shutdown",
+)
+_METHODS = {
+    PortKind.PUBLISHER: ("publish_{}",),
+    PortKind.SUBSCRIPTION: ("on_{}",),
+    PortKind.SERVICE: ("handle_{}",),
+    PortKind.CLIENT: ("call_{}", "client_{}"),
+    PortKind.ACTION: ("accept_{}", "execute_{}", "cancel_{}"),
+    PortKind.ACTION_CLIENT: ("send_{}", "client_{}"),
+}
+# Other packages, those of interfaces above all, have a variable that lists their targets.
+_TARGETS = {
+    "rclcpp": "rclcpp::rclcpp",
+    "rclcpp_action": "rclcpp_action::rclcpp_action",
+    "rclcpp_components": "rclcpp_components::component",
+    "rclcpp_lifecycle": "rclcpp_lifecycle::rclcpp_lifecycle",
+}
+_CHRONO = {"s": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
+
+
+@dataclass(frozen=True, slots=True)
+class Provided:
+    """A node whose class comes from the caller of the generator, where else the user writes it.
+
+    The caller adds the files: ``include/<package>/<stem>.hpp`` that defines the class, the sources,
+    one of which registers the component, and whatever these need. ``stem`` and class are named
+    after ``default_name``. The base class opens no port by itself: the class calls ``open_ports``
+    with the callback group of its choice, when it is ready for messages.
+
+    Attributes:
+        sources: what goes into the node's library beside the base class, relative to the package.
+        needs: further ROS packages that the sources use.
+        main: the sources of the program; nothing for the usual one, which spins in one thread.
+        default_name: the name of the node at run time; nothing for the name of its type.
+        memory: a class template, ``robot_safety_cpp::Pool``, of which an object for the message's
+            type is handed to each subscription as its memory strategy; nothing for rclcpp's own.
+        includes: headers that ``memory`` needs.
+    """
+
+    sources: tuple[str, ...]
+    needs: tuple[str, ...] = ()
+    main: tuple[str, ...] = ()
+    default_name: str | None = None
+    memory: str | None = None
+    includes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PortView:
+    """One port.
+
+    Attributes:
+        identifier: the part of method names that stands for the port.
+        type: the C++ type of the message, service or action, and ``header`` that defines it.
+        topic: C++ expression of the name handed to rclcpp.
+        name: the name as a reader sees it.
+        qos: the expression of the profile that the model states.
+        notes: description, units and where the name comes from.
+        memory: the expression of a subscription's memory strategy; ``None`` for rclcpp's own.
+    """
+
+    identifier: str
+    type: str
+    header: str
+    topic: str
+    name: str
+    qos: Chain | None
+    notes: tuple[str, ...]
+    memory: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class TimerView:
+    """One timer; ``period`` is an expression of ``std::chrono``, ``text`` reads ``20 ms``."""
+
+    identifier: str
+    period: str
+    text: str
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NodeView:
+    """One node of the package.
+
+    Attributes:
+        stem: what its files are named after.
+        default_name: its name at run time.
+        source: file name of the node description.
+        provided: what the caller makes of it; ``None`` for a node of the user's.
+        file_parameters: the parameters as the parameter file shows them.
+    """
+
+    name: str
+    stem: str
+    class_name: str
+    default_name: str
+    lifecycle: bool
+    source: str
+    summary: str
+    provided: Provided | None
+    parameters: tuple[ParameterView, ...]
+    file_parameters: tuple[FileParameter, ...]
+    publishers: tuple[PortView, ...]
+    subscriptions: tuple[PortView, ...]
+    services: tuple[PortView, ...]
+    clients: tuple[PortView, ...]
+    actions: tuple[PortView, ...]
+    action_clients: tuple[PortView, ...]
+    timers: tuple[TimerView, ...]
+
+    @property
+    def base_class(self) -> str:
+        """Class that the generator owns."""
+        return f"{self.class_name}Base"
+
+    @property
+    def parent(self) -> str:
+        """Class of the client library that the base class extends."""
+        return "rclcpp_lifecycle::LifecycleNode" if self.lifecycle else "rclcpp::Node"
+
+    @property
+    def gated(self) -> bool:
+        """Whether there are callbacks that rest while a managed node is not active."""
+        return self.lifecycle and bool(self.subscriptions or self.timers)
+
+    @property
+    def checked(self) -> tuple[ParameterView, ...]:
+        """The parameters that need more checks than rclcpp makes."""
+        return tuple(p for p in self.parameters if p.checks)
+
+    @property
+    def choosy(self) -> bool:
+        """Whether a parameter must have one of some listed values."""
+        conditions = (check.condition for p in self.parameters for check in p.checks)
+        return any(isinstance(c, Call) and c.head == "is_one_of" for c in conditions)
+
+    @property
+    def has_handlers(self) -> bool:
+        """Whether the user's class has something to fill in."""
+        return bool(self.subscriptions or self.timers or self.services or self.actions)
+
+    @property
+    def equal(self) -> Chain:
+        """The comparison of two structures of parameters."""
+        fields = [parameter.field for parameter in self.parameters]
+        return Chain("", tuple(f"{name} == other.{name}" for name in fields), " && ")
+
+    @property
+    def ports(self) -> tuple[PortView, ...]:
+        """All ports."""
+        return (
+            *(*self.publishers, *self.subscriptions, *self.services),
+            *(*self.clients, *self.actions, *self.action_clients),
+        )
+
+    @property
+    def library(self) -> tuple[str, ...]:
+        """The sources of the node's library."""
+        own = self.provided.sources if self.provided else (f"src/{self.stem}.cpp",)
+        return tuple(sorted({f"src/{self.stem}_base.cpp", *own}))
+
+    @property
+    def program(self) -> tuple[str, ...]:
+        """The sources of the node's program."""
+        own = self.provided.main if self.provided else ()
+        return own or (f"src/{self.stem}_main.cpp",)
+
+
+@dataclass(frozen=True, slots=True)
+class PackageView:
+    """The ROS 2 package around one or more nodes.
+
+    Attributes:
+        description: on one line.
+        libraries: packages needed to build and run, sorted; ``launch`` those to launch.
+        copyright: years and holder for the headers; empty for none.
+    """
+
+    name: str
+    nodes: tuple[NodeView, ...]
+    description: str
+    libraries: tuple[str, ...]
+    maintainer: str
+    email: str
+    copyright: str
+
+    @property
+    def configured(self) -> bool:
+        """Whether there is a parameter file."""
+        return any(node.parameters for node in self.nodes)
+
+    @property
+    def linters(self) -> tuple[str, ...]:
+        """The packages that hold this one against ament's settings."""
+        checked = ("cppcheck", "cpplint", "flake8", "lint_cmake", "pep257", "uncrustify", "xmllint")
+        names = sorted((*checked, "copyright")) if self.copyright else checked
+        return tuple(f"ament_cmake_{name}" for name in names)
+
+    def targets(self, node: NodeView) -> tuple[str, ...]:
+        """Return what CMake links one node's library with."""
+        return tuple(_TARGETS.get(name, f"${{{name}_TARGETS}}") for name in _needed(node))
+
+
+def package_view(
+    models: tuple[NodeType, ...],
+    maintainer: tuple[str, str],
+    copyright_line: str,
+    provided: Mapping[str, Provided],
+) -> PackageView:
+    """Return the view of the package that ``models``, all of one package, make up.
+
+    Raises:
+        GenerationError: if two names collide, in a node or between the nodes.
+    """
+    nodes = tuple(_node(model, provided.get(model.name)) for model in models)
+    package = models[0].package
+    pairs = list(zip(models, nodes, strict=True))
+    check_collisions(_files(pairs), f"the sources of package {package}")
+    check_collisions(
+        (
+            Emitted(name, f"node {model.name!r}", model.name_span)
+            for model, node in pairs
+            for name in (node.class_name, node.base_class)
+        ),
+        f"the namespace {package}",
+    )
+    needed = {each for node in nodes for each in _needed(node)}
+    return PackageView(
+        name=package,
+        nodes=nodes,
+        description=one_line(" ".join(node.summary for node in nodes)),
+        libraries=tuple(sorted(needed)),
+        maintainer=maintainer[0],
+        email=maintainer[1],
+        copyright=copyright_line,
+    )
+
+
+def _files(pairs: list[tuple[NodeType, NodeView]]) -> Iterator[Emitted]:
+    for model, node in pairs:
+        for suffix in ("", "_base", "_main"):
+            yield Emitted(f"{node.stem}{suffix}", f"node {model.name!r}", model.name_span)
+
+
+def _needed(node: NodeView) -> tuple[str, ...]:
+    needed = {"rclcpp", "rclcpp_components"}
+    needed |= {port.type.partition("::")[0] for port in node.ports}
+    if node.parameters:
+        needed.add("rcl_interfaces")
+    if node.lifecycle:
+        needed.add("rclcpp_lifecycle")
+    if node.actions or node.action_clients:
+        needed.add("rclcpp_action")
+    if node.provided:
+        needed.update(node.provided.needs)
+    return tuple(sorted(needed))
+
+
+# Nodes --------------------------------------------------------------------------------------------
+
+
+def _node(model: NodeType, provided: Provided | None) -> NodeView:
+    name = (provided and provided.default_name) or model.name
+    class_name = camel_case(name)
+    check_collisions(_methods(model), f"the methods of class {class_name}")
+    check_collisions(
+        (
+            Emitted(cpp_identifier(p.name), f"parameter {p.name!r}", p.name_span)
+            for p in model.parameters
+        ),
+        "the struct Parameters",
+    )
+    views = {
+        kind: tuple(_port(p, model, provided) for p in model.ports_of(kind)) for kind in PortKind
+    }
+    return NodeView(
+        name=model.name,
+        stem=cpp_identifier(name),
+        class_name=class_name,
+        default_name=name,
+        lifecycle=model.lifecycle,
+        source=Path(model.source.path).name,
+        summary=sentence(model.description) or f"The node {name}.",
+        provided=provided,
+        parameters=cpp_parameter_views(model),
+        file_parameters=parameter_views(model),
+        publishers=views[PortKind.PUBLISHER],
+        subscriptions=views[PortKind.SUBSCRIPTION],
+        services=views[PortKind.SERVICE],
+        clients=views[PortKind.CLIENT],
+        actions=views[PortKind.ACTION],
+        action_clients=views[PortKind.ACTION_CLIENT],
+        timers=tuple(
+            TimerView(
+                cpp_identifier(timer.name),
+                _period(timer.period_ns),
+                duration_text(timer.period_ns),
+                _notes(sentence(timer.description)),
+            )
+            for timer in model.timers
+        ),
+    )
+
+
+def _period(nanoseconds: int) -> str:
+    count, unit = duration_text(nanoseconds).split()
+    return f"std::chrono::{_CHRONO[unit]}({count})"
+
+
+def _methods(model: NodeType) -> Iterator[Emitted]:
+    """Yield every method that the base class gets, the hooks first."""
+    for hook in (*_HOOKS, *(_LIFECYCLE_HOOKS if model.lifecycle else ())):
+        yield Emitted(hook, f"the hook {hook!r}", model.name_span)
+    for port in model.ports:
+        for method in _METHODS[port.kind]:
+            name = method.format(cpp_identifier(port.name))
+            yield Emitted(name, f"port {port.name!r}", port.name_span)
+    for timer in model.timers:
+        name = f"on_{cpp_identifier(timer.name)}"
+        yield Emitted(name, f"timer {timer.name!r}", timer.name_span)
+
+
+def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
+    kind = cpp_type(port.type)
+    topic = cpp_string(port.name)
+    notes = [sentence(port.description)]
+    if port.units:
+        listed = ", ".join(f"{unit.path} [{unit.unit}]" for unit in port.units)
+        notes.append(f"Units: {listed}.")
+    if port.via is not None and model.parameter(port.via) is not None:
+        field = f"parameters_->{cpp_identifier(port.via)}"
+        topic = f"{field}.empty() ? {topic} : {field}"
+        notes.append(f"The parameter {port.via} gives the topic's name at start.")
+    return PortView(
+        identifier=cpp_identifier(port.name),
+        type=kind,
+        header=cpp_header(port.type),
+        topic=topic,
+        name=port.name,
+        qos=qos_expression(port.qos),
+        notes=_notes(*notes),
+        memory=f"std::make_shared<{provided.memory}<{kind}>>()"
+        if provided and provided.memory and port.kind is PortKind.SUBSCRIPTION
+        else None,
+    )
+
+
+def _notes(*texts: str) -> tuple[str, ...]:
+    return tuple(text for text in texts if text)
