@@ -1,0 +1,390 @@
+"""Generated gates in C++, compiled into one program that plays what happens to them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import struct
+import subprocess
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import pytest
+
+from deros.generators.gate_cpp.generate import render, runtime_text
+from deros.generators.gate_cpp.view import GateView, gate_view
+from deros.generators.gate_python import gate_nodes
+from deros.generators.safety_python.node import safety_node
+from deros.interfaces.types import InterfaceType
+from deros.monitor.gate import OutputKind
+from deros.monitor.ir import Action, Gate, Program
+from deros.monitor.topics import SystemTopics
+from tests.support import wire
+from tests.support.cpp import WARNINGS, message_flags
+from tests.support.gates import ACTIONS, SOURCE, STORE, Happening
+
+STRICT = (*WARNINGS, "-Wshadow", "-Wsign-conversion", "-Wold-style-cast")
+"""What the pure part of gates compiles with, beyond what all of C++ does."""
+
+SANITIZED = ("-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+
+needs_clang = pytest.mark.skipif(shutil.which("clang++") is None, reason="no clang++")
+
+_KINDS: tuple[OutputKind, ...] = ("pass", "limited", "zero")
+_CALLS = ("command", "state", "heartbeat", "advance")
+_NEVER = 2**63 - 1
+
+
+def view_of(gate: Gate, package: str, actions: tuple[Action, ...] = ACTIONS) -> GateView:
+    """Return the view of a gate in a package of its own."""
+    program = Program("random", (), (), (), (), actions, (gate,))
+    safety = safety_node(program, SystemTopics(()), {}, SOURCE)
+    (node,) = gate_nodes(program, SystemTopics(()), safety)
+    return gate_view(gate, replace(node, package=package), program, STORE, safety)
+
+
+def write_logic(view: GateView, folder: Path) -> Path:
+    """Write what the logic of a gate is made of, and return its source."""
+    include = folder / view.package
+    (include / "runtime").mkdir(parents=True, exist_ok=True)
+    numbers = runtime_text("gate_numbers.hpp", view.package)
+    (include / "runtime" / "gate_numbers.hpp").write_text(numbers, encoding="utf-8")
+    header = include / f"{view.name}_logic.hpp"
+    header.write_text(render("logic.hpp", view), encoding="utf-8")
+    source = folder / f"{view.package}_{view.name}_logic.cpp"
+    source.write_text(render("logic.cpp", view), encoding="utf-8")
+    return source
+
+
+# The program --------------------------------------------------------------------------------------
+
+_PLAYER = """
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include "wire.hpp"
+
+/// A gate that is told what happens to it, as bytes, and answers with what it publishes.
+class Player
+{
+public:
+  virtual ~Player() = default;
+  virtual void start(std::int64_t t) = 0;
+  virtual void play(wire::Bytes & from, wire::Bytes & to) = 0;
+};
+"""
+
+_ADAPTER = """
+namespace {package}
+{{
+
+class Adapter : public Player, public {logic}::Output
+{{
+public:
+  void start(std::int64_t t) override {{gate_.emplace(t, *this);}}
+
+  void play(wire::Bytes & from, wire::Bytes & to) override
+  {{
+    std::uint8_t call = 0;
+    std::int64_t t = 0;
+    std::uint8_t topic = 0;
+    bool is_given = false;
+    wire::get(from, call);
+    wire::get(from, t);
+    wire::get(from, topic);
+    wire::get(from, is_given);
+    out_ = wire::Bytes{{}};
+    count_ = 0;
+    take(call, t, topic, is_given, from);
+    wire::put(to, count_);
+    to.data += out_.data;
+    wire::put(to, gate_->next_deadline());
+    for (const bool applies : gate_->applying()) {{
+      wire::put(to, applies);
+    }}
+  }}
+
+private:
+  using Command = {logic}::Command;
+
+  void take(
+    std::uint8_t call, std::int64_t t, std::uint8_t topic, bool is_given, wire::Bytes & from)
+  {{
+    if (call == 0) {{
+      Command command;
+      if (is_given) {{
+        wire::get(from, command);
+        gate_->on_command(t, command);
+      }} else {{
+        gate_->on_refused(t);
+      }}
+      return;
+    }}
+{states}
+{heartbeat}
+    (void)topic;
+    gate_->advance(t);
+  }}
+
+  void publish({logic}::Published what, const Command & command) override
+  {{
+    wire::put(out_, gate_->now());
+    wire::put(out_, static_cast<std::uint8_t>(what));
+    wire::put(out_, command);
+    ++count_;
+  }}
+{stamp}
+  std::optional<{logic}> gate_{{}};
+  wire::Bytes out_{{}};
+  std::uint32_t count_{{0}};
+}};
+
+}}  // namespace {package}
+"""
+
+_STATE = """    if (call == 1 && topic == {topic}) {{
+      {type} message;
+      if (is_given) {{wire::get(from, message);}}
+      gate_->on_state_{identifier}(t, is_given ? &message : nullptr);
+      return;
+    }}"""
+
+_STAMP = """
+  builtin_interfaces::msg::Time stamp() override
+  {
+    builtin_interfaces::msg::Time time;
+    time.sec = static_cast<std::int32_t>(gate_->now() / 1000000000);
+    time.nanosec = static_cast<std::uint32_t>(gate_->now() % 1000000000);
+    return time;
+  }
+"""
+
+_MAIN = """
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include "player.hpp"
+
+{declarations}
+
+namespace
+{{
+
+bool read(std::string & data, std::size_t count)
+{{
+  data.resize(count);
+  return std::fread(data.data(), 1, count, stdin) == count;
+}}
+
+std::unique_ptr<Player> make(std::uint32_t number)
+{{
+  switch (number) {{
+{cases}
+    default: return nullptr;
+  }}
+}}
+
+}}  // namespace
+
+/// Play traces: their length; gate, start, number of happenings, and these.
+int main()
+{{
+  std::uint32_t length = 0;
+  wire::Bytes from;
+  while (read(from.data, sizeof(length))) {{
+    from.place = 0;
+    wire::get(from, length);
+    if (!read(from.data, length)) {{
+      return 1;
+    }}
+    from.place = 0;
+    std::uint32_t number = 0;
+    std::int64_t start = 0;
+    std::uint32_t count = 0;
+    wire::get(from, number);
+    wire::get(from, start);
+    wire::get(from, count);
+    const std::unique_ptr<Player> player = make(number);
+    player->start(start);
+    wire::Bytes to;
+    for (std::uint32_t i = 0; i < count; ++i) {{
+      player->play(from, to);
+    }}
+    wire::Bytes head;
+    wire::put(head, static_cast<std::uint32_t>(to.data.size()));
+    to.data.insert(0, head.data);
+    if (std::fwrite(to.data.data(), 1, to.data.size(), stdout) != to.data.size() ||
+      std::fflush(stdout) != 0)
+    {{
+      return 1;
+    }}
+  }}
+  return 0;
+}}
+"""
+
+
+def _adapter(view: GateView) -> str:
+    topics = sorted({action.binding.topic for action in ACTIONS if action.binding})
+    states = "\n".join(
+        _STATE.format(topic=topics.index(state.topic), type=state.type, identifier=state.identifier)
+        for state in view.states
+    )
+    heartbeat = "    if (call == 2) {gate_->on_heartbeat(t); return;}"
+    return _ADAPTER.format(
+        package=view.package,
+        logic=view.logic_class,
+        states=states,
+        heartbeat=heartbeat if view.hears_heartbeat else "",
+        stamp=_STAMP if view.stamped else "",
+    )
+
+
+TOPICS = tuple(sorted({action.binding.topic for action in ACTIONS if action.binding}))
+_STATE_TYPES = {action.binding.topic: action.binding.type for action in ACTIONS if action.binding}
+
+
+def compiled(gates: Sequence[Gate], folder: Path, compiler: str, *flags: str) -> Path:
+    """Compile the logic of gates, strictly, and return the program that plays traces."""
+    views = [view_of(gate, f"random_{number}") for number, gate in enumerate(gates)]
+    by_type: dict[InterfaceType, list[int]] = {}
+    for number, gate in enumerate(gates):
+        by_type.setdefault(gate.type, []).append(number)
+    (folder / "wire.hpp").write_text(f"#pragma once\n{wire.head()}", encoding="utf-8")
+    (folder / "player.hpp").write_text(f"#pragma once\n{_PLAYER}", encoding="utf-8")
+    sources = []
+    for kind, numbers in by_type.items():
+        text = '#include <memory>\n#include <optional>\n#include "player.hpp"\n'
+        text += wire.cpp(STORE, [kind, *_STATE_TYPES.values()])
+        for number in numbers:
+            logic = write_logic(views[number], folder)
+            text += f'#include "{logic.name}"\n{_adapter(views[number])}\n'
+            text += f"std::unique_ptr<Player> make_{number}();\n"
+            text += f"std::unique_ptr<Player> make_{number}()\n"
+            text += f"{{return std::make_unique<random_{number}::Adapter>();}}\n"
+        source = folder / f"{kind.package}_{kind.name}.cpp"
+        source.write_text(text, encoding="utf-8")
+        sources.append(source)
+    declarations = "\n".join(f"std::unique_ptr<Player> make_{n}();" for n in range(len(gates)))
+    cases = "\n".join(f"    case {n}: return make_{n}();" for n in range(len(gates)))
+    main = folder / "main.cpp"
+    main.write_text(_MAIN.format(declarations=declarations, cases=cases), encoding="utf-8")
+    return build([*sources, main], folder, compiler, *flags)
+
+
+def build(sources: Sequence[Path], folder: Path, compiler: str, *flags: str) -> Path:
+    """Compile each source on its own, as many at once as there are cores, and link them."""
+    options = ("-std=c++17", *STRICT, *flags, "-I", str(folder), *message_flags())
+
+    def compile_one(source: Path) -> str:
+        output = source.with_suffix(".o")
+        _run([compiler, *options, "-c", str(source), "-o", str(output)])
+        return str(output)
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        objects = list(pool.map(compile_one, sources))
+    program = folder / "program"
+    _run([compiler, *flags, *objects, "-o", str(program)])
+    return program
+
+
+def _run(command: Sequence[str]) -> None:
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
+    assert done.returncode == 0, done.stderr[:8000]
+
+
+# What it plays ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a gate did about one happening.
+
+    Attributes:
+        outputs: when, what kind, and the message as :func:`tests.support.wire.encode` writes it.
+        next_deadline: when something can happen by itself.
+        applying: of each line, whether it applies.
+    """
+
+    outputs: tuple[tuple[int, OutputKind, bytes], ...]
+    next_deadline: int | None
+    applying: tuple[bool, ...]
+
+
+class Players:
+    """A program of :func:`compiled` that runs, and ends with the block."""
+
+    def __init__(self, program: Path, gates: Sequence[Gate]) -> None:
+        """Start the program; ``gates`` are those it was made of."""
+        self._gates = gates
+        self._process = subprocess.Popen(
+            [str(program)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        )
+
+    def __enter__(self) -> Players:
+        """Run."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        _error: BaseException | None,
+        _trace: TracebackType | None,
+    ) -> None:
+        """End the program; it has to end well, which sanitizers see to."""
+        _, errors = self._process.communicate(timeout=60)
+        assert kind is not None or self._process.returncode == 0, errors.decode()
+
+    def play(
+        self, number: int, start_ns: int, trace: Sequence[tuple[int, Happening]]
+    ) -> list[Answer]:
+        """Let a trace happen to a gate; return its answers."""
+        gate = self._gates[number]
+        happenings = (_happening(gate, t_ns, each) for t_ns, each in trace)
+        request = struct.pack("<IqI", number, start_ns, len(trace)) + b"".join(happenings)
+        stdin, stdout = self._process.stdin, self._process.stdout
+        assert stdin is not None
+        assert stdout is not None
+        stdin.write(struct.pack("<I", len(request)) + request)
+        stdin.flush()
+        head = stdout.read(4)
+        if len(head) < 4:
+            _, errors = self._process.communicate(timeout=60)
+            raise AssertionError(f"the program ended: {errors.decode()}")
+        (length,) = struct.unpack("<I", head)
+        return list(_answers(gate, stdout.read(length), len(trace)))
+
+
+def _happening(gate: Gate, t_ns: int, each: Happening) -> bytes:
+    topic = TOPICS.index(each.topic) if each.topic else 0
+    head = struct.pack("<BqB?", _CALLS.index(each.call), t_ns, topic, each.message is not None)
+    if each.message is None:
+        return head
+    kind = gate.type if each.call == "command" else _STATE_TYPES[each.topic]
+    data = wire.encode(STORE, kind, each.message)
+    heeded = {ACTIONS[line.action].binding for line in gate.lines if line.action is not None}
+    heard = {binding.topic for binding in heeded if binding}
+    return head + data if each.call == "command" or each.topic in heard else head
+
+
+def _answers(gate: Gate, data: bytes, count: int) -> Iterator[Answer]:
+    reader = wire.Reader(STORE, data)
+    for _ in range(count):
+        outputs = []
+        for _ in range(reader.take("<I")):
+            t_ns, what = reader.take("<q"), reader.take("<B")
+            outputs.append((t_ns, _KINDS[what], reader.skip(gate.type)))
+        due = reader.take("<q")
+        applying = tuple(reader.take("<?") for _ in gate.lines)
+        yield Answer(tuple(outputs), None if due == _NEVER else due, applying)
+    assert reader.is_at_end
+
+
+def encoded(kind: InterfaceType, message: Any) -> bytes:
+    """Return a message as answers hold it."""
+    return wire.encode(STORE, kind, message)

@@ -1,0 +1,176 @@
+"""Random gates and what happens to them, many at a time: for gates that have to be compiled."""
+
+from __future__ import annotations
+
+import math
+import random
+import struct
+from collections.abc import Iterator, Mapping
+from typing import Any, Literal
+
+from deros.interfaces.fields import ResolvedField, resolve
+from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
+from deros.monitor.gate import GateEngine
+from deros.monitor.ir import Gate, GateLine, Limit
+from tests.support.gates import (
+    ACTIONS,
+    COMMANDS,
+    QUIET,
+    STORE,
+    Happening,
+    Path,
+    message_type,
+    span,
+)
+
+Trace = list[tuple[int, Happening]]
+"""What happens, and when, in nanoseconds."""
+
+MORE_COMMANDS: Mapping[str, tuple[Path, ...]] = {
+    **COMMANDS,
+    "geometry_msgs.Point32": (("x",), ("y",)),
+    "geometry_msgs.PoseStamped": (("pose", "position", "x"),),
+    "sensor_msgs.Joy": (("axes", 0), ("buttons", 1)),
+    "std_msgs.UInt64": (("data",),),
+    "test_msgs.BoundedSequences": (("float32_values", 0), ("int8_values", 2)),
+    "test_msgs.MultiNested": (("array_of_arrays", 1, "uint16_values", 2),),
+}
+"""Types of commands, and the fields of each that random limits speak of."""
+
+_WAITS = (0, 0, 0, 1, 1, 2, 3, 4, 5, 7, 10, 12, 25, 60, -1, -5)
+_TAME = (-3.0, -1.0, -0.5, -0.0, 0.0, 0.25, 0.5, 1.0, 3.0)
+_LATER = (False,) * 19 + (True,)
+
+
+def random_gate(rng: random.Random, name: str) -> Gate:
+    """Return a gate; its times are a few nanoseconds, so that instants coincide often."""
+    lines = []
+    for number in range(2, 2 + rng.randint(1, 6)):
+        limits = _limits(rng, name)
+        if rng.random() < 0.5:
+            lines.append(GateLine(rng.randrange(len(ACTIONS)), None, None, limits, span(number)))
+        else:
+            lost: Literal["heartbeat", "input"] = rng.choice(("heartbeat", "input"))
+            lines.append(GateLine(None, lost, rng.randint(1, 60), limits, span(number)))
+    return Gate(
+        index=0,
+        source="/wish",
+        target="/robot/command",
+        type=message_type(name),
+        period_ns=rng.randint(1, 12),
+        lines=tuple(lines),
+        span=span(1),
+    )
+
+
+def _limits(rng: random.Random, name: str) -> tuple[Limit, ...]:
+    paths = [path for path in MORE_COMMANDS[name] if rng.random() < 0.5]
+    limits = []
+    for path in paths:
+        found = resolve(STORE, message_type(name), path)
+        assert isinstance(found, ResolvedField)
+        lower, upper = rng.randint(-2, 0), rng.randint(0, 2)
+        if str(found.type.base).startswith("uint"):
+            lower = 0
+        ends = (lower / 2, upper / 2) if found.type.is_float else (lower, upper)
+        limits.append(Limit(path, found.type, *ends))
+    return tuple(limits)
+
+
+def random_trace(rng: random.Random, gate: Gate, start_ns: int) -> Trace:
+    """Return what happens to a gate: commands good and bad, states, heartbeats, the time alone.
+
+    Some calls come late, and some show that the clock stepped back.
+    """
+    t_ns = start_ns
+    trace: Trace = []
+    happenings = [*(QUIET if rng.random() < 0.6 else ())]
+    happenings += [_happening(rng, gate.type) for _ in range(rng.randint(1, 30))]
+    for each in happenings:
+        t_ns = max(0, t_ns + each.wait_ns)
+        trace.append((t_ns, each))
+    return trace
+
+
+def _happening(rng: random.Random, kind: InterfaceType) -> Happening:
+    wait_ns = rng.randint(100, 3000) if rng.choice(_LATER) else rng.choice(_WAITS)
+    call = rng.choice(("command", "command", "state", "heartbeat", "advance"))
+    if call == "command":
+        fate = rng.random()
+        message = None if fate < 0.1 else random_message(rng, kind, wild=fate < 0.25)
+        return Happening(wait_ns, call, message)
+    if call == "state":
+        topic = rng.choice(("/stop", "/go", "/mode", "/mode"))
+        value = rng.randint(0, 3) if topic == "/mode" else rng.random() < 0.5
+        return Happening(wait_ns, call, None if rng.random() < 0.2 else {"data": value}, topic)
+    return Happening(wait_ns, call)
+
+
+def random_message(rng: random.Random, kind: InterfaceType, *, wild: bool) -> dict[str, Any]:
+    """Return a message as plain data, with one float of it NaN or infinite if it is ``wild``."""
+    message = dict(_fields(rng, kind))
+    if wild:
+        _spoil(rng, kind, message)
+    return message
+
+
+def _fields(rng: random.Random, kind: InterfaceType) -> Iterator[tuple[str, Any]]:
+    definition = STORE.message(kind)
+    assert definition is not None, kind
+    for name, field in definition.fields:
+        if not field.is_array:
+            yield name, _value(rng, field)
+            continue
+        longest = min(field.size or 3, 3)
+        length = field.size if field.array == "fixed" else rng.randint(0, longest)
+        yield name, [_value(rng, field.element) for _ in range(length or 0)]
+
+
+def _value(rng: random.Random, field: FieldType) -> Any:
+    if isinstance(field.base, InterfaceType):
+        return dict(_fields(rng, field.base))
+    if field.base in FLOAT_TYPES:
+        return rng.choice(_TAME)
+    if field.base == "bool":
+        return rng.random() < 0.5
+    if field.base in INTEGER_RANGES:
+        least, greatest = INTEGER_RANGES[field.base]
+        return rng.randint(max(least, -9), min(greatest, 9))
+    return rng.choice(("", "a b", "\u00e9"))[: field.string_bound]
+
+
+def _spoil(rng: random.Random, kind: InterfaceType, message: dict[str, Any]) -> None:
+    """Make one float a number that is none, or very large or small; if there is one."""
+    places = list(_floats(kind, message))
+    if not places:
+        return
+    holder, key, base = rng.choice(places)
+    value = rng.choice((math.nan, math.inf, -math.inf, 1e300, -5e-324, rng.uniform(-9, 9)))
+    if base == "float32" and math.isfinite(value):
+        value = struct.unpack("f", struct.pack("f", max(-1e38, min(1e38, value))))[0]
+    holder[key] = value
+
+
+def _floats(kind: InterfaceType, message: dict[str, Any]) -> Iterator[tuple[Any, Any, str]]:
+    definition = STORE.message(kind)
+    assert definition is not None, kind
+    for name, field in definition.fields:
+        holder: Any = message[name] if field.is_array else message
+        keys = range(len(holder)) if field.is_array else (name,)
+        for key in keys:
+            if isinstance(field.base, InterfaceType):
+                yield from _floats(field.base, holder[key])
+            elif field.base in FLOAT_TYPES:
+                yield holder, key, field.base
+
+
+def play(engine: GateEngine, t_ns: int, each: Happening) -> None:
+    """Let something happen to the reference gate."""
+    if each.call == "command":
+        engine.command(t_ns, each.message)
+    elif each.call == "state":
+        engine.state(t_ns, each.topic, each.message)
+    elif each.call == "heartbeat":
+        engine.heartbeat(t_ns)
+    else:
+        engine.advance(t_ns)
