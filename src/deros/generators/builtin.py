@@ -23,6 +23,14 @@ def rosnode_python(model: NodeType, context: Context, options: Options) -> Files
     return generate(model, context, options)
 
 
+@generator("rosnode", "cpp", (_MAINTAINER, _COPYRIGHT))
+def rosnode_cpp(model: NodeType, context: Context, options: Options) -> Files:
+    """A complete ament_cmake package: base class, your node as a component, parameters, tests."""
+    from deros.generators.rosnode_cpp.generate import generate
+
+    return generate(model, context, options)
+
+
 @generator("rossystem", "launch")
 def rossystem_launch(model: System, context: Context, options: Options) -> Files:
     """A ROS 2 launch file that starts every node with its parameters and remappings."""
