@@ -76,25 +76,33 @@ class _Outcome:
 
 
 def _generate(request: Request, source: Path) -> _Outcome:
-    """Bring the generated package up to date."""
+    """Bring the generated package up to date.
+
+    colcon runs a setup.py half a dozen times for one build, so it pays to see that nothing changed.
+    """
     from deros.cli import produce
+    from deros.cli.depfile import is_current, stamped, write_if_changed
     from deros.generators.source_tree import SourceTreeError, package_folder
     from deros.generators.writer import WriteError
 
     output = source / FOLDER
-    where = produce.Place(output, overwrite=True, source=source, stamp=output / "stamp")
-    started = produce.now_ns()
+    stamp, depfile, ros = output / "stamp", output / "depends.d", output / "ament_prefix_path"
+    rests_on = (source / "setup.py", ros)
+    where = produce.Place(output, True, source, depfile, stamp, rests_on)
     findings: Sequence[Diagnostic] = ()
     try:
+        write_if_changed(output / ".gitignore", "*\n")
+        write_if_changed(ros, os.environ.get("AMENT_PREFIX_PATH", ""))
+        started = produce.now_ns()
+        there = stamped(stamp)
+        if is_current(stamp, depfile) and all((output / each).exists() for each in there):
+            return _Outcome(there[0].partition("/")[0])
         made = produce.make(request)
         findings = made.findings
         package = package_folder(made.files)
         if f"{package}/setup.py" not in made.files:
             raise ValueError(f"the target {request.target} makes no ament_python package")
         produce.put(made, where, started)
-        ignored = output / ".gitignore"
-        if not ignored.exists():
-            ignored.write_text("*\n", encoding="utf-8")
     except produce.Refused as refused:
         return _Outcome(None, refused.diagnostics, refused.code)
     except SourceTreeError as error:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from deros.generators.registry import Generator
 
 _SPECIAL = re.compile(r"[ \t#]")
+_ESCAPED = re.compile(r"\\([ \t#])|\$(\$)")
+_END = re.compile(r" \\$")
 
 
 def inputs(context: Context, generator: Generator, more: Iterable[Path] = ()) -> list[str]:
@@ -65,6 +67,22 @@ def _escaped(path: str) -> str:
     return _SPECIAL.sub(r"\\\g<0>", path.replace("$", "$$"))
 
 
+def prerequisites(text: str) -> list[str]:
+    """Read the prerequisites out of what :func:`depfile` returned."""
+    lines = [line[2:] for line in text.splitlines() if line.startswith("  ")]
+    return [_ESCAPED.sub(r"\1\2", _END.sub("", line)) for line in lines]
+
+
+def is_current(stamp: Path, depfile: Path) -> bool:
+    """Tell whether nothing has changed since the run that wrote both files."""
+    try:
+        made = stamp.stat().st_mtime_ns
+        found = prerequisites(depfile.read_text(encoding="utf-8"))
+        return all(Path(each).stat().st_mtime_ns <= made for each in found)
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
 def write_if_changed(path: Path, text: str) -> None:
     """Write a file, unless it holds the text already.
 
@@ -73,8 +91,8 @@ def write_if_changed(path: Path, text: str) -> None:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not path.is_file() or path.read_text(encoding="utf-8") != text:
-            path.write_text(text, encoding="utf-8")
+        if not path.is_file() or path.read_bytes() != text.encode():
+            path.write_bytes(text.encode())
     except OSError as error:
         raise WriteError(f"cannot write {path}: {error.strerror or error}") from error
 

@@ -101,6 +101,7 @@ class Place:
         source: where the hand-written files of the package are, if not in the output.
         depfile: where to write what the output rests on, as a rule of Make.
         stamp: the file that stands for the whole output; the rule's target.
+        rests_on: files that it rests on besides those that are read here.
     """
 
     output: Path
@@ -108,6 +109,7 @@ class Place:
     source: Path | None = None
     depfile: Path | None = None
     stamp: Path | None = None
+    rests_on: tuple[Path, ...] = ()
 
 
 def put(made: Made, where: Place, started_ns: int) -> WriteReport:
@@ -138,7 +140,7 @@ def put(made: Made, where: Place, started_ns: int) -> WriteReport:
         everything = [str(where.output / path) for path in sorted(ours)]
         targets = everything if where.stamp is None else [str(where.stamp)]
         absolute = map(os.path.abspath, targets)
-        found = inputs(made.context, made.generator, merged.inputs)
+        found = inputs(made.context, made.generator, [*merged.inputs, *where.rests_on])
         write_if_changed(where.depfile, depfile(absolute, found))
     if where.stamp is not None:
         stale = sorted(set(stamped(where.stamp)) - ours)

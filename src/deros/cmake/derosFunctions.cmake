@@ -162,6 +162,8 @@ macro(_deros_check_arguments function)
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "${function}: what is '${arg_UNPARSED_ARGUMENTS}'?")
   endif()
+  # A list may be empty, as that of a variable is.
+  list(REMOVE_ITEM arg_KEYWORDS_MISSING_VALUES FILES INTERFACES OPTIONS DEPENDS)
   if(arg_KEYWORDS_MISSING_VALUES)
     message(FATAL_ERROR "${function}: ${arg_KEYWORDS_MISSING_VALUES} lacks its value")
   endif()
