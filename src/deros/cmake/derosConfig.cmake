@@ -1,7 +1,6 @@
 # find_package(deros): the program `deros`, and functions that run it while a project is built.
 #
 #   deros_EXECUTABLE   the program; set it beforehand to use another one
-#   deros_VERSION      the version of these files
 #
 # Functions: deros_generate, deros_add_monitor, deros_package; see derosFunctions.cmake.
 
@@ -11,8 +10,8 @@ if(CMAKE_VERSION VERSION_LESS "3.22")
   return()
 endif()
 
-# These files lie in <prefix>/share/deros/cmake, and in the package's own folder, which is
-# <prefix>/lib/pythonX.Y/site-packages/deros/cmake; the program belonging to them in <prefix>/bin.
+# This file lies in <prefix>/share/deros/cmake, and in the package's own folder, which is
+# <prefix>/lib/pythonX.Y/site-packages/deros/cmake; the program belonging to it in <prefix>/bin.
 # A checkout has no such place: then it is the first on the PATH.
 find_program(deros_EXECUTABLE deros
   HINTS
@@ -32,4 +31,19 @@ run 'pip install deros', or set deros_EXECUTABLE")
   return()
 endif()
 
-include("${CMAKE_CURRENT_LIST_DIR}/derosFunctions.cmake")
+# The functions are those of the program, whichever it is: they know its options.
+execute_process(
+  COMMAND "${deros_EXECUTABLE}" cmake-dir
+  OUTPUT_VARIABLE _deros_functions
+  OUTPUT_STRIP_TRAILING_WHITESPACE
+  ERROR_VARIABLE _deros_said
+  RESULT_VARIABLE _deros_failed)
+if(NOT _deros_failed EQUAL 0)
+  set(deros_FOUND FALSE)
+  set(deros_NOT_FOUND_MESSAGE "${deros_EXECUTABLE} does not run: ${_deros_said}${_deros_failed}")
+  return()
+endif()
+include("${_deros_functions}/derosFunctions.cmake")
+unset(_deros_functions)
+unset(_deros_said)
+unset(_deros_failed)

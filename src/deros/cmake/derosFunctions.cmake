@@ -113,8 +113,16 @@ endfunction()
 #
 # The generated CMakeLists.txt must be there when CMake runs. So this generates while the project is
 # configured, and has it configured anew when something changes that the package rests on.
-function(deros_package)
-  cmake_parse_arguments(PARSE_ARGV 0 arg
+macro(deros_package)
+  include(CTest) # tests of a subdirectory run only if the folders above know of them
+  _deros_generate_package(_deros_package ${ARGV})
+  add_subdirectory("${_deros_package}" deros_package)
+  unset(_deros_package)
+endmacro()
+
+# Generates the package, and sets `result` to its folder.
+function(_deros_generate_package result)
+  cmake_parse_arguments(PARSE_ARGV 1 arg
     "" "MODEL;GENERATOR;SOURCE_DIRECTORY" "INTERFACES;OPTIONS")
   _deros_check_arguments(deros_package)
   set(arg_OUTPUT_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/deros_generated")
@@ -153,7 +161,7 @@ deros_generate is for other outputs")
     message(FATAL_ERROR
       "deros_package: the generated package is ${package}: call this one so, with project(${package})")
   endif()
-  add_subdirectory("${arg_OUTPUT_DIRECTORY}/${package}" "${CMAKE_CURRENT_BINARY_DIR}/${package}")
+  set(${result} "${arg_OUTPUT_DIRECTORY}/${package}" PARENT_SCOPE)
 endfunction()
 
 # What the functions share; they set the caller's arg_* variables ------------------------------------
