@@ -141,7 +141,14 @@ class Chain:
     joint: str = ""
 
 
-Expression = str | Text | Call | Chain
+@dataclass(frozen=True, slots=True)
+class Items:
+    """A list in braces; where too long, each item stands on a line of its own."""
+
+    items: tuple[str, ...]
+
+
+Expression = str | Text | Call | Chain | Items
 
 
 def layout(expression: Expression, indent: int, trailer: str = "") -> list[str]:
@@ -156,17 +163,30 @@ def layout(expression: Expression, indent: int, trailer: str = "") -> list[str]:
         return _broken(expression.text, indent, trailer)
     if isinstance(expression, Chain):
         return _links(expression, indent, trailer)
+    if isinstance(expression, Items):
+        margin = " " * (indent + 2)
+        items = [f"{margin}{item}," for item in expression.items]
+        return ["{", *items[:-1], items[-1].removesuffix(",") + "}" + trailer]
+    before, head = _cut(expression.head, indent)
     margin = " " * (indent + 2)
     trailer = ")" + expression.tail + trailer
     together = ", ".join(map(_on_one_line, expression.arguments)) + trailer
     if indent + 2 + len(together) <= LINE_LENGTH:
-        return [f"{expression.head}(", margin + together]
-    lines = [f"{expression.head}("]
+        return [*before, f"{head}(", margin + together]
+    lines = [*before, f"{head}("]
     for argument in expression.arguments:
         last = argument is expression.arguments[-1]
         inner = layout(argument, indent + 2, trailer if last else ",")
         lines += [margin + inner[0], *inner[1:]]
     return lines
+
+
+def _cut(head: str, indent: int) -> tuple[list[str], str]:
+    """Take the type in front of a declared name to a line of its own, where both do not fit."""
+    type_, blank, name = head.rpartition(" ")
+    if indent + len(head) < LINE_LENGTH or not blank:
+        return [], head
+    return [type_], " " * indent + name
 
 
 def _broken(text: str, indent: int, trailer: str) -> list[str]:
@@ -202,6 +222,8 @@ def _on_one_line(expression: Expression) -> str:
         return cpp_string(expression.text)
     if isinstance(expression, Chain):
         return expression.head + expression.joint.join(expression.parts)
+    if isinstance(expression, Items):
+        return f"{{{', '.join(expression.items)}}}"
     arguments = ", ".join(map(_on_one_line, expression.arguments))
     return f"{expression.head}({arguments}){expression.tail}"
 
@@ -238,6 +260,8 @@ def statement(head: str, value: Expression, indent: int) -> str:
     line = f"{head} {_on_one_line(value)};".lstrip()
     if indent + len(line) <= LINE_LENGTH or isinstance(value, str):
         return line
+    if isinstance(value, Items):
+        return f"{head} " + "\n".join(layout(value, indent, ";"))
     margin = " " * (indent + 2)
     first, *others = layout(value, indent + 2, ";")
     return "\n".join([head, margin + first, *others])
@@ -281,17 +305,21 @@ def summary(text: str, otherwise: str) -> str:
 
 _HEADERS = {
     "algorithm": r"std::(all_of|find|find_if|max|min|sort)\b",
+    "array": r"std::array\b",
     "atomic": r"std::atomic",
     "chrono": r"std::chrono",
     "cstddef": r"\bsize_t\b",
     "cstdint": r"\bu?int\d+_t\b|\bINT64_C\b",
-    "exception": r"std::exception\b",
+    "exception": r"std::exception(_ptr)?\b",
     "functional": r"std::(function|hash|less)\b",
+    "future": r"std::(shared_)?future\b",
     "limits": r"std::numeric_limits",
     "list": r"std::list\b",
     "memory": r"std::(make_shared|make_unique|shared_ptr|unique_ptr|weak_ptr)\b",
     "mutex": r"std::(lock_guard|mutex|unique_lock)\b",
+    "optional": r"std::(nullopt|optional)\b",
     "string": r"std::(string|to_string)\b",
+    "type_traits": r"std::is_same\b",
     "utility": r"std::(exchange|move|pair|swap)\b",
     "vector": r"std::vector\b",
 }
@@ -305,6 +333,13 @@ def standard_headers(text: str) -> list[str]:
 def include_lines(headers: Iterable[str]) -> list[str]:
     """Return ``#include`` lines of quoted headers, in order, each once."""
     return [f'#include "{header}"' for header in sorted(set(headers))]
+
+
+def tidied(text: str) -> str:
+    """Return ``text`` without needless empty lines and without empty sections of classes."""
+    text = re.sub(r"\n{3,}", "\n\n", text)
+    text = re.sub(r"(?:\n\w+:\n+)+(?=(?:private|protected):|\};)", "\n", text)
+    return re.sub(r"\n+(\n(?: +\}|\};))", r"\1", text)
 
 
 def mark_long_lines(text: str) -> str:

@@ -18,6 +18,7 @@ from deros.generators.cpp_source import (
     mark_long_lines,
     standard_headers,
     statement,
+    tidied,
 )
 from deros.generators.node_package import maintainer, nodes_beside, refuse_legacy, unsupported
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
@@ -115,7 +116,7 @@ def _cpp(template: str, package: PackageView, node: NodeView, headers: Sequence[
         "mark": "//",
     }
     bare = _render(template, standard=[], **names)
-    return mark_long_lines(_render(template, standard=standard_headers(bare), **names))
+    return mark_long_lines(tidied(_render(template, standard=standard_headers(bare), **names)))
 
 
 def _render(template: str, **names: object) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from deros.generators.cpp_source import (
     Call,
     Expression,
+    Items,
     Text,
     cpp_double,
     cpp_identifier,
@@ -50,17 +51,17 @@ _INTEGERS = (ParameterType.INTEGER, ParameterType.INTEGER_ARRAY)
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """A check that the descriptor cannot state: a condition on ``value``, and what it asks for."""
+    """A check of ``value`` that the descriptor cannot state.
 
-    condition: str | Call
+    Attributes:
+        prepared: what the condition needs, as head and value of a statement; empty for nothing.
+        violated: the condition under which the value is refused.
+        requirement: what the check asks for.
+    """
+
+    prepared: tuple[str, Expression] | None
+    violated: str
     requirement: Text
-
-    @property
-    def violation(self) -> Expression:
-        """The negation of the condition."""
-        if isinstance(self.condition, str):
-            return f"!({self.condition})"
-        return Call(f"!{self.condition.head}", self.condition.arguments)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +106,10 @@ def _view(parameter: Parameter, shared: SharedView, read_only: bool) -> Paramete
     kind = parameter.type
     literal = cpp_string(parameter.name)
     checks = tuple(
-        Check(condition, Text(constraint.requirement))
-        for condition, constraint in zip(_conditions(parameter), shared.constraints, strict=True)
+        Check(prepared, violated, Text(constraint.requirement))
+        for (prepared, violated), constraint in zip(
+            _violations(parameter), shared.constraints, strict=True
+        )
     )
     declared: Expression = f"rclcpp::ParameterType::PARAMETER_{kind.name}"
     if parameter.default is not None:
@@ -189,25 +192,26 @@ def _described(
     yield f"{name}[0].to_value =", high
 
 
-def _conditions(parameter: Parameter) -> Iterator[str | Call]:
-    """Yield the conditions of the requirements, in the order of the Python target's."""
+def _violations(parameter: Parameter) -> Iterator[tuple[tuple[str, Expression] | None, str]]:
+    """Yield what refuses a value, in the order of the Python target's requirements."""
     kind = parameter.type
     if parameter.size is not None:
-        yield f"value.size() == {parameter.size}"
+        yield None, f"value.size() != {parameter.size}"
     if parameter.choices is not None:
-        yield Call("is_one_of", ("value", *(_typed(choice, kind) for choice in parameter.choices)))
+        listed = Items(tuple(_typed(choice, kind) for choice in parameter.choices))
+        yield (
+            (f"const std::vector<{_TYPES[kind]}> choices =", listed),
+            "std::find(choices.begin(), choices.end(), value) == choices.end()",
+        )
     interval = parameter.interval
     if interval is None:
         return
     if kind.is_array:
         item = "int64_t" if kind in _INTEGERS else "double"
-        test = _within(interval, kind, "item")
-        yield Call(
-            "std::all_of",
-            ("value.begin()", "value.end()", f"[]({item} item) {{return {test};}}"),
-        )
+        test = f"[]({item} item) {{return {_within(interval, kind, 'item')};}}"
+        yield ("const auto fits =", test), "!std::all_of(value.begin(), value.end(), fits)"
     elif kind is ParameterType.DOUBLE and not (interval.lower_closed and interval.upper_closed):
-        yield _within(interval, kind, "value")
+        yield None, f"!({_within(interval, kind, 'value')})"
 
 
 def _within(interval: Interval, kind: ParameterType, value: str) -> str:

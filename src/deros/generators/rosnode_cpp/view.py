@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deros.generators.cpp_source import (
-    Call,
     Chain,
     cpp_header,
     cpp_identifier,
@@ -160,12 +159,6 @@ class NodeView:
     def checked(self) -> tuple[ParameterView, ...]:
         """The parameters that need more checks than rclcpp makes."""
         return tuple(p for p in self.parameters if p.checks)
-
-    @property
-    def choosy(self) -> bool:
-        """Whether a parameter must have one of some listed values."""
-        conditions = (check.condition for p in self.parameters for check in p.checks)
-        return any(isinstance(c, Call) and c.head == "is_one_of" for c in conditions)
 
     @property
     def has_handlers(self) -> bool:
