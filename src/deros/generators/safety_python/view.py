@@ -212,10 +212,10 @@ def safety_view(
         channels=channels,
         channels_of=tuple((name, c.identifier) for c in channels for name in c.actions),
         actions=actions,
-        lasting=tuple((a.name, _lasts(a)) for a in program.actions if a.name != LOG_STATE),
+        lasting=tuple((a.name, lasts(a)) for a in program.actions if a.name != LOG_STATE),
         latched=tuple(_latched(program)),
         optional=tuple(_optional(program)),
-        behaviours=tuple(_behaviours(program)),
+        behaviours=tuple(behaviour_views(program)),
         callers=tuple(_callers(program)),
         heartbeat=_alias(base, node, HEARTBEAT),
         trigger=_alias(base, node, RESET),
@@ -394,7 +394,8 @@ def _argument_types(action: Action, program: Program) -> list[str]:
     return [" | ".join(sorted(types)) or "object" for types in given]
 
 
-def _lasts(action: Action) -> bool:
+def lasts(action: Action) -> bool:
+    """Tell whether an action has a state, and is not just run."""
     return action.binding is not None or action.latched or action.reset_by is not None
 
 
@@ -416,7 +417,8 @@ def _optional(program: Program) -> Iterator[tuple[str, str]]:
             yield each.name, python_identifier(enabled_parameter(each.name))
 
 
-def _behaviours(program: Program) -> Iterator[BehaviourView]:
+def behaviour_views(program: Program) -> Iterator[BehaviourView]:
+    """Yield what people want to know of each behaviour, from top to bottom."""
     rules: dict[int, tuple[str, ...]] = {}
     for each in walk.behaviours(program):
         around = rules[each.parent] if each.parent is not None else ()

@@ -1,0 +1,61 @@
+"""What the monitor in C is worth, for people: its verdicts and terms out of its struct."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros.generators.cpp_source import Call, Expression, Text, cpp_double, cpp_string
+from deros.generators.monitor_c.layout import Layout
+from deros.generators.monitor_c.layout import Term as Field
+from deros.monitor.explain import Term, one_line, term_name, terms
+from deros.monitor.ir import Age, Missing, Program, Rule, Scale
+
+
+def explained_rules(program: Program, layout: Layout) -> Iterator[Expression]:
+    """Yield, for each rule, the expression of its state; the monitor's struct is ``m``."""
+    for rule in program.rules:
+        yield Call("runtime::explained", tuple(_arguments(program, layout, rule)))
+
+
+def _arguments(program: Program, layout: Layout, rule: Rule) -> Iterator[Expression]:
+    yield cpp_string(rule.full_name)
+    yield str(rule.span.line)
+    yield Text(one_line(rule.span.text))
+    yield f"m.{layout.verdicts[rule.index]} == {layout.macro}_TRUE"
+    yield f"m.{layout.turned[rule.index]}"
+    for term in terms(rule.condition):
+        value = _value(layout, term)
+        yield Call("runtime::Reading", (cpp_string(term_name(program, term)), value))
+
+
+def _value(layout: Layout, term: Term) -> str:
+    match term:
+        case Missing():
+            return f"runtime::value_of(true, m.{layout.inputs[term.input].missing})"
+        case Age():
+            fields = layout.inputs[term.input]
+            return f"runtime::value_of(m.{fields.came}, runtime::seconds(m.now - m.{fields.base}))"
+        case _:
+            return _known(*_field(layout, term))
+
+
+def _field(layout: Layout, term: Term) -> tuple[Field, Scale | None]:
+    """Return the field that holds a term, and in which unit if not in its own."""
+    if term in layout.terms:
+        return layout.terms[term], None
+    return next(
+        (field, value)
+        for value, field in layout.terms.items()
+        if isinstance(value, Scale) and value.operand == term
+    )
+
+
+def _known(field: Field, scale: Scale | None) -> str:
+    value = f"m.{field.name}"
+    if field.texts:
+        listed = ", ".join(map(cpp_string, field.texts))
+        value = f"runtime::text_of({value}, {{{listed}}})"
+    elif scale is not None:
+        offset = f"({value} - {cpp_double(scale.offset)})" if scale.offset else value
+        value = f"{offset} / {cpp_double(scale.factor)}"
+    return f"runtime::value_of(m.{field.known}, {value})"

@@ -1,0 +1,88 @@
+#ifndef DEROS_RUNTIME__RUNTIME__DIAGNOSTICS_HPP_
+#define DEROS_RUNTIME__RUNTIME__DIAGNOSTICS_HPP_
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/events.hpp"
+#include "deros_runtime/runtime/told.hpp"
+#include "diagnostic_msgs/msg/diagnostic_array.hpp"
+#include "diagnostic_msgs/msg/diagnostic_status.hpp"
+
+namespace deros_runtime
+{
+
+/// The present state of a safety node on /diagnostics, for the tools that operators know.
+/**
+ * One status for the node, one for each action and one for each rule. All of it is published
+ * regularly, and soon after a change.
+ */
+class Diagnostics
+{
+public:
+  using Message = diagnostic_msgs::msg::DiagnosticArray;
+  using Status = diagnostic_msgs::msg::DiagnosticStatus;
+
+  /// What tells of the node and of the world outside.
+  struct Outside
+  {
+    std::string name;  // of the node, in full
+    std::function<Explanation()> explain;
+    std::function<Time()> now;  // the time in which the monitor is told
+    std::function<std::string()> summary;  // what the node is not ready for; empty if it watches
+    std::function<void(Message &)> publish;  // stamps it, too
+    std::function<Time()> put_off;  // what goes before
+  };
+
+  Diagnostics(Agenda & agenda, const Origins & origins, double frequency, Outside outside);
+
+  /// Publish for the first time, at once.
+  void begin();
+
+  /// Publish soon.
+  void changed();
+
+  /// Follow an event of the monitor.
+  void ordered(const Event & event);
+
+  /// Show an action as active that was so before the start.
+  void latched(std::size_t action);
+
+  /// Note or, with an empty text, forget a fault; tell whether this is another one now.
+  bool fault(const std::string & subject, const std::string & text);
+
+private:
+  /// An action: whether it is active, or that it ran, by which behaviour, and since when.
+  struct ActionState
+  {
+    bool active = false;
+    std::string cause;
+    std::optional<Time> since;
+    std::size_t runs = 0;
+  };
+
+  void ring();
+  void make_statuses();
+  Status node_status(std::size_t rule_count) const;
+  Status action_status(std::size_t action, Time now) const;
+  Status rule_status(const RuleState & rule, bool blamed, Time now) const;
+  std::vector<bool> blamed(const Explanation & state) const;
+
+  const Origins & origins_;
+  Outside outside_;
+  Time period_;
+  Values faults_;
+  std::vector<ActionState> actions_;
+  std::vector<Status> statuses_;  // of one state, published in parts
+  std::size_t published_ = 0;
+  bool again_ = false;
+  Alarm alarm_;
+};
+
+}  // namespace deros_runtime
+
+#endif  // DEROS_RUNTIME__RUNTIME__DIAGNOSTICS_HPP_

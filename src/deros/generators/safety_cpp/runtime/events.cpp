@@ -1,0 +1,140 @@
+#include "deros_runtime/runtime/events.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deros_runtime/runtime/text.hpp"
+
+namespace deros_runtime
+{
+
+namespace
+{
+
+constexpr const char * KINDS[] = {"trigger", "reset", "refused", "clock_step"};
+
+/// Set a value, where its name stands already or at the end.
+void set(Values & values, const std::string & name, std::string value)
+{
+  const auto found = std::find_if(
+    values.begin(), values.end(), [&name](const auto & each) {return each.first == name;});
+  if (found != values.end()) {
+    found->second = std::move(value);
+  } else {
+    values.emplace_back(name, std::move(value));
+  }
+}
+
+std::string shown(const std::optional<bool> & value)
+{
+  return value ? deros_runtime::shown(*value) : "unknown";
+}
+
+/// Add what the rules are worth that a behaviour depends on, and what they read.
+void add_causes(Values & values, const Behaviour & behaviour, const Explanation & after)
+{
+  for (const RuleState & rule : after.rules) {
+    const auto & named = behaviour.rules;
+    if (std::find(named.begin(), named.end(), rule.name) == named.end()) {
+      continue;
+    }
+    set(values, "rule " + rule.name, shown(rule.value));
+    for (const Reading & each : rule.reads) {
+      set(values, "value " + each.term, each.value.value_or("unknown"));
+    }
+  }
+}
+
+}  // namespace
+
+diagnostic_msgs::msg::DiagnosticStatus status(
+  Level level, const std::string & name, const std::string & message, const Values & values)
+{
+  diagnostic_msgs::msg::DiagnosticStatus made;
+  made.level = level;
+  made.name = name;
+  made.message = message;
+  made.values.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    made.values[i].key = values[i].first;
+    made.values[i].value = values[i].second;
+  }
+  return made;
+}
+
+Events::Events(const Origins & origins, Outside outside)
+: origins_(origins), outside_(std::move(outside))
+{
+}
+
+void Events::ordered(const Event & event, Time done, const Explanation & after)
+{
+  const Site & site = origins_.sites[event.site];
+  const std::string line = std::to_string(site.line);
+  Values values = {
+    {"action", site.action ? origins_.actions[*site.action].name : ""},
+    {"origin", site.line != 0 ? origins_.rules + ':' + line : ""},
+    {"time_ns", std::to_string(event.t)},
+    {"published_ns", std::to_string(done)},
+  };
+  if (!site.arguments.empty()) {
+    set(values, "arguments", site.arguments);
+  }
+  if (site.behaviour) {
+    const Behaviour & behaviour = origins_.behaviours[*site.behaviour];
+    set(values, "behaviour", behaviour.name);
+    set(values, "origin", behaviour.origin);
+    set(values, "condition", behaviour.condition);
+    add_causes(values, behaviour, after);
+  }
+  const auto [message, level] = described(event, after.holding);
+  tell(KINDS[static_cast<std::size_t>(event.kind)], level, message, std::move(values));
+}
+
+void Events::tell(const char * kind, Level level, const std::string & message, Values values)
+{
+  outside_.log(level, message);
+  values.insert(values.begin(), {"kind", kind});
+  values.emplace_back("ros_time_ns", std::to_string(outside_.ros_now()));
+  outside_.publish(status(level, outside_.name, message, values));
+}
+
+std::string Events::origin(std::size_t behaviour) const
+{
+  const Behaviour & found = origins_.behaviours[behaviour];
+  return found.name + " (" + found.origin + ": if " + found.condition + ')';
+}
+
+std::string Events::callers(std::size_t action, const std::vector<std::size_t> & holding) const
+{
+  std::vector<std::string> found;
+  for (const std::size_t caller : origins_.actions[action].callers) {
+    if (std::find(holding.begin(), holding.end(), caller) != holding.end()) {
+      found.push_back(origin(caller));
+    }
+  }
+  return joined(found, ", ");
+}
+
+std::pair<std::string, Level> Events::described(
+  const Event & event, const std::vector<std::size_t> & holding) const
+{
+  if (event.kind == Kind::ClockStep) {
+    return {"the clock stepped back: all inputs are unknown until their next message", ERROR};
+  }
+  const Site & site = origins_.sites[event.site];
+  const std::string & action = origins_.actions[*site.action].name;
+  if (event.kind == Kind::Reset) {
+    return {action + " is reset", OK};
+  }
+  if (event.kind == Kind::Refused) {
+    return {action + " stays active, called for by " + callers(*site.action, holding), WARN};
+  }
+  const std::string & what = site.text.empty() ? action : site.text;
+  return {what + ", by " + origin(*site.behaviour), WARN};
+}
+
+}  // namespace deros_runtime

@@ -1,0 +1,491 @@
+#include "deros_runtime/runtime/guardian.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "deros_runtime/runtime/instance.hpp"
+#include "deros_runtime/runtime/machine.hpp"
+#include "deros_runtime/runtime/text.hpp"
+
+namespace deros_runtime
+{
+
+namespace
+{
+
+constexpr Time SOON = 2'000'000;  // ns after an action, when it is told of
+constexpr Time CHORES = 100'000'000;  // ns from one look at what is not urgent to the next
+
+std::size_t domain_of(rclcpp::Node & node)
+{
+  return node.get_node_base_interface()->get_context()->get_domain_id();
+}
+
+std::string heartbeat_of(rclcpp::Node & node)
+{
+  return node.get_node_topics_interface()->resolve_topic_name("~/heartbeat");
+}
+
+}  // namespace
+
+Guardian::Guardian(
+  rclcpp::Node & node, Robot & robot, const Origins & origins, Settings settings)
+: node_(node),
+  robot_(robot),
+  origins_(origins),
+  settings_(std::move(settings)),
+  name_(node.get_fully_qualified_name()),
+  grace_(std::llrint(settings_.startup_grace * 1e9)),
+  period_(std::llrint(1e9 / settings_.publish_freq)),
+  refused_(prepare(settings_.realtime_priority, settings_.lock_memory)),
+  group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
+  watch_(agenda_, choose_clock(), *this),
+  events_(origins, outside_of_events()),
+  diagnostics_(agenda_, origins, settings_.diagnostics_freq, outside_of_diagnostics()),
+  siblings_(
+    node, heartbeat_of(node),
+    [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);}),
+  publishers_(
+    node,
+    [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);}),
+  active_(origins.actions.size()),
+  enabled_(origins.behaviours.size(), true),
+  publishing_(agenda_, choose_clock(), [this] {publish();}),
+  telling_(agenda_, Clock(), [this] {tell();}, [this] {return watch_.put_off();}),
+  chores_(agenda_, Clock(), [this] {do_chores();}),
+  switching_(agenda_.add_source([this] {switch_behaviours();}, 1)),
+  ports_(
+    agenda_,
+    [this](const std::string & topic, const std::string & why) {refuse(topic, why);}),
+  worker_(agenda_, [this](const char * why) {RCLCPP_FATAL(node_.get_logger(), "%s", why);})
+{
+  untold_.reserve(2 * SLOTS);
+  try {
+    lock_ = claim(name_, domain_of(node));
+  } catch (const std::system_error & error) {
+    refused_.push_back(
+      std::string("a second instance on this machine would not be seen: ") + error.what());
+  }
+}
+
+Guardian::~Guardian()
+{
+  stop();
+}
+
+Clock Guardian::choose_clock()
+{
+  if (!node_.get_parameter("use_sim_time").as_bool()) {
+    return Clock();
+  }
+  const rclcpp::Clock::SharedPtr clock = node_.get_clock();
+  return {[clock] {return clock->now().nanoseconds();}, false};
+}
+
+// Start
+
+void Guardian::start(const std::vector<Topic> & topics)
+{
+  tell_start();
+  open_latches();
+  for (const Topic & topic : topics) {
+    const std::string name = node_.get_node_topics_interface()->resolve_topic_name(topic.name);
+    group_->find_subscription_ptrs_if(
+      [&](const rclcpp::SubscriptionBase::SharedPtr & each) {
+        const bool found = each->get_topic_name() == name;
+        if (found) {
+          publishers_.add(*each, topic.type);
+        }
+        return found;
+      });
+  }
+  if (node_.get_parameter("use_sim_time").as_bool()) {
+    rcl_jump_threshold_t threshold{};
+    threshold.on_clock_change = true;
+    threshold.min_forward.nanoseconds = 1;
+    threshold.min_backward.nanoseconds = -1;
+    jumps_ = node_.get_clock()->create_jump_callback(
+      nullptr,
+      [this](const rcl_time_jump_t & jump) {watch_.clock_jumped(jump.delta.nanoseconds < 0);},
+      threshold);
+  }
+  watch_.start();
+  chores_.ring_at(0);
+  diagnostics_.begin();
+  ports_.serve(*group_);
+  worker_.start();
+}
+
+void Guardian::begin(Time start)
+{
+  robot_.start_monitor(start, grace_);
+  std::fill(active_.begin(), active_.end(), false);
+  for (std::size_t i = 0; latches_ && i < origins_.actions.size(); ++i) {
+    const Action & action = origins_.actions[i];
+    if (action.latch && latches_->is_active(*action.latch)) {
+      robot_.latch(i);
+      active_[i] = true;
+    }
+  }
+  for (std::size_t i = 0; i < origins_.behaviours.size(); ++i) {
+    if (origins_.behaviours[i].is_optional) {
+      enabled_[i] = robot_.is_chosen(i);
+      robot_.enable(start, i, enabled_[i]);
+    }
+  }
+  is_starting_ = true;
+  robot_.show_states(active_);
+  publishing_.ring_at(start + period_);
+}
+
+void Guardian::tell_start()
+{
+  const std::string count = std::to_string(origins_.rule_count);
+  events_.tell("start", OK, "watching " + count + " rules of " + origins_.rules);
+  for (const std::string & text : refused_) {
+    events_.tell("not_permitted", WARN, text);
+  }
+  for (const Action & action : origins_.actions) {
+    if (action.is_code && !action.is_filled_in) {
+      const std::string text =
+        "action " + action.name + " does nothing: write its code in " + origins_.actions_file;
+      events_.tell("unfilled", ERROR, text, {{"action", action.name}});
+    }
+  }
+}
+
+void Guardian::open_latches()
+{
+  std::vector<std::string> known;
+  for (const Action & action : origins_.actions) {
+    if (action.latch) {
+      known.push_back(action.name);
+    }
+  }
+  if (known.empty()) {
+    return;
+  }
+  std::filesystem::path path = settings_.state_file;
+  if (path.empty()) {
+    path = default_path(file_stem(name_, domain_of(node_)));
+  }
+  latches_ = std::make_unique<Latches>(
+    LatchFile(path, name_), known,
+    [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);});
+  latch_again();
+}
+
+/// Show and do what was active when the last process of this node ended.
+void Guardian::latch_again()
+{
+  for (std::size_t i = 0; i < origins_.actions.size(); ++i) {
+    const Action & action = origins_.actions[i];
+    if (!action.latch || !latches_->is_active(*action.latch)) {
+      continue;
+    }
+    const std::string text = action.name + " is active, as it was before the start";
+    events_.tell("latched", WARN, text, {{"action", action.name}});
+    diagnostics_.latched(i);
+    if (action.is_code && action.first_call) {
+      act({0, Kind::Trigger, *action.first_call});
+    }
+  }
+}
+
+// What the monitor orders
+
+void Guardian::advance(Time now)
+{
+  robot_.advance_monitor(now);
+}
+
+Time Guardian::due() const
+{
+  return robot_.next_deadline();
+}
+
+std::optional<std::size_t> Guardian::action_of(const Event & event) const
+{
+  return origins_.sites[event.site].action;
+}
+
+bool Guardian::show(const Event & event)
+{
+  const std::optional<std::size_t> number = action_of(event);
+  if (!number || event.kind == Kind::Refused) {
+    return true;
+  }
+  const Action & action = origins_.actions[*number];
+  if (action.is_bound) {
+    if (action.latch && event.kind == Kind::Trigger) {
+      latches_->foresee(*action.latch);
+    }
+    active_[*number] = event.kind == Kind::Trigger;
+    robot_.show_state(*number, active_);
+    return true;
+  }
+  return !action.is_code;
+}
+
+void Guardian::act(const Event & event)
+{
+  if (show(event) || event.kind != Kind::Trigger) {
+    return;
+  }
+  const Action & action = origins_.actions[*action_of(event)];
+  if (action.latch) {
+    latches_->foresee(*action.latch);
+  }
+  if (action.is_filled_in) {
+    robot_.run(event.site);
+  } else {
+    log(
+      ERROR, "action " + action.name + '(' + origins_.sites[event.site].arguments +
+      ") should have been carried out now: write its code in " + origins_.actions_file);
+  }
+}
+
+void Guardian::after(const std::vector<Event> & events, const std::vector<Time> & done)
+{
+  if (latches_) {
+    for (const Event & event : events) {
+      const std::optional<std::size_t> number = action_of(event);
+      if (number && origins_.actions[*number].latch) {
+        latches_->follow(*origins_.actions[*number].latch, event.kind != Kind::Reset);
+      }
+    }
+    latches_->keep();
+  }
+  robot_.remember(slot_);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    untold_.push_back({events[i], done[i], slot_});
+  }
+  ++slot_;
+  if (slot_ == SLOTS) {
+    tell();
+  } else if (!telling_.is_set()) {  // later, so that those who have to act find a processor
+    telling_.ring_at(steady_now() + SOON);
+  }
+}
+
+void Guardian::tell()
+{
+  std::optional<std::size_t> slot;
+  Explanation after;
+  for (const Untold & each : untold_) {
+    if (slot != each.slot) {
+      slot = each.slot;
+      after = robot_.explain(slot);
+    }
+    events_.ordered(each.event, each.done, after);
+    diagnostics_.ordered(each.event);
+  }
+  untold_.clear();
+  slot_ = 0;
+  diagnostics_.changed();
+}
+
+void Guardian::tell_failure(const Event & event, const char * why)
+{
+  const std::optional<std::size_t> number = action_of(event);
+  const std::string name = number ? origins_.actions[*number].name : "";
+  RCLCPP_FATAL(node_.get_logger(), "action %s failed: %s", name.c_str(), why);
+}
+
+void Guardian::tell_fault(const std::string & subject, const std::string & text)
+{
+  if (diagnostics_.fault(subject, text) && !text.empty()) {
+    events_.tell("fault", ERROR, subject + ": " + text, {{"subject", subject}});
+  }
+}
+
+/// Tell, once per topic, of a message that cannot be read; it counts for nothing.
+void Guardian::refuse(const std::string & topic, const std::string & why)
+{
+  const std::string text = topic + " has carried data that cannot be read";
+  if (diagnostics_.fault("data of " + topic, text)) {
+    events_.tell("undecodable", ERROR, text + ": " + why, {{"topic", topic}});
+  }
+}
+
+// States and heartbeat
+
+void Guardian::stepped()
+{
+  publish();
+}
+
+/// Repeat the states, and beat.
+void Guardian::publish()
+{
+  publishing_.repeat(period_);
+  robot_.show_states(active_);
+  if (is_ready()) {
+    ++beats_;
+    robot_.beat(beats_);
+  }
+}
+
+/// Look after what is not urgent.
+void Guardian::do_chores()
+{
+  chores_.repeat(CHORES);
+  siblings_.look();
+  publishers_.look();
+  if (latches_) {
+    latches_->keep();
+  }
+}
+
+/// Tell whether the start is over: within the grace, inputs are waited for.
+bool Guardian::is_ready()
+{
+  if (is_starting_) {
+    if (robot_.is_waiting() && now() < watch_.began_at() + grace_) {
+      return false;
+    }
+    is_starting_ = false;
+    diagnostics_.changed();
+  }
+  return true;
+}
+
+/// Return in words what the node does not do; nothing if it watches all rules.
+std::string Guardian::unready() const
+{
+  if (is_starting_) {
+    return "starting: no heartbeat until all inputs have come, or are missing";
+  }
+  std::vector<std::string> disabled;
+  for (std::size_t i = 0; i < enabled_.size(); ++i) {
+    if (!enabled_[i]) {
+      disabled.push_back(origins_.behaviours[i].name);
+    }
+  }
+  return disabled.empty() ? "" : "disabled: " + joined(disabled, ", ");
+}
+
+// Requests
+
+std::string Guardian::reset(bool & success)
+{
+  success = false;
+  const Time now = watch_.advance();
+  const std::vector<std::size_t> holding = robot_.explain(std::nullopt).holding;
+  std::vector<std::pair<std::string, std::string>> active;  // and by whom it is called for
+  LatchFile::Names remaining;
+  for (std::size_t i = 0; i < origins_.actions.size(); ++i) {
+    const Action & action = origins_.actions[i];
+    if (action.latch && latches_->is_active(*action.latch)) {
+      active.emplace_back(action.name, events_.callers(i, holding));
+      if (!active.back().second.empty()) {
+        remaining.insert(action.name);
+      }
+    }
+  }
+  const std::string refusal = latches_->allow_reset(remaining);
+  if (!refusal.empty()) {
+    return refusal;
+  }
+  success = robot_.reset_monitor(now);
+  watch_.settle();
+  std::sort(active.begin(), active.end());
+  std::vector<std::string> told;
+  for (const auto & [name, callers] : active) {
+    told.push_back(
+      callers.empty() ? name + " is reset" : name + " stays active, called for by " + callers);
+  }
+  return told.empty() ? "no latched action was active" : joined(told, "; ");
+}
+
+void Guardian::parameters_changed()
+{
+  agenda_.notify(switching_);
+}
+
+/// Enable or disable the behaviours whose parameter has changed.
+void Guardian::switch_behaviours()
+{
+  for (std::size_t i = 0; i < origins_.behaviours.size(); ++i) {
+    const Behaviour & behaviour = origins_.behaviours[i];
+    if (!behaviour.is_optional || robot_.is_chosen(i) == enabled_[i]) {
+      continue;
+    }
+    const bool enabled = !enabled_[i];
+    enabled_[i] = enabled;
+    robot_.enable(now(), i, enabled);
+    watch_.settle();
+    const char * kind = enabled ? "enabled" : "disabled";
+    events_.tell(
+      kind, enabled ? OK : WARN, behaviour.name + " is " + kind, {{"behaviour", behaviour.name}});
+    diagnostics_.changed();
+  }
+}
+
+// Life
+
+void Guardian::stop()
+{
+  worker_.stop();
+  if (!untold_.empty()) {
+    tell();
+  }
+}
+
+void Guardian::when_ended(std::function<void()> ended)
+{
+  worker_.when_ended(std::move(ended));
+}
+
+std::exception_ptr Guardian::failure() const
+{
+  return worker_.failure();
+}
+
+// The world outside
+
+void Guardian::log(Level level, const std::string & text) const
+{
+  if (level == OK) {
+    RCLCPP_INFO(node_.get_logger(), "%s", text.c_str());
+  } else if (level == WARN) {
+    RCLCPP_WARN(node_.get_logger(), "%s", text.c_str());
+  } else {
+    RCLCPP_ERROR(node_.get_logger(), "%s", text.c_str());
+  }
+}
+
+Events::Outside Guardian::outside_of_events()
+{
+  return {
+    name_,
+    [this] {return node_.now().nanoseconds();},
+    [this](Level level, const std::string & text) {log(level, text);},
+    [this](const Events::Status & event) {robot_.report_event(event);},
+  };
+}
+
+Diagnostics::Outside Guardian::outside_of_diagnostics()
+{
+  return {
+    name_,
+    [this] {return robot_.explain(std::nullopt);},
+    [this] {return watch_.now();},
+    [this] {return unready();},
+    [this](Diagnostics::Message & message) {
+      message.header.stamp = node_.now();
+      robot_.report_diagnostics(message);
+    },
+    [this] {return watch_.put_off();},
+  };
+}
+
+}  // namespace deros_runtime

@@ -1,0 +1,56 @@
+#ifndef DEROS_RUNTIME__RUNTIME__PORTS_HPP_
+#define DEROS_RUNTIME__RUNTIME__PORTS_HPP_
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "deros_runtime/runtime/agenda.hpp"
+#include "rclcpp/rclcpp.hpp"
+
+namespace deros_runtime
+{
+
+/// The subscriptions and services of a callback group, served by the thread of an agenda.
+/**
+ * The middleware notes what comes with the agenda; there each message is taken into the same
+ * object again and again. Within a process that shares messages by pointer, they come as they are.
+ */
+class Ports
+{
+public:
+  /// Takes a topic, and why a message of it cannot be read.
+  using Refuse = std::function<void (const std::string &, const std::string &)>;
+
+  Ports(Agenda & agenda, Refuse refuse);
+
+  /// From here on nothing is noted any more.
+  ~Ports();
+  Ports(const Ports &) = delete;
+  Ports & operator=(const Ports &) = delete;
+
+  /// Serve all that a callback group has now; no executor may spin it.
+  void serve(const rclcpp::CallbackGroup & group);
+
+  /// Return the subscriptions.
+  const std::vector<rclcpp::SubscriptionBase::SharedPtr> & subscriptions() const
+  {
+    return subscriptions_;
+  }
+
+private:
+  void serve_messages(const rclcpp::SubscriptionBase::SharedPtr & subscription);
+  void serve_shared(const rclcpp::SubscriptionBase::SharedPtr & subscription);
+  void serve_requests(const rclcpp::ServiceBase::SharedPtr & service);
+
+  Agenda & agenda_;
+  Refuse refuse_;
+  std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
+  std::vector<rclcpp::Waitable::SharedPtr> shared_;
+  std::vector<rclcpp::ServiceBase::SharedPtr> services_;
+};
+
+}  // namespace deros_runtime
+
+#endif  // DEROS_RUNTIME__RUNTIME__PORTS_HPP_

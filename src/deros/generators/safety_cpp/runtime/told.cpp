@@ -1,0 +1,33 @@
+#include "deros_runtime/runtime/told.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace deros_runtime
+{
+
+RuleState explained(
+  const char * name, unsigned line, const char * text, bool is_true, Time since,
+  std::vector<Reading> reads)
+{
+  const bool is_known = is_true || std::all_of(
+    reads.begin(), reads.end(), [](const Reading & each) {return each.value.has_value();});
+  const std::optional<bool> value = is_known ? std::optional<bool>(is_true) : std::nullopt;
+  return {name, line, text, value, since, std::move(reads)};
+}
+
+std::optional<std::string> value_of(bool is_known, const std::string & value)
+{
+  return is_known ? std::optional<std::string>(value) : std::nullopt;
+}
+
+std::string text_of(std::uint32_t place, const std::vector<std::string> & known)
+{
+  return place == 0 ? "another text" : known[place - 1];
+}
+
+}  // namespace deros_runtime

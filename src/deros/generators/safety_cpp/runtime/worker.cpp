@@ -1,0 +1,82 @@
+#include "deros_runtime/runtime/worker.hpp"
+
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "deros_runtime/runtime/machine.hpp"
+
+namespace deros_runtime
+{
+
+Worker::Worker(Agenda & agenda, Report report)
+: agenda_(agenda), report_(std::move(report))
+{
+}
+
+Worker::~Worker()
+{
+  stop();
+}
+
+void Worker::start()
+{
+  thread_ = std::thread([this] {run();});
+}
+
+void Worker::stop()
+{
+  agenda_.end();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+}
+
+void Worker::when_ended(Ended ended)
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!has_ended_) {
+      ended_ = std::move(ended);
+      return;
+    }
+  }
+  ended();
+}
+
+std::exception_ptr Worker::failure() const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return failure_;
+}
+
+void Worker::run()
+{
+  sharpen_timers();
+  std::exception_ptr failure;
+  std::string why = "what was thrown says nothing of itself";
+  try {
+    agenda_.run();
+  } catch (const std::exception & error) {
+    failure = std::current_exception();
+    why = error.what();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  Ended ended;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    has_ended_ = true;
+    failure_ = failure;
+    ended = std::move(ended_);
+  }
+  if (ended) {
+    ended();
+  } else if (failure) {
+    report_(why.c_str());
+  }
+}
+
+}  // namespace deros_runtime

@@ -1,0 +1,55 @@
+#ifndef DEROS_RUNTIME__RUNTIME__WORKER_HPP_
+#define DEROS_RUNTIME__RUNTIME__WORKER_HPP_
+
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "deros_runtime/runtime/agenda.hpp"
+
+namespace deros_runtime
+{
+
+/// The thread of an agenda.
+class Worker
+{
+public:
+  using Ended = std::function<void ()>;
+  using Report = std::function<void (const char *)>;
+
+  /**
+   * \param report takes what is thrown in the thread, if nobody waits for its end
+   */
+  Worker(Agenda & agenda, Report report);
+  ~Worker();
+  Worker(const Worker &) = delete;
+  Worker & operator=(const Worker &) = delete;
+
+  /// Start; prepared for waits that end on time.
+  void start();
+
+  /// End the thread, when it has done what it is at, and wait for that.
+  void stop();
+
+  /// Have a function called when the thread ends, or at once if it has ended.
+  void when_ended(Ended ended);
+
+  /// Return what was thrown, if that ended the thread.
+  std::exception_ptr failure() const;
+
+private:
+  void run();
+
+  Agenda & agenda_;
+  Report report_;
+  mutable std::mutex mutex_;
+  bool has_ended_ = false;
+  Ended ended_;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace deros_runtime
+
+#endif  // DEROS_RUNTIME__RUNTIME__WORKER_HPP_

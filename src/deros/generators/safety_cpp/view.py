@@ -1,0 +1,378 @@
+"""What the templates of the safety node in C++ see: the program in terms of rclcpp."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros import codes
+from deros.diagnostics import report
+from deros.generators.cpp_source import (
+    Call,
+    Expression,
+    cpp_double,
+    cpp_header,
+    cpp_identifier,
+    cpp_int64,
+    cpp_string,
+    cpp_type,
+)
+from deros.generators.monitor_c.view import MonitorView, monitor_view
+from deros.generators.monitor_python.source import origin
+from deros.generators.names import Emitted, camel_case, check_collisions
+from deros.generators.protocol import GenerationError
+from deros.generators.python_source import sentence
+from deros.generators.safety_cpp.explained import explained_rules
+from deros.generators.safety_cpp.messages import arguments, literal
+from deros.generators.safety_cpp.origins import Item, origins_view
+from deros.generators.safety_python.messages import is_stamped
+from deros.generators.safety_python.node import (
+    DIAGNOSTICS_TYPE,
+    RESET,
+    bound_actions,
+    enabled_parameter,
+)
+from deros.generators.safety_python.view import LOG_STATE, origin_file
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.node import NodeType, PortKind
+from deros.metamodels.rules import Rules
+from deros.monitor import walk
+from deros.monitor.ir import Action, Binding, Program, Scalar, Trigger
+
+_PARAMETER_TYPES = {
+    "bool": "bool",
+    "int": "std::int64_t",
+    "float": "double",
+    "str": "const std::string &",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class HandlerView:
+    """What is done with the messages of one topic: ``call`` hands them to the monitor."""
+
+    identifier: str
+    type: str
+    topic: str
+    ros_type: str
+    call: Call
+    comment: str
+
+    @property
+    def is_read(self) -> bool:
+        """Whether the monitor is handed anything of the message."""
+        return len(self.call.arguments) > 2
+
+
+@dataclass(frozen=True, slots=True)
+class FieldView:
+    """A field that carries states: each action's number with what it publishes there.
+
+    ``single`` is a boolean field of one action, written without a choice; ``inactive`` what the
+    field is set to while none is active.
+    """
+
+    target: str
+    inactive: str
+    single: str | None
+    states: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelView:
+    """A topic that carries the states of bound actions, by their enumerators."""
+
+    identifier: str
+    type: str
+    topic: str
+    actions: tuple[str, ...]
+    stamped: bool
+    fields: tuple[FieldView, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ActionView:
+    """An action whose code the user writes; ``calls`` are the sites with the call of each."""
+
+    name: str
+    method: str
+    parameters: tuple[str, ...]
+    notes: tuple[str, ...]
+    calls: tuple[tuple[int, Expression], ...]
+
+    @property
+    def unnamed(self) -> list[str]:
+        """The parameters of a body that does not use them."""
+        words = (each.rpartition(" ") for each in self.parameters)
+        return [f"{kind} /*{name}*/" for kind, _, name in words]
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyView:
+    """All that the templates print.
+
+    Attributes:
+        package: also the namespace.
+        stem: of the node's files; ``class_name`` of its classes.
+        node_name: of the node at run time.
+        rules: the file name of the rules.
+        headers: of the messages and services that the node's class speaks of.
+        monitor: the view of the monitor in C.
+        explained: the expressions of the rules' states.
+        origins: the tables of behaviours, actions and sites.
+        latched: name and enumerator of each latched action.
+        optional: enumerator of each behaviour that can be disabled, the function that does it, and
+            the field of its parameter.
+        reset: whether there is a service to reset the latched actions.
+    """
+
+    package: str
+    stem: str
+    class_name: str
+    node_name: str
+    rules: str
+    summary: str
+    headers: tuple[str, ...]
+    monitor: MonitorView
+    handlers: tuple[HandlerView, ...]
+    channels: tuple[ChannelView, ...]
+    actions: tuple[ActionView, ...]
+    explained: tuple[Expression, ...]
+    origins: list[Item]
+    latched: tuple[tuple[str, str], ...]
+    optional: tuple[tuple[str, str, str], ...]
+    diagnostics: str
+    reset: bool
+
+    @property
+    def prefix(self) -> str:
+        """What the names of the monitor's functions begin with."""
+        return self.monitor.prefix
+
+    @property
+    def macro(self) -> str:
+        """The same of its constants."""
+        return self.monitor.macro
+
+    @property
+    def header(self) -> str:
+        """The monitor's header."""
+        return f"{self.prefix}_monitor.h"
+
+    @property
+    def actions_class(self) -> str:
+        """Class of the user's action bodies."""
+        return f"{self.class_name}Actions"
+
+    @property
+    def actions_stem(self) -> str:
+        """Of its files."""
+        return f"{self.stem}_actions"
+
+    @property
+    def holding(self) -> list[tuple[str, str]]:
+        """The enumerator of each behaviour, with the monitor's field that tells if it holds."""
+        fields = self.monitor.layout.holds
+        return [(name, fields[i]) for i, (_, name) in enumerate(self.monitor.behaviour_names)]
+
+    @property
+    def bound(self) -> list[tuple[str, str]]:
+        """The enumerator of each bound action, with the channel that shows it."""
+        return [(action, each.identifier) for each in self.channels for action in each.actions]
+
+
+def safety_view(
+    model: Rules, program: Program, python: NodeType, node: NodeType, store: InterfaceStore
+) -> SafetyView:
+    """Return the view of the safety node ``node`` that runs ``program``.
+
+    Args:
+        model: the rules as written.
+        program: the same with all names resolved.
+        python: the Python twin, by whose name the node goes at run time.
+        node: the node type in C++.
+        store: for the fields of the messages.
+
+    Raises:
+        GenerationError: if the rules cannot be told in C++.
+    """
+    monitor = monitor_view(program)
+    described = {action.name.text: action.description for action in model.actions}
+    code = [each for each in program.actions if needs_code(each)]
+    actions = tuple(_action(each, program, described.get(each.name, "")) for each in code)
+    _check_names(actions, code, node)
+    named = [port for port in node.ports if port.kind is PortKind.SUBSCRIPTION]
+    named += [port for port in node.ports if port.kind is PortKind.SERVICE]
+    stem = cpp_identifier(python.name)
+    diagnostics = next(port for port in node.ports if port.type == DIAGNOSTICS_TYPE)
+    return SafetyView(
+        package=node.package,
+        stem=stem,
+        class_name=camel_case(python.name),
+        node_name=python.name,
+        rules=origin_file(model),
+        summary=sentence(node.description),
+        headers=tuple(sorted({cpp_header(port.type) for port in named})),
+        monitor=monitor,
+        handlers=tuple(_handlers(program, monitor, store)),
+        channels=tuple(_channels(program, node, monitor, store)),
+        actions=actions,
+        explained=tuple(explained_rules(program, monitor.layout)),
+        origins=origins_view(
+            model, program, monitor, f"{stem}_actions", f"{camel_case(python.name)}Actions"
+        ),
+        latched=tuple((a.name, a.enumerator) for a in monitor.actions if a.latched),
+        optional=tuple(_optional(monitor)),
+        diagnostics=cpp_identifier(diagnostics.name),
+        reset=node.port(RESET) is not None,
+    )
+
+
+def needs_code(action: Action) -> bool:
+    """Tell whether an action is robot code."""
+    return action.binding is None and action.name != LOG_STATE
+
+
+def _check_names(actions: tuple[ActionView, ...], code: list[Action], node: NodeType) -> None:
+    reserved = Emitted("node", "the accessor of the class itself", node.name_span)
+    methods = [
+        Emitted(view.method, f"action {view.name!r}", action.span or node.name_span)
+        for view, action in zip(actions, code, strict=True)
+    ]
+    check_collisions([reserved, *methods], "the class of the actions")
+
+
+# Messages -----------------------------------------------------------------------------------------
+
+
+def _handlers(
+    program: Program, monitor: MonitorView, store: InterfaceStore
+) -> Iterator[HandlerView]:
+    for message in monitor.messages:
+        handler = message.handler
+        kind = program.topics[handler.topic]
+        values = [text for each in handler.parameters for text in arguments(store, kind, each)]
+        yield HandlerView(
+            cpp_identifier(handler.topic),
+            cpp_type(kind),
+            handler.topic,
+            str(kind),
+            Call(handler.function, ("&memory_->monitor", "guardian_.now()", *values)),
+            f"Take a message of {handler.topic}.",
+        )
+
+
+def _channels(
+    program: Program, node: NodeType, monitor: MonitorView, store: InterfaceStore
+) -> Iterator[ChannelView]:
+    enumerators = {each.name: each.enumerator for each in monitor.actions}
+    for port in node.ports_of(PortKind.PUBLISHER):
+        names = bound_actions(program, port.name)
+        if not names:
+            continue
+        bound = [
+            (enumerators[action.name], action.binding)
+            for action in program.actions
+            if action.binding is not None and action.binding.topic == port.name
+        ]
+        yield ChannelView(
+            cpp_identifier(port.name),
+            cpp_type(port.type),
+            port.name,
+            tuple(enumerators[name] for name in names),
+            is_stamped(store, port.type),
+            tuple(_fields(port.type, bound, store)),
+        )
+
+
+def _fields(
+    kind: InterfaceType, bound: list[tuple[str, Binding]], store: InterfaceStore
+) -> Iterator[FieldView]:
+    by_path: dict[tuple[str, ...], list[tuple[str, Binding]]] = {}
+    for name, binding in bound:
+        by_path.setdefault(binding.path, []).append((name, binding))
+    for path, states in by_path.items():
+        target = f"msg.{'.'.join(path)}"
+        values = tuple((name, literal(store, kind, path, b.value)) for name, b in states)
+        name, first = states[0]
+        inactive, single = f"{cpp_type(kind)}().{'.'.join(path)}", None
+        if isinstance(first.value, bool):
+            inactive = "false" if first.value else "true"
+            active = f"active[{name}]"
+            single = (active if first.value else f"!{active}") if len(states) == 1 else None
+        yield FieldView(target, inactive, single, values)
+
+
+def _optional(monitor: MonitorView) -> Iterator[tuple[str, str, str]]:
+    enumerators = dict(monitor.behaviour_names)
+    for name, function, _ in monitor.optional:
+        yield enumerators[name], function, cpp_identifier(enabled_parameter(name))
+
+
+# Actions ------------------------------------------------------------------------------------------
+
+
+def _action(action: Action, program: Program, description: str) -> ActionView:
+    callers = [b.name for b in walk.behaviours(program) if b.index in action.triggered_by]
+    place = f"Declared in {origin(action.span)}" if action.span else "Declared"
+    note = f"{place}, run by {', '.join(callers) if callers else 'no behaviour'}."
+    types = _argument_types(action, program)
+    method = cpp_identifier(action.name)
+    sites = _calls(program)
+    return ActionView(
+        action.name,
+        method,
+        tuple(
+            f"{_PARAMETER_TYPES[kind]} {cpp_identifier(name)}"
+            for name, kind in zip(action.parameters, types, strict=True)
+        ),
+        tuple(filter(None, (sentence(description), note))),
+        tuple(
+            (site, Call(f"actions_.{method}", tuple(map(_argument, call.arguments, types))))
+            for site, call in enumerate(sites)
+            if call.action == action.index
+        ),
+    )
+
+
+def _calls(program: Program) -> list[Trigger]:
+    """Return the calls in the order of their sites."""
+    return [
+        item
+        for behaviour in walk.behaviours(program)
+        for item in behaviour.body
+        if isinstance(item, Trigger)
+    ]
+
+
+def _argument_types(action: Action, program: Program) -> list[str]:
+    """Return the type of each parameter, which is that of all arguments given for it.
+
+    Raises:
+        GenerationError: if one is a number here and a text there.
+    """
+    calls = [call for call in _calls(program) if call.action == action.index]
+    found: list[str] = []
+    for place, name in enumerate(action.parameters):
+        types = {type(call.arguments[place]).__name__: call for call in calls}
+        if "float" in types:
+            types.pop("int", None)
+        if len(types) > 1:
+            message = (
+                f"parameter {name!r} of action {action.name!r} is given values of several types: "
+                f"{', '.join(sorted(types))}"
+            )
+            span = list(types.values())[-1].span
+            hint = "C++ needs one type: give all calls the same"
+            raise GenerationError([report(codes.UNSUPPORTED_BY_TARGET, message, span, hint)])
+        found.append(next(iter(types), "float"))
+    return found
+
+
+def _argument(value: Scalar, kind: str) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return cpp_string(value)
+    return cpp_double(value) if kind == "float" else cpp_int64(int(value))
