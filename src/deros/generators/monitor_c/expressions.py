@@ -131,6 +131,8 @@ class Conditions:
                 return Infix("&&", (f"({above})", f"({below})"))
 
     def _compare(self, left: ValueExpression, operator: Operator, right: ValueExpression) -> str:
+        if left == right:  # known, and so no NaN
+            return literal(COMPARE[operator](0, 0))
         kinds = {type_of(self._program, left), type_of(self._program, right)}
         if "text" in kinds:
             return self._compare_text(left, operator, right)
@@ -186,10 +188,12 @@ class Arguments:
 
     Attributes:
         leaves: the arguments, by leaf; an array's elements stand with their count.
+        counts: the number of elements, by the leaf of an array.
         computed: the local constants that hold what functions with a memory give.
     """
 
     leaves: dict[int, str]
+    counts: dict[int, str]
     computed: dict[Apply, str] = field(default_factory=dict)
 
 
@@ -208,9 +212,11 @@ def expression(value: ValueExpression, program: Program, arguments: Arguments) -
         case Apply():
             if value in arguments.computed:
                 return arguments.computed[value]
-            texts = [expression(each, program, arguments) for each in value.arguments]
             if value.function == "count":
-                return f"(int64_t){texts[0]}"
+                (array,) = value.arguments
+                assert isinstance(array, Read)
+                return f"(int64_t){arguments.counts[array.leaf]}"
+            texts = [expression(each, program, arguments) for each in value.arguments]
             return f"{function_name(value, program)}({', '.join(texts)})"
 
 

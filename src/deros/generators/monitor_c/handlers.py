@@ -89,7 +89,7 @@ class _Writer:
         self._topic = topic
         self._inputs = [each for each in program.inputs if each.topic == topic]
         self._parameters = self._name_parameters()
-        self._arguments = Arguments(self._leaf_names())
+        self._arguments = Arguments(self._leaf_names(), self._count_names())
 
     def handler(self, names: Names) -> Handler:
         prefix = self._layout.prefix
@@ -115,7 +115,7 @@ class _Writer:
     def _name_parameters(self) -> tuple[Parameter, ...]:
         groups: dict[tuple[str | int, ...], list[Leaf]] = {}
         for each in self._inputs:
-            for index in each.leaves:
+            for index in each.leaves if self._is_observed(each) else ():
                 leaf = self._program.leaves[index]
                 if self._is_needed(leaf):
                     groups.setdefault(leaf.path, []).append(leaf)
@@ -143,6 +143,12 @@ class _Writer:
         leaves = tuple(each.index for each in group)
         return Parameter(name, tuple(declarations), path, leaves, form, element, given)
 
+    def _is_observed(self, each: Input) -> bool:
+        """Tell whether any condition asks for an input; of others only that a message came."""
+        layout, index = self._layout, each.index
+        remembered = layout.terms_of(index) or layout.memories_of(index)
+        return bool(remembered or layout.inputs[index].base)
+
     def _is_needed(self, leaf: Leaf) -> bool:
         """Tell whether a condition reads a leaf, or the message would not count without it."""
         if _has_index(leaf) or (leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown):
@@ -166,21 +172,26 @@ class _Writer:
     def _leaf_names(self) -> dict[int, str]:
         names: dict[int, str] = {}
         for each in self._parameters:
-            text = {
-                "array": f"{each.name}, {each.name}_count",
-                "count": f"{each.name}_count",
-            }.get(each.form, each.name)
+            text = f"{each.name}, {each.name}_count" if each.form == "array" else each.name
             names.update(dict.fromkeys(each.leaves, text))
         return names
+
+    def _count_names(self) -> dict[int, str]:
+        return {
+            leaf: f"{each.name}_count"
+            for each in self._parameters
+            if each.form in ("array", "count")
+            for leaf in each.leaves
+        }
 
     # One input ----------------------------------------------------------------------------------
 
     def _observe(self, each: Input) -> list[str]:
         fields = self._layout.inputs[each.index]
         terms = self._layout.terms_of(each.index)
-        stores = [f"  {line}" for line in [*self._values(each, terms), *self._heard(each, fields)]]
-        if not stores:
+        if not self._is_observed(each):
             return []
+        stores = [f"  {line}" for line in [*self._values(each, terms), *self._heard(each, fields)]]
         lines = comment(2, f"Input {each.name}", each.span)
         tests = self._tests(each)
         if not tests:
