@@ -183,11 +183,11 @@ def twin() -> Generator:
 
 
 def test_the_built_in_generators_are_found() -> None:
-    """The installed distribution names its five targets."""
+    """The installed distribution names its targets."""
     assert discover().broken == ()
     assert discover().targets("rossystem") == ("launch", "params", "script")
-    assert discover().targets("rosnode") == ("python",)
-    assert discover().targets("deros") == ("python",)
+    assert discover().targets("rosnode") == ("cpp", "python")
+    assert discover().targets("deros") == ("c", "cpp", "python")
     python = discover().find("rosnode", "python")
     assert python is not None
     assert python.project_name == "deros"

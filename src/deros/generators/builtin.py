@@ -55,19 +55,26 @@ def rossystem_params(model: System, context: Context, options: Options) -> Files
     return generate(model, context, options)
 
 
-@generator(
-    "deros",
-    "python",
-    (
-        Option("package", "name of the generated package (default: the rules' name with _safety)"),
-        Option("node", "name of the safety node (default: the package's name with _node)"),
-        _MAINTAINER,
-        _COPYRIGHT,
-    ),
+_SAFETY = (
+    Option("package", "name of the generated package (default: the rules' name with _safety)"),
+    Option("node", "name of the safety node (default: the package's name with _node)"),
+    _MAINTAINER,
+    _COPYRIGHT,
 )
+
+
+@generator("deros", "python", _SAFETY)
 def deros_python(model: Rules, context: Context, options: Options) -> Files:
     """The safety node: its node description, the pure monitor, the node and your actions."""
     from deros.generators.safety_python.generate import generate
+
+    return generate(model, context, options)
+
+
+@generator("deros", "cpp", _SAFETY)
+def deros_cpp(model: Rules, context: Context, options: Options) -> Files:
+    """The safety node as a composable rclcpp node around the monitor in C; names end in _cpp."""
+    from deros.generators.safety_cpp.generate import generate
 
     return generate(model, context, options)
 
