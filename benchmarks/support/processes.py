@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -121,15 +121,20 @@ class Processes:
         return json.loads(output) if output else None
 
 
-def run(command: Sequence[str]) -> None:
-    """Run a command to its end.
+def run(command: Sequence[str], env: Mapping[str, str] | None = None) -> str:
+    """Run a command to its end and return what it printed.
+
+    Args:
+        command: the program and its arguments.
+        env: its environment; this process's own if none is given.
 
     Raises:
         ProcessError: if it fails, with what it wrote.
     """
-    result = subprocess.run(command, capture_output=True, text=True)
+    result = subprocess.run(command, capture_output=True, text=True, env=env)
     if result.returncode:
         raise ProcessError(f"{' '.join(command)} failed:\n{result.stderr or result.stdout}")
+    return result.stdout
 
 
 def _awaited(process: subprocess.Popen[str]) -> str | None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -223,6 +223,29 @@ def _pressed(period: float) -> Callable[[float, random.Random], tuple[float, ...
         return (at % period > period - 1.0,)
 
     return read
+
+
+def disturbed(drive: Sequence[Message]) -> list[Message]:
+    """Return a drive with everything that a monitor has to bear.
+
+    Each topic falls silent for seconds, is not a number now and then (where it is no integer), is
+    turned upside down; once the clock steps back.
+    """
+    noise = random.Random(2)
+    made: list[Message] = []
+    for number, (t, topic, values) in enumerate(drive):
+        seconds = t / 1e9
+        if (seconds + len(topic)) % 11.0 < 2.0:
+            continue
+        if topic in _FLOATS and noise.random() < 0.02:
+            choices = (math.nan, math.inf, -math.inf, 0.0, 1e200, -1.5)
+            values = tuple(noise.choice((value, *choices)) for value in values)
+        step = 3_000_000_000 if number > len(drive) // 2 else 0
+        made.append((max(0, t - step), topic, values))
+    return made
+
+
+_FLOATS = ("/imu", "/odometry", "/front")
 
 
 def angles(x: float, y: float, z: float, w: float) -> tuple[float, float]:

@@ -29,22 +29,42 @@ class Timing:
     Attributes:
         messages: how many a turn had.
         cost: processor time per message, the median of the turns.
-        median, percent_99: time that single messages took.
+        median, percent_99: time that single messages took; in C they take less than the clock.
     """
 
     messages: int
     cost: float
-    median: float
-    percent_99: float
+    median: float | None
+    percent_99: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What a monitor in C takes, in bytes.
+
+    Attributes:
+        state: the struct.
+        sections: what its code has in .text, .rodata, .data and .bss, where a tool tells.
+    """
+
+    state: int
+    sections: Mapping[str, int] | None
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A line of the table; no timing where a monitor is not written or not installed."""
+    """A line of the table; no timing, but why, where a monitor is not written or not installed.
+
+    Attributes:
+        language: what it is written in; it stands beside what is generated in the same.
+    """
 
     rules: int
     name: str
     timing: Timing | None
+    language: str = "Python"
+    memory: Memory | None = None
+    why: str = "not measured"
 
 
 def measure(

@@ -1,0 +1,59 @@
+"""The benchmark of the monitors' throughput: that all monitors agree, and that it runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+THROUGHPUT = Path(__file__).resolve().parents[2] / "benchmarks" / "throughput.py"
+
+
+def _run(folder: Path, **env: str) -> dict[str, Any]:
+    """Return what a short run finds; it fails if two monitors say different things."""
+    output = folder / "throughput.json"
+    short = ["--rules", "1", "14", "--repeat", "1", "--seconds", "15", "--json", str(output)]
+    result = subprocess.run(
+        [sys.executable, str(THROUGHPUT), *short],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={**os.environ, **env},
+    )
+    assert result.returncode == 0, result.stderr
+    found: dict[str, Any] = json.loads(output.read_text(encoding="utf-8"))
+    return found
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
+def test_monitors_in_c_stand_beside_each_other(tmp_path: Path) -> None:
+    """Generated and by hand have times above those of empty calls, a size, and the bar's ratio."""
+    found = _run(tmp_path)
+    rows = {row["monitor"]: row for row in found["rows"] if row["rules"] == 14}
+    ours, hand = rows["generated, in C"], rows["by hand, in C"]
+    for row in (ours, hand):
+        assert row["above_nothing_ns"] > 0.0
+        assert row["above_nothing_ns"] == pytest.approx(
+            row["timing_ns"]["cost"] - rows["nothing, in C"]["timing_ns"]["cost"]
+        )
+        assert row["memory_bytes"]["state"] > 100
+        assert row["memory_bytes"]["sections"]["text"] > 1000
+        assert row["memory_bytes"]["sections"]["bss"] == 0
+    (bar,) = [each for each in found["bars"] if each["what"] == "the time of by hand, in C"]
+    assert bar["found"] == pytest.approx(ours["above_nothing_ns"] / hand["above_nothing_ns"])
+    assert bar["held"] is (bar["found"] <= 1.3)
+
+
+def test_without_a_c_compiler_the_rows_say_so(tmp_path: Path) -> None:
+    """The rest is measured all the same."""
+    found = _run(tmp_path, PATH=str(tmp_path), CC="")
+    rows = {row["monitor"]: row for row in found["rows"] if row["rules"] == 14}
+    assert rows["generated, in C"]["why"] == rows["by hand, in C"]["why"] == "no C compiler"
+    assert rows["generated"]["timing_ns"]["cost"] > 0.0
+    assert all("in C" not in bar["what"] for bar in found["bars"])
