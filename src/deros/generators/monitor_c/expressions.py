@@ -49,10 +49,8 @@ def number(value: float) -> str:
 
 
 def integer(value: int) -> str:
-    """Return the literal of a 64-bit integer; one that no ``int64_t`` holds, of an unsigned."""
-    if value < -(2**63) + 1:
-        return "INT64_MIN"
-    return f"INT64_C({value})" if value < 2**63 else f"UINT64_C({value})"
+    """Return the literal of an ``int64_t``."""
+    return f"INT64_C({value})" if value > -(2**63) else "INT64_MIN"
 
 
 def literal(value: bool | int | float) -> str:
@@ -138,8 +136,8 @@ class Conditions:
             return self._compare_text(left, operator, right)
         if kinds == {"bool"}:
             return self._compare_truth(left, operator, right)
-        if "uint64_t" in kinds:
-            return self._compare_unsigned(left, operator, right)
+        if isinstance(right, Const) and isinstance(right.value, int) and "double" not in kinds:
+            return self._compare_integer(left, operator, right.value)
         cast = "double" if "double" in kinds and len(kinds) > 1 else ""
         first, second = self._operand(left, cast), self._operand(right, cast)
         return f"{first} {SYMBOLS[operator]} {second}"
@@ -160,17 +158,13 @@ class Conditions:
                 return f"{'' if straight else '!'}{self._operand(other)}"
         return f"{self._operand(left)} {SYMBOLS[operator]} {self._operand(right)}"
 
-    def _compare_unsigned(
-        self, left: ValueExpression, operator: Operator, right: ValueExpression
-    ) -> str:
-        """Compare a value with one of its type, or with a constant that may be none of it."""
-        if not isinstance(right, Const):
-            return f"{self._operand(left)} {SYMBOLS[operator]} {self._operand(right)}"
-        bound = right.value
-        assert isinstance(bound, (int, float))
-        if bound < 0 or bound != int(bound):
-            return literal(COMPARE[operator](0.5 if bound >= 0 else 1, 0))
-        return f"{self._operand(left)} {SYMBOLS[operator]} UINT64_C({int(bound)})"
+    def _compare_integer(self, left: ValueExpression, operator: Operator, right: int) -> str:
+        """Compare with a constant that may lie beyond all that the value can be."""
+        unsigned = type_of(self._program, left) == "uint64_t"
+        if right not in (range(2**64) if unsigned else range(-(2**63), 2**63)):
+            return literal(COMPARE[operator](0, right))
+        bound = f"UINT64_C({right})" if unsigned else integer(right)
+        return f"{self._operand(left)} {SYMBOLS[operator]} {bound}"
 
     def _compare_text(
         self, left: ValueExpression, operator: Operator, right: ValueExpression

@@ -128,7 +128,7 @@ def lay_out(program: Program) -> Layout:
     """
     layout = Layout(prefix_of(program.name), new_names())
     _name_inputs(program, layout)
-    for condition, span in _conditions(program):
+    for condition, span in rule_parts(program):
         for value in compared(condition):
             _name_term(program, value, layout, span)
     for value in walk.values(walk.conditions(program)):
@@ -210,7 +210,8 @@ def _type_of_constant(value: object) -> str:
     return "int64_t" if isinstance(value, int) else "double"
 
 
-def _conditions(program: Program) -> Iterator[tuple[Condition, Span]]:
+def rule_parts(program: Program) -> Iterator[tuple[Condition, Span]]:
+    """Yield every condition of the rules, operands before the whole, with the span of its rule."""
     for rule in program.rules:
         for part in walk.parts(rule.condition):
             yield part, rule.span
@@ -241,7 +242,6 @@ def _name_term(program: Program, value: ValueExpression, layout: Layout, span: S
     index = input_of(program, value)
     fields = layout.inputs[index]
     kind = type_of(program, value)
-    _refuse_wide(program, value, span)
     name = layout.names.new(*_words(program, value))
     plain = isinstance(value, Read)
     known = fields.known if plain else layout.names.new(name, "known")
@@ -277,17 +277,6 @@ def _texts(program: Program, value: ValueExpression, span: Span) -> tuple[str, .
                 raise GenerationError([report(codes.UNSUPPORTED_BY_TARGET, message, span, hint)])
             found[str(other.value)] = None
     return tuple(found)
-
-
-def _refuse_wide(program: Program, value: ValueExpression, span: Span) -> None:
-    """Refuse what C would compute in fewer digits than the meaning asks for."""
-    for term in walk.terms(value):
-        if isinstance(term, Apply) and term.function in ("abs", "rate"):
-            operand = term.arguments[0]
-            base = program.leaves[operand.leaf].type.base if isinstance(operand, Read) else ""
-            if base in ("int64", "uint64"):
-                message = f"{term.function}() of a 64-bit integer does not fit the numbers of C"
-                raise GenerationError([report(codes.UNSUPPORTED_BY_TARGET, message, span)])
 
 
 def _name_verdicts(program: Program, layout: Layout) -> None:

@@ -10,6 +10,7 @@ from deros.generators.monitor_c.expressions import integer, literal, number
 from deros.generators.monitor_c.handlers import Handler, handlers
 from deros.generators.monitor_c.judging import Function, Sites, behave, judge, settle, sites
 from deros.generators.monitor_c.layout import Layout, compared, input_of, lay_out
+from deros.generators.monitor_c.refusals import refuse
 from deros.generators.monitor_c.source import comment
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
@@ -197,8 +198,9 @@ def monitor_view(program: Program) -> MonitorView:
     """Return the view of a program.
 
     Raises:
-        GenerationError: what a rule compares has no place in a monitor of fixed size.
+        GenerationError: the rules ask for what a monitor of fixed size, or C, cannot do.
     """
+    refuse(program)
     layout = lay_out(program)
     places = sites(program)
     rules = tuple(judge(program, layout, rule) for rule in program.rules)
@@ -373,9 +375,17 @@ def _argument(macro: str, value: bool | int | float | str) -> str:
 
 
 def _c_text(text: str) -> str:
-    """Return the literal of a text: what is not plain ASCII as octal escapes of its UTF-8."""
-    plain = {ord('"'), ord("\\"), ord("?")}
-    return "".join(
-        chr(byte) if 32 <= byte < 127 and byte not in plain else f"\\{byte:03o}"
-        for byte in text.encode()
-    )
+    """Return what stands between the quotes: all but plain ASCII as octal escapes of its UTF-8.
+
+    No escape stands before a character that could be taken for its continuation.
+    """
+    escapes = {ord('"'): '\\"', ord("\\"): "\\\\", ord("?"): "\\?"}
+    pieces: list[str] = []
+    open_escape = False
+    for byte in text.encode():
+        octal = not 32 <= byte < 127
+        if open_escape and not octal:
+            pieces.append('" "')
+        pieces.append(f"\\{byte:03o}" if octal else escapes.get(byte, chr(byte)))
+        open_escape = octal
+    return "".join(pieces)
