@@ -1,23 +1,26 @@
-"""A generated safety node in a process of its own, and the robot around it."""
+"""A generated safety node in a process of its own, in either language, and the robot around it."""
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import pytest
 
-from deros.generators.protocol import Context
-from deros.generators.safety_python.generate import generate
+from deros.generators.protocol import Context, Files
+from deros.generators.safety_cpp import generate as safety_cpp
+from deros.generators.safety_python import generate as safety_python
 from deros.generators.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
+from tests.support.cpp import colcon_build, needs_rclcpp, overlay, program
 from tests.support.ros import LIMIT, Peer, running
 
 MODELS = Path(__file__).resolve().parent.parent / "generators/safety_python/models"
@@ -27,25 +30,115 @@ Process = subprocess.Popen[str]
 Start = Callable[..., AbstractContextManager[Process]]
 
 
-@pytest.fixture
-def package(tmp_path: Path) -> Path:
-    """Give the folder of the generated package."""
+Code = Literal["", "tell", "fail"]
+"""What the user has written for the action beep: nothing, a line in the log, or an error."""
+
+
+def generated(target: Callable[..., Files], folder: Path) -> None:
+    """Write the package of the model into a folder."""
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load(MODELS / "every_thing.deros").model
     assert isinstance(model, Rules)
-    write(generate(model, context, {}), tmp_path)
-    return tmp_path / "every_thing_safety"
+    write(target(model, context, {}), folder)
+
+
+class PythonNode:
+    """The node in Python, out of its source tree."""
+
+    actions_file = f"{NODE}_actions.py"
+    _BODIES: ClassVar[dict[str, str]] = {
+        "tell": "self.node.get_logger().info(f'beep {times} times: {why}')",
+        "fail": "raise OSError('no horn')",
+    }
+
+    def __init__(self, folder: Path) -> None:
+        """Generate the package into a folder."""
+        generated(safety_python.generate, folder)
+        self._package = folder / "every_thing_safety"
+
+    def fill_in(self, code: Code) -> None:
+        """Do a user's work: give the action beep a body."""
+        path = self._package / "every_thing_safety" / self.actions_file
+        text = path.read_text(encoding="utf-8")
+        unfilled = r'    @not_filled_in\n(    def beep\(.*?\) -> None:\n        """.*?"""\n)'
+        text, count = re.subn(
+            unfilled,
+            lambda found: f"{found[1]}        {self._BODIES[code]}\n",
+            text,
+            flags=re.DOTALL,
+        )
+        assert count == 1
+        path.write_text(text, encoding="utf-8")
+
+    def command(self, env: dict[str, str]) -> tuple[list[str], dict[str, str]]:
+        """Return what runs the node, and the environment for it."""
+        command = [sys.executable, "-m", f"every_thing_safety.{NODE}"]
+        return command, {**env, "PYTHONPATH": str(self._package)}
+
+
+class CppNode:
+    """The node in C++, built by colcon; both builds are kept."""
+
+    actions_file = f"{NODE}_actions.cpp"
+    _CLASS = "EveryThingSafetyNodeActions"
+    _BODY = """
+        #include <cstdlib>
+        #include <stdexcept>
+        #include "every_thing_safety_cpp/every_thing_safety_node_actions.hpp"
+        void every_thing_safety_cpp::EveryThingSafetyNodeActions::beep(
+          double times, const std::string & why)
+        {
+          if (std::getenv("NO_HORN") != nullptr) {throw std::runtime_error("no horn");}
+          RCLCPP_INFO(node().get_logger(), "beep %.0f times: %s", times, why.c_str());
+        }
+        """
+
+    def __init__(self, folder: Path) -> None:
+        """Generate the package into a folder."""
+        generated(safety_cpp.generate, folder)
+        self._folder = folder
+        self._env: dict[str, str] = {}
+
+    def fill_in(self, code: Code) -> None:
+        """Do a user's work: declare the action beep, and give it a body."""
+        package = self._folder / "every_thing_safety_cpp"
+        header = package / "include/every_thing_safety_cpp" / f"{NODE}_actions.hpp"
+        text = header.read_text(encoding="utf-8")
+        text, count = re.subn(r"// (void beep\(.*\) override;)", r"\1", text)
+        assert count == 1
+        header.write_text(text, encoding="utf-8")
+        (package / "src" / self.actions_file).write_text(self._BODY, encoding="utf-8")
+        self._env = {"NO_HORN": "1"} if code == "fail" else {}
+
+    def command(self, env: dict[str, str]) -> tuple[list[str], dict[str, str]]:
+        """Return what runs the node, and the environment for it."""
+        install = colcon_build(self._folder)
+        command = [program(install, "every_thing_safety_cpp", f"{NODE}_cpp")]
+        return command, {**overlay(install, env), **self._env}
+
+
+Software = PythonNode | CppNode
+
+
+@pytest.fixture(params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+def node(request: pytest.FixtureRequest, tmp_path: Path) -> Software:
+    """Give the generated node, in one language after the other."""
+    return (PythonNode if request.param == "python" else CppNode)(tmp_path / "packages")
 
 
 @pytest.fixture
-def start(package: Path, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs the node out of its source tree."""
-    env = {**ros_env, "PYTHONPATH": str(package)}
+def start(node: Software, ros_env: dict[str, str]) -> Start:
+    """Give a function that runs the node."""
+    return starting(node, ros_env)
+
+
+def starting(node: Software, ros_env: dict[str, str]) -> Start:
+    """Return a function that runs a node with the parameters that it is given."""
 
     @contextmanager
     def run(*parameters: str) -> Iterator[Process]:
         arguments = [word for each in parameters for word in ("-p", each)]
-        command = [sys.executable, "-m", f"every_thing_safety.{NODE}"]
+        command, env = node.command(ros_env)
         ros = ["--ros-args", *arguments] if arguments else []
         with running([*command, *ros], env) as process:
             yield process

@@ -70,6 +70,14 @@ def test_sound_gate() -> None:
     assert _findings(PLANNER + GATE + DRIVE) == []
 
 
+def test_gate_in_cpp() -> None:
+    """The twin in C++ is the same gate, whose type has a longer name."""
+    text = Path("cmd_vel_gate.rnd").read_text(encoding="utf-8")
+    renamed = text.replace("node cmd_vel_gate : demo", "node cmd_vel_gate_cpp : demo_cpp")
+    Path("cmd_vel_gate.rnd").write_text(renamed, encoding="utf-8")
+    assert _findings(PLANNER + GATE.replace(": cmd_vel_gate", ": cmd_vel_gate_cpp") + DRIVE) == []
+
+
 def test_gate_to_the_outside() -> None:
     """A drive outside the model is declared so; the gate may then be outside, too."""
     topics = TOPICS.replace("topic /cmd_vel", "external topic /cmd_vel")

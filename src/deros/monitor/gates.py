@@ -50,6 +50,15 @@ def gate_node_name(target: str) -> str:
     return f"{_NOT_IN_NAMES.sub('_', target).strip('_')}_gate"
 
 
+CPP_SUFFIX = "_cpp"
+"""What the names of the node types end in that the C++ target makes of rules."""
+
+
+def is_gate_node(name: str, target: str) -> bool:
+    """Tell whether a node type, in whatever language, is the gate that leads to a topic."""
+    return name.removesuffix(CPP_SUFFIX) == gate_node_name(target)
+
+
 class Gates:
     """Builds the gates of one program; faults go to the scope."""
 

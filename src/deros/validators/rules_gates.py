@@ -15,7 +15,7 @@ from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Gate, GateLine, Rules
 from deros.monitor import ir
 from deros.monitor.build import BuildResult
-from deros.monitor.gates import gate_node_name
+from deros.monitor.gates import gate_node_name, is_gate_node
 from deros.monitor.topics import KnownTopic, SystemTopics
 
 _FEWEST_BEATS = 2.5
@@ -113,11 +113,10 @@ class _End:
 
 def _wiring(gate: Gate, flat: FlatSystem) -> Iterator[Diagnostic]:
     source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
-    name = gate_node_name(target)
     commanding = list(_at(flat, target, PortKind.PUBLISHER))
     obeying = list(_at(flat, target, PortKind.SUBSCRIPTION))
     for end in commanding:
-        if not _is_gate(end.node, name):
+        if not _is_gate(end.node, target):
             yield report(
                 codes.GATE_BYPASSED,
                 f"{end.node.full_name} ({end.port.port.name}) is wired past the gate: it publishes"
@@ -130,8 +129,9 @@ def _wiring(gate: Gate, flat: FlatSystem) -> Iterator[Diagnostic]:
         return
     if any(node.type is None for node in flat.nodes):
         return  # one of them, which another finding is about, may be the gate
-    lacks = _lacks(flat, name, source, target)
+    lacks = _lacks(flat, source, target)
     if lacks:
+        name = gate_node_name(target)
         hint = (
             f"the node type '{name}' is generated with the safety node: import it, and connect"
             f" {source} and {target}"
@@ -140,15 +140,16 @@ def _wiring(gate: Gate, flat: FlatSystem) -> Iterator[Diagnostic]:
         yield report(codes.GATE_NOT_IN_SYSTEM, lacks, gate.target.span, hint, place)
 
 
-def _lacks(flat: FlatSystem, name: str, source: str, target: str) -> str:
+def _lacks(flat: FlatSystem, source: str, target: str) -> str:
     """Say what part of the gate a system lacks, if any."""
-    if not any(_is_gate(node, name) for node in flat.nodes):
+    name = gate_node_name(target)
+    if not any(_is_gate(node, target) for node in flat.nodes):
         return f"system '{flat.system.name}' has no gate to '{target}': no node is a '{name}'"
     for topic, kind, does in (
         (target, PortKind.PUBLISHER, "publishes"),
         (source, PortKind.SUBSCRIPTION, "subscribes to"),
     ):
-        if not any(_is_gate(end.node, name) for end in _at(flat, topic, kind)):
+        if not any(_is_gate(end.node, target) for end in _at(flat, topic, kind)):
             return f"no '{name}' of system '{flat.system.name}' {does} '{topic}'"
     return ""
 
@@ -160,8 +161,8 @@ def _at(flat: FlatSystem, topic: str, kind: PortKind) -> Iterator[_End]:
                 yield _End(node, port)
 
 
-def _is_gate(node: FlatNode, name: str) -> bool:
-    return node.type is not None and node.type.name == name
+def _is_gate(node: FlatNode, target: str) -> bool:
+    return node.type is not None and is_gate_node(node.type.name, target)
 
 
 def _named(target: Name, flat: FlatSystem) -> tuple[Related, ...]:

@@ -1,5 +1,5 @@
 """Fixtures of the tests that run a generated safety node."""
 
-from tests.support.safety_node import package, robot, start
+from tests.support.safety_node import node, robot, start
 
-__all__ = ["package", "robot", "start"]
+__all__ = ["node", "robot", "start"]

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import itertools
-import re
 import signal
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.support.ros import LIMIT
-from tests.support.safety_node import NODE, Robot, Start, end, result_of
+from tests.support.safety_node import Robot, Software, Start, end, result_of
 
 pytestmark = pytest.mark.ros
 
@@ -42,13 +40,13 @@ def test_a_violation_stops_the_robot_until_it_is_reset(start: Start, robot: Robo
     assert "stop is reset" in lines
 
 
-def test_an_action_without_code_is_never_silent(start: Start, robot: Robot) -> None:
+def test_an_action_without_code_is_never_silent(start: Start, robot: Robot, node: Software) -> None:
     """The node says at its start what is not filled in, and again when it would have acted."""
     with start() as process:
         robot.meet()
         robot.drive_until(0.9, lambda: robot.stop[-1])
         code, lines = end(process, robot)
-    file = "every_thing_safety_node_actions.py"
+    file = node.actions_file
     assert code == 0
     assert f"action beep does nothing: write its code in {file}" in lines
     assert f"action release does nothing: write its code in {file}" in lines
@@ -58,21 +56,9 @@ def test_an_action_without_code_is_never_silent(start: Start, robot: Robot) -> N
     )
 
 
-def fill_in(package: Path, body: str) -> None:
-    """Do a user's work: give the action beep a body."""
-    path = package / "every_thing_safety" / f"{NODE}_actions.py"
-    text = path.read_text(encoding="utf-8")
-    unfilled = r'    @not_filled_in\n(    def beep\(.*?\) -> None:\n        """.*?"""\n)'
-    text, count = re.subn(
-        unfilled, lambda found: f"{found[1]}        {body}\n", text, flags=re.DOTALL
-    )
-    assert count == 1
-    path.write_text(text, encoding="utf-8")
-
-
-def test_the_users_code_runs(start: Start, robot: Robot, package: Path) -> None:
+def test_the_users_code_runs(start: Start, robot: Robot, node: Software) -> None:
     """A body that the user writes is called with the arguments of the rules."""
-    fill_in(package, "self.node.get_logger().info(f'beep {times} times: {why}')")
+    node.fill_in("tell")
     with start() as process:
         robot.meet()
         robot.drive_until(0.9, lambda: robot.stop[-1])
@@ -82,10 +68,10 @@ def test_the_users_code_runs(start: Start, robot: Robot, package: Path) -> None:
 
 
 def test_a_failing_action_does_not_keep_others_from_acting(
-    start: Start, robot: Robot, package: Path
+    start: Start, robot: Robot, node: Software
 ) -> None:
     """The rest of the event is done, and then the node ends, so that its heartbeat stops."""
-    fill_in(package, "raise OSError('no horn')")
+    node.fill_in("fail")
     with start() as process:
         robot.meet()
         robot.drive_until(0.9, lambda: robot.stop[-1])
