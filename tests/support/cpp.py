@@ -54,7 +54,13 @@ def rclcpp_environment() -> dict[str, str] | None:
     env.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None)
     libraries = [str(prefix / "lib") for prefix in prefixes]
     env["LD_LIBRARY_PATH"] = _joined(libraries, env.get("LD_LIBRARY_PATH", ""))
+    env["AMENT_CPPCHECK_ALLOW_SLOW_VERSIONS"] = "1"  # ament_cppcheck does nothing else
     return env
+
+
+def has_package(name: str) -> bool:
+    """Tell whether a ROS 2 package is in one of the prefixes in AMENT_PREFIX_PATH."""
+    return any((prefix / "share" / name).is_dir() for prefix in _prefixes(os.environ))
 
 
 needs_rclcpp = pytest.mark.skipif(
@@ -116,6 +122,11 @@ def program(install: Path, package: str, name: str) -> str:
 
 
 def _colcon(folder: Path, env: dict[str, str], testing: bool) -> None:
+    if shutil.which("ccache", path=env.get("PATH")):
+        launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_C_COMPILER_LAUNCHER=ccache"]
+        env = {**env, "CCACHE_BASEDIR": str(folder), "CCACHE_NOHASHDIR": "1"}
+    else:
+        launcher = []
     colcon = shutil.which("colcon", path=env.get("PATH")) or str(
         Path(sys.executable).with_name("colcon")
     )
@@ -124,6 +135,7 @@ def _colcon(folder: Path, env: dict[str, str], testing: bool) -> None:
         *("build", "--merge-install", "--executor", "sequential"),
         *("--event-handlers", "console_direct-", "console_cohesion+"),
         *("--cmake-args", f"-DCMAKE_CXX_FLAGS={flags}", "-DCMAKE_BUILD_TYPE=Release"),
+        *launcher,
         f"-DBUILD_TESTING={'ON' if testing else 'OFF'}",
     ]
     _run([colcon, "--log-base", "log", *build], folder, env)

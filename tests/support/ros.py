@@ -101,6 +101,13 @@ def _end(process: subprocess.Popen[str], name: str) -> None:
         print(f"--- the rest of what {name} printed:\n{output}")
 
 
+def stop(process: subprocess.Popen[str], number: signal.Signals) -> tuple[int, str]:
+    """Send a signal and return the exit code and all that was printed."""
+    process.send_signal(number)
+    output, _ = process.communicate(timeout=LIMIT)
+    return process.returncode, output
+
+
 class Peer:
     """A node of the test itself, in the domain of ``env``, that spins only while it waits."""
 
@@ -141,6 +148,16 @@ class Peer:
         self._executor.shutdown()
         self.node.destroy_node()
         self._context.try_shutdown()
+
+
+def set_parameter(peer: Peer, node: str, **values: Any) -> list[Any]:
+    """Set parameters of a node by its service and return the results."""
+    from rcl_interfaces.srv import SetParameters
+    from rclpy.parameter import Parameter
+
+    client = peer.node.create_client(SetParameters, f"/{node}/set_parameters")
+    wanted = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
+    return list(peer.call(client, SetParameters.Request(parameters=wanted)).results)
 
 
 @pytest.fixture

@@ -39,14 +39,14 @@ _NOT_IN_IDENTIFIERS = re.compile(r"[^A-Za-z0-9]+")
 def cpp_identifier(name: str) -> str:
     """Return the C++ identifier for a ROS 2 name: ``/fmInformation/imu`` is ``fmInformation_imu``.
 
-    A leading ``/`` or ``~/`` is dropped, every other run of characters that are neither letter nor
-    digit becomes one ``_``. Keywords and macros get a ``_`` at the end; what starts with a digit
-    or, reserved in C++, with ``_`` and a capital, gets one letter in front.
+    Every run of characters that are neither letter nor digit becomes one ``_``, and is dropped at
+    either end, since C++ reserves many names with underscores. Keywords and macros get a ``_`` at
+    the end; what starts with a digit gets an ``x`` in front.
     """
-    text = _NOT_IN_IDENTIFIERS.sub("_", name.removeprefix("~").removeprefix("/")) or "_"
+    text = _NOT_IN_IDENTIFIERS.sub("_", name).strip("_") or "x"
     if is_reserved(text):
         return f"{text}_"
-    return f"x{text}" if re.match(r"[0-9]|_[A-Z]", text) else text
+    return f"x{text}" if text[0].isdigit() else text
 
 
 def is_reserved(name: str) -> bool:

@@ -19,7 +19,7 @@ from deros.generators.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
-from tests.support.ros import LIMIT, Peer, running
+from tests.support.ros import LIMIT, Peer, running, set_parameter, stop
 
 pytestmark = pytest.mark.ros
 
@@ -127,23 +127,6 @@ def start(installed: Path, ros_env: dict[str, str]) -> Start:
         return running([str(prefix / "lib" / package / program), *arguments], env)
 
     return run
-
-
-def stop(process: subprocess.Popen[str], number: signal.Signals) -> tuple[int, str]:
-    """Send a signal and return the exit code and all that was printed."""
-    process.send_signal(number)
-    output, _ = process.communicate(timeout=LIMIT)
-    return process.returncode, output
-
-
-def set_parameter(peer: Peer, node: str, **values: Any) -> list[Any]:
-    """Set parameters of a node by its service and return the results."""
-    from rcl_interfaces.srv import SetParameters
-    from rclpy.parameter import Parameter
-
-    client = peer.node.create_client(SetParameters, f"/{node}/set_parameters")
-    wanted = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
-    return list(peer.call(client, SetParameters.Request(parameters=wanted)).results)
 
 
 def odometry_for(peer: Peer, count: int) -> Callable[[], float]:

@@ -99,6 +99,11 @@ class PortView:
     notes: tuple[str, ...]
     memory: str | None
 
+    @property
+    def member(self) -> str:
+        """The part of the names of data members that stands for the port."""
+        return self.identifier.rstrip("_")
+
 
 @dataclass(frozen=True, slots=True)
 class TimerView:
@@ -108,6 +113,11 @@ class TimerView:
     period: str
     text: str
     notes: tuple[str, ...]
+
+    @property
+    def member(self) -> str:
+        """The part of the name of the data member that stands for the timer."""
+        return self.identifier.rstrip("_")
 
 
 @dataclass(frozen=True, slots=True)
