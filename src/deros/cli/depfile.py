@@ -46,7 +46,7 @@ def _program(module: str, project: str | None) -> Iterator[Path]:
     if found is not None:
         for root in found.submodule_search_locations or ():
             for directory, below, names in os.walk(root):
-                below[:] = [each for each in below if each != "__pycache__"]
+                below[:] = [each for each in below if not each.startswith((".", "__pycache__"))]
                 yield from (Path(directory, name) for name in names)
         if found.origin is not None:
             yield Path(found.origin)

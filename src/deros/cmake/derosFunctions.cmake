@@ -43,10 +43,18 @@ function(deros_generate target)
 
   list(TRANSFORM arg_FILES PREPEND "${arg_OUTPUT_DIRECTORY}/" OUTPUT_VARIABLE files)
   cmake_path(RELATIVE_PATH arg_MODEL OUTPUT_VARIABLE shown)
+  set(forget "")
+  if(CMAKE_GENERATOR MATCHES "Makefiles")
+    # CMake adds what a depfile says to what it said before. A file that is gone would be missed
+    # again in each build; without this summary CMake reads the depfile anew.
+    set(summary "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/compiler_depend.internal")
+    set(forget COMMAND "${CMAKE_COMMAND}" -E rm -f "${summary}")
+  endif()
   add_custom_command(
     OUTPUT "${stamp}"
     BYPRODUCTS ${files}
     COMMAND ${command} --overwrite --depfile "${depfile}" --stamp "${stamp}"
+    ${forget}
     DEPENDS "${arg_MODEL}" "${state}/command" ${arg_DEPENDS}
     DEPFILE "${depfile}"
     COMMENT "Generating ${arg_GENERATOR} from ${shown}"

@@ -86,12 +86,15 @@ def merge(files: Files, source: Path) -> Merged:
     """
     top = package_folder(files)
     own = {str(PurePosixPath(path).relative_to(top)): path for path in files}
+    manifest = source / MANIFEST
+    if top and manifest.is_file():
+        _check_manifest(files[f"{top}/{MANIFEST}"].text, manifest)
     missing = [
         name
         for name, path in own.items()
         if files[path].owner is Owner.USER and not (source / name).is_file()
     ]
-    if top and not (source / MANIFEST).is_file():
+    if top and not manifest.is_file():
         missing.append(MANIFEST)
     if missing:
         lacking = ", ".join(sorted(missing))
@@ -107,8 +110,6 @@ def merge(files: Files, source: Path) -> Merged:
             _check_model(described.get(PurePosixPath(name).name), source / name)
         elif name in own:
             _check_not_generated(files[own[name]], name, source)
-    if top:
-        _check_manifest(files[f"{top}/{MANIFEST}"].text, source / MANIFEST)
     linked_part = "src/" if f"{top}/CMakeLists.txt" in files else ""
     placed = tuple(
         Placed(f"{top}/{name}" if top else name, source / name, not name.startswith(linked_part))
@@ -118,8 +119,7 @@ def merge(files: Files, source: Path) -> Merged:
     taken = {each.path for each in placed}
     written = {path: file for path, file in files.items() if path not in taken}
     copies = [each.source for each in placed if each.copied]
-    manifest = [source / MANIFEST] if top else []
-    return Merged(written, placed, (*folders, *manifest, *copies))
+    return Merged(written, placed, (*folders, *([manifest] if top else []), *copies))
 
 
 def scaffold(files: Files, source: Path, models: str) -> dict[str, File]:

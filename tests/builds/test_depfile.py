@@ -1,0 +1,189 @@
+"""What build systems are told: inputs that are complete, and stamps that can be relied on."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import deros.generators
+from deros.cli.depfile import depfile, is_current, prerequisites
+from tests.support.builds import models, replace
+from tests.support.cli import Outcome
+from tests.support.cli import deros as run
+
+AWKWARD = ["/a b/c.rnd", "/costs $5/x", "/one#two", "/tab\there", "/plain"]
+
+
+@pytest.fixture(autouse=True)
+def _in_own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def _generate(model: str, target: str, *more: str) -> Outcome:
+    outcome = run(
+        *("generate", model, "--target", target, "-o", "out"),
+        *("--depfile", "depends.d", "--stamp", "stamp", *more),
+    )
+    assert outcome.code == 0, outcome.err
+    return outcome
+
+
+def _inputs() -> set[str]:
+    """Return the inputs, those below the current folder relative to it."""
+    found = prerequisites(Path("depends.d").read_text())
+    return {
+        os.path.relpath(each) if Path(each).is_relative_to(Path.cwd()) else each for each in found
+    }
+
+
+def test_awkward_names_come_back() -> None:
+    """Spaces, dollars and hashes are escaped for Make, and read back as they were."""
+    assert prerequisites(depfile(["/the stamp"], AWKWARD)) == AWKWARD
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="no make")
+def test_make_reads_awkward_names(tmp_path: Path) -> None:
+    """Make rebuilds when a file with an awkward name changes, and only then."""
+    sources = [tmp_path / name for name in ("a b.rnd", "costs $5", "one#two")]
+    for source in sources:
+        source.write_text("")
+        os.utime(source, ns=(1, 1))
+    (tmp_path / "rule.d").write_text(depfile(["the stamp"], map(str, sources)))
+    (tmp_path / "Makefile").write_text("include rule.d\nthe\\ stamp:\n\t@echo again; touch '$@'\n")
+
+    def made() -> str:
+        command = ["make", "--no-print-directory", "the stamp"]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+    assert made() == "again\n"
+    assert "again" not in made()
+    for source in sources:
+        later = Path("the stamp").stat().st_mtime_ns + 1_000_000
+        os.utime(source, ns=(later, later))
+        os.utime("rule.d", ns=(1, 1))
+        assert made() == "again\n"
+        os.utime("the stamp", ns=(later, later))
+
+
+def test_inputs_are_all_that_was_read(tmp_path: Path) -> None:
+    """Models with their imports, definitions given as files, and deros itself are inputs."""
+    models(tmp_path)
+    definitions = tmp_path / "msgs/nav_msgs/msg"
+    definitions.mkdir(parents=True)
+    text = "geometry_msgs/TwistWithCovariance twist\n"
+    (definitions / "Odometry.msg").write_text(text)
+    _generate("robot.deros", "c", "--interfaces", "msgs")
+    found = _inputs()
+    described = {"robot_robot.rnd", "robot_safety_node.rnd"}
+    assert found >= {"robot.deros", "robot.system"} | described
+    assert found >= {"msgs", "msgs/nav_msgs", "msgs/nav_msgs/msg/Odometry.msg"}
+    assert str(Path(deros.generators.__file__)) in found
+    assert any(each.endswith(".dist-info/METADATA") for each in found)
+    assert all(Path(each).exists() for each in found)
+
+
+def test_folders_of_globs_are_inputs(tmp_path: Path) -> None:
+    """Where a new file, or a new folder, might match a glob, the folder itself is an input."""
+    models(tmp_path)
+    for name in ("nodes/left", "nodes/right"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "robot_robot.rnd").rename(tmp_path / "nodes/left/robot_robot.rnd")
+    replace(tmp_path / "robot.system", '"robot_robot.rnd"', '"nodes/*/robot_*.rnd"')
+    _generate("robot.system", "script")
+    assert _inputs() >= {"nodes", "nodes/left", "nodes/right", "nodes/left/robot_robot.rnd"}
+    replace(tmp_path / "robot.system", "nodes/*/", "nodes/**/")
+    _generate("robot.system", "script")
+    assert _inputs() >= {"nodes", "nodes/left", "nodes/right"}
+    replace(tmp_path / "robot.system", "nodes/**/robot_*", "nodes/left/robot_robot")
+    _generate("robot.system", "script")
+    assert {each for each in _inputs() if Path(each).is_dir()} == set()
+
+
+def test_the_folder_of_a_package_is_an_input(tmp_path: Path) -> None:
+    """Nodes of one package are generated together, so that a new description asks for a new run."""
+    (tmp_path / "a.rnd").write_text("node a : both\npublishes\n  topic x : std_msgs.Bool\n")
+    _generate("a.rnd", "python")
+    assert "." in _inputs()
+
+
+def test_the_stamp_names_the_output(tmp_path: Path) -> None:
+    """The stamp lists what deros keeps up to date; files of the user are not among it."""
+    models(tmp_path)
+    _generate("robot.deros", "python")
+    listed = Path("stamp").read_text().splitlines()
+    files = {str(p.relative_to("out")) for p in Path("out").rglob("*") if p.is_file()}
+    assert files - set(listed) == {"robot_safety/robot_safety/robot_safety_node_actions.py"}
+    assert listed == sorted(listed)
+
+
+def test_without_a_stamp_the_rule_is_of_the_output(tmp_path: Path) -> None:
+    """Make can be told of the generated files themselves."""
+    models(tmp_path)
+    run("generate", "robot.deros", "--target", "c", "-o", "out", "--depfile", "d")
+    head = Path("d").read_text().partition(": \\\n")[0]
+    assert head == f"{tmp_path}/out/robot_monitor.c {tmp_path}/out/robot_monitor.h"
+
+
+def test_what_is_no_longer_made_is_removed(tmp_path: Path) -> None:
+    """A node that is gone takes its files along, but nothing that a hand has touched."""
+    for name in "ab":
+        text = f"node {name} : both\nparameters\n  name x : int = 1\n"
+        (tmp_path / f"{name}.rnd").write_text(text)
+    _generate("a.rnd", "python")
+    package = tmp_path / "out/both"
+    edited = package / "config/b.yaml"
+    edited.write_text(edited.read_text() + "# mine\n")
+    (tmp_path / "b.rnd").unlink()
+    _generate("a.rnd", "python")
+    assert edited.exists()
+    assert not (package / "launch/b.launch.py").exists()
+    assert not (package / "both/b_base.py").exists()
+    assert (package / "both/b.py").exists(), "written once for the user to fill in"
+    assert (package / "launch/a.launch.py").exists()
+
+
+def test_an_error_leaves_everything_as_it_was(tmp_path: Path) -> None:
+    """A model with an error touches neither output nor stamp nor depfile."""
+    rules = models(tmp_path)
+    _generate("robot.deros", "c")
+    before = {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in tmp_path.rglob("*") if p.is_file()}
+    before.pop(rules)
+    replace(rules, "0.5 m/s", "0.5 kg")
+    outcome = run(
+        *("generate", "robot.deros", "--target", "c", "-o", "out"),
+        *("--depfile", "depends.d", "--stamp", "stamp"),
+    )
+    assert outcome.code == 1
+    assert "robot.deros:13:27: error[DRS306]" in outcome.err
+    assert {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in before} == before
+
+
+def test_a_stamp_is_as_old_as_the_beginning_of_its_run(tmp_path: Path) -> None:
+    """A model that is saved after the run began is newer than the stamp."""
+    rules = models(tmp_path)
+    _generate("robot.deros", "c")
+    stamp, rule = Path("stamp"), Path("depends.d")
+    assert stamp.stat().st_mtime_ns <= Path("out/robot_monitor.c").stat().st_mtime_ns
+    assert is_current(stamp, rule)
+    later = stamp.stat().st_mtime_ns + 1_000_000
+    os.utime(rules, ns=(later, later))
+    assert not is_current(stamp, rule)
+    rules.unlink()
+    assert not is_current(stamp, rule)
+    assert not is_current(tmp_path / "none", rule)
+    assert not is_current(stamp, tmp_path / "none")
+
+
+def test_a_stamp_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
+    """A folder in the place of the stamp is reported, with exit code 2."""
+    models(tmp_path)
+    outcome = run(
+        *("generate", "robot.deros", "--target", "c", "-o", "out", "--depfile", "out/x/y"),
+        *("--stamp", "robot.deros/stamp"),
+    )
+    assert outcome.code == 2
+    assert "cannot write robot.deros/stamp" in outcome.err

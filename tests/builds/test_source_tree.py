@@ -1,0 +1,196 @@
+"""Generated and hand-written files as one package: who keeps what, and what is refused."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from deros.generators.banner import with_banner
+from deros.generators.protocol import File, Owner
+from deros.generators.source_tree import (
+    SourceTreeError,
+    merge,
+    package_folder,
+    place,
+    remove_stale,
+    scaffold,
+)
+
+MANIFEST = (
+    "<package><name>p</name><depend>rclpy</depend><exec_depend>launch</exec_depend></package>"
+)
+PYTHON = {
+    "p/package.xml": File(MANIFEST),
+    "p/setup.py": File("setup()\n"),
+    "p/p/__init__.py": File(""),
+    "p/p/base.py": File("BASE = 1\n"),
+    "p/p/node.py": File("# fill in\n", Owner.USER),
+    "p/node.rnd": File("node node : p\n"),
+}
+CMAKE = {
+    "p/package.xml": File(MANIFEST),
+    "p/CMakeLists.txt": File("project(p)\n"),
+    "p/include/p/node.hpp": File("// fill in\n", Owner.USER),
+    "p/src/node.cpp": File("// fill in\n", Owner.USER),
+    "p/src/base.cpp": File("int base;\n"),
+}
+
+
+@pytest.fixture
+def source(tmp_path: Path) -> Path:
+    """Give a source tree that has what the Python package needs by hand."""
+    source = tmp_path / "source"
+    _write(source, {"package.xml": MANIFEST, "setup.py": "build()\n", "p/node.py": "mine\n"})
+    return source
+
+
+def _write(folder: Path, files: dict[str, str]) -> None:
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+
+
+def test_hand_written_files_take_their_place(source: Path) -> None:
+    """All that stands in the source tree joins the package, but for build scripts and models."""
+    more = ["p/more.py", "p/sub/x.py", "config/mine.yaml", "README.md", "p/__init__.py"]
+    others = [".git/x", ".hidden", "build/x.py", "p/__pycache__/x.pyc", "sub/package.xml", "a.rnd"]
+    _write(source, dict.fromkeys([*more, *others], "mine\n"))
+    merged = merge(PYTHON, source)
+    assert {each.path for each in merged.placed} == {
+        *("p/package.xml", "p/p/node.py", *(f"p/{name}" for name in more))
+    }
+    assert set(merged.files) == {"p/setup.py", "p/p/base.py", "p/node.rnd"}
+    assert {source, source / "p", source / "p/sub", source / "config"} <= set(merged.inputs)
+
+
+def test_missing_files_are_named(source: Path) -> None:
+    """What the user has to have is asked for by name, and not made."""
+    (source / "p/node.py").unlink()
+    (source / "package.xml").unlink()
+    with pytest.raises(SourceTreeError, match=r"lacks p/node\.py, package\.xml") as error:
+        merge(PYTHON, source)
+    assert error.value.mended_by_scaffold
+
+
+def test_a_generated_file_in_the_source_tree_must_be_as_generated(source: Path) -> None:
+    """A leftover of an earlier generation would shadow, or be shadowed: it is refused."""
+    _write(source, {"p/base.py": with_banner("base.py", "BASE = 1\n")})
+    merge(PYTHON, source)
+    _write(source, {"p/base.py": with_banner("base.py", "BASE = 0\n")})
+    with pytest.raises(SourceTreeError, match="generated from something else"):
+        merge(PYTHON, source)
+
+
+def test_a_generated_description_must_be_as_generated(source: Path) -> None:
+    """A node description made from the rules must be of these rules; a hand's own is not ours."""
+    _write(source, {"models/node.rnd": with_banner("node.rnd", "node node : p\n")})
+    merge(PYTHON, source)
+    _write(source, {"models/node.rnd": with_banner("node.rnd", "node old : p\n")})
+    with pytest.raises(SourceTreeError, match=r"models/node\.rnd was generated"):
+        merge(PYTHON, source)
+    _write(source, {"models/node.rnd": "node by_hand : p\n"})
+    merge(PYTHON, source)
+
+
+@pytest.mark.parametrize(
+    ("manifest", "complaint"),
+    [
+        (MANIFEST.replace("<name>p", "<name>q"), "of a package 'q', generated is 'p'"),
+        (MANIFEST.replace(">rclpy<", ">x<"), "lacks <depend> for what .* needs: rclpy"),
+        ("<package>", "cannot be read"),
+    ],
+)
+def test_manifests_that_do_not_fit(source: Path, manifest: str, complaint: str) -> None:
+    """The manifest is the user's, but it has to name the package and what the code needs."""
+    (source / "package.xml").write_text(manifest)
+    with pytest.raises(SourceTreeError, match=complaint):
+        merge(PYTHON, source)
+
+
+def test_python_is_linked_and_what_cmake_installs_is_copied(source: Path, tmp_path: Path) -> None:
+    """CMake installs a link as a link, which leads nowhere on another machine."""
+    _write(source, {"src/node.cpp": "mine\n", "include/p/node.hpp": "mine\n"})
+    for files, linked in ((PYTHON, {"p/package.xml", "p/p/node.py"}), (CMAKE, {"p/src/node.cpp"})):
+        output = tmp_path / f"out{len(linked)}"
+        merged = merge(files, source)
+        place(merged.placed, output)
+        links = {p.relative_to(output).as_posix() for p in output.rglob("*") if p.is_symlink()}
+        assert linked <= links
+        assert ("p/include/p/node.hpp" in links) == (files is PYTHON)
+        for each in merged.placed:
+            assert (output / each.path).read_text() == each.source.read_text()
+    assert source / "include/p/node.hpp" in merge(CMAKE, source).inputs
+    assert source / "src/node.cpp" not in merge(CMAKE, source).inputs
+
+
+def test_what_is_in_place_is_not_touched(source: Path, tmp_path: Path) -> None:
+    """Links and copies that are right stay; a changed source, and its mode, are copied again."""
+    header = source / "include/p/node.hpp"
+    _write(source, {"src/node.cpp": "mine\n", "include/p/node.hpp": "mine\n"})
+    output = tmp_path / "out"
+    placed = merge(CMAKE, source).placed
+
+    def states() -> dict[str, tuple[int, int]]:
+        found = [(each.path, os.lstat(output / each.path)) for each in placed]
+        return {path: (state.st_ino, state.st_mtime_ns) for path, state in found}
+
+    place(placed, output)
+    before = states()
+    place(placed, output)
+    assert states() == before
+    header.write_text("changed\n")
+    header.chmod(0o755)
+    place(placed, output)
+    assert {path for path, state in states().items() if before[path] != state} == {
+        "p/include/p/node.hpp"
+    }
+    copy = output / "p/include/p/node.hpp"
+    assert copy.read_text() == "changed\n"
+    assert os.access(copy, os.X_OK)
+
+
+def test_links_last_when_both_trees_move(source: Path, tmp_path: Path) -> None:
+    """A workspace that is mounted elsewhere, as in a container, still finds its files."""
+    output = source / ".deros"
+    place(merge(PYTHON, source).placed, output)
+    moved = source.rename(tmp_path / "moved")
+    assert (moved / ".deros/p/p/node.py").read_text() == "mine\n"
+
+
+def test_outputs_that_are_no_package(tmp_path: Path) -> None:
+    """Of other outputs, only the user's files are looked for in the source tree."""
+    files = {"a.py": File("x\n"), "b/mine.py": File("fill in\n", Owner.USER)}
+    assert package_folder(files) == ""
+    with pytest.raises(SourceTreeError, match=r"lacks b/mine\.py"):
+        merge(files, tmp_path)
+    _write(tmp_path, {"b/mine.py": "mine\n", "other.py": ""})
+    merged = merge(files, tmp_path)
+    assert [each.path for each in merged.placed] == ["b/mine.py"]
+    assert set(merged.files) == {"a.py"}
+
+
+def test_a_scaffold_is_what_the_source_tree_keeps(source: Path) -> None:
+    """Manifest, hand-written files and descriptions; of the rest, what stands there already."""
+    assert set(scaffold(PYTHON, source, "models")) == {
+        "package.xml",
+        "p/node.py",
+        "models/node.rnd",
+    }
+    _write(source, {"p/base.py": "old\n", "models/node.rnd": "node by_hand : p\n"})
+    assert set(scaffold(PYTHON, source, "models")) == {"package.xml", "p/node.py", "p/base.py"}
+
+
+def test_stale_files_go_with_their_folders(source: Path, tmp_path: Path) -> None:
+    """Links, untouched files and empty ones go; edited ones only if they may be overwritten."""
+    output = tmp_path / "out"
+    generated = with_banner("x.py", "x = 1\n")
+    _write(output, {"a/b/x.py": generated, "a/empty": "", "edited.py": generated + "# mine\n"})
+    (output / "a/link").symlink_to(source / "p/node.py")
+    stale = ["a/b/x.py", "a/empty", "a/link", "edited.py", "never/was"]
+    remove_stale(stale, output, overwrite=False)
+    assert [path.name for path in output.rglob("*")] == ["edited.py"]
+    remove_stale(stale, output, overwrite=True)
+    assert list(output.iterdir()) == []
+    assert (source / "p/node.py").exists()

@@ -1,0 +1,115 @@
+"""Projects that generate while they are built: models to start from, and CMake run as users do."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.cli import deros
+
+PROGRAM = Path(sys.executable).with_name("deros")
+"""The program deros of this environment."""
+
+GENERATORS = ("Ninja", "Unix Makefiles")
+"""CMake's generators that a build must work with."""
+
+needs_cmake = pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake")
+
+_LIMIT = 300.0
+
+
+def models(folder: Path) -> Path:
+    """Write the models that ``deros new rules robot`` gives, and return the rules."""
+    assert deros("new", "rules", "robot", "-o", folder).code == 0
+    return folder / "robot.deros"
+
+
+def replace(path: Path, before: str, after: str) -> None:
+    """Edit a file as a person would, and see to it that its time says so."""
+    text = path.read_text()
+    assert before in text
+    path.write_text(text.replace(before, after))
+    touch(path)
+
+
+def touch(path: Path) -> None:
+    """Make a file newer than it was, however coarse the times of this file system are."""
+    previous = path.stat().st_mtime_ns
+    while path.stat().st_mtime_ns <= previous:
+        path.touch()
+
+
+class Project:
+    """A CMake project in a folder, built as a user builds it."""
+
+    def __init__(self, folder: Path, generator: str, script: str) -> None:
+        """Write the project; its models are to be put beside."""
+        if generator == "Ninja" and shutil.which("ninja") is None:
+            pytest.skip("no ninja")
+        self.folder = folder
+        self.build_folder = folder / "build tree"
+        self._generator = generator
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "CMakeLists.txt").write_text(script)
+
+    def configure(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        """Run CMake on the project."""
+        found = [f"-Dderos_DIR={deros('cmake-dir').out.strip()}", f"-Dderos_EXECUTABLE={PROGRAM}"]
+        where = ["-S", str(self.folder), "-B", str(self.build_folder)]
+        command = ["cmake", "-G", self._generator, *where, *found, *arguments]
+        return _run(command, self.folder)
+
+    def build(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        """Build with two jobs."""
+        command = ["cmake", "--build", str(self.build_folder), "--parallel", "2", *arguments]
+        return _run(command, self.folder)
+
+    def built(self, *arguments: str) -> str:
+        """Build, which must succeed, and return what was printed."""
+        done = self.build(*arguments)
+        assert done.returncode == 0, done.stdout
+        return done.stdout
+
+    def generated(self) -> int:
+        """Build, which must succeed, and return how many times deros was run."""
+        return len(re.findall(r"\bGenerating \w+ from ", self.built()))
+
+
+def configured(folder: Path, generator: str, script: str) -> Project:
+    """Return a project that is configured; it needs no compiler unless the script says so."""
+    project = Project(folder, generator, script)
+    done = project.configure()
+    assert done.returncode == 0, done.stdout
+    return project
+
+
+def times(folder: Path) -> dict[str, int]:
+    """Return when each file below a folder was written."""
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return {str(path.relative_to(folder)): path.stat().st_mtime_ns for path in files}
+
+
+def _run(command: list[str], folder: Path, **more: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command,
+        cwd=folder,
+        env={**os.environ, "NO_COLOR": "1", **more},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=_LIMIT,
+        check=False,
+    )
+
+
+def colcon(workspace: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Build a workspace with this environment's colcon."""
+    program = str(PROGRAM.with_name("colcon"))
+    command: list[str] = [program, "--log-base", "log", "build", "--executor", "sequential"]
+    return _run([*command, *arguments], workspace, AMENT_PREFIX_PATH=sys.prefix)
