@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from deros.generators.python_source import one_line, sentence
@@ -174,11 +174,16 @@ def layout(expression: Expression, indent: int, trailer: str = "") -> list[str]:
     if indent + 2 + len(together) <= LINE_LENGTH:
         return [*before, f"{head}(", margin + together]
     lines = [*before, f"{head}("]
-    for argument in expression.arguments:
-        last = argument is expression.arguments[-1]
-        inner = layout(argument, indent + 2, trailer if last else ",")
+    ends = _ends(len(expression.arguments), trailer)
+    for argument, end in zip(expression.arguments, ends, strict=True):
+        inner = layout(argument, indent + 2, end)
         lines += [margin + inner[0], *inner[1:]]
     return lines
+
+
+def _ends(count: int, last: str) -> list[str]:
+    """Return what follows each of some arguments."""
+    return [*[","] * (count - 1), last]
 
 
 def _cut(head: str, indent: int) -> tuple[list[str], str]:
@@ -247,8 +252,8 @@ def arguments(given: Iterable[Expression | None], indent: int, end: str) -> str:
     if indent + len(line) <= LINE_LENGTH:
         return line
     lines = []
-    for argument in listed:
-        lines += layout(argument, indent, end if argument is listed[-1] else ",")
+    for argument, trailer in zip(listed, _ends(len(listed), end), strict=True):
+        lines += layout(argument, indent, trailer)
     return ("\n" + " " * indent).join(line.strip() for line in lines)
 
 
@@ -343,15 +348,17 @@ def tidied(text: str) -> str:
 
 
 def mark_long_lines(text: str) -> str:
-    """Add ``// NOLINT`` where no wrapping could keep to the line length.
+    """Have the linters pass over lines that no wrapping could keep to the line length.
 
-    ROS 2 names may be 255 characters long, and a name cannot be broken.
+    ROS 2 names may be 255 characters long, and a name cannot be broken: cpplint is told of each
+    such line, and uncrustify, which would break it all the same, to leave the whole file alone.
     """
-    lines: Sequence[str] = text.splitlines()
+    lines = text.splitlines()
+    if all(len(line) <= LINE_LENGTH for line in lines):
+        return text
+    code = next((i for i, line in enumerate(lines) if line.startswith("#")), 0)
     marked = [
-        f"{line}  // NOLINT(whitespace/line_length)"
-        if len(line) > LINE_LENGTH and "// NOLINT" not in line
-        else line
+        f"{line}  // NOLINT(whitespace/line_length)" if len(line) > LINE_LENGTH else line
         for line in lines
     ]
-    return "\n".join(marked) + "\n"
+    return "\n".join([*marked[:code], "// *INDENT-OFF*", *marked[code:]]) + "\n"
