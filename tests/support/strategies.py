@@ -124,6 +124,40 @@ KINDS: Mapping[str, Kind] = {
     ),
 }
 
+long_ints = st.sampled_from((-(2**63), -1, 0, 1, 2**53 + 1, 2**63 - 1))
+wide_ints = st.sampled_from((0, 1, 2, 2**63, 2**64 - 1))
+
+
+def _kind(topic: str, name: str, base: str, size: str, values: st.SearchStrategy[Any]) -> Kind:
+    """Return the kind of a message of one field, ``data``; a number is an element of that field."""
+    array = size == "unbounded"
+    path: tuple[str | int, ...] = ("data", int(size)) if size.isdigit() else ("data",)
+    drawn = st.lists(values, max_size=3) if array else values
+    type_ = FieldType(base, "unbounded") if array else FieldType(base)
+    return Kind(topic, InterfaceType("std_msgs", "msg", name), path, ((path, type_, drawn),))
+
+
+INTEGER_KINDS: Mapping[str, Kind] = {
+    "long": _kind("/long", "Int64", "int64", "", long_ints),
+    "wide": _kind("/wide", "UInt64", "uint64", "", wide_ints),
+    "ints": _kind("/ints", "Int16MultiArray", "int16", "unbounded", small_ints),
+    "longs": _kind("/longs", "Int64MultiArray", "int64", "unbounded", long_ints),
+    "wides": _kind("/wides", "UInt64MultiArray", "uint64", "unbounded", wide_ints),
+    "second": _kind("/ints", "Int16MultiArray", "int16", "1", st.none() | small_ints),
+    "third": _kind("/wides", "UInt64MultiArray", "uint64", "2", st.none() | wide_ints),
+}
+"""Integers of all widths, in arrays too, and elements that the message's array may not have."""
+
+MORE_KINDS: Mapping[str, Kind] = {
+    **INTEGER_KINDS,
+    "texts": _kind("/texts", "Strings", "string", "0", st.none() | texts),
+    "flags": _kind("/flags", "Flags", "bool", "unbounded", st.booleans()),
+    "first": _kind("/flags", "Flags", "bool", "0", st.none() | st.booleans()),
+    "floats": _kind("/floats", "Float32MultiArray", "float32", "unbounded", ranges),
+}
+"""Further kinds, which are not drawn unless they are named."""
+
+ALL_KINDS = {**KINDS, **MORE_KINDS}
 
 # Programs -----------------------------------------------------------------------------------------
 
@@ -147,7 +181,7 @@ class _Drawing:
 
     def input(self) -> None:
         name = self.draw(st.sampled_from(self.choice))
-        kind, index = KINDS[name], len(self.inputs)
+        kind, index = ALL_KINDS[name], len(self.inputs)
         first = len(self.leaves)
         for number, (path, type_, _) in enumerate(kind.leaves):
             nan_is_unknown = kind.nan_is_unknown or number > 0
@@ -177,12 +211,14 @@ class _Drawing:
                 value: ir.ValueExpression = ir.Apply(name, tuple(reads), index)
             case "vector":
                 value = ir.Apply("norm", tuple(reads), index)
-            case "array":
+            case "array" | "floats" | "ints" | "longs" | "wides":
                 name = self.draw(st.sampled_from(("min", "max", "count")))
                 value = ir.Apply(name, tuple(reads), index)
             case "scan":
                 sector = (ir.Const(self.draw(unit_bearing)), ir.Const(self.draw(unit_bearing)))
                 value = ir.Apply("nearest", (*reads, *sector), index)
+            case "flags":
+                value = ir.Apply("count", tuple(reads), index)
             case _:
                 value = reads[0]
         for _ in range(self.draw(st.sampled_from((0, 0, 0, 1, 2)))):
@@ -202,7 +238,8 @@ class _Drawing:
                 return ir.Scale(value, self.draw(st.sampled_from((2.0, -1.0, 0.1))), offset)
 
     def numeric(self) -> list[int]:
-        return [n for n, kind in enumerate(self.kinds) if kind not in ("boolean", "text")]
+        none = ("boolean", "text", "texts", "first")
+        return [n for n, kind in enumerate(self.kinds) if kind not in none]
 
     def bound(self) -> ir.ValueExpression:
         """Draw what a number is compared with."""
@@ -243,9 +280,13 @@ class _Drawing:
         match self.kinds[index]:
             case "boolean":
                 return self.boolean(index, read)
+            case "first":
+                return self.boolean(index, read)
+            case kind if kind in INTEGER_KINDS:
+                return self.integer(index)
             case "text" if self.draw(st.booleans()):
                 return self.like(index, "text")
-            case "text":
+            case "text" | "texts":
                 operator = self.draw(st.sampled_from(("=", "!=")))
                 return ir.Compare(read, operator, ir.Const(self.draw(texts)))
         if choice < 6:
@@ -259,13 +300,29 @@ class _Drawing:
             upper = ir.Const(self.draw(st.sampled_from(NUMBERS[4:])))
         return ir.Within(self.number(index), lower, upper, *closed)
 
+    def integer(self, index: int) -> ir.Condition:
+        """Draw a condition on an integer as it is built: with integers, which stand on the right.
+
+        Another value that it is compared with may be of any type.
+        """
+        value = self.number(index)
+        bound = st.sampled_from((-(2**63), -1, 0, 1, 2, 2**53, 2**63 - 1, 2**63, 2**64))
+        choice = self.draw(st.integers(0, 3))
+        if choice == 0:
+            other = self.number(self.draw(st.sampled_from(self.numeric())))
+            return ir.Compare(value, self.draw(operators), other)
+        if choice == 1:
+            lower, upper = (ir.Const(self.draw(bound)) for _ in range(2))
+            return ir.Within(value, lower, upper, *self.draw(st.tuples(*[st.booleans()] * 2)))
+        return ir.Compare(value, self.draw(operators), ir.Const(self.draw(bound)))
+
     def boolean(self, index: int, read: ir.Read) -> ir.Condition:
         choices: tuple[ir.Condition, ...] = (
             ir.Truth(read),
             ir.Compare(read, "=", ir.Const(False)),
             ir.Compare(read, "!=", ir.Const(False)),
             ir.Compare(ir.Const(True), "=", read),
-            self.like(index, "boolean"),
+            self.like(index, self.kinds[index]),
         )
         return choices[self.draw(st.integers(0, len(choices) - 1))]
 
@@ -436,7 +493,7 @@ def leaf_values(draw: Draw, program: ir.Program, topic: str) -> dict[int, LeafVa
 
 
 def _values(leaf: ir.Leaf) -> st.SearchStrategy[Any]:
-    for kind in KINDS.values():
+    for kind in ALL_KINDS.values():
         for path, type_, values in kind.leaves:
             if (path, type_) == (leaf.path, leaf.type):
                 return values

@@ -113,9 +113,12 @@ class Conditions:
             f"m->{self._layout.terms[value].known}" for value in compared(condition)
         )
         known = Infix("&&", tuple(flags))
-        return Call("truth_of", (known, self._holds(condition)))
+        finding = self._layout.findings.get(condition)
+        holds = f"m->{finding.name}" if finding else self.holds(condition)
+        return Call("truth_of", (known, holds))
 
-    def _holds(self, condition: Truth | Compare | Within) -> Expression:
+    def holds(self, condition: Condition) -> Expression:
+        """Return whether a comparison of values, which must be known, holds."""
         match condition:
             case Truth():
                 return self._operand(condition.operand)
@@ -127,6 +130,8 @@ class Conditions:
                 above = self._compare(condition.operand, lower, condition.lower)
                 below = self._compare(condition.operand, upper, condition.upper)
                 return Infix("&&", (f"({above})", f"({below})"))
+            case _:
+                raise AssertionError("no comparison of values")
 
     def _compare(self, left: ValueExpression, operator: Operator, right: ValueExpression) -> str:
         if left == right:  # known, and so no NaN
@@ -159,10 +164,13 @@ class Conditions:
         return f"{self._operand(left)} {SYMBOLS[operator]} {self._operand(right)}"
 
     def _compare_integer(self, left: ValueExpression, operator: Operator, right: int) -> str:
-        """Compare with a constant that may lie beyond all that the value can be."""
+        """Compare with a constant; the result may be the same for all that the value can be."""
         unsigned = type_of(self._program, left) == "uint64_t"
-        if right not in (range(2**64) if unsigned else range(-(2**63), 2**63)):
-            return literal(COMPARE[operator](0, right))
+        lowest, highest = (0, 2**64 - 1) if unsigned else (-(2**63), 2**63 - 1)
+        tried = {lowest, highest, *({right} if lowest <= right <= highest else ())}
+        results = {COMPARE[operator](each, right) for each in tried}
+        if len(results) == 1:
+            return literal(results.pop())
         bound = f"UINT64_C({right})" if unsigned else integer(right)
         return f"{self._operand(left)} {SYMBOLS[operator]} {bound}"
 
@@ -215,9 +223,23 @@ def expression(value: ValueExpression, program: Program, arguments: Arguments) -
 
 
 def as_double(value: ValueExpression, program: Program, arguments: Arguments) -> str:
-    """Return a number, of whichever type it is, as a double."""
+    """Return a number, of whichever type it is, as a double; NaN, where it is unknown."""
     text = expression(value, program, arguments)
-    return text if type_of(program, value) == "double" else f"(double){text}"
+    if type_of(program, value) == "double":
+        return text
+    there = present(value, program, arguments)
+    return f"({there} ? (double){text} : NAN)" if there else f"(double){text}"
+
+
+def present(value: ValueExpression, program: Program, arguments: Arguments) -> str:
+    """Return what must hold for an integer to be known: that arrays with a least have elements."""
+    if type_of(program, value) == "double" or not isinstance(value, Apply):
+        return ""
+    (operand,) = value.arguments
+    if value.function not in ("min", "max"):
+        return present(operand, program, arguments)
+    assert isinstance(operand, Read)
+    return f"({arguments.counts[operand.leaf]} > 0U)"
 
 
 def function_name(value: Apply, program: Program) -> str:

@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from deros.generators.monitor_c.expressions import Arguments, as_double, expression
+from deros.generators.monitor_c.expressions import (
+    Arguments,
+    Conditions,
+    as_double,
+    expression,
+    present,
+)
 from deros.generators.monitor_c.layout import InputFields, Layout, Term, c_type
 from deros.generators.monitor_c.names import new_names
-from deros.generators.monitor_c.source import comment, lay_out_list
+from deros.generators.monitor_c.source import comment, lay_out, lay_out_list
 from deros.generators.monitor_python.names import Names
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, STRING_TYPES
 from deros.monitor import walk
@@ -37,11 +43,11 @@ class Parameter:
         declarations: of all, as C writes them.
         path: the field, from the message's root.
         leaves: the leaves of the program that it feeds.
-        form: what is passed: the value; an array's elements and count; its count alone; a text's
-            characters and length.
+        form: what is passed: the ``value``; an ``array``'s elements and count; its ``count`` alone;
+            a ``text``'s characters and length; nothing but what ``given`` tells.
         element: the C type of an array's elements; empty for others.
         given: whether a flag follows that tells whether the message's array has the element; of
-            floating-point numbers a NaN says it.
+            floating-point numbers a NaN says it instead.
     """
 
     name: str
@@ -61,7 +67,9 @@ class Handler:
         topic: the topic as the rules name it; ``type`` its message type, as ROS 2 writes it.
         function: the function's name; it takes the monitor, the time, then ``parameters``.
         signature: its first line or lines, without what follows them.
-        observe: the lines that take the inputs' values.
+        observer: the name of the function that takes the inputs' values; empty if nobody asks.
+        observing: the first line or lines of that; ``observe`` what is in it.
+        values: the names of all parameters.
         inputs: what it changes.
     """
 
@@ -70,8 +78,16 @@ class Handler:
     function: str
     parameters: tuple[Parameter, ...]
     signature: tuple[str, ...]
+    observer: str
+    observing: tuple[str, ...]
     observe: tuple[str, ...]
+    values: tuple[str, ...]
     inputs: tuple[int, ...]
+
+    @property
+    def call(self) -> list[str]:
+        """The line or lines that call the observer."""
+        return lay_out_list(2, f"{self.observer}(", ["m", *self.values], ");")
 
 
 def handlers(program: Program, layout: Layout) -> tuple[Handler, ...]:
@@ -94,19 +110,21 @@ class _Writer:
     def handler(self, names: Names) -> Handler:
         prefix = self._layout.prefix
         only = self._inputs[0].name if len(self._inputs) == 1 else self._topic
-        function = f"{prefix}_on_{names.new(only)}"
-        declarations = [
-            f"{prefix}_monitor *m",
-            "int64_t t",
-            *(text for each in self._parameters for text in each.declarations),
-        ]
+        name = names.new(only)
+        function, observer = f"{prefix}_on_{name}", f"observe_{name}"
+        monitor = f"{prefix}_monitor *m"
+        declared = [text for each in self._parameters for text in each.declarations]
+        lines = [line for each in self._inputs for line in self._observe(each)]
         return Handler(
             self._topic,
             str(self._program.topics[self._topic]),
             function,
             self._parameters,
-            tuple(lay_out_list(0, f"void {function}(", declarations, ")")),
-            tuple(line for each in self._inputs for line in self._observe(each)),
+            tuple(lay_out_list(0, f"void {function}(", [monitor, "int64_t t", *declared], ")")),
+            observer if lines else "",
+            tuple(lay_out_list(0, f"static void {observer}(", [monitor, *declared], ")")),
+            tuple(lines),
+            tuple(text.rsplit(" ", 1)[-1].lstrip("*") for text in declared),
             tuple(each.index for each in self._inputs),
         )
 
@@ -126,7 +144,10 @@ class _Writer:
         leaf = group[0]
         element, base = "", leaf.type.base
         counted = not any(self._reads_elements(each) for each in group)
-        if leaf.type.is_array and counted:
+        given = _has_index(leaf) and (leaf.type.is_array or base not in FLOAT_TYPES)
+        if given and not any(self._is_read(each) for each in group):
+            form, declarations = "given", []
+        elif leaf.type.is_array and counted:
             form, declarations = "count", [f"size_t {name}_count"]
         elif leaf.type.is_array:
             assert isinstance(base, str)
@@ -137,7 +158,6 @@ class _Writer:
             form, declarations = "text", [f"const char *{name}", f"size_t {name}_length"]
         else:
             form, declarations = "value", [f"{c_type(leaf.type)} {name}"]
-        given = _has_index(leaf) and (leaf.type.is_array or base not in FLOAT_TYPES)
         if given:
             declarations.append(f"bool {name}_given")
         leaves = tuple(each.index for each in group)
@@ -150,8 +170,12 @@ class _Writer:
         return bool(remembered or layout.inputs[index].base)
 
     def _is_needed(self, leaf: Leaf) -> bool:
-        """Tell whether a condition reads a leaf, or the message would not count without it."""
-        if _has_index(leaf) or (leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown):
+        """Tell whether a leaf is used, or the message would not count without it."""
+        return _has_index(leaf) or self._is_read(leaf)
+
+    def _is_read(self, leaf: Leaf) -> bool:
+        """Tell whether the value of a leaf is used, or must not be NaN."""
+        if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
             return True
         return Read(leaf.index) in walk.values(walk.conditions(self._program))
 
@@ -239,6 +263,11 @@ class _Writer:
             self._arguments.computed[value] = name
         for term in terms:
             yield from self._value(term)
+        conditions = Conditions(self._program, self._layout)
+        for condition, finding in self._layout.findings.items():
+            if each.index in finding.inputs:
+                holds = conditions.holds(condition)
+                yield from lay_out(2, f"m->{finding.name} = (", holds, ");")
 
     def _value(self, term: Term) -> list[str]:
         if term.texts:
@@ -251,16 +280,9 @@ class _Writer:
         return lines
 
     def _is_known(self, term: Term) -> str:
-        value = term.value
         if term.type == "double":
             return f"is_number(m->{term.name})"
-        if isinstance(value, Apply) and value.function in ("min", "max"):
-            read = value.arguments[0]
-            assert isinstance(read, Read)
-            parameter = self._parameter_of(read.leaf)
-            assert parameter is not None
-            return f"({parameter.name}_count > 0U)"
-        return "true"
+        return present(term.value, self._program, self._arguments) or "true"
 
     def _heard(self, each: Input, fields: InputFields) -> Iterator[str]:
         if not fields.base:

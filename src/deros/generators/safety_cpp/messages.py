@@ -18,6 +18,8 @@ def arguments(store: InterfaceStore, kind: InterfaceType, parameter: Parameter) 
     there = " && ".join(_tests(store, kind, parameter.path))
     type_ = _type(store, kind, parameter.path)
     match parameter.form:
+        case "given":
+            pass
         case "count":
             yield _if(there, f"{place}.size()", "0")
         case "array":

@@ -1,0 +1,301 @@
+"""Driving the reference engine and a generated C monitor side by side."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import struct
+from array import array
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from ctypes import CDLL, c_double
+from ctypes.util import find_library
+from dataclasses import dataclass, replace
+from typing import Any, cast
+from unittest import mock
+
+from deros.generators.monitor_c.handlers import Parameter
+from deros.monitor import functions
+from deros.monitor.engine import Engine, Event, EventKind
+from deros.monitor.evaluate import evaluate_value
+from deros.monitor.ir import Scalar
+from deros.monitor.state import LeafValue, Verdict
+from tests.support.c_library import Library
+from tests.support.monitors import ORDINARY_START, START_NS, call, remark, timed
+from tests.support.strategies import Start, Step
+
+KINDS: tuple[EventKind, ...] = ("trigger", "reset", "refused", "clock_step")
+NEVER = 2**63 - 1
+
+
+@dataclass(frozen=True)
+class Known:
+    """What a monitor knows after a call, as far as both kinds of monitors tell it alike.
+
+    Attributes:
+        verdicts: of each rule, with the time when it last became true or ceased to be.
+        holds: of each behaviour.
+        active: of each action that can be reset.
+        values: of each value that conditions compare, ``None`` for unknown.
+    """
+
+    verdicts: tuple[tuple[Verdict, int], ...]
+    holds: tuple[bool, ...]
+    active: tuple[bool, ...]
+    values: tuple[Scalar | None, ...]
+
+
+class CMonitor:
+    """One monitor of a library, with the methods of the reference engine.
+
+    Attributes:
+        events: all that has happened since the start, in order, with the line of each.
+        known: what it knows.
+        next_deadline: when to call :meth:`advance` at the latest.
+        waiting: whether an input waits for its first message and is not missing yet.
+    """
+
+    def __init__(
+        self,
+        library: Library,
+        number: int,
+        start_ns: int = 0,
+        start: Start = ORDINARY_START,
+    ) -> None:
+        """Start the monitor of that number."""
+        self._library = library
+        self._number = number
+        self._view = library.units[number].view
+        self._program = library.units[number].program
+        self.events: list[tuple[Event, int]] = []
+        self.next_deadline: int | None = None
+        self.waiting = False
+        self._handlers = {
+            each.handler.topic: (200 + n, each.handler.parameters)
+            for n, each in enumerate(self._view.messages)
+        }
+        self._optional = {name: 100 + n for n, (name, _, _) in enumerate(self._view.optional)}
+        latched = [each.name in start.latched for each in self._view.actions if each.latched]
+        library.begin(number)
+        self._call(0, start_ns, start.grace_ns, *latched)
+
+    def message(self, t_ns: int, topic: str, leaves: Mapping[int, LeafValue]) -> None:
+        """Take a message."""
+        operation, parameters = self._handlers[topic]
+        words = [word for each in parameters for word in _words(each, leaves[each.leaves[0]])]
+        self._call(operation, t_ns, *words)
+
+    def advance(self, t_ns: int) -> None:
+        """Settle all that is due up to and including ``t_ns``."""
+        due = self._call(1, t_ns)
+        assert due == (NEVER if self.next_deadline is None else self.next_deadline)
+
+    def reset(self, t_ns: int) -> bool:
+        """Reset every latched action that is active; tell whether none was refused."""
+        if not self._view.has_latched:  # C has no such function then
+            self.advance(t_ns)
+            return True
+        return bool(self._call(2, t_ns))
+
+    def enable(self, t_ns: int, behaviour: str, enabled: bool) -> None:
+        """Enable or disable an optional behaviour."""
+        self._call(self._optional[behaviour], t_ns, enabled)
+
+    def _call(self, *words: int) -> int:
+        answer = iter(self._library.step(self._number, array("q", words)))
+        while next(answer):
+            self.events.append(self._event(answer))
+        result = next(answer)
+        due = next(answer)
+        self.next_deadline = None if due == NEVER else due
+        self.waiting = bool(next(answer))
+        self.known = self._knowledge(answer)
+        assert next(answer, None) is None
+        return result
+
+    def _event(self, answer: Iterator[int]) -> tuple[Event, int]:
+        t_ns, kind, site = next(answer), KINDS[next(answer)], next(answer)
+        if site < 0:
+            return Event(t_ns, kind), 0
+        action, behaviour, line, count = (next(answer) for _ in range(4))
+        arguments = tuple(_argument(answer) for _ in range(count))
+        name = self._program.actions[action].name
+        within = None if behaviour < 0 else self._view.behaviour_names[behaviour][0]
+        return Event(t_ns, kind, name, within, arguments), line
+
+    def _knowledge(self, answer: Iterator[int]) -> Known:
+        layout = self._view.layout
+        verdicts: list[tuple[Verdict, int]] = []
+        for _ in layout.verdicts:
+            verdict = (False, None, True)[next(answer)]
+            verdicts.append((verdict, next(answer)))
+        holds = tuple(bool(next(answer)) for _ in layout.holds)
+        active = tuple(bool(next(answer)) for _ in layout.active)
+        values: list[Scalar | None] = []
+        for term in layout.terms.values():
+            known, word = next(answer), next(answer)
+            value: Scalar = _double(word) if term.type == "double" else word
+            if term.type == "uint64_t":
+                value = word % 2**64
+            elif term.texts:  # which of those that it is compared with, if any
+                value = ("", *term.texts)[word] if word else ""
+            values.append(value if known else None)
+        return Known(tuple(verdicts), holds, active, tuple(values))
+
+
+def compare(
+    library: Library, number: int, steps: Iterable[Step], start: Start = ORDINARY_START
+) -> None:
+    """Drive the engine and a C monitor with the same calls; they must answer alike at each.
+
+    The engine computes with the mathematical library that C computes with.
+
+    Raises:
+        AssertionError: they do not.
+    """
+    unit = library.units[number]
+    remark(f"{start}")
+    with mathematics_of_c():
+        engine = Engine(unit.program, START_NS, start.grace_ns, start.latched)
+        monitor = CMonitor(library, number, START_NS, start)
+        earliest = 0 if any(each.timeout_ns == 0 for each in unit.program.inputs) else 1
+        for t_ns, step in timed(steps):
+            remark(f"at {t_ns} {step}")
+            assert call(cast("Engine", monitor), t_ns, step) == call(engine, t_ns, step)
+            lines = [each.span.line if each.span else 0 for each in engine.events]
+            assert monitor.events == list(zip(engine.events, lines, strict=True))
+            assert monitor.waiting == engine.waiting
+            assert monitor.known == known_of(engine, monitor)
+            _compare_deadlines(engine.next_deadline, monitor.next_deadline, earliest + t_ns)
+
+
+def known_of(engine: Engine, monitor: CMonitor) -> Known:
+    """Return what an engine knows, in the terms of a monitor of the same program."""
+    state, layout = engine._state, monitor._view.layout
+    values: list[Scalar | None] = []
+    for term in layout.terms.values():
+        value = evaluate_value(term.value, state)
+        if term.texts and value is not None and value not in term.texts:
+            value = ""
+        values.append(value)
+    return Known(
+        tuple(zip(state.verdicts, state.turned_ns, strict=True)),
+        tuple(state.holds),
+        tuple(state.active[index] for index in layout.active),
+        tuple(values),
+    )
+
+
+def _compare_deadlines(reference: int | None, generated: int | None, earliest_ns: int) -> None:
+    """The monitor may ask to be called in vain, but never too late, nor for what is past."""
+    if reference is not None:
+        assert generated is not None
+        assert generated <= reference
+    assert generated is None or generated >= earliest_ns
+
+
+# The words of arguments ---------------------------------------------------------------------------
+
+
+def _words(parameter: Parameter, value: Any) -> Iterator[int]:
+    """Yield the words of the arguments that stand for one field of a message."""
+    absent = value is None
+    match parameter.form:
+        case "value":
+            yield _word(parameter.declarations[0].split()[0], value)
+        case "text":
+            data = b"" if absent else value.encode()
+            yield len(data)
+            yield from data
+        case "given":
+            pass
+        case "count":
+            yield 0 if absent else len(value)
+        case _:
+            elements = () if absent else value
+            yield len(elements)
+            yield from (_word(parameter.element, each) for each in elements)
+    if parameter.given:
+        yield not absent
+
+
+def _word(kind: str, value: Any) -> int:
+    if kind in ("double", "float"):
+        return _bits(math.nan if value is None else value)
+    number = 0 if value is None else int(value)
+    return number if number < 2**63 else number - 2**64
+
+
+def _bits(value: float) -> int:
+    (word,) = struct.unpack("q", struct.pack("d", value))
+    return int(word)
+
+
+def _double(word: int) -> float:
+    (value,) = struct.unpack("d", struct.pack("q", word))
+    return float(value)
+
+
+def _argument(answer: Iterator[int]) -> Scalar:
+    kind = next(answer)
+    if kind == 3:
+        return bytes(next(answer) for _ in range(next(answer))).decode()
+    word = next(answer)
+    values: tuple[Scalar, ...] = (bool(word), word, _double(word))
+    return values[kind]
+
+
+# Mathematics --------------------------------------------------------------------------------------
+
+
+@contextlib.contextmanager
+def mathematics_of_c() -> Iterator[None]:
+    """Let the reference compute lengths as C does, by ``hypot()`` of the mathematical library.
+
+    Python has a way of its own, which differs in the last digit; all else is the same.
+    """
+    rows = {
+        name: replace(row, evaluate=_IN_C[name])
+        for name, row in functions.FUNCTIONS.items()
+        if name in _IN_C
+    }
+    with mock.patch.dict(cast("dict[str, functions.Function]", functions.FUNCTIONS), rows):
+        yield
+
+
+def _hypot() -> Callable[[float, float], float]:
+    found = CDLL(find_library("m")).hypot
+    found.restype = c_double
+    found.argtypes = [c_double, c_double]
+    return cast("Callable[[float, float], float]", found)
+
+
+_hypot_of_c = _hypot()
+
+
+def _norm(x: float, y: float, z: float) -> float:
+    return _hypot_of_c(_hypot_of_c(x, y), z)
+
+
+def _of_unit(
+    evaluate: Callable[[float, float, float, float], float],
+) -> Callable[..., float | None]:
+    def of_quaternion(x: float, y: float, z: float, w: float) -> float | None:
+        length = _hypot_of_c(_hypot_of_c(x, y), _hypot_of_c(z, w))
+        if not 0.0 < length < math.inf:
+            return None
+        return evaluate(x / length, y / length, z / length, w / length)
+
+    return of_quaternion
+
+
+_IN_C: dict[str, Callable[..., float | None]] = {
+    "norm": _norm,
+    "roll": _of_unit(
+        lambda x, y, z, w: math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    ),
+    "pitch": _of_unit(lambda x, y, z, w: math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x))))),
+    "yaw": _of_unit(
+        lambda x, y, z, w: math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    ),
+    "tilt": _of_unit(lambda x, y, z, w: 2.0 * math.atan2(_hypot_of_c(x, y), _hypot_of_c(z, w))),
+}
