@@ -240,7 +240,7 @@ def _adapter(view: GateView) -> str:
         package=view.package,
         logic=view.logic_class,
         states=states,
-        heartbeat=heartbeat if view.hears_heartbeat else "",
+        heartbeat=heartbeat if view.heartbeat_port else "",
         stamp=_STAMP if view.stamped else "",
     )
 

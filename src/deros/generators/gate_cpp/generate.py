@@ -1,26 +1,138 @@
-"""The sources of gates in C++, for the package of their safety node."""
+"""Gates in C++: their sources, and what the package of their safety node has to know of them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from importlib import resources
 
-from deros.generators.cpp_source import call, comment, mark_long_lines
+from deros.generators.cpp_source import arguments, call, comment, include_lines, mark_long_lines
+from deros.generators.gate_cpp.node import base_node
 from deros.generators.gate_cpp.source import condition, string_lines
-from deros.generators.gate_cpp.view import GateView
+from deros.generators.gate_cpp.view import GateView, gate_view
+from deros.generators.protocol import File
+from deros.generators.rosnode_cpp.generate import Provided, licensed
+from deros.generators.safety_cpp.verbatim import runtime_sources
+from deros.generators.safety_python.description import node_description
 from deros.generators.templates import environment
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.node import NodeType
+from deros.monitor.ir import Program
+
+_SHARED = ("agenda", "instance", "machine", "process", "publishers", "sha256", "text", "worker")
+"""The sources that gates have in common with the safety node."""
+
+_OWN = ("gate_report", "gatekeeper")
+"""Those that are the same for all gates."""
+
+_NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils")
+
+
+@dataclass(frozen=True, slots=True)
+class Gates:
+    """The gates of one package.
+
+    Attributes:
+        nodes: what is handed to ``package_files`` of them, and ``provided`` likewise.
+        files: their own, beside those of ``package_files`` and the runtime of the safety node.
+    """
+
+    nodes: list[NodeType] = field(default_factory=list)
+    provided: dict[str, Provided] = field(default_factory=dict)
+    files: dict[str, File] = field(default_factory=dict)
+
+
+def gate_files(
+    program: Program,
+    nodes: Sequence[NodeType],
+    safety_node: NodeType,
+    store: InterfaceStore,
+    copyright_line: str = "",
+) -> Gates:
+    """Return the gates of ``program`` for the package of the safety node in C++.
+
+    Args:
+        program: the rules.
+        nodes: the nodes of its gates, in order, as :func:`gate_nodes` returns them.
+        safety_node: the node whose states and heartbeat they heed, as the Python target has it.
+        store: the message definitions.
+        copyright_line: years and holder for the headers, or nothing.
+    """
+    made = Gates()
+    for gate, node in zip(program.gates, nodes, strict=True):
+        view = gate_view(gate, node, program, store, safety_node)
+        made.nodes.append(base_node(node))
+        made.provided[node.name] = _provided(view, node)
+        made.files[f"{node.package}/{node.name}.rnd"] = File(node_description(node))
+        for path, template in _paths(view).items():
+            made.files[path] = File(licensed(render(template, view), copyright_line))
+    for package in dict.fromkeys(node.package for node in nodes):
+        for path, text in runtime_texts(package).items():
+            made.files[path] = File(licensed(text, copyright_line))
+    return made
+
+
+def _paths(view: GateView) -> dict[str, str]:
+    """Return the templates of a gate's files, by their paths."""
+    source, include = f"{view.package}/src/{view.name}", include_folder(view.package)
+    return {
+        f"{include}/{view.name}.hpp": "node.hpp",
+        f"{include}/{view.name}_logic.hpp": "logic.hpp",
+        f"{source}.cpp": "node.cpp",
+        f"{source}_logic.cpp": "logic.cpp",
+        f"{source}_main.cpp": "main.cpp",
+    }
+
+
+def _provided(view: GateView, node: NodeType) -> Provided:
+    own = (f"src/{view.name}.cpp", f"src/{view.name}_logic.cpp")
+    packages = {port.type.package for port in node.ports}
+    return Provided(
+        (*own, *runtime_sources((*_SHARED, *_OWN))),
+        tuple(sorted({*_NEEDS, *packages})),
+        (f"src/{view.name}_main.cpp",),
+        default_name=view.node,
+    )
 
 
 def render(template: str, view: GateView) -> str:
-    """Return the text of one file of a gate: ``logic.hpp`` or ``logic.cpp``."""
+    """Return the text of one file of a gate: ``node``, ``logic`` or ``main``, with its ending."""
     loaded = environment("deros.generators.gate_cpp").get_template(f"{template}.j2")
+    own = (f"{view.name}_base", f"{view.name}_logic", "runtime/gatekeeper")
+    headers = [f"{view.package}/{name}.hpp" for name in own]
+    heard = [view.heartbeat_port.header] if view.heartbeat_port else []
     text = loaded.render(
-        gate=view, call=call, comment=comment, condition=condition, string_lines=string_lines
+        gate=view,
+        includes=include_lines([*headers, *heard, "rclcpp/rclcpp.hpp"]),
+        arguments=arguments,
+        call=call,
+        comment=comment,
+        condition=condition,
+        string_lines=string_lines,
     )
     return mark_long_lines(text)
 
 
+# What is the same for all gates -------------------------------------------------------------------
+
+
+def include_folder(package: str) -> str:
+    """Return where the headers of a package are."""
+    return f"{package}/include/{package}"
+
+
+def runtime_texts(package: str) -> dict[str, str]:
+    """Return the files that only gates need, by their paths."""
+    include, source = f"{include_folder(package)}/runtime", f"{package}/src/runtime"
+    headers = {f"{include}/{name}.hpp": f"{name}.hpp" for name in ("gate_numbers", *_OWN)}
+    sources = {f"{source}/{name}.cpp": f"{name}.cpp" for name in _OWN}
+    return {path: runtime_text(name, package) for path, name in (headers | sources).items()}
+
+
 def runtime_text(name: str, package: str) -> str:
-    """Return a file that is the same for all gates, in the namespace of a package."""
+    """Return one of these files in the namespace ``runtime`` of a package."""
     folder = resources.files("deros.generators.gate_cpp.runtime")
     text = (folder / name).read_text(encoding="utf-8")
-    return text.replace("DEROS_RUNTIME", package.upper()).replace("deros_runtime", package)
+    text = text.replace("DEROS_RUNTIME", package.upper())
+    text = text.replace("deros_runtime/", f"{package}/")
+    return text.replace("deros_runtime", f"{package}::runtime")

@@ -99,13 +99,15 @@ def _finite(definition: MessageDefinition, found: dict[InterfaceType, TypeView])
         place = f"message.{name}"
         if isinstance(field.base, str):
             if field.base in FLOAT_TYPES:
-                yield f"all_finite({place})" if field.is_array else f"std::isfinite({place})"
+                yield (
+                    f"runtime::all_finite({place})" if field.is_array else f"std::isfinite({place})"
+                )
             continue
         view = found.get(field.base)
         if view is None or not view.finite:
             continue
         if field.is_array:
-            yield f"are_all({place}, [](const auto & each) {{return is_finite(each);}})"
+            yield f"runtime::are_all({place}, [](const auto & each) {{return is_finite(each);}})"
         else:
             yield f"is_finite({place})"
 
@@ -121,7 +123,7 @@ def _zeros(definition: MessageDefinition, found: dict[InterfaceType, TypeView]) 
             continue
         if isinstance(field.base, str):
             zero = _zero(field.base)
-            yield f"fill_with_zeros({place});" if field.is_array else f"{place} = {zero};"
+            yield f"runtime::fill_with_zeros({place});" if field.is_array else f"{place} = {zero};"
             continue
         if field.base == HEADER:
             statement = f"{each}.stamp = stamp;"

@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from deros.generators.cpp_source import cpp_header, cpp_identifier, cpp_type
+from deros.generators.cpp_source import (
+    Expression,
+    cpp_header,
+    cpp_identifier,
+    cpp_string,
+    cpp_type,
+)
 from deros.generators.gate_cpp.messages import (
     LimitedField,
     TypeView,
@@ -14,15 +20,30 @@ from deros.generators.gate_cpp.messages import (
 )
 from deros.generators.gate_cpp.source import CppNames, number, origin_comment, scalar
 from deros.generators.gate_python.node import heartbeat_port
-from deros.generators.monitor_c.layout import LATEST
 from deros.generators.monitor_python.names import Names
 from deros.generators.monitor_python.source import origin
 from deros.generators.names import camel_case
-from deros.generators.python_source import one_line
+from deros.generators.python_source import one_line, sentence
+from deros.generators.rosnode_cpp.qos import qos_expression
 from deros.interfaces.fields import ResolvedField, format_path, resolve
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.node import NodeType
+from deros.metamodels.node import NodeType, Port
+from deros.monitor.gates import CPP_SUFFIX
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
+
+LATEST = 2**62 - 1
+"""The greatest time, and the greatest duration, in nanoseconds: sums of two stay in 64 bits."""
+
+
+@dataclass(frozen=True, slots=True)
+class PortView:
+    """A port of the gate's node: expressions of its topic and its QoS, and the message's struct."""
+
+    identifier: str
+    topic: str
+    type: str
+    header: str
+    qos: Expression
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +80,21 @@ class ActionView:
 
 @dataclass(frozen=True, slots=True)
 class StateView:
-    """A topic with the states of actions; ``identifier`` is that of the port."""
+    """A topic with the states of actions."""
 
-    identifier: str
+    port: PortView
     topic: str
-    type: str
-    header: str
     actions: tuple[ActionView, ...]
+
+    @property
+    def identifier(self) -> str:
+        """What stands for the topic in names."""
+        return self.port.identifier
+
+    @property
+    def type(self) -> str:
+        """The struct of its messages."""
+        return self.port.type
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,19 +110,23 @@ class GateView:
     """All that the templates print.
 
     Attributes:
-        node: the name of the gate's node type; ``package`` is that of its package.
+        node: the gate's name when it runs; ``package`` is that of its package.
         name: the stem of its files and, in camel case, of its classes.
+        executable: its program, and ``description`` what it is for.
         rules: the file name of the rules, and ``origin`` the gate's place in it.
         source: the topic that commands come in by, and ``target`` that which they go out by.
         type: the command's type in ROS 2, ``command`` its struct, and ``header`` what declares it.
         period: between two zeros, as a literal in nanoseconds.
-        hears_heartbeat: whether a line needs the heartbeat.
+        source_port, target_port: where commands come in, and go out.
+        heartbeat_port: where the heartbeat is heard, if a line needs it.
         types: what is done to messages of each type in the command.
     """
 
     node: str
     package: str
     name: str
+    executable: str
+    description: str
     rules: str
     origin: str
     source: str
@@ -102,7 +135,9 @@ class GateView:
     command: str
     header: str
     period: str
-    hears_heartbeat: bool
+    source_port: PortView
+    target_port: PortView
+    heartbeat_port: PortView | None
     types: tuple[TypeView, ...]
     fields: tuple[FieldView, ...]
     lines: tuple[LineView, ...]
@@ -111,7 +146,7 @@ class GateView:
     @property
     def logic_class(self) -> str:
         """The class that decides what is published."""
-        return f"{camel_case(self.name)}Logic"
+        return f"{self.node_class}Logic"
 
     @property
     def summary(self) -> str:
@@ -120,6 +155,11 @@ class GateView:
             f"What {self.node} lets through of the commands on {self.source} to {self.target},"
             " and when."
         )
+
+    @property
+    def node_class(self) -> str:
+        """The class of its node."""
+        return camel_case(self.node)
 
     @property
     def has_floats(self) -> bool:
@@ -164,7 +204,7 @@ class GateView:
     def headers(self) -> tuple[str, ...]:
         """What the header of the logic includes of messages."""
         stamp = ["builtin_interfaces/msg/time.hpp"] if self.stamped else []
-        return tuple(sorted({self.header, *stamp, *(state.header for state in self.states)}))
+        return tuple(sorted({self.header, *stamp, *(state.port.header for state in self.states)}))
 
     @property
     def type_headers(self) -> tuple[str, ...]:
@@ -185,7 +225,9 @@ def gate_view(
         safety_node: the node whose states and heartbeat it heeds, by the name of the Python one.
     """
     names = CppNames()
-    states = tuple(_states(gate, program, store, names))
+    name = node.name.removesuffix(CPP_SUFFIX)
+    ports = {port.name: _port(port) for port in node.ports}
+    states = tuple(_states(gate, program, ports, store, names))
     members = {each.name: each.member for state in states for each in state.actions}
     lines = tuple(_line(line, program, members, names) for line in gate.lines)
     paths = (limit.path for line in gate.lines for limit in line.limits)
@@ -194,9 +236,11 @@ def gate_view(
         for field in limited_fields(store, gate.type, paths, names)
     )
     return GateView(
-        node=node.name,
+        node=name,
         package=node.package,
-        name=cpp_identifier(node.name),
+        name=cpp_identifier(name),
+        executable=node.name,
+        description=sentence(node.description),
         rules=origin(gate.span).rpartition(":")[0],
         origin=origin(gate.span),
         source=gate.source,
@@ -205,7 +249,9 @@ def gate_view(
         command=cpp_type(gate.type),
         header=cpp_header(gate.type),
         period=_nanoseconds(gate.period_ns),
-        hears_heartbeat=node.port(heartbeat_port(safety_node)) is not None,
+        source_port=ports[gate.source],
+        target_port=ports[gate.target],
+        heartbeat_port=ports.get(heartbeat_port(safety_node)),
         types=type_views(store, gate.type),
         fields=fields,
         lines=lines,
@@ -218,11 +264,27 @@ def _nanoseconds(count: int) -> str:
     return f"{min(count, LATEST):_}".replace("_", "'")
 
 
+def _port(port: Port) -> PortView:
+    qos = qos_expression(port.qos)
+    assert qos is not None, port.name
+    return PortView(
+        cpp_identifier(port.name),
+        cpp_string(port.name),
+        cpp_type(port.type),
+        cpp_header(port.type),
+        qos,
+    )
+
+
 # Actions ------------------------------------------------------------------------------------------
 
 
 def _states(
-    gate: Gate, program: Program, store: InterfaceStore, names: Names
+    gate: Gate,
+    program: Program,
+    ports: Mapping[str, PortView],
+    store: InterfaceStore,
+    names: Names,
 ) -> Iterable[StateView]:
     heeded = dict.fromkeys(line.action for line in gate.lines if line.action is not None)
     by_topic: dict[str, list[tuple[Action, Binding]]] = {}
@@ -231,12 +293,9 @@ def _states(
         assert action.binding is not None, action.name
         by_topic.setdefault(action.binding.topic, []).append((action, action.binding))
     for topic, bound in by_topic.items():
-        kind = bound[0][1].type
         yield StateView(
-            cpp_identifier(topic),
+            ports[topic],
             topic,
-            cpp_type(kind),
-            cpp_header(kind),
             tuple(_action(action, binding, store, names) for action, binding in bound),
         )
 
@@ -278,13 +337,13 @@ def _limit(
     field: LimitedField, lines: Sequence[GateLine], views: Sequence[LineView]
 ) -> tuple[str, ...]:
     """Return the choice of a field's limit, one line each: that of the first line that applies."""
-    none = f"no_limit<{field.type}>()"
+    none = f"runtime::no_limit<{field.type}>()"
     chosen: list[str] = []
     for line, view in zip(lines, views, strict=True):
         for limit in line.limits:
             if format_path(limit.path) == field.path:
                 ends = ", ".join(number(field.base, end) for end in (limit.lower, limit.upper))
-                chosen.append(f"{view.name} ? limit<{field.type}>({ends}) :")
+                chosen.append(f"{view.name} ? runtime::limit<{field.type}>({ends}) :")
         if not line.limits:
             chosen.append(f"{view.name} ? {none} :")
     while chosen[-1].endswith(f"{none} :"):

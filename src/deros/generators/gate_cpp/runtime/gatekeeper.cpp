@@ -1,0 +1,141 @@
+#include "deros_runtime/runtime/gatekeeper.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "deros_runtime/runtime/gate_numbers.hpp"
+#include "deros_runtime/runtime/instance.hpp"
+#include "deros_runtime/runtime/machine.hpp"
+
+namespace deros_runtime
+{
+
+namespace
+{
+
+bool is_simulated(rclcpp::Node & node)
+{
+  return node.get_parameter("use_sim_time").as_bool();
+}
+
+Clock chosen_clock(rclcpp::Node & node)
+{
+  if (!is_simulated(node)) {
+    return Clock();
+  }
+  const rclcpp::Clock::SharedPtr clock = node.get_clock();
+  return {[clock] {return clock->now().nanoseconds();}, false};
+}
+
+}  // namespace
+
+Gatekeeper::Gatekeeper(
+  rclcpp::Node & node, Kept & gate, std::vector<std::string> lines, Settings settings)
+: node_(node),
+  gate_(gate),
+  refused_(prepare(settings.realtime_priority, settings.lock_memory)),
+  group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
+  clock_(chosen_clock(node)),
+  report_(
+    agenda_, node, gate, std::move(lines), [this] {return now();},
+    [this](const GateReport::Message & message) {gate_.report(message);}),
+  deadline_(agenda_, clock_, [this] {advance();}),
+  step_(agenda_.add_source([this] {advance();}, 1)),
+  worker_(agenda_, [this](const char * why) {RCLCPP_FATAL(node_.get_logger(), "%s", why);})
+{
+  const std::size_t domain = node.get_node_base_interface()->get_context()->get_domain_id();
+  try {
+    lock_ = claim(node.get_fully_qualified_name(), domain);
+  } catch (const std::system_error & error) {
+    refused_.push_back(
+      std::string("a second instance on this machine would not be seen: ") + error.what());
+  }
+}
+
+Gatekeeper::~Gatekeeper()
+{
+  stop();
+  for (const auto & subscription : subscriptions_) {
+    subscription->clear_on_new_message_callback();
+  }
+}
+
+void Gatekeeper::start()
+{
+  for (const std::string & refusal : refused_) {
+    report_.fault("process", refusal);
+  }
+  report_.begin();
+  follow_clock();
+  advance();
+  worker_.start();
+}
+
+void Gatekeeper::settle()
+{
+  const Time due = gate_.next_deadline();
+  if (due != NEVER && !(deadline_.is_set() && deadline_.due() <= due)) {
+    deadline_.ring_at(due);
+  }
+  report_.look();
+}
+
+void Gatekeeper::stop()
+{
+  worker_.stop();
+}
+
+void Gatekeeper::when_ended(std::function<void()> ended)
+{
+  worker_.when_ended(std::move(ended));
+}
+
+std::exception_ptr Gatekeeper::failure() const
+{
+  return worker_.failure();
+}
+
+/// Have the thread take each message, into the same memory again and again.
+void Gatekeeper::serve(
+  const rclcpp::SubscriptionBase::SharedPtr & subscription, const std::string & type)
+{
+  const auto data = subscription->create_serialized_message();
+  const auto take = [from = subscription.get(), data] {
+      rclcpp::MessageInfo info;
+      if (from->take_serialized(*data, info)) {
+        from->handle_serialized_message(data, info);
+      }
+    };
+  const std::size_t source = agenda_.add_source(take, subscription->get_actual_qos().depth());
+  subscription->set_on_new_message_callback(
+    [this, source](std::size_t count) {agenda_.notify(source, count);});
+  subscriptions_.push_back(subscription);
+  report_.watch_over(*subscription, type);
+}
+
+/// Do what is due.
+void Gatekeeper::advance()
+{
+  gate_.advance(now());
+  settle();
+}
+
+/// Look at simulated time whenever it goes on, or back.
+void Gatekeeper::follow_clock()
+{
+  if (!is_simulated(node_)) {
+    return;
+  }
+  rcl_jump_threshold_t threshold{};
+  threshold.on_clock_change = true;
+  threshold.min_forward.nanoseconds = 1;
+  threshold.min_backward.nanoseconds = -1;
+  jumps_ = node_.get_clock()->create_jump_callback(
+    nullptr, [this](const rcl_time_jump_t &) {agenda_.notify(step_);}, threshold);
+}
+
+}  // namespace deros_runtime

@@ -1,0 +1,136 @@
+/// \file
+/// The part of a gate's node that is the same for all gates.
+
+#ifndef DEROS_RUNTIME__RUNTIME__GATEKEEPER_HPP_
+#define DEROS_RUNTIME__RUNTIME__GATEKEEPER_HPP_
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/descriptor.hpp"
+#include "deros_runtime/runtime/gate_report.hpp"
+#include "deros_runtime/runtime/worker.hpp"
+#include "rclcpp/rclcpp.hpp"
+#include "rclcpp/serialization.hpp"
+
+namespace deros_runtime
+{
+
+/// The logic of a gate, and where it tells of itself.
+class Kept : public Applying
+{
+public:
+  /// Do what is due up to and including now.
+  virtual void advance(Time now) = 0;
+
+  /// Return when to call advance() at the latest.
+  virtual Time next_deadline() const = 0;
+
+  virtual void report(const GateReport::Message & message) = 0;
+};
+
+/// Read a message; return false if it is none of this type.
+template<typename MessageT>
+bool read(const rclcpp::SerializedMessage & data, MessageT & message)
+{
+  static const rclcpp::Serialization<MessageT> serialization;
+  try {
+    serialization.deserialize_message(&data, &message);
+  } catch (const std::exception &) {  // each type of message may find another kind of fault in it
+    return false;
+  }
+  return true;
+}
+
+/// A gate in time: it is told what comes and what time it is, all in one thread of its own.
+/**
+ * It runs on steady time, which never steps, or on ROS time under use_sim_time.
+ */
+class Gatekeeper
+{
+public:
+  /// Takes a message as it came.
+  using Take = std::function<void (const rclcpp::SerializedMessage &)>;
+
+  /// Parameters of the node.
+  struct Settings
+  {
+    std::int64_t realtime_priority;
+    bool lock_memory;
+  };
+
+  /// Refuse to be a second one of the node's name, and prepare the process.
+  /** \throw Refusal if there is one */
+  Gatekeeper(rclcpp::Node & node, Kept & gate, std::vector<std::string> lines, Settings settings);
+  ~Gatekeeper();
+  Gatekeeper(const Gatekeeper &) = delete;
+  Gatekeeper & operator=(const Gatekeeper &) = delete;
+
+  /// Open the port of a topic whose messages are handed over as they came; to be done before start().
+  template<typename MessageT>
+  void subscribe(const std::string & topic, const rclcpp::QoS & qos, Take take)
+  {
+    rclcpp::SubscriptionOptions options;
+    options.callback_group = group_;
+    options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    const auto subscription = node_.create_subscription<MessageT>(topic, qos, take, options);
+    serve(subscription, rosidl_generator_traits::name<MessageT>());
+  }
+
+  /// Start the gate: with the zeros that are due, and then with what comes.
+  void start();
+
+  // What the thread of the node does
+
+  /// Return the time that the gate is told.
+  Time now() const
+  {
+    return clock_.now();
+  }
+
+  /// Wake up for the gate's next deadline; to be called after each message.
+  void settle();
+
+  /// Count a command that was refused.
+  void refuse(const std::string & cause)
+  {
+    report_.refuse(cause);
+  }
+
+  // What others do
+
+  /// End the thread; see Worker.
+  void stop();
+  void when_ended(std::function<void()> ended);
+  std::exception_ptr failure() const;
+
+private:
+  void serve(const rclcpp::SubscriptionBase::SharedPtr & subscription, const std::string & type);
+  void advance();
+  void follow_clock();
+
+  rclcpp::Node & node_;
+  Kept & gate_;
+  std::vector<std::string> refused_;  // by the machine
+  Descriptor lock_;
+  rclcpp::CallbackGroup::SharedPtr group_;  // that no executor spins
+  Agenda agenda_;
+  const Clock clock_;
+  GateReport report_;
+  Alarm deadline_;
+  std::size_t step_;  // the source of the agenda for simulated time
+  std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
+  rclcpp::JumpHandler::SharedPtr jumps_;
+  Worker worker_;
+};
+
+}  // namespace deros_runtime
+
+#endif  // DEROS_RUNTIME__RUNTIME__GATEKEEPER_HPP_
