@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from deros.generators.cpp_source import (
     call,
     comment,
@@ -11,6 +13,7 @@ from deros.generators.cpp_source import (
     mark_long_lines,
     standard_headers,
 )
+from deros.generators.gate_cpp import gate_files, gate_nodes
 from deros.generators.monitor_c import render_monitor
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.rosnode_cpp.generate import Provided, licensed, package_files
@@ -44,7 +47,15 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     node = cpp_twin(python)
     view = safety_view(model, built.program, python, node, context.store)
     holder = options.get("copyright", "")
-    files = package_files([node], options, {node.name: _provided(view)})
+    gates = gate_files(
+        built.program,
+        gate_nodes(built.program, built.topics, python),
+        python,
+        context.store,
+        holder,
+    )
+    provided = {node.name: _provided(view), **gates.provided}
+    files = package_files([node, *gates.nodes], options, provided)
     files |= {f"{node.package}/{node.name}.rnd": File(node_description(node))}
     files |= _node_files(view, holder)
     files |= {
@@ -54,11 +65,12 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     files |= runtime_files(view.package, holder)
     if view.actions:
         files |= _action_files(view, holder)
-    return files
+    return files | gates.files
 
 
 def _provided(view: SafetyView) -> Provided:
-    own = [f"src/{view.stem}.cpp", f"src/{view.prefix}_monitor.c", *runtime_sources()]
+    own = [f"src/{view.stem}{part}.cpp" for part in ("", "_messages", "_origins")]
+    own += [f"src/{view.prefix}_monitor.c", *runtime_sources()]
     if view.actions:
         own.append(f"src/{view.actions_stem}.cpp")
     return Provided(tuple(own), _NEEDS, (f"src/{view.stem}_main.cpp",), default_name=view.node_name)
@@ -74,37 +86,48 @@ def _node_files(view: SafetyView, holder: str) -> dict[str, File]:
     ]
     if view.actions:
         headers.append(f"{view.package}/{view.actions_stem}.hpp")
+    guard = f"{view.package}__{view.stem}"
+    inner = f"{root}/src/{view.stem}"
+    messages = _file("messages.hpp", view, holder, f"{view.stem}_messages", view.message_headers)
     return {
-        f"{include}/{view.stem}.hpp": _file("node.hpp", view, holder, view.stem, headers),
-        f"{root}/src/{view.stem}.cpp": _file("node.cpp", view, holder),
-        f"{root}/src/{view.stem}_main.cpp": _file("main.cpp", view, holder),
+        f"{include}/{view.stem}.hpp": _file("node.hpp", view, holder, guard, headers),
+        f"{inner}.cpp": _file("node.cpp", view, holder),
+        f"{inner}_main.cpp": _file("main.cpp", view, holder),
+        f"{inner}_messages.hpp": messages,
+        f"{inner}_messages.cpp": _file("messages.cpp", view, holder),
+        f"{inner}_origins.hpp": _file("origins.hpp", view, holder, f"{view.stem}_origins"),
+        f"{inner}_origins.cpp": _file("origins.cpp", view, holder),
     }
 
 
 def _action_files(view: SafetyView, holder: str) -> dict[str, File]:
     root, include = view.package, f"{view.package}/include/{view.package}"
     stem = view.actions_stem
-    user = _file("actions.hpp", view, holder, stem)
+    guard = f"{view.package}__{stem}"
+    user = _file("actions.hpp", view, holder, guard)
     source = _file("actions.cpp", view, holder)
     return {
-        f"{include}/{stem}_base.hpp": _file("actions_base.hpp", view, holder, f"{stem}_base"),
+        f"{include}/{stem}_base.hpp": _file("actions_base.hpp", view, holder, f"{guard}_base"),
         f"{include}/{stem}.hpp": File(user.text, Owner.USER),
         f"{root}/src/{stem}.cpp": File(source.text, Owner.USER),
     }
 
 
 def _file(
-    template: str, view: SafetyView, holder: str, stem: str = "", headers: list[str] | None = None
+    template: str, view: SafetyView, holder: str, guard: str = "", headers: Iterable[str] = ()
 ) -> File:
+    """Return a file that includes ``headers``, and what it uses of the standard library."""
+    calls = str(view.handlers)
     loaded = environment("deros.generators.safety_cpp").get_template(f"{template}.j2")
 
     def render(standard: list[str]) -> str:
         return loaded.render(
             safety=view,
-            guard=f"{view.package}__{stem}_hpp_".upper(),
-            includes=include_lines(headers or ()),
+            guard=f"{guard}_hpp_".upper(),
+            includes=include_lines(headers),
             standard=standard,
-            uses_not_given="NOT_GIVEN" in str(view.handlers),
+            uses_not_given="NOT_GIVEN" in calls,
+            uses_text="runtime::utf8" in calls,
             call=call,
             comment=comment,
             expression=expression,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from deros.generators.cpp_source import LINE_LENGTH, Text, cpp_identifier, cpp_string, expression
+from deros.generators.cpp_source import LINE_LENGTH, Text, cpp_string, expression
 from deros.generators.monitor_c.judging import Site
 from deros.generators.monitor_c.view import MonitorView
 from deros.generators.safety_python.view import LOG_STATE, behaviour_views, lasts, origin_file
@@ -19,18 +19,15 @@ Item = str | Text | list["Item"]
 
 
 def origins_view(
-    model: Rules, program: Program, monitor: MonitorView, stem: str, actions: str
+    model: Rules, program: Program, monitor: MonitorView, actions_file: str
 ) -> list[Item]:
-    """Return the initialiser of the table of all that the reports name.
-
-    Robot code stands in the class ``actions``, in the files called ``stem``.
-    """
+    """Return the initialiser of the table of all that the reports name."""
     return [
         cpp_string(origin_file(model)),
         str(len(program.rules)),
-        cpp_string(f"{stem}.cpp"),
+        cpp_string(actions_file),
         [*_behaviours(program)],
-        [*_actions(program, monitor, actions)],
+        [*_actions(program, monitor)],
         [*_sites(program, monitor)],
     ]
 
@@ -59,7 +56,7 @@ def _behaviours(program: Program) -> Iterator[list[Item]]:
         ]
 
 
-def _actions(program: Program, monitor: MonitorView, actions: str) -> Iterator[list[Item]]:
+def _actions(program: Program, monitor: MonitorView) -> Iterator[list[Item]]:
     latched = [action.index for action in program.actions if action.latched]
     first: dict[int, int] = {}
     for number, site in enumerate(monitor.sites.rows):
@@ -68,18 +65,17 @@ def _actions(program: Program, monitor: MonitorView, actions: str) -> Iterator[l
     for action in program.actions:
         yield [
             cpp_string(action.name),
-            *_kind(action, actions),
+            *_kind(action),
             str(latched.index(action.index)) if action.latched else NONE,
             str(first[action.index]) if action.index in first else NONE,
             [*(str(each) for each in _callers(action))],
         ]
 
 
-def _kind(action: Action, actions: str) -> Iterator[str]:
+def _kind(action: Action) -> Iterator[str]:
     is_code = action.binding is None and action.name != LOG_STATE
     yield _truth(action.binding is not None)
     yield _truth(is_code)
-    yield f"is_written(&{actions}::{cpp_identifier(action.name)})" if is_code else "false"
     yield _truth(lasts(action))
     yield _truth(action.name != LOG_STATE)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from deros import codes
@@ -35,7 +35,7 @@ from deros.generators.safety_python.node import (
 from deros.generators.safety_python.view import LOG_STATE, origin_file
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.node import NodeType, PortKind
+from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.rules import Rules
 from deros.monitor import walk
 from deros.monitor.ir import Action, Binding, Program, Scalar, Trigger
@@ -57,7 +57,6 @@ class HandlerView:
     topic: str
     ros_type: str
     call: Call
-    comment: str
 
     @property
     def is_read(self) -> bool:
@@ -96,6 +95,7 @@ class ActionView:
     """An action whose code the user writes; ``calls`` are the sites with the call of each."""
 
     name: str
+    enumerator: str
     method: str
     parameters: tuple[str, ...]
     notes: tuple[str, ...]
@@ -117,7 +117,8 @@ class SafetyView:
         stem: of the node's files; ``class_name`` of its classes.
         node_name: of the node at run time.
         rules: the file name of the rules.
-        headers: of the messages and services that the node's class speaks of.
+        headers: of the messages and services that the node's class speaks of;
+            ``message_headers`` without the services.
         monitor: the view of the monitor in C.
         explained: the expressions of the rules' states.
         origins: the tables of behaviours, actions and sites.
@@ -134,6 +135,7 @@ class SafetyView:
     rules: str
     summary: str
     headers: tuple[str, ...]
+    message_headers: tuple[str, ...]
     monitor: MonitorView
     handlers: tuple[HandlerView, ...]
     channels: tuple[ChannelView, ...]
@@ -200,10 +202,10 @@ def safety_view(
     monitor = monitor_view(program)
     described = {action.name.text: action.description for action in model.actions}
     code = [each for each in program.actions if needs_code(each)]
-    actions = tuple(_action(each, program, described.get(each.name, "")) for each in code)
+    actions = tuple(_action(each, program, monitor, described.get(each.name, "")) for each in code)
     _check_names(actions, code, node)
-    named = [port for port in node.ports if port.kind is PortKind.SUBSCRIPTION]
-    named += [port for port in node.ports if port.kind is PortKind.SERVICE]
+    taken = tuple(node.ports_of(PortKind.SUBSCRIPTION))
+    bound = [port for port in node.ports if bound_actions(program, port.name)]
     stem = cpp_identifier(python.name)
     diagnostics = next(port for port in node.ports if port.type == DIAGNOSTICS_TYPE)
     return SafetyView(
@@ -213,20 +215,23 @@ def safety_view(
         node_name=python.name,
         rules=origin_file(model),
         summary=sentence(node.description),
-        headers=tuple(sorted({cpp_header(port.type) for port in named})),
+        headers=_headers(taken, bound, node.ports_of(PortKind.SERVICE)),
+        message_headers=_headers(taken, bound),
         monitor=monitor,
         handlers=tuple(_handlers(program, monitor, store)),
         channels=tuple(_channels(program, node, monitor, store)),
         actions=actions,
         explained=tuple(explained_rules(program, monitor.layout)),
-        origins=origins_view(
-            model, program, monitor, f"{stem}_actions", f"{camel_case(python.name)}Actions"
-        ),
+        origins=origins_view(model, program, monitor, f"{stem}_actions.cpp"),
         latched=tuple((a.name, a.enumerator) for a in monitor.actions if a.latched),
         optional=tuple(_optional(monitor)),
         diagnostics=cpp_identifier(diagnostics.name),
         reset=node.port(RESET) is not None,
     )
+
+
+def _headers(*ports: Iterable[Port]) -> tuple[str, ...]:
+    return tuple(sorted({cpp_header(port.type) for group in ports for port in group}))
 
 
 def needs_code(action: Action) -> bool:
@@ -258,8 +263,7 @@ def _handlers(
             cpp_type(kind),
             handler.topic,
             str(kind),
-            Call(handler.function, ("&memory_->monitor", "guardian_.now()", *values)),
-            f"Take a message of {handler.topic}.",
+            Call(handler.function, ("&m", "now", *values)),
         )
 
 
@@ -313,7 +317,7 @@ def _optional(monitor: MonitorView) -> Iterator[tuple[str, str, str]]:
 # Actions ------------------------------------------------------------------------------------------
 
 
-def _action(action: Action, program: Program, description: str) -> ActionView:
+def _action(action: Action, program: Program, monitor: MonitorView, description: str) -> ActionView:
     callers = [b.name for b in walk.behaviours(program) if b.index in action.triggered_by]
     place = f"Declared in {origin(action.span)}" if action.span else "Declared"
     note = f"{place}, run by {', '.join(callers) if callers else 'no behaviour'}."
@@ -322,6 +326,7 @@ def _action(action: Action, program: Program, description: str) -> ActionView:
     sites = _calls(program)
     return ActionView(
         action.name,
+        monitor.actions[action.index].enumerator,
         method,
         tuple(
             f"{_PARAMETER_TYPES[kind]} {cpp_identifier(name)}"

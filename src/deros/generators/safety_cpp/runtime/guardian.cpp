@@ -153,8 +153,9 @@ void Guardian::tell_start()
   for (const std::string & text : refused_) {
     events_.tell("not_permitted", WARN, text);
   }
-  for (const Action & action : origins_.actions) {
-    if (action.is_code && !action.is_filled_in) {
+  for (std::size_t i = 0; i < origins_.actions.size(); ++i) {
+    const Action & action = origins_.actions[i];
+    if (action.is_code && !robot_.is_filled_in(i)) {
       const std::string text =
         "action " + action.name + " does nothing: write its code in " + origins_.actions_file;
       events_.tell("unfilled", ERROR, text, {{"action", action.name}});
@@ -240,11 +241,12 @@ void Guardian::act(const Event & event)
   if (show(event) || event.kind != Kind::Trigger) {
     return;
   }
-  const Action & action = origins_.actions[*action_of(event)];
+  const std::size_t number = *action_of(event);
+  const Action & action = origins_.actions[number];
   if (action.latch) {
     latches_->foresee(*action.latch);
   }
-  if (action.is_filled_in) {
+  if (robot_.is_filled_in(number)) {
     robot_.run(event.site);
   } else {
     log(

@@ -72,7 +72,8 @@ public:
   virtual void report_event(const Events::Status & event) = 0;
   virtual void report_diagnostics(const Diagnostics::Message & message) = 0;
 
-  /// Run the robot code that a site of the rules calls.
+  /// Tell whether the robot code of an action has been written, and run what a site calls.
+  virtual bool is_filled_in(std::size_t action) const = 0;
   virtual void run(std::size_t site) = 0;
 };
 

@@ -41,7 +41,6 @@ struct Action
   std::string name;
   bool is_bound;  // its state is published
   bool is_code;  // it is robot code
-  bool is_filled_in;  // that has been written
   bool lasts;  // it has a state, and is not just run
   bool is_shown;  // in the diagnostics
   std::optional<std::size_t> latch;  // its number among the latched actions
