@@ -154,7 +154,10 @@ static double norm(double x, double y, double z)
 static double rate(double value, int64_t t, double * last, int64_t * last_t)
 {
   const int64_t elapsed = t - *last_t;
-  const double change = (elapsed == 0) ? NAN : ((value - *last) / ((double)elapsed / 1e9));
+  double change = NAN;
+  if (elapsed != 0) {
+    change = (value - *last) / ((double)elapsed / 1e9);
+  }
   *last = value;
   *last_t = t;
   return change;
@@ -174,13 +177,18 @@ static double nearest(
   double range_min, double range_max, double start, double end)
 {
   const double turn = 6.283185307179586;
-  const double width = (end >= start) ? (end - start) : ((end - start) + turn);
+  double width = end - start;
   double shortest = NAN;
+  if (end < start) {
+    width += turn;
+  }
   for (size_t i = 0U; i < count; ++i) {
-    const double offset = fmod((angle_min + ((double)i * angle_increment)) - start, turn);
-    const double beyond = (offset < 0.0) ? (offset + turn) : offset;
-    const bool inside = (beyond <= (width + 1e-6)) || (beyond >= (turn - 1e-6));
+    double offset = fmod((angle_min + ((double)i * angle_increment)) - start, turn);
     double distance = (double)ranges[i];
+    if (offset < 0.0) {
+      offset += turn;
+    }
+    const bool inside = (offset <= (width + 1e-6)) || (offset >= (turn - 1e-6));
     if (distance == -INFINITY) {  /* too near to measure (REP 117) */
       distance = range_min;
     } else if (distance >= range_min) {
@@ -213,6 +221,6 @@ static bool scan_usable(const float * ranges, size_t count, double range_min)
 They need ``<math.h>``, the fixed-width integers and ``bool``, and of each other: ``pitch`` needs
 ``clamped``, ``nearest`` needs ``is_number``, which says of a number that it is no NaN. Of those of
 arrays there is one per type of element: ``BASE`` stands for the name of the type in ROS 2,
-``ELEMENT`` for that in C, ``RESULT`` for the type of the result and ``NONE`` for what an empty array
-gives (``abs`` of an integer is ``magnitude``).
+``ELEMENT`` for that in C, ``RESULT`` for the type of the result and ``NONE`` for what an empty
+array gives (``abs`` of an integer is ``magnitude``).
 """

@@ -135,8 +135,8 @@ _LASTING = """\
     ensures operand == $_TRUE && \\old(*since) != $_NEVER ==> *since == \\old(*since);
     ensures operand == $_TRUE && m->now - *since >= duration ==> \\result == $_TRUE;
     ensures operand == $_TRUE && m->now - *since < duration ==> \\result == $_FALSE;
-    ensures m->due <= \\old(m->due);
-    ensures operand == $_TRUE && \\old(*since) == $_NEVER ==> m->due <= m->now + duration;
+    ensures operand == $_TRUE && \\old(*since) == $_NEVER
+      ==> m->due == \\min(\\old(m->due), m->now + duration);
     ensures operand != $_TRUE || \\old(*since) != $_NEVER ==> m->due == \\old(m->due); */
 static @_verdict lasting(
   @_monitor *m, int64_t *since, @_verdict operand, int64_t duration)
@@ -164,7 +164,7 @@ _TURNED = """\
 static bool turned(@_verdict verdict, @_verdict *held, int64_t *since, int64_t now)
 {
   const bool changed = (verdict != *held);
-  if ((verdict == $_TRUE) != (*held == $_TRUE)) {
+  if (changed && ((verdict == $_TRUE) || (*held == $_TRUE))) {
     *since = now;
   }
   *held = verdict;
