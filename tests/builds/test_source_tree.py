@@ -10,6 +10,7 @@ import pytest
 from deros.generators.banner import with_banner
 from deros.generators.protocol import File, Owner
 from deros.generators.source_tree import (
+    Merged,
     SourceTreeError,
     merge,
     package_folder,
@@ -52,12 +53,24 @@ def _write(folder: Path, files: dict[str, str]) -> None:
         (folder / name).write_text(text)
 
 
+def _merge(files: dict[str, File], source: Path) -> Merged:
+    return merge(files, source, source / "made here/out")
+
+
 def test_hand_written_files_take_their_place(source: Path) -> None:
     """All that stands in the source tree joins the package, but for build scripts and models."""
     more = ["p/more.py", "p/sub/x.py", "config/mine.yaml", "README.md", "p/__init__.py"]
-    others = [".git/x", ".hidden", "build/x.py", "p/__pycache__/x.pyc", "sub/package.xml", "a.rnd"]
+    others = [
+        ".git/x",
+        ".hidden",
+        "build/x.py",
+        "p/__pycache__/x.pyc",
+        "made here/x",
+        "sub/package.xml",
+        "a.rnd",
+    ]
     _write(source, dict.fromkeys([*more, *others], "mine\n"))
-    merged = merge(PYTHON, source)
+    merged = _merge(PYTHON, source)
     assert {each.path for each in merged.placed} == {
         *("p/package.xml", "p/p/node.py", *(f"p/{name}" for name in more))
     }
@@ -70,28 +83,28 @@ def test_missing_files_are_named(source: Path) -> None:
     (source / "p/node.py").unlink()
     (source / "package.xml").unlink()
     with pytest.raises(SourceTreeError, match=r"lacks p/node\.py, package\.xml") as error:
-        merge(PYTHON, source)
+        _merge(PYTHON, source)
     assert error.value.mended_by_scaffold
 
 
 def test_a_generated_file_in_the_source_tree_must_be_as_generated(source: Path) -> None:
     """A leftover of an earlier generation would shadow, or be shadowed: it is refused."""
     _write(source, {"p/base.py": with_banner("base.py", "BASE = 1\n")})
-    merge(PYTHON, source)
+    _merge(PYTHON, source)
     _write(source, {"p/base.py": with_banner("base.py", "BASE = 0\n")})
     with pytest.raises(SourceTreeError, match="generated from something else"):
-        merge(PYTHON, source)
+        _merge(PYTHON, source)
 
 
 def test_a_generated_description_must_be_as_generated(source: Path) -> None:
     """A node description made from the rules must be of these rules; a hand's own is not ours."""
     _write(source, {"models/node.rnd": with_banner("node.rnd", "node node : p\n")})
-    merge(PYTHON, source)
+    _merge(PYTHON, source)
     _write(source, {"models/node.rnd": with_banner("node.rnd", "node old : p\n")})
     with pytest.raises(SourceTreeError, match=r"models/node\.rnd was generated"):
-        merge(PYTHON, source)
+        _merge(PYTHON, source)
     _write(source, {"models/node.rnd": "node by_hand : p\n"})
-    merge(PYTHON, source)
+    _merge(PYTHON, source)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +119,7 @@ def test_manifests_that_do_not_fit(source: Path, manifest: str, complaint: str) 
     """The manifest is the user's, but it has to name the package and what the code needs."""
     (source / "package.xml").write_text(manifest)
     with pytest.raises(SourceTreeError, match=complaint):
-        merge(PYTHON, source)
+        _merge(PYTHON, source)
 
 
 def test_python_is_linked_and_what_cmake_installs_is_copied(source: Path, tmp_path: Path) -> None:
@@ -114,15 +127,15 @@ def test_python_is_linked_and_what_cmake_installs_is_copied(source: Path, tmp_pa
     _write(source, {"src/node.cpp": "mine\n", "include/p/node.hpp": "mine\n"})
     for files, linked in ((PYTHON, {"p/package.xml", "p/p/node.py"}), (CMAKE, {"p/src/node.cpp"})):
         output = tmp_path / f"out{len(linked)}"
-        merged = merge(files, source)
+        merged = _merge(files, source)
         place(merged.placed, output)
         links = {p.relative_to(output).as_posix() for p in output.rglob("*") if p.is_symlink()}
         assert linked <= links
         assert ("p/include/p/node.hpp" in links) == (files is PYTHON)
         for each in merged.placed:
             assert (output / each.path).read_text() == each.source.read_text()
-    assert source / "include/p/node.hpp" in merge(CMAKE, source).inputs
-    assert source / "src/node.cpp" not in merge(CMAKE, source).inputs
+    assert source / "include/p/node.hpp" in _merge(CMAKE, source).inputs
+    assert source / "src/node.cpp" not in _merge(CMAKE, source).inputs
 
 
 def test_what_is_in_place_is_not_touched(source: Path, tmp_path: Path) -> None:
@@ -130,7 +143,7 @@ def test_what_is_in_place_is_not_touched(source: Path, tmp_path: Path) -> None:
     header = source / "include/p/node.hpp"
     _write(source, {"src/node.cpp": "mine\n", "include/p/node.hpp": "mine\n"})
     output = tmp_path / "out"
-    placed = merge(CMAKE, source).placed
+    placed = _merge(CMAKE, source).placed
 
     def states() -> dict[str, tuple[int, int]]:
         found = [(each.path, os.lstat(output / each.path)) for each in placed]
@@ -154,7 +167,7 @@ def test_what_is_in_place_is_not_touched(source: Path, tmp_path: Path) -> None:
 def test_links_last_when_both_trees_move(source: Path, tmp_path: Path) -> None:
     """A workspace that is mounted elsewhere, as in a container, still finds its files."""
     output = source / ".deros"
-    place(merge(PYTHON, source).placed, output)
+    place(_merge(PYTHON, source).placed, output)
     moved = source.rename(tmp_path / "moved")
     assert (moved / ".deros/p/p/node.py").read_text() == "mine\n"
 
@@ -164,9 +177,9 @@ def test_outputs_that_are_no_package(tmp_path: Path) -> None:
     files = {"a.py": File("x\n"), "b/mine.py": File("fill in\n", Owner.USER)}
     assert package_folder(files) == ""
     with pytest.raises(SourceTreeError, match=r"lacks b/mine\.py"):
-        merge(files, tmp_path)
+        _merge(files, tmp_path)
     _write(tmp_path, {"b/mine.py": "mine\n", "other.py": ""})
-    merged = merge(files, tmp_path)
+    merged = _merge(files, tmp_path)
     assert [each.path for each in merged.placed] == ["b/mine.py"]
     assert set(merged.files) == {"a.py"}
 

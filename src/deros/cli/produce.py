@@ -131,7 +131,7 @@ def put(made: Made, where: Place, started_ns: int) -> WriteReport:
 
     merged = Merged(made.files, (), ())
     if where.source is not None:
-        merged = merge(made.files, where.source)
+        merged = merge(made.files, where.source, where.output)
     written = write(merged.files, where.output, overwrite=where.overwrite)
     place(merged.placed, where.output)
     ours = {path for path, file in merged.files.items() if file.owner is Owner.GENERATOR}

@@ -230,10 +230,11 @@ endfunction()
 
 # Has the project configured anew when something changes that the depfile names.
 function(_deros_configure_depends depfile)
-  file(STRINGS "${depfile}" lines REGEX "^  ")
-  foreach(line IN LISTS lines)
-    string(REGEX REPLACE "^  (.*[^ ])( \\\\)?$" "\\1" path "${line}")
-    string(REGEX REPLACE " \\\\$" "" path "${path}")
+  file(READ "${depfile}" text)
+  string(STRIP "${text}" text)
+  string(REPLACE " \\\n  " ";" paths "${text}")
+  list(POP_FRONT paths) # the target
+  foreach(path IN LISTS paths)
     string(REGEX REPLACE "\\\\([ \t#])" "\\1" path "${path}")
     string(REPLACE "$$" "$" path "${path}")
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${path}")

@@ -75,11 +75,12 @@ def package_folder(files: Files) -> str:
     return top if f"{top}/{MANIFEST}" in files else ""
 
 
-def merge(files: Files, source: Path) -> Merged:
+def merge(files: Files, source: Path, output: Path) -> Merged:
     """Join generated files with what stands in the source tree of their package.
 
     Hand-written files must be there; files that the generator owns must not, unless they are just
-    what it would write.
+    what it would write. A build tree inside the source tree, which ``output`` tells, is no part of
+    it.
 
     Raises:
         SourceTreeError: if a hand-written file is missing, or one is in the way.
@@ -101,7 +102,7 @@ def merge(files: Files, source: Path) -> Merged:
         message = f"{source} lacks {lacking}, which deros writes once for you to keep there"
         raise SourceTreeError(message, mended_by_scaffold=True)
     folders: list[Path] = []
-    names = list(_hand_written(source, folders)) if top else []
+    names = list(_hand_written(source, output, folders)) if top else []
     if not top:
         names = [name for name, path in own.items() if files[path].owner is Owner.USER]
     described = {PurePosixPath(name).name: files[path] for name, path in own.items()}
@@ -189,12 +190,17 @@ def remove_stale(stale: Iterable[str], output: Path, *, overwrite: bool) -> None
                     (output / folder).rmdir()
 
 
-def _hand_written(source: Path, folders: list[Path]) -> Iterator[str]:
+def _hand_written(source: Path, output: Path, folders: list[Path]) -> Iterator[str]:
     """Find the package's files, noting the folders that were searched."""
+    build_tree = output.resolve()
     for directory, below, names in os.walk(source):
         here = Path(directory)
         folders.append(here)
-        below[:] = sorted(each for each in below if _belongs(here / each))
+        below[:] = sorted(
+            each
+            for each in below
+            if _belongs(here / each) and not build_tree.is_relative_to((here / each).resolve())
+        )
         for name in sorted(names):
             if not name.startswith("."):
                 yield (here / name).relative_to(source).as_posix()
