@@ -26,10 +26,13 @@ from tests.support.ros import running
 PACKAGE = "gates_safety_cpp"
 
 
-def gate_package(text: str, options: Mapping[str, str] | None = None) -> Files:
-    """Return the package of the gates of some rules, without the safety node."""
+def gate_package(text: str, options: Mapping[str, str] | None = None, name: str = "gates") -> Files:
+    """Return the package of the gates of some rules, as if in a file of a name beside the models.
+
+    The safety node is left out.
+    """
     store, repository = InterfaceStore(), Repository()
-    loaded = repository.load_text(str(MODELS / "gates.deros"), text)
+    loaded = repository.load_text(str(MODELS / f"{name}.deros"), text)
     assert isinstance(loaded.model, Rules), loaded.diagnostics
     built = build(loaded.model, store)
     assert built.program is not None, built.diagnostics

@@ -26,9 +26,9 @@ from tests.support.gate_nodes import (
     PACKAGE,
     SAFETY_NODE,
     Drive,
-    running_gate,
     transports,
 )
+from tests.support.gate_runners import LANGUAGES, RunGate
 from tests.support.ros import Peer, running
 
 pytestmark = pytest.mark.ros
@@ -63,13 +63,14 @@ def package(tmp_path: Path) -> Path:
     return tmp_path / PACKAGE
 
 
-@pytest.fixture
+@pytest.fixture(params=LANGUAGES)
 def drive(
-    package: Path, ros_env: dict[str, str], ros_peer: Peer, tmp_path: Path
+    request: pytest.FixtureRequest, ros_env: dict[str, str], ros_peer: Peer, tmp_path: Path
 ) -> Iterator[Drive]:
-    """Give a robot whose gate runs, and whose safety node is to come."""
+    """Give a robot whose gate runs, in either language, and whose safety node is to come."""
     env = {**ros_env, **transports(tmp_path, "udp")}
-    with running_gate(package, "cmd_vel_gate", env):
+    run_gate: RunGate = request.param(tmp_path / "gates")
+    with run_gate("cmd_vel_gate", env):
         yield Drive(ros_peer)
 
 

@@ -1,4 +1,4 @@
-"""Generated gates on the real middleware; the test plays the rest of the robot."""
+"""Generated gates on the real middleware, in each language, in a robot that the test plays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-from tests.support.gate_nodes import SAFETY_NODE, World, running_gate, write_gates
+from tests.support.gate_nodes import SAFETY_NODE, World
+from tests.support.gate_runners import LANGUAGES, RunGate
 from tests.support.ros import LIMIT, Peer
 
 pytestmark = pytest.mark.ros
@@ -22,10 +23,11 @@ PERIOD = 0.05
 STILL = (0.0, 0.0, 0.0)
 
 
-@pytest.fixture
-def package(tmp_path: Path) -> Path:
-    """Give the package of the generated gates."""
-    return write_gates(tmp_path)
+@pytest.fixture(params=LANGUAGES)
+def run_gate(request: pytest.FixtureRequest, tmp_path: Path) -> RunGate:
+    """Give what runs the generated gates of a language."""
+    made: RunGate = request.param(tmp_path)
+    return made
 
 
 @pytest.fixture
@@ -35,10 +37,10 @@ def world(ros_peer: Peer) -> World:
 
 
 def test_commands_pass_as_the_bytes_they_came_in(
-    package: Path, ros_env: dict[str, str], world: World
+    run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """With no action active, every command comes out at once, to the byte."""
-    with running_gate(package, GATE, ros_env):
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
         delays = []
@@ -53,11 +55,11 @@ def test_commands_pass_as_the_bytes_they_came_in(
 
 
 def test_it_holds_the_robot_until_it_is_known_to_be_safe(
-    package: Path, ros_env: dict[str, str], world: World
+    run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """Zeros come before anything is known, without a command, and on through commands."""
     world.beating.cancel()
-    with running_gate(package, GATE, ros_env):
+    with run_gate(GATE, ros_env):
         world.meet()
         world.wish_until(0.3, lambda: len(world.heard) > 5)
         world.beat()
@@ -66,10 +68,10 @@ def test_it_holds_the_robot_until_it_is_known_to_be_safe(
 
 
 def test_a_stop_commands_zero_at_once_and_steadily(
-    package: Path, ros_env: dict[str, str], world: World
+    run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """The first zero comes with the stop, the rest with the rate, whether commands come or not."""
-    with running_gate(package, GATE, ros_env):
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
         before = len(world.heard)
@@ -86,10 +88,10 @@ def test_a_stop_commands_zero_at_once_and_steadily(
 
 
 def test_no_old_command_is_replayed_when_a_stop_ends(
-    package: Path, ros_env: dict[str, str], world: World
+    run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """After a stop the gate is silent until somebody commands something."""
-    with running_gate(package, GATE, ros_env):
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
         world.stop(True)
@@ -102,10 +104,10 @@ def test_no_old_command_is_replayed_when_a_stop_ends(
 
 
 def test_limits_hold_at_once_and_field_by_field(
-    package: Path, ros_env: dict[str, str], world: World
+    run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """What is being executed is limited without another command, and so are those to come."""
-    with running_gate(package, GATE, ros_env):
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
         world.wish(0.9, turn=-0.7, y=0.5)
@@ -123,10 +125,10 @@ def test_limits_hold_at_once_and_field_by_field(
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 def test_a_command_that_is_no_number_is_refused(
-    package: Path, ros_env: dict[str, str], world: World, bad: float
+    run_gate: RunGate, ros_env: dict[str, str], world: World, bad: float
 ) -> None:
     """It counts as lost input: zeros at once, until the next good command; it is counted, too."""
-    with running_gate(package, GATE, ros_env):
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
         before = len(world.heard)
@@ -145,10 +147,10 @@ def test_a_command_that_is_no_number_is_refused(
 
 @pytest.mark.parametrize("data", [b"", b"\x00\x01\x00\x00", b"\x00\x01\x00\x00" + bytes(17)])
 def test_what_is_no_command_is_refused(
-    package: Path, ros_env: dict[str, str], world: World, data: bytes
+    run_gate: RunGate, ros_env: dict[str, str], world: World, data: bytes
 ) -> None:
     """Bytes that are no command end nothing but the command."""
-    with running_gate(package, GATE, ros_env):
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
         before = len(world.heard)
@@ -159,10 +161,10 @@ def test_what_is_no_command_is_refused(
 
 
 def test_silence_of_the_input_or_of_the_heartbeat_is_zero(
-    package: Path, ros_env: dict[str, str], world: World
+    run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """The time counts from the last message, and the zero comes by itself."""
-    with running_gate(package, GATE, ros_env):
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
         last, _ = world.heard[-1]
@@ -182,10 +184,10 @@ def test_silence_of_the_input_or_of_the_heartbeat_is_zero(
 
 
 def test_it_tells_what_it_does_and_why(
-    package: Path, ros_env: dict[str, str], world: World
+    run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """One status on /diagnostics, every second and soon after a change."""
-    with running_gate(package, GATE, ros_env) as process:
+    with run_gate(GATE, ros_env) as process:
         world.meet()
         world.release()
         world.wish_until(0.3, lambda: world.status.get("message") == "commands pass")
@@ -206,11 +208,13 @@ def test_it_tells_what_it_does_and_why(
     assert "Traceback" not in output
 
 
-def test_a_second_one_does_not_run(package: Path, ros_env: dict[str, str], world: World) -> None:
+def test_a_second_one_does_not_run(
+    run_gate: RunGate, ros_env: dict[str, str], world: World
+) -> None:
     """It ends at once and names the first; the first goes on."""
-    with running_gate(package, GATE, ros_env) as first:
+    with run_gate(GATE, ros_env) as first:
         world.meet()
-        with running_gate(package, GATE, ros_env) as second:
+        with run_gate(GATE, ros_env) as second:
             output, _ = second.communicate(timeout=LIMIT)
         assert second.returncode == 1
         assert str(first.pid) in output
@@ -219,7 +223,7 @@ def test_a_second_one_does_not_run(package: Path, ros_env: dict[str, str], world
 
 
 def test_simulated_time_pauses_and_steps_back(
-    package: Path, ros_env: dict[str, str], world: World
+    run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """Deadlines follow /clock; after a step back everything has to be heard anew."""
     from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
@@ -244,7 +248,7 @@ def test_simulated_time_pauses_and_steps_back(
 
         world.peer.until(once)
 
-    with running_gate(package, GATE, ros_env, "use_sim_time:=true"):
+    with run_gate(GATE, ros_env, "use_sim_time:=true"):
         world.peer.until(clock.get_subscription_count)
         ticking(0.01, lambda: world.heard)
         world.stop(False)
@@ -265,7 +269,9 @@ def test_simulated_time_pauses_and_steps_back(
         world.peer.until(lambda: world.last == STILL)
 
 
-def test_a_gate_of_numbers_alone(package: Path, ros_env: dict[str, str], ros_peer: Peer) -> None:
+def test_a_gate_of_numbers_alone(
+    run_gate: RunGate, ros_env: dict[str, str], ros_peer: Peer
+) -> None:
     """Int32: what cannot be NaN passes, and a zero is steady, though nothing can be lost."""
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import Bool, Int32
@@ -277,7 +283,7 @@ def test_a_gate_of_numbers_alone(package: Path, ros_env: dict[str, str], ros_pee
     ros_peer.node.create_subscription(
         Int32, "/lamp/command", lambda message: heard.append(message.data), 10
     )
-    with running_gate(package, "lamp_command_gate", ros_env) as process:
+    with run_gate("lamp_command_gate", ros_env) as process:
         ros_peer.until(lambda: wish.get_subscription_count() and stop.get_subscription_count())
         ros_peer.until(lambda: heard)
         stop.publish(Bool(data=False))
@@ -296,7 +302,7 @@ def test_a_gate_of_numbers_alone(package: Path, ros_env: dict[str, str], ros_pee
 
 
 def test_a_zero_keeps_the_form_of_the_command(
-    package: Path, ros_env: dict[str, str], ros_peer: Peer
+    run_gate: RunGate, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:
     """JointTrajectory: names, frame and lengths stay, numbers are zero, the stamp is fresh."""
     from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -321,7 +327,7 @@ def test_a_zero_keeps_the_form_of_the_command(
     message.header.stamp.sec = 5
     stop.publish(Bool(data=False))
     mode.publish(UInt8(data=0))
-    with running_gate(package, "arm_command_gate", ros_env):
+    with run_gate("arm_command_gate", ros_env):
         ros_peer.until(lambda: heard and wish.get_subscription_count())
 
         def wished() -> bool:
