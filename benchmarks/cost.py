@@ -8,53 +8,33 @@ should have nothing else to do.
 from __future__ import annotations
 
 import argparse
-import json
-import os
-import signal
 import sys
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING
 
-from rich.console import Console
 from support.cost_report import as_json, show
 from support.cost_results import FASTEST, NODES, SAFETY, USUAL, Memory, Results, Use
 from support.cost_rules import TOPICS, generate
-from support.processes import ProcessError, Processes, own_domain
+from support.processes import Processes, own_domain
+from support.program import Report, conduct
 from support.progress import Line
 from support.usage import Meter, memory_mib
 
 if TYPE_CHECKING:
     from support.cost_loads import Talker
 
-_BUSY = 0.3
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the tables; return 1 if a bar has to hold and does not, 2 if nothing was measured."""
     options = _options(arguments)
-    signal.signal(signal.SIGTERM, _leave)
-    console = Console(width=None if sys.stdout.isatty() else 180)
-    busy = os.getloadavg()[0]
-    try:
-        with tempfile.TemporaryDirectory(prefix="deros-benchmark-") as folder:
-            results = _measure(options, Path(folder))
-    except KeyboardInterrupt:
-        return 128 + signal.SIGINT
-    except (ProcessError, TimeoutError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    report = Report(width=180)
+    results = conduct(lambda folder: _measure(options, folder))
     from support.cost_loads import PAPER, SECOND_SCAN
 
     verdicts = list(results.verdicts(PAPER.name, SECOND_SCAN.name))
-    show(results, verdicts, console)
-    if busy > _BUSY:
-        console.print(f"The machine was not idle before (load {busy:.1f}): take this for noise.")
-    if options.json is not None:
-        text = json.dumps(as_json(results, verdicts), indent=1)
-        options.json.write_text(text + "\n", encoding="utf-8")
+    show(results, verdicts, report.console)
+    report.close(options.json, as_json(results, verdicts))
     held = results.stopped and all(each.held for each in verdicts)
     return 1 if options.must_hold and not held else 0
 
@@ -82,10 +62,6 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     if options.turns < 2 or options.seconds <= 0.0 or options.settle < 0.0:
         parser.error("at least two turns of some length are needed")
     return options
-
-
-def _leave(number: int, _frame: FrameType | None) -> None:
-    sys.exit(128 + number)
 
 
 def _measure(options: argparse.Namespace, folder: Path) -> Results:

@@ -40,7 +40,8 @@ class Channel:
     """Both topics of a lane, from the driver's side.
 
     Args:
-        node: the driver's node.
+        driver: the driver.
+        node: its node.
         lane: the topics.
         resets: whether the other side's state turns false when it is levelled; a relay's is
             always true.
@@ -49,8 +50,9 @@ class Channel:
     TILTED = _imu(math.radians(20.0))
     LEVEL = _imu(0.0)
 
-    def __init__(self, node: Any, lane: Lane, resets: bool) -> None:
+    def __init__(self, driver: Driver, node: Any, lane: Lane, resets: bool) -> None:
         """Open both topics."""
+        self._driver = driver
         self.lane = lane
         self.resets = resets
         self.sent = 0
@@ -65,13 +67,23 @@ class Channel:
         """Tilt; the answer is a true state, at :attr:`received` by CLOCK_MONOTONIC in ns."""
         self._publish(self.TILTED, 1)
 
-    def level(self) -> None:
-        """Level; the answer is a false state, or a true one from a relay."""
-        self._publish(self.LEVEL, 0 if self.resets else 1)
+    def ask(self, tilted: bool, limit: int) -> bool:
+        """Tilt or level, and receive until the answer comes, for at most ``limit`` ns.
 
-    def ignore(self) -> None:
-        """Expect no answer any more."""
-        self._expected = -1
+        Returns:
+            whether it came: a true state, or, if the other side resets it, a false one of level.
+        """
+        if tilted:
+            self.tilt()
+        else:
+            self._publish(self.LEVEL, 0 if self.resets else 1)
+        end = time.monotonic_ns() + limit
+        while not self.received:
+            if (left := end - time.monotonic_ns()) <= 0:
+                self._expected = -1
+                return False
+            self._driver.spin_once(left)
+        return True
 
     def is_met(self) -> bool:
         """Tell whether there is somebody at the other ends."""
@@ -113,7 +125,7 @@ class Driver:
 
     def channel(self, lane: Lane, resets: bool = False) -> Channel:
         """Open the topics of a lane."""
-        channel = Channel(self._node, lane, resets)
+        channel = Channel(self, self._node, lane, resets)
         self._channels.append(channel)
         return channel
 
@@ -128,7 +140,7 @@ class Driver:
             if time.monotonic() > end:
                 raise TimeoutError(f"nobody has come to {', '.join(missing)}")
             watch()
-            self._spin_once(20_000_000)
+            self.spin_once(20_000_000)
 
     def _missing(self) -> list[str]:
         lanes = [each.lane.imu for each in self._channels if not each.is_met()]
@@ -137,19 +149,10 @@ class Driver:
     def spin_until(self, instant: int) -> None:
         """Receive until an instant of CLOCK_MONOTONIC, in ns."""
         while (left := instant - time.monotonic_ns()) > 0:
-            self._spin_once(left)
+            self.spin_once(left)
 
-    def await_answer(self, channel: Channel, limit: int) -> bool:
-        """Receive until a channel's answer has come, for at most ``limit`` ns; return whether."""
-        end = time.monotonic_ns() + limit
-        while not channel.received:
-            if (left := end - time.monotonic_ns()) <= 0:
-                channel.ignore()
-                return False
-            self._spin_once(left)
-        return True
-
-    def _spin_once(self, limit: int) -> None:
+    def spin_once(self, limit: int) -> None:
+        """Receive what comes next, if anything does within ``limit`` ns."""
         self._executor.spin_once(timeout_sec=limit / 1e9)
         if not ok():
             raise KeyboardInterrupt

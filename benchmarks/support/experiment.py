@@ -13,8 +13,9 @@ import random
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
-from support.driver import Channel, Driver
+from support.reaction_rules import Lane
 from support.samples import Sample
 from support.schedule import Schedule
 
@@ -29,6 +30,46 @@ LIMIT_NS = 2_000_000_000
 
 WARM_UP = 20
 """How many rounds of the immediate lanes come before the first that is measured."""
+
+
+class Channel(Protocol):
+    """Both topics of a lane, from the driver's side.
+
+    Attributes:
+        lane: the topics.
+        resets: whether the other side's state turns false when it is levelled; a relay's is always
+            true.
+        sent, received: the last tilt and its answer, by CLOCK_MONOTONIC in ns; 0 for none yet.
+    """
+
+    lane: Lane
+    resets: bool
+    sent: int
+    received: int
+
+    def tilt(self) -> None:
+        """Tilt; the answer is a true state, some time."""
+
+    def ask(self, tilted: bool, limit: int) -> bool:
+        """Tilt or level, and receive until the answer comes, for at most ``limit`` ns.
+
+        Returns:
+            whether it came.
+        """
+
+
+class Driver(Protocol):
+    """What receives meanwhile."""
+
+    def meet(self, seconds: float, watch: Callable[[], None]) -> None:
+        """Wait until there is somebody at the other end of everything; ``watch`` is called often.
+
+        Raises:
+            TimeoutError: if there still is not after so many seconds.
+        """
+
+    def spin_until(self, instant: int) -> None:
+        """Receive until an instant of CLOCK_MONOTONIC, in ns."""
 
 
 @dataclass(slots=True)
@@ -47,9 +88,8 @@ class Timed:
         wanted: how many samples of each duration.
     """
 
-    def __init__(self, driver: Driver, channels: Sequence[Channel], wanted: int) -> None:
+    def __init__(self, channels: Sequence[Channel], wanted: int) -> None:
         """Begin with all lanes at rest."""
-        self._driver = driver
         self._idle = list(channels)
         self._tilted: list[Channel] = []
         self._answered: list[Channel] = []
@@ -82,8 +122,7 @@ class Timed:
         if not self._answered:
             return False
         channel = self._answered[0]
-        channel.level()
-        if self._driver.await_answer(channel, LIMIT_NS):
+        if channel.ask(False, LIMIT_NS):
             self._idle.append(self._answered.pop(0))
         return True
 
@@ -108,9 +147,8 @@ class Immediate:
         wanted: how many samples.
     """
 
-    def __init__(self, driver: Driver, channel: Channel, wanted: int) -> None:
+    def __init__(self, channel: Channel, wanted: int) -> None:
         """Begin level."""
-        self._driver = driver
         self._channel = channel
         self.samples: list[Sample] = []
         self.progress = Progress(wanted=wanted)
@@ -118,8 +156,7 @@ class Immediate:
     def tilt(self, measured: bool) -> None:
         """Tilt and wait for the answer."""
         channel = self._channel
-        channel.tilt()
-        answered = self._driver.await_answer(channel, LIMIT_NS)
+        answered = channel.ask(True, LIMIT_NS)
         if not measured:
             return
         if answered:
@@ -130,8 +167,7 @@ class Immediate:
 
     def level(self) -> None:
         """Level and wait for the answer, so that the next tilt is an edge again."""
-        self._channel.level()
-        self._driver.await_answer(self._channel, LIMIT_NS)
+        self._channel.ask(False, LIMIT_NS)
 
 
 class Experiment:

@@ -80,15 +80,16 @@ class Processes:
 
     def start(self, module: str, *arguments: str, path: Path = _BENCHMARKS, name: str = "") -> None:
         """Run a Python module found in ``path``; it goes by its own name unless one is given."""
-        name = name or module.rpartition(".")[2]
+        command = [sys.executable, "-m", module, *arguments]
+        env = {**os.environ, "PYTHONPATH": str(path)}
+        self.start_program(command, env, name or module.rpartition(".")[2])
+
+    def start_program(self, command: Sequence[str], env: Mapping[str, str], name: str) -> None:
+        """Run a program in an environment; it goes by ``name``."""
         log = self._folder / f"{name}.log"
         with log.open("w") as errors:
             process = subprocess.Popen(
-                [sys.executable, "-m", module, *arguments],
-                env={**os.environ, "PYTHONPATH": str(path)},
-                stdout=subprocess.PIPE,
-                stderr=errors,
-                text=True,
+                command, env=env, stdout=subprocess.PIPE, stderr=errors, text=True
             )
         self._running[name] = _Running(name, process, log)
 

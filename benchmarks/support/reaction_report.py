@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -11,8 +12,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from support.reaction_results import Results, Row
+from support.rclcpp_programs import rclcpp_environment
+from support.reaction_results import RCLCPP, RCLPY, Results, Row
 from support.summary import Summary
+
+NO_RCLCPP = "no rclcpp in AMENT_PREFIX_PATH"
+"""Why there may be no rows of rclcpp."""
 
 SOURCE = (
     "Adam, Larsen, Jensen, Schultz: Rule-based dynamic safety monitoring for mobile robots, Table 1"
@@ -50,26 +55,35 @@ def paper_rows() -> list[tuple[str, float, Summary]]:
     ]
 
 
-def show(results: Results, console: Console) -> None:
+def show(results: Sequence[Results], console: Console) -> None:
     """Print the table, with a verdict per bar below it."""
-    machine = "under load" if results.run.loaded else "idle machine"
+    machine = "under load" if any(each.run.loaded for each in results) else "idle machine"
     table = Table(title=f"Reaction in ms, {machine}", title_justify="left", pad_edge=False)
     table.add_column("")
     for head in ("n", "avg", "SD", "min", "median", "99 %", "max", "/ floor: median", "99 %"):
         table.add_column(head, justify="right")
     section = ""
-    for row in results.rows:
+    for row in (row for each in results for row in each.rows):
         if row.section != section:
             section = row.section
             table.add_section()
-            table.add_row(Text(_HEADS.get(section, f"rule {section}, lateness"), style="bold"))
+            table.add_row(Text(_head(section), style="bold"))
         table.add_row(row.name, *_cells(row.summary), *_ratios(row))
+    for client in _missing(results):
+        table.add_section()
+        table.add_row(Text(client, style="bold"))
+        table.add_row(Text(_why(client), style="dim"))
     table.add_section()
     table.add_row(Text("the paper, measured - ideal", style="bold"))
     for name, ideal, summary in paper_rows():
         table.add_row(f"{name}, {ideal:g} s", *_cells(summary))
     table.caption = f"{SOURCE}."
     console.print(table)
+    for each in results:
+        _show_verdicts(each, console)
+
+
+def _show_verdicts(results: Results, console: Console) -> None:
     if results.run.loaded:
         console.print(f"The load's own messages that arrived: {results.run.traffic:.0f} per second")
     for bar in results.bars():
@@ -78,10 +92,23 @@ def show(results: Results, console: Console) -> None:
         console.print(text, soft_wrap=True)
 
 
-_HEADS = {
-    "immediate rule": "immediate rule, tilt published -> state received",
-    "all of them": "all rules with a for, lateness",
-}
+def _why(client: str) -> str:
+    """Return why a client library was not measured."""
+    absent = client == RCLCPP.name and rclcpp_environment() is None
+    return NO_RCLCPP if absent else "not asked for"
+
+
+def _missing(results: Sequence[Results]) -> list[str]:
+    measured = {each.run.client for each in results}
+    return [each.name for each in (RCLPY, RCLCPP) if each not in measured]
+
+
+def _head(section: str) -> str:
+    if section.endswith("immediate rule"):
+        return f"{section}, tilt published -> state received"
+    if section.endswith("all of them"):
+        return f"{section.replace('all of them', 'all rules with a for')}, lateness"
+    return f"{section.replace('for ', 'rule for ')}, lateness"
 
 
 def _cells(summary: Summary) -> list[str]:
@@ -101,28 +128,18 @@ def _ratios(row: Row) -> list[str]:
     return [f"{ratio:.2f}" for ratio in row.ratios or ()]
 
 
-def as_json(results: Results) -> dict[str, Any]:
+def as_json(results: Sequence[Results]) -> dict[str, Any]:
     """Return everything that was found, every single time included."""
     return {
         "benchmark": "reaction",
-        "loaded": results.run.loaded,
+        "loaded": any(each.run.loaded for each in results),
         "machine": {
             "processors": os.cpu_count(),
             "system": platform.platform(),
             "python": platform.python_version(),
         },
-        "series": [
-            {
-                "section": row.section,
-                "name": row.name.strip(),
-                "ms": asdict(row.summary),
-                "ratios_to_floor": dict(
-                    zip(("median", "percent_99"), row.ratios or (), strict=False)
-                ),
-                "times_ns": row.times,
-            }
-            for row in results.rows
-        ],
+        "series": [_series(row, each) for each in results for row in each.rows],
+        "not_measured": {client: _why(client) for client in _missing(results)},
         "paper": {
             "source": SOURCE,
             "rows": [
@@ -130,6 +147,17 @@ def as_json(results: Results) -> dict[str, Any]:
                 for name, ideal, summary in paper_rows()
             ],
         },
-        "load_messages_per_second": results.run.traffic,
-        "bars": [asdict(bar) for bar in results.bars()],
+        "load_messages_per_second": {each.run.client.name: each.run.traffic for each in results},
+        "bars": [asdict(bar) for each in results for bar in each.bars()],
+    }
+
+
+def _series(row: Row, results: Results) -> dict[str, Any]:
+    return {
+        "client": results.run.client.name,
+        "section": row.section.removeprefix(results.run.client.section),
+        "name": row.name.strip(),
+        "ms": asdict(row.summary),
+        "ratios_to_floor": dict(zip(("median", "percent_99"), row.ratios or (), strict=False)),
+        "times_ns": row.times,
     }

@@ -3,23 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from support.samples import Fired, Sample, Told, Trigger, match
 from support.summary import Summary, summarize
 
-IMMEDIATE_MEDIAN = 1.15
-"""The median of an immediate reaction: at most so many times that of the fastest relay."""
 
-IMMEDIATE_PERCENT_99 = 1.3
-"""The same of the 99th percentile."""
+@dataclass(frozen=True, slots=True)
+class Client:
+    """A client library, and what is asked for on it on an idle machine.
 
-LATE_MEDIAN_MS = 0.5
-"""The median lateness of a rule with a ``for``: less than so many milliseconds."""
+    Attributes:
+        name: of the library.
+        section: what the sections of the table that are about it begin with.
+        timer: the name of the row of the timed relay's lateness before it publishes.
+        median, percent_99: at most so many times that of the fastest relay an immediate reaction
+            takes; None if nothing is asked.
+        late_median_ms, late_percent_99_ms: a rule with a ``for`` is late by less than that.
+    """
 
-LATE_PERCENT_99_MS = 1.0
-"""The same of the 99th percentile."""
+    name: str
+    section: str
+    timer: str
+    median: float
+    percent_99: float | None
+    late_median_ms: float | None
+    late_percent_99_ms: float
+
+
+RCLPY = Client("rclpy", "", "one-shot timer of rclpy", 1.15, 1.3, 0.5, 1.0)
+RCLCPP = Client("rclcpp", "rclcpp, ", "thread on a condition variable", 1.1, None, None, 0.3)
 
 LOADED = 2.0
 """Under load everything takes less than so many times as long as its floor under the same load."""
@@ -33,6 +47,7 @@ class Run:
     """What one run has recorded.
 
     Args:
+        client: the library that the nodes are written for.
         loaded: whether the machine was put under load.
         immediate: the reactions at once, by who reacted.
         timed: the reactions of the safety node after a while.
@@ -44,6 +59,7 @@ class Run:
         traffic: messages per second of the load that have come to their receiver.
     """
 
+    client: Client
     loaded: bool
     immediate: dict[str, list[Sample]]
     timed: list[Sample]
@@ -57,7 +73,10 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One series: what was measured, of whom, its times in ns, and the floor it stands beside."""
+    """One series: what was measured, of whom, its times in ns, and the floor it stands beside.
+
+    The name of the section begins with the client's ``section``.
+    """
 
     section: str
     name: str
@@ -111,11 +130,12 @@ class Results:
         ]
 
     def row(self, section: str, name: str) -> Row:
-        """Return the row of that name."""
-        return next(row for row in self.rows if (row.section, row.name) == (section, name))
+        """Return the row of that name, in a section without the client's name."""
+        wanted = (f"{self.run.client.section}{section}", name)
+        return next(row for row in self.rows if (row.section, row.name) == wanted)
 
     def _immediate_rows(self) -> Iterator[Row]:
-        section = "immediate rule"
+        section = f"{self.run.client.section}immediate rule"
         late = {name: [each.late for each in found] for name, found in self.run.immediate.items()}
         floor = summarize(late[FASTEST])
         yield Row(section, "fastest relay", late[FASTEST], floor, None)
@@ -127,6 +147,7 @@ class Results:
     def _timed_rows(self, seconds: float | None) -> Iterator[Row]:
         """Yield the rows of one duration, or of all durations together."""
         section = f"for {seconds:g} sec" if seconds else "all of them"
+        section = f"{self.run.client.section}{section}"
 
         def chosen(other: float) -> bool:
             return seconds is None or other == seconds
@@ -134,7 +155,7 @@ class Results:
         fired = [each for each in self.run.firings if chosen(each.duration / 1e9)]
         began = [each.began - each.due for each in fired]
         timer = summarize(began)
-        yield Row(section, "one-shot timer of rclpy", began, timer, None)
+        yield Row(section, self.run.client.timer, began, timer, None)
         done = _row(section, "timed relay, published", [f.published - f.due for f in fired], timer)
         yield done
         published = [t.late for t in self.timed_told if chosen(t.sample.seconds)]
@@ -144,7 +165,7 @@ class Results:
         yield Row(section, "timed relay, end to end", relayed, relay, None)
         received = [s.late for s in self.run.timed if chosen(s.seconds)]
         yield _row(section, "safety node, end to end", received, relay)
-        if seconds is None:
+        if seconds is None and self.run.sleeps:
             yield Row(section, "time.sleep", self.run.sleeps, summarize(self.run.sleeps), None)
 
     @property
@@ -171,14 +192,16 @@ class Results:
             ("reactions without an event", self.untold),
         ):
             bars.append(Bar(what, f"{number} of {count}", "none", number == 0))
-        return bars
+        return [replace(bar, what=f"{self.run.client.section}{bar.what}") for bar in bars]
 
     def _idle_bars(self) -> Iterator[Bar]:
+        client = self.run.client
         safety = self.row("immediate rule", "safety node")
         assert safety.ratios is not None
         median, percent_99 = safety.ratios
-        yield _at_most("immediate, median / fastest relay's", median, IMMEDIATE_MEDIAN)
-        yield _at_most("immediate, 99 % / fastest relay's", percent_99, IMMEDIATE_PERCENT_99)
+        yield _at_most("immediate, median / fastest relay's", median, client.median)
+        if client.percent_99 is not None:
+            yield _at_most("immediate, 99 % / fastest relay's", percent_99, client.percent_99)
         usual = self.row("immediate rule", "usual relay")
         against_usual = _ratio(safety.summary.median, usual.summary.median)
         yield _below("immediate, median / usual relay's", against_usual, 1.0)
@@ -186,10 +209,10 @@ class Results:
             late = self.row(f"for {seconds:g} sec", "safety node, published").summary
             assert late.median is not None
             assert late.percent_99 is not None
-            yield _below(f"for {seconds:g} sec, median late", late.median, LATE_MEDIAN_MS, " ms")
-            yield _below(
-                f"for {seconds:g} sec, 99 % late", late.percent_99, LATE_PERCENT_99_MS, " ms"
-            )
+            what = f"for {seconds:g} sec"
+            if client.late_median_ms is not None:
+                yield _below(f"{what}, median late", late.median, client.late_median_ms, " ms")
+            yield _below(f"{what}, 99 % late", late.percent_99, client.late_percent_99_ms, " ms")
 
     def _loaded_bars(self) -> Iterator[Bar]:
         sections: Sequence[tuple[str, str]] = (

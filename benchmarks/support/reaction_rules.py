@@ -46,6 +46,22 @@ behaviour levelling_{name}: if body_{name}.level then {{ level_{name}; }};
 """
 
 
+_CPP_ACTIONS = """\
+#ifndef {own}_HPP_
+#define {own}_HPP_
+#include "{name}_safety_cpp/{name}_safety_node_actions_base.hpp"
+namespace {name}_safety_cpp
+{{
+class {own} : public {own}Base
+{{
+public:
+  using {own}Base::{own}Base;
+{methods}}};
+}}  // namespace {name}_safety_cpp
+#endif  // {own}_HPP_
+"""
+
+
 @dataclass(frozen=True, slots=True)
 class Lane:
     """A pair of topics: a tilt on the one makes a state on the other, after so many seconds."""
@@ -74,25 +90,33 @@ def timed_lanes(group: str) -> tuple[Lane, ...]:
     )
 
 
-def generate(name: str, lanes: Sequence[Lane], folder: Path) -> Path:
+def generate(name: str, lanes: Sequence[Lane], folder: Path, target: str = "python") -> Path:
     """Generate a safety node with one rule per lane; return the folder of its package.
 
-    The package is ``<name>_safety``, its node and module ``<name>_safety_node``.
+    The package is ``<name>_safety``, its node and module ``<name>_safety_node``; with the target
+    ``cpp`` both end in ``_cpp``. Files that are there already are only written if they change.
 
     Raises:
         ProcessError: if deros refuses the rules.
     """
     models = folder / f"{name}_models"
-    models.mkdir()
+    models.mkdir(exist_ok=True)
     _write_system(models, lanes)
     rules = models / f"{name}.deros"
     text = 'use "reaction.system" import Reaction\n\n' + "".join(map(_rules, lanes))
     rules.write_text(text, encoding="utf-8")
     deros = [sys.executable, "-c", "from deros.cli.main import main; main()"]
-    run([*deros, "generate", str(rules), "--target", "python", "--output", str(folder)])
-    package = folder / f"{name}_safety"
-    actions = package / f"{name}_safety" / f"{name}_safety_node_actions.py"
-    actions.write_text(_actions(name, lanes), encoding="utf-8")
+    run([*deros, "generate", str(rules), "--target", target, "--output", str(folder)])
+    if target == "cpp":
+        package = folder / f"{name}_safety_cpp"
+        actions = package / f"include/{name}_safety_cpp/{name}_safety_node_actions.hpp"
+        text = _CPP_ACTIONS.format(name=name, own=_actions_class(name), methods=_methods(lanes))
+    else:
+        package = folder / f"{name}_safety"
+        actions = package / f"{name}_safety" / f"{name}_safety_node_actions.py"
+        text = _actions(name, lanes)
+    if actions.read_text(encoding="utf-8") != text:
+        actions.write_text(text, encoding="utf-8")
     return package
 
 
@@ -103,7 +127,7 @@ def _rules(lane: Lane) -> str:
 
 def _actions(name: str, lanes: Sequence[Lane]) -> str:
     """Fill in the actions that end a stop: the benchmark has nothing to do in them."""
-    own = f"{name.capitalize()}SafetyNodeActions"
+    own = _actions_class(name)
     lines = [
         f"from {name}_safety.{name}_safety_node_actions_base import {own}Base",
         f"class {own}({own}Base):",
@@ -111,6 +135,14 @@ def _actions(name: str, lanes: Sequence[Lane]) -> str:
     for lane in lanes:
         lines += [f"    def level_{lane.name}(self) -> None:", "        pass"]
     return "\n".join(lines) + "\n"
+
+
+def _actions_class(name: str) -> str:
+    return f"{name.capitalize()}SafetyNodeActions"
+
+
+def _methods(lanes: Sequence[Lane]) -> str:
+    return "".join(f"  void level_{lane.name}() override {{}}\n" for lane in lanes)
 
 
 def _write_system(folder: Path, lanes: Sequence[Lane]) -> None:
