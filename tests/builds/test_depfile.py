@@ -11,7 +11,7 @@ import pytest
 
 import deros.generators
 from deros.cli.depfile import depfile, is_current, prerequisites
-from tests.support.builds import models, replace
+from tests.support.builds import PROGRAM, models, replace, touch
 from tests.support.cli import Outcome
 from tests.support.cli import deros as run
 
@@ -67,6 +67,45 @@ def test_make_reads_awkward_names(tmp_path: Path) -> None:
         os.utime("rule.d", ns=(1, 1))
         assert made() == "again\n"
         os.utime("the stamp", ns=(later, later))
+
+
+MAKEFILE = """
+build/robot.stamp: robot.deros
+\t{deros} generate robot.deros --target c -o build --depfile build/robot.d --stamp $@
+
+build/robot_monitor.c: build/robot.stamp ;
+
+-include build/robot.d
+"""
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="no make")
+def test_a_makefile_of_ones_own(tmp_path: Path) -> None:
+    """Make generates when an imported model changes, and only then."""
+    models(tmp_path)
+    (tmp_path / "Makefile").write_text(MAKEFILE.format(deros=PROGRAM))
+
+    def made() -> str:
+        command = ["make", "build/robot_monitor.c"]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+    assert "wrote build/robot_monitor.c" in made()
+    assert "deros" not in made()
+    touch(tmp_path / "robot_robot.rnd")
+    assert "2 files unchanged" in made()
+    assert "deros" not in made()
+
+
+def test_runs_side_by_side_do_not_disturb_each_other(tmp_path: Path) -> None:
+    """Builds that generate into one folder at the same time leave it whole."""
+    models(tmp_path)
+    command = [str(PROGRAM), "generate", "robot.deros", "--target", "python", "-o", "out"]
+    command += ["--depfile", "depends.d", "--stamp", "stamp"]
+    runs = [subprocess.Popen(command, stdout=subprocess.DEVNULL) for _ in range(3)]
+    assert [each.wait(timeout=60) for each in runs] == [0, 0, 0]
+    run("generate", "robot.deros", "--target", "python", "-o", "alone")
+    alone = {p.relative_to("alone"): p.read_text() for p in Path("alone").rglob("*.*")}
+    assert {p.relative_to("out"): p.read_text() for p in Path("out").rglob("*.*")} == alone
 
 
 def test_inputs_are_all_that_was_read(tmp_path: Path) -> None:
@@ -125,7 +164,7 @@ def test_without_a_stamp_the_rule_is_of_the_output(tmp_path: Path) -> None:
     models(tmp_path)
     run("generate", "robot.deros", "--target", "c", "-o", "out", "--depfile", "d")
     head = Path("d").read_text().partition(": \\\n")[0]
-    assert head == f"{tmp_path}/out/robot_monitor.c {tmp_path}/out/robot_monitor.h"
+    assert head == "out/robot_monitor.c out/robot_monitor.h"
 
 
 def test_what_is_no_longer_made_is_removed(tmp_path: Path) -> None:

@@ -139,9 +139,8 @@ def put(made: Made, where: Place, started_ns: int) -> WriteReport:
     if where.depfile is not None:
         everything = [str(where.output / path) for path in sorted(ours)]
         targets = everything if where.stamp is None else [str(where.stamp)]
-        absolute = map(os.path.abspath, targets)
         found = inputs(made.context, made.generator, [*merged.inputs, *where.rests_on])
-        write_if_changed(where.depfile, depfile(absolute, found))
+        write_if_changed(where.depfile, depfile(targets, found))
     if where.stamp is not None:
         stale = sorted(set(stamped(where.stamp)) - ours)
         remove_stale(stale, where.output, overwrite=where.overwrite)
