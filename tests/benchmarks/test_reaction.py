@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from benchmarks.support.samples import Sample, Told, Trigger, match
 from benchmarks.support.schedule import Schedule
 from benchmarks.support.summary import summarize
+from tests.support.cpp import BUILD_LIMIT, needs_rclcpp
 
 REACTION = Path(__file__).resolve().parents[2] / "benchmarks" / "reaction.py"
 MS = 1_000_000
@@ -78,24 +82,42 @@ def test_a_nanosecond_too_early_is_early(
     assert Told(sample, Trigger("a", due, published)).is_early is early
 
 
-@pytest.mark.ros
-def test_it_measures_everything_in_one_run(tmp_path: Path) -> None:
-    """Every series has the times asked for, and no reaction is lost, early or without an event."""
-    found = tmp_path / "found.json"
-    command = [sys.executable, str(REACTION), "--repeat", "2", "--immediate", "2"]
+SECTIONS = {"immediate rule", "for 0.4 sec", "for 2 sec", "for 4 sec", "all of them"}
+
+
+def _run(file: Path, *options: str, env: Mapping[str, str], limit: float) -> dict[str, Any]:
+    """Return what a short run finds, of every series the times asked for, none lost or early."""
+    command = [sys.executable, str(REACTION), "--repeat", "2", "--immediate", "2", *options]
     result = subprocess.run(
-        [*command, "--json", str(found)], capture_output=True, text=True, timeout=120
+        [*command, "--json", str(file)], capture_output=True, text=True, timeout=limit, env=env
     )
     assert result.returncode == 0, result.stderr
-    results = json.loads(found.read_text(encoding="utf-8"))
-    assert {each["section"] for each in results["series"]} == {
-        "immediate rule",
-        "for 0.4 sec",
-        "for 2 sec",
-        "for 4 sec",
-        "all of them",
-    }
+    results: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    assert {each["section"] for each in results["series"]} == SECTIONS
     assert all(each["ms"]["count"] >= 2 for each in results["series"])
     counted = {bar["what"]: bar["held"] for bar in results["bars"] if bar["allowed"] == "none"}
     assert len(counted) == 3
     assert all(counted.values()), counted
+    return results
+
+
+@pytest.mark.ros
+def test_it_measures_everything_in_one_run(tmp_path: Path) -> None:
+    """Without an rclcpp it says so, and measures rclpy alone."""
+    env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
+    results = _run(tmp_path / "found.json", env=env, limit=120)
+    assert {each["client"] for each in results["series"]} == {"rclpy"}
+    assert results["not_measured"] == {"rclcpp": "no rclcpp in AMENT_PREFIX_PATH"}
+
+
+@pytest.mark.ros
+@needs_rclcpp
+def test_it_measures_the_same_on_rclcpp(tmp_path: Path) -> None:
+    """With nodes, relays and a driver that are built for it."""
+    results = _run(
+        tmp_path / "found.json", "--only", "rclcpp", env=os.environ, limit=BUILD_LIMIT + 120
+    )
+    assert {each["client"] for each in results["series"]} == {"rclcpp"}
+    asked = {bar["what"]: bar["allowed"] for bar in results["bars"]}
+    assert asked["rclcpp, immediate, median / fastest relay's"] == "<= 1.1"
+    assert asked["rclcpp, for 2 sec, 99 % late"] == "< 0.3 ms"
