@@ -46,6 +46,7 @@ class PythonNode:
     """The node in Python, out of its source tree."""
 
     actions_file = f"{NODE}_actions.py"
+    sees_what_it_cannot_read = True
     _BODIES: ClassVar[dict[str, str]] = {
         "tell": "self.node.get_logger().info(f'beep {times} times: {why}')",
         "fail": "raise OSError('no horn')",
@@ -80,6 +81,8 @@ class CppNode:
     """The node in C++, built by colcon; both builds are kept."""
 
     actions_file = f"{NODE}_actions.cpp"
+    sees_what_it_cannot_read = False
+    """The middleware drops messages that are none of the type before the node sees them."""
     _CLASS = "EveryThingSafetyNodeActions"
     _BODY = """
         #include <cstdlib>
@@ -191,6 +194,11 @@ class Robot:
             values = {value.key: value.value for value in each.values}
             name = each.name.removeprefix(f"/{NODE}").removeprefix(": ")
             self.statuses[name] = Status(each.level[0], each.message, values)
+
+    def forget(self) -> None:
+        """Forget all that was heard."""
+        for heard in (self.stop, self.limit, self.beats, self.events, self.statuses):
+            heard.clear()
 
     def status(self, name: str = "") -> Status:
         """Return the last status of a rule, an action (``action NAME``) or the node itself."""

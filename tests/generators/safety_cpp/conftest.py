@@ -1,0 +1,5 @@
+"""Fixtures of the tests that run the node."""
+
+from tests.support.safety_node import robot
+
+__all__ = ["robot"]

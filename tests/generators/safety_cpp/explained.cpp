@@ -1,0 +1,83 @@
+// The monitor in C and its explanation: takes speeds and modes in lines, and tells what it is worth.
+
+#include <cstdint>
+#include <iostream>
+#include <limits>
+#include <string>
+
+#include "every_thing_safety_cpp/runtime/text.hpp"
+#include "every_thing_safety_node_messages.hpp"
+#include "every_thing_safety_node_origins.hpp"
+
+namespace told = every_thing_safety_cpp;
+
+void every_thing_emit(void * /*owner*/, int64_t /*t*/, every_thing_kind /*kind*/, uint32_t /*site*/)
+{
+}
+
+namespace
+{
+
+sensor_msgs::msg::JointState joints(double last, int count)
+{
+  sensor_msgs::msg::JointState msg;
+  for (int i = 0; i < count; ++i) {
+    msg.position.push_back(last);
+  }
+  return msg;
+}
+
+void tell(const every_thing_monitor & monitor)
+{
+  const told::runtime::Explanation state = told::explained(monitor);
+  for (const auto & rule : state.rules) {
+    const std::string value =
+      rule.value ? told::runtime::shown(*rule.value) : std::string("unknown");
+    std::cout << rule.name << '\t' << rule.line << '\t' << rule.text << '\t' << value << '\t' <<
+      rule.since;
+    for (const auto & read : rule.reads) {
+      std::cout << '\t' << read.term << '=' << read.value.value_or("unknown");
+    }
+    std::cout << '\n';
+  }
+  for (const std::size_t behaviour : state.holding) {
+    std::cout << "holds\t" << told::origins().behaviours[behaviour].name << '\n';
+  }
+  std::cout << "." << std::endl;
+}
+
+}  // namespace
+
+int main()
+{
+  every_thing_monitor monitor;
+  every_thing_start(&monitor, nullptr, 0, 0);
+  std::string topic;
+  std::int64_t now = 0;
+  double value = 0.0;
+  while (std::cin >> topic >> now >> value) {
+    if (topic == "speed") {
+      std_msgs::msg::Float64 msg;
+      msg.data = value;
+      told::take_speed(monitor, now, msg);
+    } else if (topic == "mode") {
+      std_msgs::msg::UInt8 msg;
+      msg.data = static_cast<std::uint8_t>(value);
+      told::take_mode(monitor, now, msg);
+    } else if (topic == "level") {
+      diagnostic_msgs::msg::DiagnosticStatus msg;
+      msg.level = static_cast<unsigned char>(value);
+      told::take_diagnostics(monitor, now, msg);
+    } else if (topic == "imu") {
+      sensor_msgs::msg::Imu msg;
+      msg.orientation.x = value;
+      msg.orientation.w = 1.0;
+      msg.angular_velocity_covariance[4] = value;
+      told::take_imu(monitor, now, msg);
+    } else {
+      told::take_joints(monitor, now, joints(value, topic == "joints" ? 3 : 2));
+    }
+    tell(monitor);
+  }
+  return 0;
+}

@@ -1,0 +1,109 @@
+// Answers one line for each line of its input, so that the runtime can be asked from Python.
+
+#include <cstdint>
+#include <cstring>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "tested/runtime/descriptor.hpp"
+#include "tested/runtime/instance.hpp"
+#include "tested/runtime/latches.hpp"
+#include "tested/runtime/refusal.hpp"
+#include "tested/runtime/sha256.hpp"
+#include "tested/runtime/text.hpp"
+
+namespace
+{
+
+using tested::runtime::LatchFile;
+
+std::vector<std::string> words_of(const std::string & line, char separator)
+{
+  std::vector<std::string> words;
+  std::istringstream stream(line);
+  for (std::string word; std::getline(stream, word, separator); ) {
+    words.push_back(word);
+  }
+  return words;
+}
+
+LatchFile::Names names_of(const std::string & text)
+{
+  const std::vector<std::string> words = words_of(text, ',');
+  return {words.begin(), words.end()};
+}
+
+std::string text_of(const LatchFile::Names & names)
+{
+  return tested::runtime::joined({names.begin(), names.end()}, ",");
+}
+
+std::string number(const std::string & bits)
+{
+  const std::uint64_t integer = std::stoull(bits, nullptr, 16);
+  double value = 0.0;
+  std::memcpy(&value, &integer, sizeof(value));
+  return tested::runtime::shown(value);
+}
+
+std::string claimed(const std::string & folder, const std::string & domain, const std::string & name)
+{
+  static std::vector<tested::runtime::Descriptor> locks;
+  try {
+    locks.push_back(tested::runtime::claim(name, std::stoul(domain), folder));
+  } catch (const tested::runtime::Refusal & refusal) {
+    return refusal.what();
+  }
+  return "held";
+}
+
+std::string answer(const std::vector<std::string> & words)
+{
+  const std::string & what = words.at(0);
+  if (what == "number") {
+    return number(words.at(1));
+  }
+  if (what == "digest") {
+    return tested::runtime::sha256(words.size() > 1 ? words.at(1) : "");
+  }
+  if (what == "stem") {
+    return tested::runtime::file_stem(words.at(1), std::stoul(words.at(2)));
+  }
+  if (what == "place") {
+    return tested::runtime::default_path(words.at(1)).string();
+  }
+  if (what == "claim") {
+    return claimed(words.at(1), words.at(2), words.at(3));
+  }
+  LatchFile file(words.at(1), words.at(2));
+  const LatchFile::Names names = names_of(words.size() > 3 ? words.at(3) : "");
+  if (what == "load") {
+    const LatchFile::Loaded loaded = file.load(names);
+    return text_of(loaded.active) + '|' + loaded.problem;
+  }
+  try {
+    file.save(names);
+    if (what == "doubt") {
+      file.doubt();
+    } else if (what == "spoil") {
+      file.spoil();
+    }
+  } catch (const std::system_error & error) {
+    return error.code().message();
+  }
+  return "done";
+}
+
+}  // namespace
+
+int main()
+{
+  for (std::string line; std::getline(std::cin, line); ) {
+    std::cout << answer(words_of(line, '\t')) << std::endl;
+  }
+  return 0;
+}
