@@ -42,9 +42,9 @@ class Case:
 
 
 def cases(
-    kinds: tuple[str, ...], wanted: int, chosen_seed: int, traces: int = TRACES
+    kinds: tuple[str, ...], wanted: int, chosen_seed: int, traces: int = TRACES, first: int = 0
 ) -> list[Case]:
-    """Draw programs that C has monitors for, each with its traces."""
+    """Draw programs that C has monitors for, each with its traces; they are numbered."""
     found: list[Case] = []
 
     @seed(chosen_seed)
@@ -58,7 +58,7 @@ def cases(
     @given(programs(kinds=kinds).flatmap(lambda each: st.tuples(*[pairs(each)] * traces)))
     def draw(drawn: tuple[Pair, ...]) -> None:
         try:
-            rendered = unit(drawn[0].program, f"random_{len(found)}")
+            rendered = unit(drawn[0].program, f"random_{first + len(found)}")
         except GenerationError:
             return
         found.append(Case(rendered, drawn))

@@ -27,7 +27,7 @@ static double {name}(double x, double y, double z, double w)
 
 def _c_extreme(name: str, relation: str) -> str:
     return f"""\
-static RESULT {name}_BASE(const ELEMENT * values, size_t count)
+static RESULT {name}_BASE(const ELEMENT *values, size_t count)
 {{
   RESULT found = NONE;
   for (size_t i = 0U; i < count; ++i) {{
@@ -151,7 +151,7 @@ static double norm(double x, double y, double z)
 }
 """,
     "rate": """\
-static double rate(double value, int64_t t, double * last, int64_t * last_t)
+static double rate(double value, int64_t t, double *last, int64_t *last_t)
 {
   const int64_t elapsed = t - *last_t;
   double change = NAN;
@@ -173,7 +173,7 @@ static int64_t magnitude(int64_t value)
     "max": _c_extreme("greatest", ">"),
     "nearest": """\
 static double nearest(
-  const float * ranges, size_t count, double angle_min, double angle_increment,
+  const float *ranges, size_t count, double angle_min, double angle_increment,
   double range_min, double range_max, double start, double end)
 {
   const double turn = 6.283185307179586;
@@ -204,7 +204,7 @@ static double nearest(
 }
 """,
     "scan_usable": """\
-static bool scan_usable(const float * ranges, size_t count, double range_min)
+static bool scan_usable(const float *ranges, size_t count, double range_min)
 {
   bool usable = false;
   for (size_t i = 0U; i < count; ++i) {

@@ -50,7 +50,9 @@ def number(value: float) -> str:
 
 def integer(value: int) -> str:
     """Return the literal of an ``int64_t``."""
-    return f"INT64_C({value})" if value > -(2**63) else "INT64_MIN"
+    if value == -(2**63):
+        return "(-INT64_C(9223372036854775807) - INT64_C(1))"
+    return f"INT64_C({value})" if value >= 0 else f"-INT64_C({-value})"
 
 
 def literal(value: bool | int | float) -> str:
@@ -171,7 +173,7 @@ class Conditions:
         results = {COMPARE[operator](each, right) for each in tried}
         if len(results) == 1:
             return literal(results.pop())
-        bound = f"UINT64_C({right})" if unsigned else integer(right)
+        bound = f"{right}ULL" if unsigned else integer(right)
         return f"{self._operand(left)} {SYMBOLS[operator]} {bound}"
 
     def _compare_text(

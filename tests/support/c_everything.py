@@ -1,0 +1,133 @@
+"""Rules with every construct that the monitor in C can be asked for."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from deros.monitor.build import build
+from deros.monitor.ir import Program
+from tests.support.examples import EXAMPLES
+
+_TOPICS = {
+    "/odom": "nav_msgs.Odometry",
+    "/imu": "sensor_msgs.Imu",
+    "/scan": "sensor_msgs.LaserScan",
+    "/joints": "sensor_msgs.JointState",
+    "/battery": "sensor_msgs.BatteryState",
+    "/diagnostics": "diagnostic_msgs.DiagnosticArray",
+    "/mode": "std_msgs.UInt8",
+    "/state": "std_msgs.String",
+    "/flag": "std_msgs.Bool",
+    "/beats": "std_msgs.UInt64",
+    "/ticks": "std_msgs.Int64",
+    "/levels": "std_msgs.Int16MultiArray",
+    "/counters": "std_msgs.UInt64MultiArray",
+}
+
+NODE = "node robot : robot\npublishes\n" + "".join(
+    f"  topic {topic} : {kind}\n" for topic, kind in _TOPICS.items()
+)
+SYSTEM = (
+    'system Robot\nimports\n  import "robot.rnd"\ntopics\n'
+    + "".join(f"  topic {topic}\n" for topic in _TOPICS)
+    + "subsystem Base {\n  node robot : robot\n  wirings\n"
+    + "".join(f"    connect {topic} to {topic}\n" for topic in _TOPICS)
+    + "}\n"
+)
+
+RULES = """\
+use "robot.system" import Robot
+action stop publishes true on /stop : std_msgs.Bool reset_by ok
+action motor_stop publishes true on /motor_stop : std_msgs.Bool latched
+action horn publishes true on /horn : std_msgs.Bool latched
+action ok reset_by stop
+action beep(times, text, loud, pitch)
+const max_speed = 0.5 m/s
+input speed = topic /odom.twist.twist.linear.x timeout 0.5 sec
+input height = topic /odom.pose.pose.position.z
+input attitude = topic /imu.orientation timeout 0.1 sec
+input turn = topic /imu.angular_velocity
+input scan = topic /scan timeout 0.2 sec
+input positions = topic /joints.position
+input names = topic /joints.name
+input elbow = topic /joints.velocity[2] timeout 1 sec
+input cells = topic /battery.cell_voltage
+input first = topic /diagnostics.status[0].name
+input level = topic /diagnostics.status[1].level timeout 2 sec
+input mode = topic /mode.data
+input state = topic /state.data timeout 3 sec
+input enabled = topic /flag.data
+input beats = topic /beats.data timeout 0.3 sec
+input ticks = topic /ticks.data
+input levels = topic /levels.data
+input counters = topic /counters.data
+entity drive {
+  too_fast: speed > max_speed for 2 sec;
+  jerky: speed.rate() > 2 and not enabled;
+  climbing: height.rate().abs() >= 0.1 for 0.5 sec;
+  silent: speed.missing() or scan.age() > 1 sec or elbow.missing() or beats.age() >= 0.1 sec;
+}
+entity body {
+  tilted: attitude.roll() not in [-10 deg, 10 deg] or
+          attitude.pitch() not in [-10 deg, 10 deg);
+  turned: attitude.yaw() > 90 deg or attitude.tilt() > 5 deg;
+  turning: turn.norm() >= 90 deg/s;
+  near: scan.nearest(-30 deg, 30 deg) < 0.4 or scan.nearest(150 deg, -150 deg) < 0.2;
+  bent: positions.max() > 1.5 or positions.min() < -1.5 or elbow.abs() > 2;
+  joints: names.count() != 6 or positions.count() < 6;
+  empty: cells.min() < 3.0;
+}
+entity controller {
+  manual: mode = 0;
+  auto: mode != 0 and enabled;
+  named: state = "automatic" or state = "säge" or state != "it's \\"so\\"??/";
+  broken: first = "motor" and level > 1;
+  counted: beats > 5 and ticks in [-3, 9000000000) and levels.max() >= 3 and levels.min() > -2;
+  overflowing: counters.max() > 18446744073709551614 or counters.count() = 0;
+  same: ticks = ticks;
+}
+if drive.too_fast and controller.auto then { stop; log_state("too fast: don't ünd so"); };
+behaviour tilt: if body.tilted for 0.4 sec then {
+  motor_stop;
+  if not controller.manual for 1 sec then { beep(3, "a", true, 0.5); if body.turned then { horn; }; };
+  stop;
+};
+optional behaviour near: if body.near or body.turning or drive.silent or drive.jerky then { stop; };
+if body.bent or body.joints or body.empty or drive.climbing then { horn; };
+if controller.named and not controller.broken or controller.counted or controller.same
+then { beep(-9000000000, "", false, -1.5e-3); };
+if controller.manual or controller.overflowing then { ok; };
+gate /nav -> /cmd : geometry_msgs.Twist rate 20 Hz { stop: zero; lost heartbeat for 0.3 sec: zero; }
+"""
+
+
+def everything() -> Program:
+    """Return the program of these rules."""
+    return built(RULES, "everything")
+
+
+def examples() -> list[Program]:
+    """Return the programs of the example robots."""
+    return [
+        built(path.read_text(encoding="utf-8"), path.stem, path.parent)
+        for path in sorted(EXAMPLES.glob("*/*.deros"))
+    ]
+
+
+def built(rules: str, name: str, folder: Path | None = None) -> Program:
+    """Return the program of rules that stand in a folder, or beside the robot of this module."""
+    if folder is None:
+        with tempfile.TemporaryDirectory(prefix="deros-rules-") as made:
+            (Path(made) / "robot.rnd").write_text(NODE, encoding="utf-8")
+            (Path(made) / "robot.system").write_text(SYSTEM, encoding="utf-8")
+            return built(rules, name, Path(made))
+    repository = Repository()
+    model = repository.load_text(folder / f"{name}.deros", rules).model
+    assert isinstance(model, Rules), repository.diagnostics
+    result = build(model, InterfaceStore())
+    assert result.program is not None, result.diagnostics
+    return result.program
