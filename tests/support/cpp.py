@@ -23,7 +23,7 @@ import pytest
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
 """What generated C++ compiles with, and nothing comes of it."""
 
-BUILD_LIMIT = 900.0
+BUILD_LIMIT = 1800.0
 """Seconds that colcon may take; a package of two rclcpp nodes takes one minute on a slow core."""
 
 _DAY = 24 * 3600.0
