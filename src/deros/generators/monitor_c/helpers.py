@@ -28,7 +28,7 @@ _ARE_NUMBERS = """\
 /* Tells whether no element is a NaN. */
 /*@ requires \\valid_read(values + (0 .. count - 1));
     assigns \\nothing; */
-static bool are_numbers_BASE(const ELEMENT * values, size_t count)
+static bool are_numbers_BASE(const ELEMENT *values, size_t count)
 {
   bool numbers = true;
   /*@ loop invariant 0 <= i <= count;
@@ -195,8 +195,7 @@ static int64_t ahead(int64_t now, int64_t due, int64_t end)
 _BOUNDED = """\
 /* A time within the range that the monitor counts in. */
 /*@ assigns \\nothing;
-    ensures 0 <= \\result <= $_LATEST;
-    ensures 0 <= t <= $_LATEST ==> \\result == t; */
+    ensures \\result == (t < 0 ? 0 : t > $_LATEST ? $_LATEST : t); */
 static int64_t bounded(int64_t t)
 {
   return (t < 0) ? 0 : earlier(t, $_LATEST);

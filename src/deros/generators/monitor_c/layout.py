@@ -20,6 +20,7 @@ from deros.monitor.ir import (
     Condition,
     Const,
     For,
+    Operator,
     Program,
     Read,
     Scale,
@@ -46,6 +47,19 @@ class Term:
     known: str
     type: str
     texts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What is found of floating-point values when a message brings one: how they compare.
+
+    Rules are then judged without another look at the numbers. ``name`` is its field, ``terms`` are
+    what it compares, ``inputs`` those whose messages settle it anew.
+    """
+
+    name: str
+    terms: tuple[Term, ...]
+    inputs: frozenset[int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +95,7 @@ class Layout:
         prefix: what public names begin with; ``macro`` the same in capitals.
         terms: by value; a leaf, a function, or either in another unit.
         memories: of each ``rate()``.
+        findings: of each comparison of floating-point values.
         inputs: of each input, by index.
         forgets: of each input with values, the function that makes them unknown.
         since: of each ``For`` with a duration, since when its operand has been true.
@@ -94,6 +109,7 @@ class Layout:
     names: Names
     terms: dict[ValueExpression, Term] = field(default_factory=dict)
     memories: dict[Apply, Memory] = field(default_factory=dict)
+    findings: dict[Condition, Finding] = field(default_factory=dict)
     inputs: dict[int, InputFields] = field(default_factory=dict)
     forgets: dict[int, str] = field(default_factory=dict)
     since: dict[int, str] = field(default_factory=dict)
@@ -137,6 +153,8 @@ def lay_out(program: Program) -> Layout:
             layout.memories[value] = Memory(
                 layout.names.new(name, "last"), layout.names.new(name, "last_t")
             )
+    for condition in walk.conditions(program):
+        _name_finding(condition, layout)
     for each in program.inputs:
         if layout.terms_of(each.index) or layout.memories_of(each.index):
             layout.forgets[each.index] = layout.names.new("forget", each.name)
@@ -248,6 +266,43 @@ def _name_term(program: Program, value: ValueExpression, layout: Layout, span: S
     texts = _texts(program, value, span) if kind == "text" else ()
     kind = "uint32_t" if kind == "text" else kind
     layout.terms[value] = Term(value, index, name, known, kind, texts)
+
+
+_WORDS: dict[Operator, str] = {
+    "=": "is",
+    "!=": "is_not",
+    "<": "below",
+    "<=": "at_most",
+    ">": "above",
+    ">=": "at_least",
+}
+
+
+def _name_finding(condition: Condition, layout: Layout) -> None:
+    """Name what is found by a comparison, if it is one of floating-point values."""
+    values = compared(condition)
+    terms = tuple(dict.fromkeys(layout.terms[value] for value in values))
+    floats = any(term.type == "double" for term in terms)
+    if condition in layout.findings or isinstance(condition, Truth) or not floats:
+        return
+    match condition:
+        case Within(operand=operand):
+            words = [*_side(operand, layout), "within"]
+        case Compare(left=left, operator=operator, right=right):
+            words = [*_side(left, layout), _WORDS[operator], *_side(right, layout)]
+        case _:
+            return
+    inputs = frozenset(term.input for term in terms)
+    layout.findings[condition] = Finding(layout.names.new(*words), terms, inputs)
+
+
+def _side(value: ValueExpression, layout: Layout) -> list[str]:
+    """Return how a value stands in the name of a finding."""
+    if not isinstance(value, Const):
+        return [layout.terms[value].name]
+    assert not isinstance(value.value, str)
+    text = f"{float(value.value):.6g}".replace("+", "")
+    return [text.replace("-", "minus_", 1) if text.startswith("-") else text]
 
 
 def _words(program: Program, value: ValueExpression) -> list[str | int]:

@@ -109,6 +109,11 @@ class Meaning:
         return " && ".join(f"m->{flag} != 0" for flag in flags)
 
     def _holds(self, condition: Truth | Compare | Within) -> str:
+        finding = self._layout.findings.get(condition)
+        return f"(m->{finding.name} != 0)" if finding else self.holds(condition)
+
+    def holds(self, condition: Condition) -> str:
+        """Return whether a comparison of values, which must be known, holds."""
         match condition:
             case Truth():
                 return f"(m->{self._layout.terms[condition.operand].name} != 0)"
@@ -120,6 +125,8 @@ class Meaning:
                 above = self._compare(condition.operand, lower, condition.lower)
                 below = self._compare(condition.operand, upper, condition.upper)
                 return f"({above} && {below})"
+            case _:
+                raise AssertionError("no comparison of values")
 
     def _compare(self, left: ValueExpression, operator: Operator, right: ValueExpression) -> str:
         first, second = self._operand(left, right), self._operand(right, left)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 
+from deros.generators.monitor_c.deviations import DEVIATIONS
+from deros.generators.monitor_c.fitting import fitted
 from deros.generators.monitor_c.helpers import helper_texts
-from deros.generators.monitor_c.proof import NO_CONTRACT, Proof
+from deros.generators.monitor_c.proof import NO_CONTRACT, proof_of
 from deros.generators.monitor_c.view import MonitorView, monitor_view
 from deros.generators.templates import environment
 from deros.monitor.ir import Program
@@ -23,11 +25,12 @@ def render_monitor(program: Program) -> dict[str, str]:
     """
     view = monitor_view(program)
     header = _template("monitor.h.j2", monitor=view)
-    return {f"{view.prefix}_monitor.h": header, f"{view.prefix}_monitor.c": _source(view)}
+    texts = {f"{view.prefix}_monitor.h": header, f"{view.prefix}_monitor.c": _source(view)}
+    return {name: fitted(text) for name, text in texts.items()}
 
 
 def _source(view: MonitorView) -> str:
-    proof = Proof()
+    proof = proof_of(view)
     body = _template("body.c.j2", monitor=view, proof=proof)
     body = re.sub(rf"^ *{re.escape(NO_CONTRACT)}\n", "", body, flags=re.MULTILINE)
     texts = [_named(each, view) for each in helper_texts(view.program, body)]
@@ -35,6 +38,7 @@ def _source(view: MonitorView) -> str:
     return _template(
         "monitor.c.j2",
         monitor=view,
+        deviations=DEVIATIONS,
         needs_math=_OF_LIBM.search(body + helpers) is not None,
         declarations=proof.declarations,
         helpers=helpers,

@@ -263,6 +263,8 @@ def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
         yield Field(f"{term.type} ", term.name, "as of the last message", size, initial)
         if term.known != layout.inputs[term.input].known:
             yield Field("bool ", term.known, "whether it is known", 1)
+    for finding in layout.findings.values():
+        yield Field("bool ", finding.name, "how values compare", 1, "false")
     for memory in layout.memories.values():
         yield Field("double ", memory.last, "the value before", 8)
         yield Field("int64_t ", memory.last_t, "when it came", 8, "", "m->now")
