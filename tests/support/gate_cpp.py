@@ -252,22 +252,22 @@ _STATE_TYPES = {action.binding.topic: action.binding.type for action in ACTIONS 
 def compiled(gates: Sequence[Gate], folder: Path, compiler: str, *flags: str) -> Path:
     """Compile the logic of gates, strictly, and return the program that plays traces."""
     views = [view_of(gate, f"random_{number}") for number, gate in enumerate(gates)]
-    by_type: dict[InterfaceType, list[int]] = {}
+    together: dict[str, list[int]] = {}  # one source for each package: headers take their time
     for number, gate in enumerate(gates):
-        by_type.setdefault(gate.type, []).append(number)
+        together.setdefault(gate.type.package, []).append(number)
     (folder / "wire.hpp").write_text(f"#pragma once\n{wire.head()}", encoding="utf-8")
     (folder / "player.hpp").write_text(f"#pragma once\n{_PLAYER}", encoding="utf-8")
     sources = []
-    for kind, numbers in by_type.items():
+    for package, numbers in together.items():
         text = '#include <memory>\n#include <optional>\n#include "player.hpp"\n'
-        text += wire.cpp(STORE, [kind, *_STATE_TYPES.values()])
+        text += wire.cpp(STORE, [*(gates[n].type for n in numbers), *_STATE_TYPES.values()])
         for number in numbers:
             logic = write_logic(views[number], folder)
             text += f'#include "{logic.name}"\n{_adapter(views[number])}\n'
             text += f"std::unique_ptr<Player> make_{number}();\n"
             text += f"std::unique_ptr<Player> make_{number}()\n"
             text += f"{{return std::make_unique<random_{number}::Adapter>();}}\n"
-        source = folder / f"{kind.package}_{kind.name}.cpp"
+        source = folder / f"commands_{package}.cpp"
         source.write_text(text, encoding="utf-8")
         sources.append(source)
     declarations = "\n".join(f"std::unique_ptr<Player> make_{n}();" for n in range(len(gates)))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import random
 import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
+from deros.monitor.commands import LAYOUT, QUATERNION, TIME
 from deros.monitor.gate import GateEngine
 from deros.monitor.ir import Gate, GateLine, Limit
 from tests.support.gates import (
@@ -22,6 +23,7 @@ from tests.support.gates import (
     message_type,
     span,
 )
+from tests.support.messages import random_paths
 
 Trace = list[tuple[int, Happening]]
 """What happens, and when, in nanoseconds."""
@@ -42,11 +44,15 @@ _TAME = (-3.0, -1.0, -0.5, -0.0, 0.0, 0.25, 0.5, 1.0, 3.0)
 _LATER = (False,) * 19 + (True,)
 
 
-def random_gate(rng: random.Random, name: str) -> Gate:
-    """Return a gate; its times are a few nanoseconds, so that instants coincide often."""
+def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = None) -> Gate:
+    """Return a gate; its times are a few nanoseconds, so that instants coincide often.
+
+    Its limits speak of fields out of ``paths``, those of :data:`MORE_COMMANDS` unless given.
+    """
+    paths = MORE_COMMANDS[name] if paths is None else paths
     lines = []
     for number in range(2, 2 + rng.randint(1, 6)):
-        limits = _limits(rng, name)
+        limits = _limits(rng, name, paths)
         if rng.random() < 0.5:
             lines.append(GateLine(rng.randrange(len(ACTIONS)), None, None, limits, span(number)))
         else:
@@ -63,18 +69,29 @@ def random_gate(rng: random.Random, name: str) -> Gate:
     )
 
 
-def _limits(rng: random.Random, name: str) -> tuple[Limit, ...]:
-    paths = [path for path in MORE_COMMANDS[name] if rng.random() < 0.5]
+def _limits(rng: random.Random, name: str, paths: Sequence[Path]) -> tuple[Limit, ...]:
     limits = []
-    for path in paths:
+    for path in [each for each in paths if rng.random() < 0.5]:
         found = resolve(STORE, message_type(name), path)
         assert isinstance(found, ResolvedField)
         lower, upper = rng.randint(-2, 0), rng.randint(0, 2)
-        if str(found.type.base).startswith("uint"):
+        if INTEGER_RANGES.get(str(found.type.base), (-1, 1))[0] == 0:
             lower = 0
         ends = (lower / 2, upper / 2) if found.type.is_float else (lower, upper)
         limits.append(Limit(path, found.type, *ends))
     return tuple(limits)
+
+
+def limitable(rng: random.Random, kind: InterfaceType) -> list[Path]:
+    """Return some fields of a message type that a limit may speak of."""
+    found = []
+    for path in (path for _ in range(4) for path in random_paths(STORE, kind, rng)):
+        field = resolve(STORE, kind, path)
+        assert isinstance(field, ResolvedField)
+        parent = field.parent.type if field.parent else None
+        if field.type.is_number and parent not in (TIME, LAYOUT, QUATERNION) and path not in found:
+            found.append(path)
+    return found
 
 
 def random_trace(rng: random.Random, gate: Gate, start_ns: int) -> Trace:

@@ -9,12 +9,22 @@ from pathlib import Path
 
 import pytest
 
+from deros.generators.gate_cpp.messages import type_views
+from deros.interfaces.types import InterfaceType
+from deros.monitor.commands import HEADER, LAYOUT
 from deros.monitor.gate import GateEngine
 from deros.monitor.ir import Gate
 from tests.support.cpp import needs_compiler
 from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded, needs_clang
-from tests.support.gate_traces import MORE_COMMANDS, play, random_gate, random_trace
+from tests.support.gate_traces import (
+    MORE_COMMANDS,
+    limitable,
+    play,
+    random_gate,
+    random_trace,
+)
 from tests.support.gates import ACTIONS, STORE
+from tests.support.messages import message_types
 
 pytestmark = needs_compiler
 
@@ -23,6 +33,18 @@ EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "3000"))
 
 SEED = random.randrange(2**32) if "DEROS_EXAMPLES" in os.environ else 4
 START_NS = 100
+TRACES_OF_A_TYPE = 8
+
+PACKAGES = (
+    "builtin_interfaces",
+    "diagnostic_msgs",
+    "geometry_msgs",
+    "nav_msgs",
+    "sensor_msgs",
+    "std_msgs",
+    "test_msgs",
+    "trajectory_msgs",
+)
 
 
 def check(players: Players, gates: Sequence[Gate], number: int, seed: int) -> int:
@@ -62,3 +84,22 @@ def test_same_commands(
         for example in range(EXAMPLES // 2):
             published += check(players, gates, example % len(gates), rng.randrange(2**48))
     assert published > EXAMPLES  # several in each
+
+
+def commands() -> list[InterfaceType]:
+    """Return all message types of some packages that can be commands."""
+    no_commands = (HEADER, LAYOUT)  # parts of messages that say how to read the rest
+    kinds = (kind for kind in message_types(*PACKAGES) if kind not in no_commands)
+    return [kind for kind in kinds if type_views(STORE, kind)]
+
+
+def test_commands_of_every_type(tmp_path: Path) -> None:
+    """Each float is looked at, each number made zero or limited, and the rest stays as it was."""
+    rng = random.Random(f"{SEED} types")
+    kinds = commands()
+    assert len(kinds) > 100
+    gates = [random_gate(rng, kind.short, limitable(rng, kind)) for kind in kinds]
+    with Players(compiled(gates, tmp_path, "c++", "-O0"), gates) as players:
+        for number in range(len(gates)):
+            for _ in range(TRACES_OF_A_TYPE):
+                check(players, gates, number, rng.randrange(2**48))
