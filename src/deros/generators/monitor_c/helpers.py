@@ -128,24 +128,24 @@ _LASTING = """\
 /* 'for': true once the operand has been true without a break for so long, since *since. */
 /*@ requires \\valid(m) && \\valid(since) && \\separated(since, &m->due, &m->now);
     requires is_verdict(operand) && 0 <= m->now <= $_LATEST && 0 < duration <= $_LATEST;
-    requires *since == $_NEVER || 0 <= *since <= m->now;
+    requires *since == $_UNSET || 0 <= *since <= m->now;
     assigns *since, m->due;
-    ensures operand != $_TRUE ==> *since == $_NEVER && \\result == operand;
-    ensures operand == $_TRUE && \\old(*since) == $_NEVER ==> *since == m->now;
-    ensures operand == $_TRUE && \\old(*since) != $_NEVER ==> *since == \\old(*since);
+    ensures operand != $_TRUE ==> *since == $_UNSET && \\result == operand;
+    ensures operand == $_TRUE && \\old(*since) == $_UNSET ==> *since == m->now;
+    ensures operand == $_TRUE && \\old(*since) != $_UNSET ==> *since == \\old(*since);
     ensures operand == $_TRUE && m->now - *since >= duration ==> \\result == $_TRUE;
     ensures operand == $_TRUE && m->now - *since < duration ==> \\result == $_FALSE;
-    ensures operand == $_TRUE && \\old(*since) == $_NEVER
+    ensures operand == $_TRUE && \\old(*since) == $_UNSET
       ==> m->due == \\min(\\old(m->due), m->now + duration);
-    ensures operand != $_TRUE || \\old(*since) != $_NEVER ==> m->due == \\old(m->due); */
+    ensures operand != $_TRUE || \\old(*since) != $_UNSET ==> m->due == \\old(m->due); */
 static @_verdict lasting(
   @_monitor *m, int64_t *since, @_verdict operand, int64_t duration)
 {
   @_verdict verdict = operand;
   if (operand != $_TRUE) {
-    *since = $_NEVER;
+    *since = $_UNSET;
   } else {
-    if (*since == $_NEVER) {
+    if (*since == $_UNSET) {
       *since = m->now;
       m->due = earlier(m->due, m->now + duration);
     }

@@ -100,7 +100,7 @@ class _Writer:
 
     def _ranges(self, names: Iterable[str]) -> list[str]:
         """Return what each of the named fields is in."""
-        latest, never = self._macro("LATEST"), self._macro("NEVER")
+        latest, unset = self._macro("LATEST"), self._macro("UNSET")
         sinces = set(self._layout.since.values())
         turned = set(self._layout.turned.values())
         values = {term.name for term in self._layout.terms.values()}
@@ -108,7 +108,7 @@ class _Writer:
         for name in names:
             kind = self._types[name]
             if name in sinces:
-                found.append(f"(m->{name} == {never} || 0 <= m->{name} <= m->now)")
+                found.append(f"(m->{name} == {unset} || 0 <= m->{name} <= m->now)")
             elif kind == "bool":
                 found.append(f"(m->{name} == 0 || m->{name} == 1)")
             elif kind.endswith("_verdict"):
@@ -136,8 +136,8 @@ class _Writer:
     def _for_in_time(self, condition: For) -> str:
         since = self._layout.since[condition.index]
         end = f"m->{since} + {condition.duration_ns}"
-        never = self._macro("NEVER")
-        return f"(m->{since} != {never} && {end} > m->now ==> m->due <= {end})"
+        unset = self._macro("UNSET")
+        return f"(m->{since} != {unset} && {end} > m->now ==> m->due <= {end})"
 
     def _unexpired(self) -> list[str]:
         return [
@@ -157,7 +157,7 @@ class _Writer:
     def _runs(self, condition: For) -> str:
         since = self._layout.since[condition.index]
         operand = self._meaning.true(condition.operand)
-        return iff(f"m->{since} != {self._macro('NEVER')}", operand)
+        return iff(f"m->{since} != {self._macro('UNSET')}", operand)
 
     def _acted(self, behaviour: Behaviour) -> list[str]:
         """Return that a behaviour holds if its condition does, within what encloses it."""
@@ -227,12 +227,12 @@ class _Writer:
         """Add what becomes of intervals: begun now, kept, or cleared; and in time."""
         if not fors:
             return
-        never = self._macro("NEVER")
+        unset = self._macro("UNSET")
         contract.assigns += [*(f"m->{since}" for since in sinces), "m->due"]
         contract.ensures += self._ranges(sinces)
         for each, since in zip(fors, sinces, strict=True):
-            running = f"m->{since} != {never}"
-            kept = f"(\\old(m->{since}) == {never} ? m->now : \\old(m->{since}))"
+            running = f"m->{since} != {unset}"
+            kept = f"(\\old(m->{since}) == {unset} ? m->now : \\old(m->{since}))"
             contract.ensures.append(f"{running} ==> m->{since} == {kept}")
             contract.ensures.append(self._for_in_time(each))
         contract.ensures.append("m->due <= \\old(m->due)")

@@ -272,14 +272,14 @@ def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
 
 def _verdict_fields(program: Program, layout: Layout) -> Iterator[Field]:
     verdict, unknown = f"{layout.prefix}_verdict ", f"{layout.macro}_UNKNOWN"
-    never = f"{layout.macro}_NEVER"
+    unset = f"{layout.macro}_UNSET"
     for rule in program.rules:
         name = layout.verdicts[rule.index]
         yield Field(verdict, name, f"rule {rule.full_name}", 4, unknown)
         what = "when it last became true or ceased to be"
         yield Field("int64_t ", layout.turned[rule.index], what, 8, "", "m->now")
     for name in layout.since.values():
-        yield Field("int64_t ", name, "since when its operand has been true", 8, "", never)
+        yield Field("int64_t ", name, "since when its operand has been true", 8, "", unset)
     for name in layout.holds.values():
         yield Field("bool ", name, "whether its condition holds", 1, "false")
     for name in layout.enabled.values():
@@ -310,7 +310,7 @@ def ends(program: Program, layout: Layout) -> Iterator[End]:
     for condition in walk.conditions(program):
         if isinstance(condition, For) and condition.index in layout.since:
             since = layout.since[condition.index]
-            yield End(f"m->{since} != {layout.macro}_NEVER", since, condition.duration_ns)
+            yield End(f"m->{since} != {layout.macro}_UNSET", since, condition.duration_ns)
     found: dict[End, None] = {}
     for condition in walk.conditions(program):
         if isinstance(condition, Age):
