@@ -33,6 +33,18 @@ test: $(READY)  ## Run all tests, those on the real middleware included
 property: $(READY)  ## Compare generated monitors with the reference on 100,000 random pairs (nightly)
 	@$(ALONE) $(BIN)/python tools/property.py --jobs $(JOBS)
 
+.PHONY: sanitize
+sanitize: $(READY)  ## Compare monitors in C with the reference, watched by gcc's sanitizers
+	@$(ALONE) $(BIN)/python tools/sanitize.py
+
+.PHONY: fuzz
+fuzz: $(READY)  ## Fuzz the monitors in C of the examples, 30 seconds each; needs clang
+	@$(ALONE) $(BIN)/python tools/fuzz.py
+
+.PHONY: misra
+misra: $(READY)  ## Hold the emitted C against MISRA C:2012; needs cppcheck
+	@$(ALONE) $(BIN)/python tools/misra.py
+
 .PHONY: lint
 lint: $(READY)  ## Check format, style, types and the layering of the packages
 	$(BIN)/ruff format --check $(CHECKED)

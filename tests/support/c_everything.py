@@ -93,7 +93,8 @@ entity controller {
 if drive.too_fast and controller.auto then { stop; log_state("too fast: don't ünd so"); };
 behaviour tilt: if body.tilted for 0.4 sec then {
   motor_stop;
-  if not controller.manual for 1 sec then { beep(3, "a", true, 0.5); if body.turned then { horn; }; };
+  if not controller.manual for 1 sec
+  then { beep(3, "a", true, 0.5); if body.turned then { horn; }; };
   stop;
 };
 optional behaviour near: if body.near or body.turning or drive.silent or drive.jerky then { stop; };

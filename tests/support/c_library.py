@@ -6,6 +6,7 @@ import contextlib
 import ctypes
 import shutil
 import subprocess
+import tempfile
 from array import array
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,6 +29,10 @@ needs_c = pytest.mark.skipif(shutil.which(COMPILER) is None, reason=f"no {COMPIL
 
 LIMIT = 600.0
 """Seconds that the compiler may take for a library."""
+
+
+class CrashError(AssertionError):
+    """The program has ended; what its sanitizers said."""
 
 
 class Library(Protocol):
@@ -120,7 +125,7 @@ class Watched:
         """Call the monitor that was begun last.
 
         Raises:
-            AssertionError: the sanitizers found something.
+            CrashError: the sanitizers found something.
         """
         self._write(array("q", [number, len(words)]) + words)
         (count,) = self._read(1)
@@ -132,12 +137,13 @@ class Watched:
             self._process.stdin.write(words.tobytes())
             self._process.stdin.flush()
         except BrokenPipeError:
-            raise AssertionError(self._report()) from None
+            raise CrashError(self._report()) from None
 
     def _read(self, count: int) -> array[int]:
         assert self._process.stdout is not None
         found = self._process.stdout.read(8 * count)
-        assert len(found) == 8 * count, self._report()
+        if len(found) != 8 * count:
+            raise CrashError(self._report())
         words = array("q")
         words.frombytes(found)
         return words
@@ -166,3 +172,22 @@ def compile_units(units: Sequence[Unit], folder: Path, name: str, *arguments: st
     )
     assert done.returncode == 0, done.stderr
     return folder / name
+
+
+def has_sanitizers() -> bool:
+    """Tell whether the compiler links programs that its sanitizers watch."""
+    with tempfile.TemporaryDirectory(prefix="deros-c-") as folder:
+        return shutil.which(COMPILER) is not None and links(folder, COMPILER, *SANITIZED)
+
+
+def links(folder: str, *command: str, text: str = "int main(void) { return 0; }") -> bool:
+    """Tell whether a compiler makes a program of a text."""
+    done = subprocess.run(
+        [*command, "-x", "c", "-", "-o", str(Path(folder) / "tried")],
+        input=text,
+        capture_output=True,
+        text=True,
+        timeout=LIMIT,
+        check=False,
+    )
+    return done.returncode == 0

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from deros.generators.protocol import GenerationError
 from tests.support import c_monitors
 from tests.support.c_harness import Unit, unit
-from tests.support.c_library import Library, Loaded
+from tests.support.c_library import CrashError, Library, Loaded
 from tests.support.counterexamples import Pair, pairs
 from tests.support.strategies import ALL_KINDS, KINDS, MORE_KINDS, programs
 
@@ -73,7 +73,8 @@ def differences(library: Library, chosen: Sequence[Case]) -> Iterator[tuple[Pair
         for pair in case.pairs:
             error = _difference(library, number, pair)
             if error is not None:
-                yield _shortened(library, number, pair), error
+                crashed = isinstance(error, CrashError)  # and answers no more
+                yield pair if crashed else _shortened(library, number, pair), error
 
 
 def compare_alone(pair: Pair) -> None:
