@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ast
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from tests.support.builds import colcon, models, replace
+from tests.support.builds import colcon, frozen_program, models, replace
 from tests.support.cli import deros
 
 ACTIONS = "robot_safety/robot_safety_node_actions.py"
@@ -130,8 +131,12 @@ def test_setup_generates_only_what_changed(package: Path) -> None:
     generated = package / ".deros/robot_safety/robot_safety/monitor.py"
     command = [sys.executable, "setup.py", "--name"]
 
+    env = {**os.environ, "PYTHONPATH": str(frozen_program().parents[1])}
+
     def name() -> str:
-        done = subprocess.run(command, cwd=package, capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            command, cwd=package, env=env, capture_output=True, text=True, check=True
+        )
         return done.stdout
 
     assert name() == "robot_safety\n", "colcon reads what setup.py prints"

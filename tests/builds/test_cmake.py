@@ -15,6 +15,7 @@ from tests.support.builds import (
     PROGRAM,
     Project,
     configured,
+    frozen_program,
     models,
     needs_cmake,
     replace,
@@ -81,6 +82,15 @@ def test_follows_the_folders_of_globs(folder: Path, tool: str) -> None:
     touch(source / "nodes/new.rnd")
     assert project.generated() == 1
     (source / "nodes/new.rnd").unlink()
+    assert project.generated() == 1
+    assert project.generated() == 0
+
+
+def test_follows_deros_itself(folder: Path, tool: str) -> None:
+    """Another deros generates anew, for it may generate something else."""
+    project = configured(folder, tool, SCRIPT)
+    assert project.generated() == 1
+    touch(frozen_program().parents[1] / "deros/generators/rossystem_script/generate.py")
     assert project.generated() == 1
     assert project.generated() == 0
 

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import atexit
+import functools
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
 
+import deros as package
 from tests.support.cli import deros
 
 PROGRAM = Path(sys.executable).with_name("deros")
@@ -22,6 +27,22 @@ GENERATORS = ("Ninja", "Unix Makefiles")
 needs_cmake = pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake")
 
 _LIMIT = 300.0
+
+
+@functools.cache
+def frozen_program() -> Path:
+    """Return a deros that stays as it is while somebody works on deros; builds follow it, too."""
+    folder = Path(tempfile.mkdtemp(prefix="deros-builds-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    ignored = shutil.ignore_patterns("__pycache__", ".*")
+    shutil.copytree(Path(package.__file__).parent, folder / "deros", ignore=ignored)
+    program = folder / "bin/deros"
+    program.parent.mkdir()
+    start = shlex.join([sys.executable, "-c", "from deros.cli.main import main; main()"])
+    path = f'PYTHONPATH={shlex.quote(str(folder))}${{PYTHONPATH:+":$PYTHONPATH"}}'
+    program.write_text(f'#!/bin/sh\n{path} exec {start} "$@"\n')
+    program.chmod(0o755)
+    return program
 
 
 def models(folder: Path) -> Path:
@@ -60,7 +81,11 @@ class Project:
 
     def configure(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         """Run CMake on the project."""
-        found = [f"-Dderos_DIR={deros('cmake-dir').out.strip()}", f"-Dderos_EXECUTABLE={PROGRAM}"]
+        program = frozen_program()
+        found = [
+            f"-Dderos_DIR={program.parents[1] / 'deros/cmake'}",
+            f"-Dderos_EXECUTABLE={program}",
+        ]
         where = ["-S", str(self.folder), "-B", str(self.build_folder)]
         command = ["cmake", "-G", self._generator, *where, *found, *arguments]
         return _run(command, self.folder)
