@@ -13,6 +13,7 @@ from deros.generators.writer import write
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from tests.support.cpp import message_flags, needs_compiler
+from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.gate_cpp import STRICT, needs_clang
 from tests.support.gate_cpp_nodes import PACKAGE, gate_package
 from tests.support.gate_nodes import MODELS
@@ -72,16 +73,29 @@ def test_the_files_are_as_kept(golden: Golden, files: Files) -> None:
     golden.check("gate_cpp/gates", kept)
 
 
+def write_kinds(folder: Path) -> None:
+    """Write gates of all kinds, and those of the model."""
+    for number, kind in enumerate(KINDS):
+        text = f"{HEAD}gate /wish/of/somebody -> /command : {kind}"
+        write(gate_package(text, name=f"kind_{number}"), folder)
+    write(gate_package((MODELS / "gates.deros").read_text(encoding="utf-8")), folder)
+
+
+def test_the_linters_of_ament_find_nothing(tmp_path: Path) -> None:
+    """uncrustify, cpplint and cppcheck with ament's settings pass all files of gates."""
+    write_kinds(tmp_path)
+    for shared in tmp_path.glob("kind_*/**/runtime/*"):
+        shared.unlink()  # it is there once, in the package of the model
+    assert_cpp_lint_clean(tmp_path)
+
+
 @needs_compiler
 @pytest.mark.parametrize(
     "compiler", ["g++", pytest.param("clang++", marks=needs_clang)], ids=["gcc", "clang"]
 )
 def test_every_kind_of_logic_compiles_strictly(compiler: str, tmp_path: Path) -> None:
     """No combination of lines and types makes a compiler warn of anything; nor does the model."""
-    for number, kind in enumerate(KINDS):
-        text = f"{HEAD}gate /wish/of/somebody -> /command : {kind}"
-        write(gate_package(text, name=f"kind_{number}"), tmp_path)
-    write(gate_package((MODELS / "gates.deros").read_text(encoding="utf-8")), tmp_path)
+    write_kinds(tmp_path)
     sources = sorted(tmp_path.rglob("*_logic.cpp"))
     assert len(sources) == len(KINDS) + len(GATES)
     packages = sorted(path for path in tmp_path.iterdir() if path.is_dir())

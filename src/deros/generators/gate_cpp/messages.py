@@ -131,7 +131,8 @@ def _zeros(definition: MessageDefinition, found: dict[InterfaceType, TypeView]) 
             statement = f"make_zero({each}{', stamp' if view.stamped else ''});"
         else:
             continue
-        yield f"for (auto & each : {place}) {{{statement}}}" if field.is_array else statement
+        loop = f"for (auto & each : {place}) {{\n    {statement}\n  }}"
+        yield loop if field.is_array else statement
 
 
 def _zero(base: str) -> str:

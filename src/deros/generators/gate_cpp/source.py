@@ -95,8 +95,8 @@ def _wide_string(text: str) -> str:
 
 def string_lines(text: str, indent: int) -> str:
     """Return a string literal that begins in column ``indent``, in parts where it is too long."""
-    lines = expression(Text(text), indent + 1, ",")
-    return f"({lines[:-1]})" if "\n" in lines else lines[:-1]
+    lines = expression(Text(text), indent + 1, ",")[:-1].replace("\n ", "\n")
+    return f"({lines})" if "\n" in lines else lines  # else a comma might seem to be forgotten
 
 
 def condition(operands: Sequence[str], indent: int) -> str:

@@ -76,7 +76,7 @@ private:
   std::vector<bool> told_;  // of each line whether it applied when that was reported last
   std::size_t refused_{0};
   std::string cause_;
-  std::vector<std::pair<std::string, std::string>> faults_;  // what they are about, and what they are
+  std::vector<std::pair<std::string, std::string>> faults_;  // each with what it is about
   Publishers publishers_;
   Alarm alarm_;
 };

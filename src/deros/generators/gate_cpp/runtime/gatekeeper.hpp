@@ -73,7 +73,7 @@ public:
   Gatekeeper(const Gatekeeper &) = delete;
   Gatekeeper & operator=(const Gatekeeper &) = delete;
 
-  /// Open the port of a topic whose messages are handed over as they came; to be done before start().
+  /// Hear a topic, whose messages are handed over as they came; to be called before start().
   template<typename MessageT>
   void subscribe(const std::string & topic, const rclcpp::QoS & qos, Take take)
   {
