@@ -95,7 +95,8 @@ def _generate(request: Request, source: Path) -> _Outcome:
         write_if_changed(ros, os.environ.get("AMENT_PREFIX_PATH", ""))
         started = produce.now_ns()
         there = stamped(stamp)
-        if is_current(stamp, depfile) and all((output / each).exists() for each in there):
+        whole = bool(there) and all((output / each).exists() for each in there)
+        if whole and is_current(stamp, depfile):
             return _Outcome(there[0].partition("/")[0])
         made = produce.make(request)
         findings = made.findings

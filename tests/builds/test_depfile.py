@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import deros.generators
-from deros.cli.depfile import depfile, is_current, prerequisites
+from deros.cli.depfile import depfile, is_current, prerequisites, stamped
 from tests.support.builds import PROGRAM, frozen_program, models, replace, touch
 from tests.support.cli import Outcome
 from tests.support.cli import deros as run
@@ -153,7 +153,7 @@ def test_the_stamp_names_the_output(tmp_path: Path) -> None:
     """The stamp lists what deros keeps up to date; files of the user are not among it."""
     models(tmp_path)
     _generate("robot.deros", "python")
-    listed = Path("stamp").read_text().splitlines()
+    listed = stamped(Path("stamp"))
     files = {str(p.relative_to("out")) for p in Path("out").rglob("*") if p.is_file()}
     assert files - set(listed) == {"robot_safety/robot_safety/robot_safety_node_actions.py"}
     assert listed == sorted(listed)
@@ -215,6 +215,20 @@ def test_a_stamp_is_as_old_as_the_beginning_of_its_run(tmp_path: Path) -> None:
     assert not is_current(stamp, rule)
     assert not is_current(tmp_path / "none", rule)
     assert not is_current(stamp, tmp_path / "none")
+
+
+def test_no_other_file_is_taken_for_a_stamp(tmp_path: Path) -> None:
+    """A model that is named as the stamp by mistake is not written over."""
+    rules = models(tmp_path)
+    before = rules.read_bytes()
+    command = ["generate", "robot.deros", "--target", "c", "-o", "out"]
+    outcome = run(*command, "--stamp", "robot.deros")
+    assert outcome.code == 2
+    assert "robot.deros: it is no stamp of deros" in outcome.err
+    assert rules.read_bytes() == before
+    outcome = run(*command, "--stamp", "s", "--scaffold", "x")
+    assert outcome.code == 2
+    assert "--scaffold goes without" in outcome.err
 
 
 def test_a_stamp_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:

@@ -201,7 +201,7 @@ def test_stale_files_go_with_their_folders(source: Path, tmp_path: Path) -> None
     generated = with_banner("x.py", "x = 1\n")
     _write(output, {"a/b/x.py": generated, "a/empty": "", "edited.py": generated + "# mine\n"})
     (output / "a/link").symlink_to(source / "p/node.py")
-    stale = ["a/b/x.py", "a/empty", "a/link", "edited.py", "never/was"]
+    stale = ["a/b/x.py", "a/empty", "a/link", "edited.py", "never/was", "../source/p/node.py"]
     remove_stale(stale, output, overwrite=False)
     assert [path.name for path in output.rglob("*")] == ["edited.py"]
     remove_stale(stale, output, overwrite=True)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _SPECIAL = re.compile(r"[ \t#]")
 _ESCAPED = re.compile(r"\\([ \t#])|\$(\$)")
 _END = re.compile(r" \\$")
+_STAMP = "# The last run of deros made these files:\n"
 
 
 def inputs(context: Context, generator: Generator, more: Iterable[Path] = ()) -> list[str]:
@@ -103,10 +104,12 @@ def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
     A model that is saved while deros runs is then newer than the stamp, and not overlooked.
 
     Raises:
-        WriteError: if it cannot be written.
+        WriteError: if it cannot be written, or another file is in its place.
     """
-    write_if_changed(path, "".join(f"{each}\n" for each in made))
     try:
+        if path.exists() and path.read_bytes()[: len(_STAMP)] not in (_STAMP.encode(), b""):
+            raise WriteError(f"refused to write {path}: it is no stamp of deros")
+        write_if_changed(path, _STAMP + "".join(f"{each}\n" for each in made))
         os.utime(path, ns=(started_ns, started_ns))
     except OSError as error:
         raise WriteError(f"cannot write {path}: {error.strerror or error}") from error
@@ -115,6 +118,7 @@ def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
 def stamped(path: Path) -> list[str]:
     """Return what the run before made, as its stamp says; nothing if there was none."""
     try:
-        return path.read_text(encoding="utf-8").splitlines()
+        text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         return []
+    return text.removeprefix(_STAMP).splitlines() if text.startswith(_STAMP) else []

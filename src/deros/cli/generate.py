@@ -94,6 +94,8 @@ def generate(
     from deros.generators.source_tree import SourceTreeError
     from deros.generators.writer import WriteError, write
 
+    if scaffold is not None and (depfile or stamp or source):
+        raise click.UsageError("--scaffold goes without --depfile, --stamp and --source")
     started = produce.now_ns()
     request = produce.Request(file, target, _pairs(ctx.args), interfaces)
     try:

@@ -176,6 +176,8 @@ def remove_stale(stale: Iterable[str], output: Path, *, overwrite: bool) -> None
     A file that a hand has edited stays, unless ``overwrite``.
     """
     for path in stale:
+        if ".." in PurePosixPath(path).parts or PurePosixPath(path).is_absolute():
+            continue
         target = output / path
         if not target.is_symlink():
             if not target.is_file():
