@@ -41,7 +41,7 @@ def test_each_node_takes_over_what_the_other_has_latched(
             process.wait(LIMIT)
         robot.forget()
         with second() as process:
-            robot.peer.until(lambda: robot.beats)
+            robot.peer.until(lambda: robot.beats and robot.stop)
             assert all(robot.stop)
             assert robot.event("latched")["action"] == "stop"
             assert robot.reset().message == "stop is reset"
@@ -50,7 +50,7 @@ def test_each_node_takes_over_what_the_other_has_latched(
             process.wait(LIMIT)
         robot.forget()
         with first():
-            robot.peer.until(lambda: robot.beats)
+            robot.peer.until(lambda: robot.beats and robot.stop)
             assert not any(robot.stop)
         robot.forget()
 
@@ -62,7 +62,7 @@ def test_neither_runs_beside_the_other(start: Start, start_python: Start, robot:
             output, _ = refused.communicate(timeout=LIMIT)
             assert refused.returncode == 1
             assert f"as process {running.pid}: this second one ends now" in output
-            robot.peer.until(lambda: robot.beats)
+            robot.peer.until(lambda: robot.beats and robot.stop)
         robot.forget()
 
 

@@ -32,14 +32,16 @@ class Events
 {
 public:
   using Status = diagnostic_msgs::msg::DiagnosticStatus;
+  using Log = std::function<void (Level, const std::string &)>;
+  using Publish = std::function<void (const Status &)>;
 
   /// What tells of the node and of the world outside.
   struct Outside
   {
     std::string name;  // of the node, in full
     std::function<Time()> ros_now;
-    std::function<void (Level, const std::string &)> log;
-    std::function<void (const Status &)> publish;
+    Log log;
+    Publish publish;
   };
 
   Events(const Origins & origins, Outside outside);

@@ -87,12 +87,12 @@ public:
   /// The parameters of the node.
   struct Settings
   {
-    double publish_freq;
-    double startup_grace;
+    double publish_freq = 0.0;
+    double startup_grace = 0.0;
     std::string state_file;
-    double diagnostics_freq;
-    std::int64_t realtime_priority;
-    bool lock_memory;
+    double diagnostics_freq = 0.0;
+    std::int64_t realtime_priority = 0;
+    bool lock_memory = false;
   };
 
   /// A topic of the rules, and its type.

@@ -4,6 +4,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "rclcpp/rclcpp.hpp"
 
@@ -13,8 +14,10 @@ namespace deros_runtime
 /// A node with a thread of its own, as its program sees it.
 struct Living
 {
+  using WhenEnded = std::function<void (std::function<void()>)>;
+
   rclcpp::Node::SharedPtr node;
-  std::function<void (std::function<void()>)> when_ended;  // has a function called at the end
+  WhenEnded when_ended;  // has a function called at the end
   std::function<void()> stop;  // ends the thread, and waits for that
   std::function<std::exception_ptr()> failure;  // what ended the thread, if something was thrown
 };

@@ -45,7 +45,7 @@ struct Action
   bool is_shown;  // in the diagnostics
   std::optional<std::size_t> latch;  // its number among the latched actions
   std::optional<std::size_t> first_call;  // the site of its first call
-  std::vector<std::size_t> callers;  // the behaviours that call for it, if it can be refused a reset
+  std::vector<std::size_t> callers;  // the behaviours that call for it, if it can be reset
 };
 
 /// A place in the rules that makes events.
