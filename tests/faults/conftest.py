@@ -7,23 +7,25 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.faults import Robot, generate_robot
+from tests.support.cpp import needs_rclcpp
+from tests.support.faults import CppRobot, PythonRobot, Robot, Software
 from tests.support.ros import Peer
 
 RULES = Path(__file__).resolve().parent / "models" / "faulty.deros"
 
 
-@pytest.fixture(scope="session")
-def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give the folder of the generated package of the safety node."""
-    return generate_robot(RULES, tmp_path_factory.mktemp("faulty"))
+@pytest.fixture(scope="session", params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Software:
+    """Give the generated safety node and gate, in one language after the other."""
+    made = PythonRobot if request.param == "python" else CppRobot
+    return made(RULES, tmp_path_factory.mktemp("faulty"))
 
 
 @pytest.fixture
 def robot(
-    package: Path, tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
+    software: Software, tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
 ) -> Iterator[Robot]:
     """Give the robot under test."""
-    robot = Robot(package, tmp_path, ros_env, ros_peer)
+    robot = Robot(software, tmp_path, ros_env, ros_peer)
     yield robot
     robot.clear()

@@ -15,12 +15,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from deros.generators.protocol import Context
-from deros.generators.safety_python.generate import generate
+from deros.generators.protocol import Context, Files
+from deros.generators.safety_cpp import generate as safety_cpp
+from deros.generators.safety_python import generate as safety_python
 from deros.generators.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
+from tests.support.cpp import colcon_build, overlay, program
 from tests.support.played import COMMAND, SENSES, TOPICS, speed
 from tests.support.ros import LIMIT, Peer
 from tests.support.victims import Process, Sensors
@@ -42,20 +44,52 @@ VIOLATION = 9.0
 _UNFILLED = re.compile(r"^    @not_filled_in\n", re.MULTILINE)
 
 
-def generate_robot(rules: Path, folder: Path) -> Path:
-    """Generate the safety node of ``rules`` into a folder, and return the package's folder.
-
-    Its actions that are robot code are filled in: they do nothing.
-    """
+def _generate(target: Callable[..., Files], rules: Path, folder: Path) -> None:
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load(rules).model
     assert isinstance(model, Rules), context.repository.diagnostics
-    write(generate(model, context, {}), folder)
-    actions = folder / PACKAGE / PACKAGE / f"{NODE}_actions.py"
-    filled, count = _UNFILLED.subn("", actions.read_text(encoding="utf-8"))
-    assert count == 2
-    actions.write_text(filled.replace("    not_filled_in,\n", ""), encoding="utf-8")
-    return folder / PACKAGE
+    write(target(model, context, {}), folder)
+
+
+class PythonRobot:
+    """The generated nodes in Python; the actions that are robot code are filled in with nothing."""
+
+    def __init__(self, rules: Path, folder: Path) -> None:
+        """Generate the package of ``rules`` into a folder."""
+        _generate(safety_python.generate, rules, folder)
+        actions = folder / PACKAGE / PACKAGE / f"{NODE}_actions.py"
+        filled, count = _UNFILLED.subn("", actions.read_text(encoding="utf-8"))
+        assert count == 2
+        actions.write_text(filled.replace("    not_filled_in,\n", ""), encoding="utf-8")
+        self._path = folder / PACKAGE
+
+    def command(self, module: str, env: Mapping[str, str]) -> tuple[list[str], dict[str, str]]:
+        """Return what runs a node, and the environment for it."""
+        command = [sys.executable, "-m", f"{PACKAGE}.{module}"]
+        return command, {**env, "PYTHONPATH": str(self._path)}
+
+
+class CppRobot:
+    """The generated nodes in C++, built; the same actions are filled in."""
+
+    def __init__(self, rules: Path, folder: Path) -> None:
+        """Generate the package of ``rules`` into a folder, and build it."""
+        _generate(safety_cpp.generate, rules, folder)
+        package = f"{PACKAGE}_cpp"
+        header = folder / package / "include" / package / f"{NODE}_actions.hpp"
+        text = header.read_text(encoding="utf-8")
+        filled, count = re.subn(r"// (void \w+\(\)) override;", r"\1 override {}", text)
+        assert count == 2
+        header.write_text(filled, encoding="utf-8")
+        self._install = colcon_build(folder)
+
+    def command(self, module: str, env: Mapping[str, str]) -> tuple[list[str], dict[str, str]]:
+        """Return what runs a node, and the environment for it."""
+        command = [program(self._install, f"{PACKAGE}_cpp", f"{module}_cpp")]
+        return command, overlay(self._install, env)
+
+
+Software = PythonRobot | CppRobot
 
 
 @dataclass(frozen=True)
@@ -81,7 +115,9 @@ class Robot:
         commands: the speeds that have reached the drive.
     """
 
-    def __init__(self, package: Path, folder: Path, env: Mapping[str, str], peer: Peer) -> None:
+    def __init__(
+        self, software: Software, folder: Path, env: Mapping[str, str], peer: Peer
+    ) -> None:
         """Listen to what the safety node publishes."""
         from geometry_msgs.msg import Twist
         from std_msgs.msg import Bool, Float64, UInt64
@@ -89,9 +125,9 @@ class Robot:
 
         self.peer = peer
         self.folder = folder
+        self._software = software
         self.env = {
             **env,
-            "PYTHONPATH": str(package),
             "ROS_HOME": str(folder),
             "ROS_LOG_DIR": str(folder / "log"),
         }
@@ -170,8 +206,8 @@ class Robot:
         """Start a node of the generated package; whoever starts it ends it."""
         words = [word for each in parameters for word in ("-p", each)]
         ros = ["--ros-args", *words] if words else []
-        command = [sys.executable, "-m", f"{PACKAGE}.{module}", *ros]
-        return self._start(command, {**self.env, **env}, module)
+        command, own = self._software.command(module, self.env)
+        return self._start([*command, *ros], {**own, **env}, module)
 
     def _start(self, command: Sequence[str], env: Mapping[str, str], name: str) -> Process:
         number = len(self._processes)

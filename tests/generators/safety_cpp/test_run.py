@@ -58,11 +58,12 @@ def test_each_node_takes_over_what_the_other_has_latched(
 def test_neither_runs_beside_the_other(start: Start, start_python: Start, robot: Robot) -> None:
     """The lock is one: the second ends at once and names the first."""
     for first, second in ((start, start_python), (start_python, start)):
-        with first() as running, second() as refused:
-            output, _ = refused.communicate(timeout=LIMIT)
+        with first() as running:
+            robot.peer.until(lambda: robot.beats)
+            with second() as refused:
+                output, _ = refused.communicate(timeout=LIMIT)
             assert refused.returncode == 1
             assert f"as process {running.pid}: this second one ends now" in output
-            robot.peer.until(lambda: robot.beats and robot.stop)
         robot.forget()
 
 
@@ -90,14 +91,17 @@ def test_both_report_the_same_of_the_same_messages(
                 name: (status.level, status.message, _timeless(status.values))
                 for name, status in robot.statuses.items()
             }
-            seen.append((statuses, [_timeless(event) for event in robot.events]))
+            events = [
+                _timeless(robot.event("trigger", action="stop")),
+                _timeless(robot.event("trigger", action="crawl")),
+                _timeless(robot.event("trigger", action="log_state")),
+                _timeless(robot.event("reset", action="stop")),
+                _timeless(robot.event("start")),
+            ]
+            seen.append((statuses, events))
         robot.forget()
-    (cpp, cpp_events), (python, python_events) = seen
-    assert cpp == python
-    kinds = ("trigger", "reset", "start")
-    assert [e for e in cpp_events if e["kind"] in kinds] == [
-        e for e in python_events if e["kind"] in kinds
-    ]
+    in_cpp, in_python = seen
+    assert in_cpp == in_python
 
 
 def _timeless(values: dict[str, str]) -> dict[str, str]:
