@@ -363,6 +363,15 @@ def test_a_managed_node_rests_until_activated(start: Start, ros_peer: Peer) -> N
     assert code == 0, output
 
 
+@pytest.mark.parametrize("value", [float("inf"), float("-inf"), float("nan"), 1.001])
+def test_no_number_passes_a_range(value: float, start: Start, ros_peer: Peer) -> None:
+    """What rclcpp's own check of a range lets pass, infinity and NaN, is refused all the same."""
+    with start("process", "valve"):
+        ros_peer.until(lambda: "valve" in ros_peer.node.get_node_names())
+        (result,) = set_parameter(ros_peer, "valve", opening=value)
+    assert not result.successful
+
+
 @pytest.mark.parametrize(("order", "outcome"), [(5, 0 + 1 + 2 + 3 + 4), (0, -1)])
 def test_a_goal_runs_beside_the_other_handlers(
     order: int, outcome: int, start: Start, ros_peer: Peer

@@ -19,6 +19,7 @@ from deros.generators.rosnode_python.parameters import ParameterView as SharedVi
 from deros.generators.rosnode_python.parameters import (
     describe,
     integer_bounds,
+    interval_text,
     parameter_views,
 )
 from deros.metamodels.common import Interval, Scalar, Value
@@ -105,12 +106,19 @@ def cpp_parameter_views(model: NodeType) -> tuple[ParameterView, ...]:
 def _view(parameter: Parameter, shared: SharedView, read_only: bool) -> ParameterView:
     kind = parameter.type
     literal = cpp_string(parameter.name)
-    checks = tuple(
-        Check(prepared, violated, Text(constraint.requirement))
-        for (prepared, violated), constraint in zip(
-            _violations(parameter), shared.constraints, strict=True
+    requirements = tuple(constraint.requirement for constraint in shared.constraints)
+    checks = [
+        Check(prepared, violated, Text(requirement))
+        for (prepared, violated), requirement in zip(
+            _violations(parameter), requirements, strict=True
         )
-    )
+    ]
+    if parameter.interval is not None and kind is ParameterType.DOUBLE:
+        # The range in the descriptor says the same, but rclcpp lets NaN and infinity pass it.
+        violated = f"!({_within(parameter.interval, kind, 'value')})"
+        text = f"must lie in {interval_text(parameter.interval, kind)}"
+        if text not in requirements:
+            checks.append(Check(None, violated, Text(text)))
     declared: Expression = f"rclcpp::ParameterType::PARAMETER_{kind.name}"
     if parameter.default is not None:
         declared = Call("rclcpp::ParameterValue", (_typed(parameter.default, kind),))
@@ -123,9 +131,9 @@ def _view(parameter: Parameter, shared: SharedView, read_only: bool) -> Paramete
         declared=declared,
         reading=f"get_parameter({literal}).{_READERS[kind]}()",
         comment=" ".join(shared.comment),
-        described=tuple(_described(parameter, checks, read_only)),
+        described=tuple(_described(parameter, requirements, read_only)),
         reader=_READERS[kind],
-        checks=checks,
+        checks=tuple(checks),
     )
 
 
@@ -169,13 +177,12 @@ def _initialiser(parameter: Parameter) -> str:
 
 
 def _described(
-    parameter: Parameter, checks: tuple[Check, ...], read_only: bool
+    parameter: Parameter, requirements: tuple[str, ...], read_only: bool
 ) -> Iterator[tuple[str, Expression]]:
     if text := describe(parameter):
         yield "about.description =", Text(text)
-    if checks:
-        text = "; ".join(check.requirement.text for check in checks)
-        yield "about.additional_constraints =", Text(text)
+    if requirements:
+        yield "about.additional_constraints =", Text("; ".join(requirements))
     if read_only:
         yield "about.read_only =", "true"
     interval = parameter.interval
