@@ -44,6 +44,9 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         metavar="DIR",
         help="where packages, logs and the picture go, default %(default)s",
     )
+    parser.add_argument(
+        "--cpp", action="store_true", help="with the safety node and the gate in C++; needs rclcpp"
+    )
     options = parser.parse_args(arguments)
     if options.repeat < 1:
         parser.error("--repeat takes a number from 1")
@@ -65,7 +68,7 @@ def _leave(number: int, _frame: FrameType | None) -> None:
 
 
 def _demonstrate(options: argparse.Namespace) -> int:
-    from demonstration.build import BuildError, build
+    from demonstration.build import BuildError, build, build_cpp, in_cpp
     from demonstration.cases import CASES
     from demonstration.picture import page
     from demonstration.scoreboard import Scoreboard, summary
@@ -74,13 +77,18 @@ def _demonstrate(options: argparse.Namespace) -> int:
 
     console = Console()
     output: Path = options.output
-    workshop = Workshop(EXAMPLE / "feeding_robot.system", output / "packages", output)
+    system = EXAMPLE / "feeding_robot.system"
+    folders: tuple[Path, ...] = (output / "packages",)
     try:
-        packages = build(EXAMPLE, workshop.packages)
+        packages = build(EXAMPLE, folders[0])
+        if options.cpp:
+            folders = (build_cpp(EXAMPLE, output / "cpp"), *folders)
+            system = in_cpp(system, output)
     except BuildError as error:
         console.print(str(error), style="red", soft_wrap=True, highlight=False)
         return 1
-    console.print(f"Generated {len(packages)} packages into {workshop.packages}", soft_wrap=True)
+    console.print(f"Generated {len(packages)} packages into {folders[-1]}", soft_wrap=True)
+    workshop = Workshop(system, folders, output)
     cases = [case for case in CASES if not options.cases or case.number in options.cases]
     with Scoreboard(console, cases, options.repeat) as board:
         recordings = run(workshop, cases, options.repeat, board.begin, board.report)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from html.parser import HTMLParser
+from pathlib import Path
 from typing import Any
 
 import pytest
 from rich.console import Console
 
-from tests.support.examples import example_module
+from tests.support.cli import deros
+from tests.support.examples import EXAMPLES, example_module
 
+build = example_module("feeding_robot", "demonstration.build")
 referee_module = example_module("feeding_robot", "demonstration.referee")
 pace_module = example_module("feeding_robot", "demonstration.pace")
 recording_module = example_module("feeding_robot", "demonstration.recording")
@@ -408,3 +411,21 @@ def test_the_picture_shows_bands_verdicts_and_both_colour_schemes() -> None:
     assert "no reaction &amp; late" in text
     assert "prefers-color-scheme: dark" in text
     assert "inf" not in text.split("</style>")[1].lower().replace("info", "")
+
+
+# The robot in C++ -----------------------------------------------------------------------------
+
+
+def test_the_system_in_cpp_differs_by_two_words(tmp_path: Path) -> None:
+    """The safety node and the gate; and it checks clean."""
+    system = EXAMPLES / "feeding_robot/feeding_robot.system"
+    path = build.in_cpp(system, tmp_path)
+    before = system.read_text(encoding="utf-8").splitlines()
+    after = path.read_text(encoding="utf-8").splitlines()
+    changed = [new for old, new in zip(before, after, strict=True) if old != new]
+    nodes = [line for line in changed if "import" not in line]
+    assert [line.split()[3] for line in nodes] == [
+        "feeding_robot_safety_node_cpp",
+        "actuators_command_gate_cpp",
+    ]
+    assert deros("check", path, "--strict").code == 0

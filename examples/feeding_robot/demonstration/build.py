@@ -6,7 +6,9 @@ put in place first, and the generators leave them alone.
 
 from __future__ import annotations
 
+import os
 import shutil
+import subprocess
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
@@ -19,9 +21,12 @@ from deros.metamodels.load import LoadedFile, Repository
 from deros.metamodels.node import NodeType
 from deros.validators.check import check
 
+CPP = "_cpp"
+"""What the names of node types and packages end in that are made of the rules in C++."""
+
 
 class BuildError(Exception):
-    """The models do not check clean, or the environment lacks a generator."""
+    """The models do not check clean, or the environment lacks a generator or a compiler."""
 
 
 def build(example: Path, folder: Path) -> list[str]:
@@ -51,7 +56,7 @@ def build(example: Path, folder: Path) -> list[str]:
     )
     packages: list[str] = []
     for file in [*rules, *nodes]:
-        if isinstance(file.model, NodeType) and file.model.package in packages:
+        if isinstance(file.model, NodeType) and file.model.package.removesuffix(CPP) in packages:
             continue  # the safety node's description: its rules have made the whole package
         files = _generate(file, context)
         write(files, folder, overwrite=True)
@@ -59,14 +64,55 @@ def build(example: Path, folder: Path) -> list[str]:
     return packages
 
 
+def build_cpp(example: Path, folder: Path) -> Path:
+    """Generate the safety node and the gate in C++, and build them; return the install folder.
+
+    Args:
+        example: the folder with the models.
+        folder: where sources and builds go; what has been built of the same sources stays.
+
+    Raises:
+        BuildError: if colcon is not there, or does not build the package.
+    """
+    repository = Repository()
+    context = Context(InterfaceStore(), repository)
+    for file in _load(repository, sorted(example.glob("*.deros"))):
+        write(_generate(file, context, "cpp"), folder / "src", overwrite=True)
+    command = ["colcon", "--log-base", "log", "build", "--merge-install"]
+    settings = ["--cmake-args", "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF"]
+    log = folder / "build.log"
+    try:
+        with log.open("w", encoding="utf-8") as output:
+            subprocess.run(
+                [*command, *settings], cwd=folder, stdout=output, stderr=output, check=True
+            )
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise BuildError(f"the package in C++ is not built: {error}; see {log}") from None
+    return folder / "install"
+
+
+def in_cpp(system: Path, folder: Path) -> Path:
+    """Write a system with the safety node and the gate in C++; return the model's path.
+
+    One word more in two lines is the whole difference.
+    """
+    text = system.read_text(encoding="utf-8")
+    for node in ("feeding_robot_safety_node", "actuators_command_gate"):
+        text = text.replace(f" : {node} ", f" : {node}{CPP} ")
+    nodes = Path(os.path.relpath(system.parent, folder)).as_posix()
+    path = folder / f"{system.stem}{CPP}.system"
+    path.write_text(text.replace('import "', f'import "{nodes}/'), encoding="utf-8")
+    return path
+
+
 def _load(repository: Repository, paths: Iterable[Path]) -> list[LoadedFile]:
     return [repository.load(str(path)) for path in paths]
 
 
-def _generate(file: LoadedFile, context: Context) -> Files:
-    generator = discover().find(str(file.language), "python")
+def _generate(file: LoadedFile, context: Context, target: str = "python") -> Files:
+    generator = discover().find(str(file.language), target)
     if generator is None:
-        raise BuildError(f"no generator makes Python of {file.path}")
+        raise BuildError(f"no generator makes {target} of {file.path}")
     return generator(file.model, context)
 
 

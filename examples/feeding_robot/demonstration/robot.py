@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 PATIENCE = 20.0
@@ -22,15 +22,16 @@ class Robot:
 
     Args:
         system: the model to run.
-        packages: the folder with the packages of its nodes.
+        packages: the folders with the packages of its nodes.
         log: the file that gets everything the nodes say.
     """
 
-    def __init__(self, system: Path, packages: Path, log: Path) -> None:
+    def __init__(self, system: Path, packages: Sequence[Path], log: Path) -> None:
         """Prepare the command; nothing is started yet."""
         self._command = [
             str(Path(sys.executable).with_name("deros")),
-            *("up", str(system), "--package-path", str(packages)),
+            *("up", str(system)),
+            *(word for folder in packages for word in ("--package-path", str(folder))),
         ]
         self._log = log
         self._processes: dict[str, int] = {}

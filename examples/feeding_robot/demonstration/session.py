@@ -18,10 +18,10 @@ Begin = Callable[[Case], None]
 
 @dataclass(frozen=True)
 class Workshop:
-    """Where the parts of a run are: the model, the generated packages, the folder for logs."""
+    """Where the parts of a run are: the model, the folders of packages, the folder for logs."""
 
     system: Path
-    packages: Path
+    packages: tuple[Path, ...]
     logs: Path
 
     def on_simulated_time(self) -> Path:
@@ -32,11 +32,11 @@ class Workshop:
         """
         text = self.system.read_text(encoding="utf-8")
         real, simulated = "param use_sim_time = false", "param use_sim_time = true"
-        nodes = 'import "nodes/'
+        nodes = 'import "'
         if text.count(real) != 1 or nodes not in text:
             raise ValueError(f"{self.system} does not say '{real}' once")
         text = text.replace(real, simulated)
-        text = text.replace(nodes, f'import "{self.system.parent.resolve().as_posix()}/nodes/')
+        text = text.replace(nodes, f'import "{self.system.parent.resolve().as_posix()}/')
         path = self.logs / "on_simulated_time.system"
         path.write_text(text, encoding="utf-8")
         return path
