@@ -9,10 +9,12 @@ import pytest
 from deros.generators.protocol import Context, Files, GenerationError, Owner
 from deros.generators.safety_cpp.generate import generate
 from deros.generators.safety_python.generate import generate as generate_python
+from deros.generators.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
+from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.golden import Golden
 
 MODELS = Path(__file__).resolve().parent.parent / "safety_python/models"
@@ -129,3 +131,20 @@ def test_rules_with_an_error_are_not_generated() -> None:
     with pytest.raises(GenerationError) as refused:
         files_of_text("entity e { r: w > 1; }")
     assert "DRS310" in [diagnostic.code.name for diagnostic in refused.value.diagnostics]
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],
+)
+def test_the_linters_of_ament_find_nothing(
+    name: str, options: dict[str, str], tmp_path: Path
+) -> None:
+    """uncrustify, cpplint and cppcheck with ament's settings pass all files but the monitor.
+
+    That is laid out for the rules of MISRA C, and linted with them.
+    """
+    write(files_of(name, **options), tmp_path)
+    for path in tmp_path.rglob(f"{name}_monitor.*"):
+        path.unlink()
+    assert_cpp_lint_clean(tmp_path / f"{name}_safety_cpp")
