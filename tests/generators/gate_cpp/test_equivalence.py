@@ -10,20 +10,21 @@ from pathlib import Path
 import pytest
 
 from deros.generators.gate_cpp.messages import type_views
-from deros.interfaces.types import InterfaceType
+from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor.commands import HEADER, LAYOUT
 from deros.monitor.gate import GateEngine
-from deros.monitor.ir import Gate
+from deros.monitor.ir import Gate, GateLine, Limit
 from tests.support.cpp import needs_compiler
 from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded, needs_clang
 from tests.support.gate_traces import (
     MORE_COMMANDS,
+    Trace,
     limitable,
     play,
     random_gate,
     random_trace,
 )
-from tests.support.gates import ACTIONS, STORE
+from tests.support.gates import ACTIONS, QUIET, STORE, Happening, message_type, span
 from tests.support.messages import message_types
 
 pytestmark = needs_compiler
@@ -48,10 +49,14 @@ PACKAGES = (
 
 
 def check(players: Players, gates: Sequence[Gate], number: int, seed: int) -> int:
-    """Play one trace; return how many commands were published in it."""
-    rng = random.Random(seed)
+    """Play one random trace; return how many commands were published in it."""
+    trace = random_trace(random.Random(seed), gates[number], START_NS)
+    return check_trace(players, gates, number, trace)
+
+
+def check_trace(players: Players, gates: Sequence[Gate], number: int, trace: Trace) -> int:
+    """Play a trace; return how many commands were published in it."""
     gate = gates[number]
-    trace = random_trace(rng, gate, START_NS)
     engine = GateEngine(gate, ACTIONS, STORE, START_NS)
     answers = players.play(number, START_NS, trace)
     for step, ((t_ns, happening), answer) in enumerate(zip(trace, answers, strict=True)):
@@ -61,9 +66,32 @@ def check(players: Players, gates: Sequence[Gate], number: int, seed: int) -> in
             (each.t_ns, each.kind, encoded(gate.type, each.message))
             for each in engine.outputs[before:]
         )
-        assert answer.outputs == expected, f"{gate}\nseed {seed}, step {step} of {trace}"
+        assert answer.outputs == expected, f"{gate}\nstep {step} of {trace}"
         assert answer.next_deadline is None or answer.next_deadline > t_ns
     return len(engine.outputs)
+
+
+def test_zeros_are_no_command_that_is_executed(tmp_path: Path) -> None:
+    """What a limit left in them is not limited again when the zero line has ended."""
+    kind = message_type("std_msgs.Int32")
+    data = FieldType("int32")
+    lines = (
+        GateLine(2, None, None, (Limit(("data",), data, -3, 3),), span(2)),
+        GateLine(0, None, None, (), span(3)),
+        GateLine(3, None, None, (Limit(("data",), data, -1, 1),), span(4)),
+    )
+    gates = [Gate(0, "/wish", "/robot/command", kind, 10, lines, span(1))]
+    happens = [
+        *QUIET,
+        Happening(1, "state", {"data": 1}, "/mode"),
+        Happening(1, "command", {"data": 9}),
+        Happening(1, "state", {"data": True}, "/stop"),
+        Happening(1, "state", {"data": False}, "/stop"),
+        Happening(1, "state", {"data": 2}, "/mode"),
+    ]
+    trace = [(START_NS + number, each) for number, each in enumerate(happens)]
+    with Players(compiled(gates, tmp_path, "c++", "-O0"), gates) as players:
+        assert check_trace(players, gates, 0, trace) == 3  # at the start, limited, and zero
 
 
 @pytest.mark.parametrize(
