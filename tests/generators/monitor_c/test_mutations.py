@@ -1,0 +1,102 @@
+"""The comparison with the reference engine can fail: it finds each slip put into the C."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.support import c_pairs
+from tests.support.c_library import Loaded, needs_c
+
+SLIPS = {
+    "for is exclusive": (r"(now - \*since\)) >= duration", r"\1 > duration"),
+    "an interval restarts at every event": (r"if \(\*since == \w+\) \{", "if (true) {"),
+    "an interval is never cleared": (r"^    \*since = [A-Z0-9_]+;", "    (void)since;"),
+    "an interval's end is no deadline": (r"^.*due = earlier\(.* duration\);$", ""),
+    "a comparison includes its bound": (r" > (?=-?\d)", " >= "),
+    "unknown counts as false": (r"(return known \? verdict : \w+)_UNKNOWN", r"\1_FALSE"),
+    "or for and": (r"return \(a < b\) \? a : b;(?=\n\}\n\n/\* Kleene)", "return (a < b) ? b : a;"),
+    "not of unknown is true": (
+        r"(negated\(\w+ operand\)\n\{\n  \w+ verdict = \w+)_UNKNOWN",
+        r"\1_TRUE",
+    ),
+    "NaN is taken as a value": (r"return \(value <= 0\.0\) \|\| \(value > 0\.0\);", "return true;"),
+    "NaN in an array is overlooked": (r"numbers = false;", "numbers = true;"),
+    "an input is not forgotten": (r"^  m->(\w+_known) = false;", r"  m->\1 = m->\1;"),
+    "deadlines are missed": (r"if \(\(now < m->now\) \|\| .*\{", "if (now < m->now) {"),
+    "a step back is missed": (r"if \(\(now < m->now\) \|\| (\(.*\))\) \{", r"if \1 {"),
+    "deadlines at t are late": (r"while \(m->due <= t\)", "while (m->due < t)"),
+    "behaviours act at every event": (r"rises = holds && .*;", "rises = holds;"),
+    "a nested behaviour ignores the outer": (r"holds = m->\w+_holds && ", "holds = "),
+    "a reset is never refused": (r"^  if \(m->\w+_holds.*\{(?=\n.*REFUSED)", "  if (false) {"),
+    "a reset is not remembered": (r"^(    m->\w+)_ran = true;", r"\1_ran = false;"),
+    "messages do not count": (r"^    m->\w+_base = m->now;", ""),
+    "what was missing stays so": (r"^    m->\w+_missing = false;", ""),
+    "a timeout is late": (r"(\w+_base \+ INT64_C\(\d+\)\)) <= m->now", r"\1 < m->now"),
+    "intervals survive a step back": (r"^  m->\w+_since = [A-Z0-9_]+;", ""),
+    "the grace is not given": (r"bounded\(m->now \+ bounded\(grace\)\)", "m->now"),
+    "a latch is lost": (r"^  m->(\w+)_active = true;\n\}", "}"),
+    "a disabled behaviour acts": (r"m->\w+_enabled && ", ""),
+    "to enable is no event": (r"(m->\w+_enabled = enabled;)\n    evaluate\(m\);", r"\1"),
+    "the first event is not the first": (r"if \(!m->started\)", "if (false)"),
+    "a rule's change has no time": (r"^    \*since = now;", "    (void)since;"),
+    "rates look at the wrong time": (r"t - \*last_t", "t + *last_t"),
+    "a rate keeps its first value": (r"^  \*last = value;", ""),
+    "the least is the greatest": (r"values\[i\] < found", "values[i] > found"),
+    "the last element is not looked at": (r"i < count;", "(i + 1U) < count;"),
+    "too near is invalid": (r"distance = range_min;", "distance = NAN;"),
+    "an absent element counts": (r"if \(\w+_given\b", "if (true"),
+    "a text is known by its length": (r"same = \(text\[i\] == expected\[i\]\);", ""),
+    "waiting for nothing": (r"waiting = true;", "waiting = false;"),
+    "a line is wrong": (r"(_BEHAVIOUR_\d+, \d+)U", r"\g<1>1U"),
+    "an argument is wrong": (r"_NUMBER, false, 0, 2\.5", "_NUMBER, false, 0, 2.0"),
+}
+"""Slips by name: a pattern of the generated text, and what it is replaced by."""
+
+PROGRAMS = 24
+"""Programs that are drawn for each choice of inputs."""
+
+BATCH = 8
+"""Programs with a slip that are compiled at once."""
+
+
+@functools.cache
+def drawn() -> tuple[c_pairs.Case, ...]:
+    """Draw the programs in whose texts slips are made, those of one kind not all together."""
+    chosen = [
+        c_pairs.cases(kinds, PROGRAMS, 3, first=100 * number)[::-1]  # later ones are greater
+        for number, kinds in enumerate(c_pairs.FOCUSES.values())
+    ]
+    mixed = itertools.zip_longest(*chosen)
+    return tuple(case for row in mixed for case in row if case is not None)
+
+
+def mutants(slip: str) -> Iterator[c_pairs.Case]:
+    """Yield the programs with a slip, if their texts have a place for it."""
+    pattern, replacement = SLIPS[slip]
+    for case in drawn():
+        name = f"{case.unit.prefix}_monitor.c"
+        text = case.unit.texts[name]
+        changed = re.sub(pattern, replacement, text, flags=re.MULTILINE)
+        if changed != text:
+            unit = replace(case.unit, texts={**case.unit.texts, name: changed})
+            yield replace(case, unit=unit)
+
+
+@needs_c
+@pytest.mark.parametrize("slip", SLIPS)
+def test_slip_is_found(slip: str, tmp_path: Path) -> None:
+    """Some random program and trace tells the mutated monitor from the reference."""
+    found = mutants(slip)
+    while cases := list(itertools.islice(found, BATCH)):
+        units = [each.unit for each in cases]
+        library = Loaded(units, tmp_path / units[0].prefix, "-O0", "-Wno-error")
+        if next(c_pairs.differences(library, cases), None) is not None:
+            return
+    pytest.fail("no program tells the slip")
