@@ -30,7 +30,7 @@ test: $(READY)  ## Run all tests, those on the real middleware included
 	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) --dist worksteal
 
 .PHONY: property
-property: $(READY)  ## Compare generated monitors with the reference on 100,000 random pairs (nightly)
+property: $(READY)  ## Compare generated monitors with the reference on 120,000 random pairs (nightly)
 	@$(ALONE) $(BIN)/python tools/property.py --jobs $(JOBS)
 
 .PHONY: sanitize

@@ -1,8 +1,9 @@
-"""Compare the generated monitor with the reference engine on very many random pairs.
+"""Compare the generated monitors with the reference engine on very many random pairs.
 
-Rules and traces are drawn anew in every run. Where the two differ, the pair is made as small as it
-can be and kept as a file (see ``tests/support/counterexamples.py``), which ``make test`` compares
-from then on. Exit code 1 says that one was found.
+Rules and traces are drawn anew in every run: first for the monitor in Python, then, where there is
+a compiler, for the one in C. Where one differs, the pair is made as small as it can be and kept as
+a file (see ``tests/support/counterexamples.py``), which ``make test`` compares from then on. Exit
+code 1 says that one was found.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ import multiprocessing
 import os
 import secrets
 import sys
-from collections.abc import Iterator
+import tempfile
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,7 +32,8 @@ from rich.progress import (
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from tests.support import counterexamples
+from tests.support import c_pairs, counterexamples
+from tests.support.c_library import Loaded, has_compiler
 from tests.support.counterexamples import Pair, pairs
 from tests.support.strategies import KINDS, programs
 
@@ -89,7 +92,22 @@ def check(number: int, chunk_seed: int, pairs_wanted: int) -> Outcome:
     return Outcome(passed, None)
 
 
-def outcomes(wanted: int, jobs: int, first_seed: int) -> Iterator[Outcome]:
+def check_c(number: int, chunk_seed: int, pairs_wanted: int) -> Outcome:
+    """Draw a chunk of pairs, compile their programs as a robot's would be, and compare them."""
+    kinds = tuple(c_pairs.FOCUSES.values())
+    wanted = -(-pairs_wanted // c_pairs.TRACES)
+    cases = c_pairs.cases(kinds[number % len(kinds)], wanted, chunk_seed)
+    with tempfile.TemporaryDirectory(prefix="deros-property-") as folder:
+        library = Loaded([each.unit for each in cases], Path(folder), "-O2")
+        for pair, error in c_pairs.differences(library, cases):
+            return Outcome(0, pair, f"in C, {type(error).__name__}: {error}")
+    return Outcome(sum(len(each.pairs) for each in cases), None)
+
+
+Check = Callable[[int, int, int], Outcome]
+
+
+def outcomes(check: Check, wanted: int, jobs: int, first_seed: int) -> Iterator[Outcome]:
     """Yield the outcome of each chunk as it comes in."""
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(jobs, context) as executor:
@@ -108,6 +126,7 @@ def main() -> int:
     """Print how many pairs passed; return 1 at the first that did not."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--pairs", type=int, default=100_000)
+    parser.add_argument("--c-pairs", type=int, default=20_000, help="pairs for C; fewer pass")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--seed", type=int, help="repeats an earlier run")
     arguments = parser.parse_args()
@@ -115,22 +134,38 @@ def main() -> int:
 
     console = Console()
     console.print(f"seed {first_seed}")
+    runs: list[tuple[str, Check, int, Path]] = [
+        ("Python", check, arguments.pairs, counterexamples.FOLDER)
+    ]
+    if has_compiler():
+        runs.append(("C", check_c, arguments.c_pairs, c_pairs.FOLDER))
+    else:
+        console.print("no C compiler: the monitor in C is not compared")
+    for name, each, wanted, folder in runs:
+        chunks = outcomes(each, wanted, arguments.jobs, first_seed)
+        if not run(console, name, chunks, wanted, folder):
+            return 1
+    return 0
+
+
+def run(console: Console, name: str, chunks: Iterator[Outcome], wanted: int, folder: Path) -> bool:
+    """Show how far the comparison is; tell whether all pairs passed."""
     columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     passed = 0
     with Progress(TextColumn("pairs"), *columns, console=console) as progress:
-        task = progress.add_task("pairs", total=arguments.pairs)
-        for outcome in outcomes(arguments.pairs, arguments.jobs, first_seed):
+        task = progress.add_task("pairs", total=wanted)
+        for outcome in chunks:
             passed += outcome.passed
             progress.update(task, completed=passed)
             if not console.is_terminal and passed // 2000 > (passed - outcome.passed) // 2000:
                 console.print(f"{passed} pairs so far")
             if outcome.failed is not None:
-                path = counterexamples.write(outcome.failed)
+                path = counterexamples.write(outcome.failed, folder)
                 console.print(outcome.why, markup=False)
                 console.print(f"the two differ; kept as {path}", markup=False, soft_wrap=True)
-                return 1
-    console.print(f"{passed} pairs passed")
-    return 0
+                return False
+    console.print(f"{passed} pairs passed in {name}")
+    return True
 
 
 if __name__ == "__main__":
