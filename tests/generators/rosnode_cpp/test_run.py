@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -58,6 +59,9 @@ EXECUTE_COUNT = """
     goal_handle.succeed(result);
   }
 """
+ON_CHATTER = """
+  throw std::runtime_error("cannot bear " + msg.data);
+"""
 ON_ASK = """
   rclcpp_action::Client<test_msgs::action::Fibonacci>::SendGoalOptions options;
   options.feedback_callback = [this](const auto &, const auto & feedback) {
@@ -103,6 +107,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     hook = "  void on_parameters_changed(const Parameters & previous) override;\n"
     _insert(odometry / "include/differential_odometry/odometry_node.hpp", "  void on_ticks", hook)
     _fill_in(source / "process/src/valve.cpp", "on_command", ON_COMMAND)
+    _fill_in(source / "chat/src/listener.cpp", "on_chatter", ON_CHATTER)
     counting = source / "counting"
     _insert(counting / "include/counting/counter.hpp", "};", "  std::promise<void> released_;\n")
     _insert(counting / "include/counting/counter.hpp", "#include", "#include <future>\n\n")
@@ -329,6 +334,19 @@ def test_a_service_is_answered_and_sigterm_ends_the_node(start: Start, ros_peer:
     assert output.count("handle_reset does nothing yet") == 1
 
 
+def test_what_a_handler_throws_ends_the_program(start: Start, ros_peer: Peer) -> None:
+    """An exception that nobody catches is told, and the program fails without an abort."""
+    from std_msgs.msg import String
+
+    with start("chat", "listener") as process:
+        publisher = ros_peer.node.create_publisher(String, "/chatter", 10)
+        ros_peer.until(publisher.get_subscription_count)
+        publisher.publish(String(data="noise"))
+        output, _ = process.communicate(timeout=LIMIT)
+    assert process.returncode == 1, output
+    assert "cannot bear noise" in output
+
+
 # Managed nodes, actions, components ---------------------------------------------------------------
 
 
@@ -432,14 +450,18 @@ def _serves(peer: Peer, name: str) -> bool:
 
 
 def _load(env: dict[str, str], package: str, plugin: str, *options: str) -> None:
-    """Load a component into the container /box."""
-    command = ["ros2", "component", "load", "--no-daemon", "--spin-time", "3", *options]
-    done = subprocess.run(
-        [*command, "/box", package, plugin],
-        env=env,
-        capture_output=True,
-        text=True,
-        timeout=LIMIT,
-        check=False,
-    )
+    """Load a component into the container /box, as soon as the command has discovered it."""
+    command = ["ros2", "component", "load", "--no-daemon", "--spin-time", "1", *options]
+    end = time.monotonic() + 2 * LIMIT
+    while True:
+        done = subprocess.run(
+            [*command, "/box", package, plugin],
+            env=env,
+            capture_output=True,
+            text=True,
+            timeout=LIMIT,
+            check=False,
+        )
+        if "Unable to find" not in done.stderr or time.monotonic() > end:
+            break
     assert done.returncode == 0, done.stdout + done.stderr
