@@ -1,0 +1,138 @@
+"""The gate in C++ in the place of the one in Python, in its own process and in a container.
+
+What gates in both languages have to do alike is held by the tests of the Python one, which run
+with each.
+"""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.support import gate_cpp_nodes
+from tests.support.cpp import needs_rclcpp, overlay
+from tests.support.gate_nodes import World
+from tests.support.gate_runners import RunGate, in_cpp, in_python
+from tests.support.ros import LIMIT, Peer, running
+
+pytestmark = [pytest.mark.ros, needs_rclcpp]
+
+GATE = "cmd_vel_gate"
+CONTAINER = "lib/rclcpp_components/component_container"
+
+
+@pytest.fixture
+def gates(tmp_path: Path) -> tuple[RunGate, RunGate]:
+    """Give what runs gates in Python and in C++."""
+    return in_python(tmp_path), in_cpp(tmp_path)
+
+
+@pytest.fixture
+def world(ros_peer: Peer) -> World:
+    """Give all that is around the gate."""
+    return World(ros_peer)
+
+
+def test_neither_runs_beside_the_other(
+    gates: tuple[RunGate, RunGate], ros_env: dict[str, str], world: World
+) -> None:
+    """The lock is one: the second ends at once and names the first, which goes on."""
+    for first, second in (gates, reversed(gates)):
+        with first(GATE, ros_env) as guarding:
+            world.meet()
+            with second(GATE, ros_env) as refused:
+                output, _ = refused.communicate(timeout=LIMIT)
+            assert refused.returncode == 1
+            assert f"as process {guarding.pid}: this second one ends now" in output
+            world.release()
+        world.heard.clear()
+
+
+def test_each_takes_over_from_the_other(
+    gates: tuple[RunGate, RunGate], ros_env: dict[str, str], world: World
+) -> None:
+    """Killed while commands pass, and zero from the other until everything is known anew."""
+    for run_gate in (*gates, *gates):
+        with run_gate(GATE, ros_env) as process:
+            world.meet()
+            assert world.speeds(world.heard[0][1]) == (0.0, 0.0, 0.0)
+            world.release()
+            process.kill()
+            process.wait(LIMIT)
+            process.returncode = 0  # as it was meant
+        world.heard.clear()
+
+
+def test_both_report_the_same_of_the_same_events(
+    gates: tuple[RunGate, RunGate], ros_env: dict[str, str], world: World
+) -> None:
+    """Name, level, message and refusals of every status are the same."""
+    seen: list[list[dict[str, str]]] = []
+    for run_gate in gates:
+        statuses: list[dict[str, str]] = []
+        with run_gate(GATE, ros_env) as process:
+            world.meet()
+            for happens in (
+                world.release,
+                lambda: world.mode(1),
+                lambda: world.stop(True),
+                lambda: world.wish(float("nan")),
+                lambda: world.wish_bytes(b"\x00\x01\x00\x00"),
+            ):
+                happens()
+                settled = world.reports
+                # Within 50 ms of a change, so the second status from here on has seen it.
+                world.wish_until(0.3, lambda settled=settled: world.reports >= settled + 2)
+                told = dict(world.status)
+                del told["since"], told["since_ns"]
+                statuses.append(told)
+            process.send_signal(signal.SIGTERM)
+            output, _ = process.communicate(timeout=LIMIT)
+        assert process.returncode == 0, output
+        seen.append(statuses)
+        world.heard.clear()
+        world.stop(False)
+    assert seen[0] == seen[1]
+
+
+def test_garbage_collection_is_taken_and_has_no_effect(
+    gates: tuple[RunGate, RunGate], ros_env: dict[str, str], world: World
+) -> None:
+    """The parameter files of the Python gate serve the one in C++."""
+    with gates[1](GATE, ros_env, "garbage_collection:=false"):
+        world.meet()
+        world.release()
+        world.wish_until(0.3, lambda: world.status.get("level") == "0")
+
+
+@pytest.mark.skipif(shutil.which("ros2") is None, reason="no command ros2")
+def test_it_is_a_component(ros_env: dict[str, str], world: World) -> None:
+    """In a container that shares messages by pointer, bytes pass and a stop is zero, too."""
+    env = overlay(gate_cpp_nodes.installed_gates(), ros_env)
+    (prefix,) = (p for p in env["AMENT_PREFIX_PATH"].split(":") if (Path(p) / CONTAINER).exists())
+    with running([f"{prefix}/{CONTAINER}", "--ros-args", "-r", "__node:=box"], env):
+        services = world.peer.node.get_service_names_and_types
+        world.peer.until(lambda: "/box/_container/load_node" in dict(services()))
+        load = ["ros2", "component", "load", "--no-daemon", "--spin-time", "3"]
+        load += ["-e", "use_intra_process_comms:=true", "/box"]
+        done = subprocess.run(
+            [*load, gate_cpp_nodes.PACKAGE, f"{gate_cpp_nodes.PACKAGE}::CmdVelGate"],
+            env=env,
+            capture_output=True,
+            text=True,
+            timeout=LIMIT,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        world.meet()
+        world.release()
+        before = len(world.heard)
+        data = world.wish(0.2, y=-0.0)
+        world.hear_after(before)
+        assert world.heard[before][1] == data
+        world.stop(True)
+        world.peer.until(lambda: world.last == (0.0, 0.0, 0.0))
