@@ -59,7 +59,7 @@ def test_neither_runs_beside_the_other(start: Start, start_python: Start, robot:
     """The lock is one: the second ends at once and names the first."""
     for first, second in ((start, start_python), (start_python, start)):
         with first() as running:
-            robot.peer.until(lambda: robot.beats)
+            robot.event("start")
             with second() as refused:
                 output, _ = refused.communicate(timeout=LIMIT)
             assert refused.returncode == 1

@@ -1,8 +1,10 @@
 #include "deros_runtime/runtime/process.hpp"
 
 #include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -21,23 +23,45 @@ namespace
 // How often a request to end is repeated: one before the executor spins is not heard.
 constexpr std::chrono::milliseconds AGAIN{20};
 
-/// SIGINT and SIGTERM, which no thread is interrupted by while this lives.
+sem_t asked_to_end;  // posted by the handler, which may do little else
+
+void take_signal(int /*number*/)
+{
+  const int kept = errno;
+  sem_post(&asked_to_end);
+  errno = kept;
+}
+
+/// SIGINT and SIGTERM as a request, which interrupts no thread in what it is at.
 class StopSignals
 {
 public:
   StopSignals()
   {
+    sem_init(&asked_to_end, 0, 0);
+    struct sigaction action{};
+    action.sa_handler = take_signal;
+    action.sa_flags = SA_RESTART;
     sigemptyset(&set_);
-    sigaddset(&set_, SIGINT);
-    sigaddset(&set_, SIGTERM);
+    for (const int number : {SIGINT, SIGTERM}) {
+      sigaddset(&set_, number);
+      sigaction(number, &action, nullptr);  // for threads that libraries have started before
+    }
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);  // for all threads that are started from now on
   }
 
-  /// Wait for one.
+  /// Ask as a signal does.
+  void ask() const
+  {
+    sem_post(&asked_to_end);
+  }
+
+  /// Wait until it is asked for, in a thread of its own.
   void wait() const
   {
-    int number = 0;
-    sigwait(&set_, &number);
+    pthread_sigmask(SIG_UNBLOCK, &set_, nullptr);
+    while (sem_wait(&asked_to_end) != 0) {  // interrupted by the signal itself
+    }
   }
 
 private:
@@ -57,17 +81,16 @@ void spin(const Living & living, const StopSignals & signals)
         executor.cancel();
       } while (over.wait_for(AGAIN) != std::future_status::ready);
     });
-  const pthread_t thread = listener.native_handle();
-  living.when_ended([thread] {pthread_kill(thread, SIGTERM);});
+  living.when_ended([&signals] {signals.ask();});
   std::exception_ptr failure;
   try {
     executor.spin();
   } catch (...) {
     failure = std::current_exception();
-    pthread_kill(thread, SIGTERM);
   }
+  signals.ask();  // whatever has ended it, the listener is to end, too
   spun.set_value();
-  living.stop();  // may still signal the listener, so that is joined last
+  living.stop();
   listener.join();
   if (failure) {
     std::rethrow_exception(failure);
