@@ -69,7 +69,7 @@ def fuzz(made: Unit, folder: Path, seconds: int) -> bool:
         "-lm",
     ]
     subprocess.run(command, cwd=folder, check=True)
-    options = [f"-max_total_time={seconds}", "-max_len=2048", "-len_control=0", "-verbosity=0"]
+    options = [f"-max_total_time={seconds}", "-max_len=2048", "-len_control=0", "-timeout=10"]
     shown = ["-print_final_stats=1", f"-artifact_prefix={folder}/"]
     done = subprocess.run(
         ["./fuzz", *options, *shown, "corpus"],

@@ -1,0 +1,99 @@
+"""What watches the emitted C finds what is wrong with it, and nothing where nothing is wrong."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.support import c_library, c_pairs
+from tests.support.c_everything import examples
+from tests.support.c_fuzz import fuzz_text
+from tests.support.c_harness import DRIVER, Unit, unit
+from tests.support.c_library import CrashError, Watched
+
+FUZZED = ("-std=c99", "-g", "-O1", "-fsanitize=fuzzer,address,undefined")
+ENTRY = "int LLVMFuzzerTestOneInput(const char *d, long s) { return (d == 0) && (s != 0); }"
+
+needs_sanitizers = pytest.mark.skipif(
+    not c_library.has_sanitizers(), reason="no gcc with sanitizers"
+)
+
+
+def slipped(made: Unit, right: str, wrong: str) -> Unit:
+    """Return a monitor with a slip."""
+    name = f"{made.prefix}_monitor.c"
+    assert right in made.texts[name]
+    return Unit(made.program, made.view, {**made.texts, name: made.source.replace(right, wrong)})
+
+
+@needs_sanitizers
+def test_sanitizers_find_nothing(tmp_path: Path) -> None:
+    """Random monitors read no byte too far and compute nothing that C does not define."""
+    cases = c_pairs.cases(c_pairs.FOCUSES["mixed"], 12, 5)
+    with Watched([each.unit for each in cases], tmp_path) as library:
+        assert list(c_pairs.differences(library, cases)) == []
+
+
+@needs_sanitizers
+def test_sanitizers_do_find_something(tmp_path: Path) -> None:
+    """One element read too far ends the program, and is told."""
+    cases = c_pairs.cases(("floats",), 20, 5)
+    reads = [each for each in cases if "i < count;" in each.unit.source]
+    units = [slipped(each.unit, "i < count;", "i <= count;") for each in reads]
+    watched = Watched(units, tmp_path)
+    _, error = next(c_pairs.differences(watched, reads))
+    assert isinstance(error, CrashError)
+    assert "heap-buffer-overflow" in str(error)
+
+
+@pytest.fixture(scope="module")
+def example() -> Unit:
+    """Return the monitor of the smallest example."""
+    (found,) = (each for each in examples() if each.name == "intelligent_one")
+    return unit(found)
+
+
+def fuzz(made: Unit, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Fuzz a monitor with some tens of thousands of inputs."""
+    if shutil.which("clang") is None or not c_library.links(
+        str(folder), "clang", *FUZZED, text=ENTRY
+    ):
+        pytest.skip("no clang with libFuzzer")
+    for name, text in made.texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    (folder / "fuzz.c").write_text(fuzz_text(made), encoding="utf-8")
+    flags = [*FUZZED, "-fno-sanitize-recover=all", "-I", str(DRIVER), "fuzz.c", "-o", "fuzz", "-lm"]
+    subprocess.run(["clang", *flags], cwd=folder, check=True, timeout=120)
+    options = ["-runs=20000", "-seed=1", "-max_len=256", "-len_control=0", "-timeout=5"]
+    return subprocess.run(
+        ["./fuzz", *options], cwd=folder, capture_output=True, text=True, timeout=120, check=False
+    )
+
+
+def test_fuzzer_finds_nothing(example: Unit, tmp_path: Path) -> None:
+    """No bytes break what must hold of the smallest example."""
+    done = fuzz(example, tmp_path)
+    assert done.returncode == 0, done.stderr
+
+
+SLIPS = {
+    "a latch clears itself": (
+        "  const bool holds = (verdict == INTELLIGENT_ONE_TRUE);",
+        "  const bool holds = (verdict == INTELLIGENT_ONE_TRUE);\n  m->stop_active = holds;",
+    ),
+    "a step back is overlooked": ("(now < m->now) || ", ""),
+    "a time is not bounded": ("return (t < 0) ? 0 :", "return (t < 0) ? t :"),
+    "a loop does not end": ("m->speed_missing = true;", "(void)m;"),
+    "what is missing is known": ("m->speed_known = false;", "(void)m;"),
+}
+"""Slips by name, and what the invariants say of them."""
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+def test_fuzzer_finds_a_slip(slip: str, example: Unit, tmp_path: Path) -> None:
+    """What must hold after every call does not with a slip, and the fuzzer finds it."""
+    done = fuzz(slipped(example, *SLIPS[slip]), tmp_path)
+    assert done.returncode != 0
