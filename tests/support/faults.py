@@ -52,7 +52,15 @@ def _generate(target: Callable[..., Files], rules: Path, folder: Path) -> None:
 
 
 class PythonRobot:
-    """The generated nodes in Python; the actions that are robot code are filled in with nothing."""
+    """The generated nodes in Python; the actions that are robot code are filled in with nothing.
+
+    Attributes:
+        sees_what_it_cannot_read: whether the safety node is handed messages that are none.
+        beams: how many the longest scan may have that it judges.
+    """
+
+    sees_what_it_cannot_read = True
+    beams = 2_500_000
 
     def __init__(self, rules: Path, folder: Path) -> None:
         """Generate the package of ``rules`` into a folder."""
@@ -70,7 +78,14 @@ class PythonRobot:
 
 
 class CppRobot:
-    """The generated nodes in C++, built; the same actions are filled in."""
+    """The generated nodes in C++, built; the same actions are filled in.
+
+    The middleware drops messages that are none of the type, and the monitor in C takes an array
+    that is longer than it may be for one that holds a NaN.
+    """
+
+    sees_what_it_cannot_read = False
+    beams = 1_048_576
 
     def __init__(self, rules: Path, folder: Path) -> None:
         """Generate the package of ``rules`` into a folder, and build it."""
@@ -125,7 +140,7 @@ class Robot:
 
         self.peer = peer
         self.folder = folder
-        self._software = software
+        self.software = software
         self.env = {
             **env,
             "ROS_HOME": str(folder),
@@ -206,7 +221,7 @@ class Robot:
         """Start a node of the generated package; whoever starts it ends it."""
         words = [word for each in parameters for word in ("-p", each)]
         ros = ["--ros-args", *words] if words else []
-        command, own = self._software.command(module, self.env)
+        command, own = self.software.command(module, self.env)
         return self._start([*command, *ros], {**own, **env}, module)
 
     def _start(self, command: Sequence[str], env: Mapping[str, str], name: str) -> Process:
