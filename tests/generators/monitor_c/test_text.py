@@ -13,10 +13,11 @@ import pytest
 
 from deros.generators.monitor_c import render_monitor
 from deros.generators.monitor_c.deviations import DEVIATIONS
-from deros.generators.protocol import GenerationError
+from deros.generators.protocol import File, GenerationError
 from deros.monitor.ir import Program
 from tests.support import c_pairs, misra
 from tests.support.c_everything import RULES, built, everything, examples
+from tests.support.golden import Golden
 
 PROGRAMS = {each.name: each for each in (everything(), *examples())}
 
@@ -193,3 +194,9 @@ def test_refusal(case: str) -> None:
 
 def _program(rules: str) -> Program:
     return built(rules, "refused")
+
+
+def test_the_files_are_as_kept(golden: Golden) -> None:
+    """The text of a program with every construct is as it was kept."""
+    files = {name: File(text) for name, text in render_monitor(everything()).items()}
+    golden.check("monitor_c", files)
