@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import struct
 from array import array
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from ctypes import CDLL, c_double
-from ctypes.util import find_library
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, cast
-from unittest import mock
 
 from deros.generators.monitor_c.handlers import Parameter
-from deros.monitor import functions
 from deros.monitor.engine import Engine, Event, EventKind
 from deros.monitor.evaluate import evaluate_value
 from deros.monitor.ir import Scalar
@@ -154,18 +149,17 @@ def compare(
     """
     unit = library.units[number]
     remark(f"{start}")
-    with mathematics_of_c():
-        engine = Engine(unit.program, START_NS, start.grace_ns, start.latched)
-        monitor = CMonitor(library, number, START_NS, start)
-        earliest = 0 if any(each.timeout_ns == 0 for each in unit.program.inputs) else 1
-        for t_ns, step in timed(steps):
-            remark(f"at {t_ns} {step}")
-            assert call(cast("Engine", monitor), t_ns, step) == call(engine, t_ns, step)
-            lines = [each.span.line if each.span else 0 for each in engine.events]
-            assert monitor.events == list(zip(engine.events, lines, strict=True))
-            assert monitor.waiting == engine.waiting
-            assert monitor.known == known_of(engine, monitor)
-            _compare_deadlines(engine.next_deadline, monitor.next_deadline, earliest + t_ns)
+    engine = Engine(unit.program, START_NS, start.grace_ns, start.latched)
+    monitor = CMonitor(library, number, START_NS, start)
+    earliest = 0 if any(each.timeout_ns == 0 for each in unit.program.inputs) else 1
+    for t_ns, step in timed(steps):
+        remark(f"at {t_ns} {step}")
+        assert call(cast("Engine", monitor), t_ns, step) == call(engine, t_ns, step)
+        lines = [each.span.line if each.span else 0 for each in engine.events]
+        assert monitor.events == list(zip(engine.events, lines, strict=True))
+        assert monitor.waiting == engine.waiting
+        assert monitor.known == known_of(engine, monitor)
+        _compare_deadlines(engine.next_deadline, monitor.next_deadline, earliest + t_ns)
 
 
 def known_of(engine: Engine, monitor: CMonitor) -> Known:
@@ -242,60 +236,3 @@ def _argument(answer: Iterator[int]) -> Scalar:
     word = next(answer)
     values: tuple[Scalar, ...] = (bool(word), word, _double(word))
     return values[kind]
-
-
-# Mathematics --------------------------------------------------------------------------------------
-
-
-@contextlib.contextmanager
-def mathematics_of_c() -> Iterator[None]:
-    """Let the reference compute lengths as C does, by ``hypot()`` of the mathematical library.
-
-    Python has a way of its own, which differs in the last digit; all else is the same.
-    """
-    rows = {
-        name: replace(row, evaluate=_IN_C[name])
-        for name, row in functions.FUNCTIONS.items()
-        if name in _IN_C
-    }
-    with mock.patch.dict(cast("dict[str, functions.Function]", functions.FUNCTIONS), rows):
-        yield
-
-
-def _hypot() -> Callable[[float, float], float]:
-    found = CDLL(find_library("m")).hypot
-    found.restype = c_double
-    found.argtypes = [c_double, c_double]
-    return cast("Callable[[float, float], float]", found)
-
-
-_hypot_of_c = _hypot()
-
-
-def _norm(x: float, y: float, z: float) -> float:
-    return _hypot_of_c(_hypot_of_c(x, y), z)
-
-
-def _of_unit(
-    evaluate: Callable[[float, float, float, float], float],
-) -> Callable[..., float | None]:
-    def of_quaternion(x: float, y: float, z: float, w: float) -> float | None:
-        length = _hypot_of_c(_hypot_of_c(x, y), _hypot_of_c(z, w))
-        if not 0.0 < length < math.inf:
-            return None
-        return evaluate(x / length, y / length, z / length, w / length)
-
-    return of_quaternion
-
-
-_IN_C: dict[str, Callable[..., float | None]] = {
-    "norm": _norm,
-    "roll": _of_unit(
-        lambda x, y, z, w: math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    ),
-    "pitch": _of_unit(lambda x, y, z, w: math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x))))),
-    "yaw": _of_unit(
-        lambda x, y, z, w: math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-    ),
-    "tilt": _of_unit(lambda x, y, z, w: 2.0 * math.atan2(_hypot_of_c(x, y), _hypot_of_c(z, w))),
-}

@@ -6,7 +6,7 @@
 /*@ assigns \nothing; */
 extern double fabs(double x);
 /*@ assigns \nothing; */
-extern double hypot(double x, double y);
+extern double sqrt(double x);
 /*@ assigns \nothing; */
 extern double atan2(double y, double x);
 /*@ assigns \nothing; */

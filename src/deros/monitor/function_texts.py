@@ -7,20 +7,11 @@ because whoever certifies a safety node reads them.
 from __future__ import annotations
 
 
-def _c_of_quaternion(name: str, value: str) -> str:
+def _c_of_unit(name: str, value: str) -> str:
     return f"""\
-static double {name}(double x, double y, double z, double w)
+static double {name}(double ux, double uy, double uz, double uw)
 {{
-  const double length = hypot(hypot(x, y), hypot(z, w));
-  double angle = NAN;
-  if ((length > 0.0) && (length < INFINITY)) {{
-    const double ux = x / length;
-    const double uy = y / length;
-    const double uz = z / length;
-    const double uw = w / length;
-    angle = {value};
-  }}
-  return angle;
+  return {value};
 }}
 """
 
@@ -57,7 +48,7 @@ PYTHON_OF_UNIT: dict[str, tuple[str, ...]] = {
         "cosine = 1.0 - 2.0 * (uy * uy + uz * uz)",
         "math.atan2(sine, cosine)",
     ),
-    "tilt": ("2.0 * math.atan2(math.hypot(ux, uy), math.hypot(uz, uw))",),
+    "tilt": ("2.0 * math.atan2(math.sqrt(ux * ux + uy * uy), math.sqrt(uz * uz + uw * uw))",),
 }
 """Lines by the function's name, on a quaternion of length 1 with the parts ux, uy, uz, uw.
 
@@ -65,6 +56,11 @@ The last one is the result, an expression.
 """
 
 PYTHON: dict[str, str] = {
+    "norm": '''\
+def vector_norm(x: float, y: float, z: float) -> float:
+    """Return the length of a vector."""
+    return math.sqrt(x * x + y * y + z * z)
+''',
     "rate": '''\
 def rate_per_second(value: float, previous: float, elapsed_ns: int) -> float | None:
     """Return the change per second; None for two messages of one instant."""
@@ -130,14 +126,23 @@ def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
 """Definitions in Python by the function's name; ``None`` is *unknown*."""
 
 C: dict[str, str] = {
-    "roll": _c_of_quaternion(
+    "roll": _c_of_unit(
         "roll", "atan2(2.0 * ((uw * ux) + (uy * uz)), 1.0 - (2.0 * ((ux * ux) + (uy * uy))))"
     ),
-    "pitch": _c_of_quaternion("pitch", "asin(clamped(2.0 * ((uw * uy) - (uz * ux))))"),
-    "yaw": _c_of_quaternion(
+    "pitch": _c_of_unit("pitch", "asin(clamped(2.0 * ((uw * uy) - (uz * ux))))"),
+    "yaw": _c_of_unit(
         "yaw", "atan2(2.0 * ((uw * uz) + (ux * uy)), 1.0 - (2.0 * ((uy * uy) + (uz * uz))))"
     ),
-    "tilt": _c_of_quaternion("tilt", "2.0 * atan2(hypot(ux, uy), hypot(uz, uw))"),
+    "tilt": _c_of_unit(
+        "tilt", "2.0 * atan2(sqrt((ux * ux) + (uy * uy)), sqrt((uz * uz) + (uw * uw)))"
+    ),
+    "length_of": """\
+static double length_of(double x, double y, double z, double w)
+{
+  const double length = sqrt((((x * x) + (y * y)) + (z * z)) + (w * w));
+  return ((length > 0.0) && (length < INFINITY)) ? length : NAN;
+}
+""",
     "clamped": """\
 static double clamped(double sine)
 {
@@ -147,7 +152,7 @@ static double clamped(double sine)
     "norm": """\
 static double norm(double x, double y, double z)
 {
-  return hypot(hypot(x, y), z);
+  return sqrt(((x * x) + (y * y)) + (z * z));
 }
 """,
     "rate": """\
@@ -219,8 +224,9 @@ static bool scan_usable(const float *ranges, size_t count, double range_min)
 """Definitions in C99 by the function's name; ``NAN`` is *unknown*.
 
 They need ``<math.h>``, the fixed-width integers and ``bool``, and of each other: ``pitch`` needs
-``clamped``, ``nearest`` needs ``is_number``, which says of a number that it is no NaN. Of those of
-arrays there is one per type of element: ``BASE`` stands for the name of the type in ROS 2,
-``ELEMENT`` for that in C, ``RESULT`` for the type of the result and ``NONE`` for what an empty
-array gives (``abs`` of an integer is ``magnitude``).
+``clamped``. Those of quaternions take the parts divided by ``length_of`` them, which is NaN for a
+quaternion that has no attitude. ``nearest`` needs ``is_number``, which says of a number that it
+is no NaN. Of those of arrays there is one per type of element: ``BASE`` stands for the name of
+the type in ROS 2, ``ELEMENT`` for that in C, ``RESULT`` for the type of the result and ``NONE``
+for what an empty array gives (``abs`` of an integer is ``magnitude``).
 """

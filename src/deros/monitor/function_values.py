@@ -55,19 +55,25 @@ def tilt(x: float, y: float, z: float, w: float) -> float | None:
     if unit is None:
         return None
     x, y, z, w = unit
-    return 2.0 * math.atan2(math.hypot(x, y), math.hypot(z, w))
+    return 2.0 * math.atan2(math.sqrt(x * x + y * y), math.sqrt(z * z + w * w))
 
 
 def _normalised(x: float, y: float, z: float, w: float) -> tuple[float, float, float, float] | None:
-    length = math.hypot(x, y, z, w)
+    # The root of the sum of squares is the same number in every language, which hypot() is not. No
+    # quaternion of use is so short (1e-162) or so long (1e154) that the squares leave their range.
+    length = math.sqrt(x * x + y * y + z * z + w * w)
     if not 0.0 < length < math.inf:
         return None
     return x / length, y / length, z / length, w / length
 
 
 def norm(x: float, y: float, z: float) -> float:
-    """Return the length of a vector; a plane vector has ``z`` 0."""
-    return math.hypot(x, y, z)
+    """Return the length of a vector; a plane vector has ``z`` 0.
+
+    It is the root of the sum of squares, in this order, so that every target computes the very same
+    number. Beyond 1e154 that is infinity.
+    """
+    return math.sqrt(x * x + y * y + z * z)
 
 
 def absolute(value: float) -> float:

@@ -13,8 +13,8 @@ from deros.generators.monitor_c.source import MAX_LINE
 class Contract:
     """What a function, or a loop, relies on, may change and ensures.
 
-    Nothing under ``assigns`` means that it changes nothing. What is ``checked`` is ensured, too, but
-    not relied on by callers: that of numbers, which would make their proofs long for nothing.
+    Nothing under ``assigns`` means that it changes nothing. What is ``checked`` is ensured, too,
+    but not relied on by callers: what is said of numbers would make their proofs long for nothing.
     """
 
     requires: list[str] = field(default_factory=list)

@@ -194,11 +194,13 @@ class Arguments:
         leaves: the arguments, by leaf; an array's elements stand with their count.
         counts: the number of elements, by the leaf of an array.
         computed: the local constants that hold what functions with a memory give.
+        lengths: those that hold the lengths of quaternions, by their parts.
     """
 
     leaves: dict[int, str]
     counts: dict[int, str]
     computed: dict[Apply, str] = field(default_factory=dict)
+    lengths: dict[tuple[ValueExpression, ...], str] = field(default_factory=dict)
 
 
 def expression(value: ValueExpression, program: Program, arguments: Arguments) -> str:
@@ -221,6 +223,8 @@ def expression(value: ValueExpression, program: Program, arguments: Arguments) -
                 assert isinstance(array, Read)
                 return f"(int64_t){arguments.counts[array.leaf]}"
             texts = [expression(each, program, arguments) for each in value.arguments]
+            if value.arguments in arguments.lengths:
+                texts = [f"{text} / {arguments.lengths[value.arguments]}" for text in texts]
             return f"{function_name(value, program)}({', '.join(texts)})"
 
 

@@ -14,12 +14,12 @@ from deros.generators.monitor_c.expressions import (
 )
 from deros.generators.monitor_c.layout import InputFields, Layout, Term, c_type
 from deros.generators.monitor_c.names import new_names
-from deros.generators.monitor_c.source import comment, lay_out, lay_out_list
+from deros.generators.monitor_c.source import Call, Expression, comment, lay_out, lay_out_list
 from deros.generators.monitor_python.names import Names
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, STRING_TYPES
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
-from deros.monitor.functions import FUNCTIONS
+from deros.monitor.functions import FUNCTIONS, Argument
 from deros.monitor.ir import Age, Apply, Input, Leaf, Program, Read, ValueExpression
 
 ELEMENTS = {
@@ -87,7 +87,13 @@ class Handler:
     @property
     def call(self) -> list[str]:
         """The line or lines that call the observer."""
-        return lay_out_list(2, f"{self.observer}(", ["m", *self.values], ");")
+        arguments = ["m", *self.values]
+        return lay_out_list(2, f"const bool news = {self.observer}(", arguments, ");")
+
+    @property
+    def call_in_vain(self) -> list[str]:
+        """The same, where no rule asks what it brings."""
+        return lay_out_list(2, f"(void){self.observer}(", ["m", *self.values], ");")
 
 
 def handlers(program: Program, layout: Layout) -> tuple[Handler, ...]:
@@ -122,8 +128,8 @@ class _Writer:
             self._parameters,
             tuple(lay_out_list(0, f"void {function}(", [monitor, "int64_t t", *declared], ")")),
             observer if lines else "",
-            tuple(lay_out_list(0, f"static void {observer}(", [monitor, *declared], ")")),
-            tuple(lines),
+            tuple(lay_out_list(0, f"static bool {observer}(", [monitor, *declared], ")")),
+            ("  bool news = false;", *lines, "  return news;"),
             tuple(text.rsplit(" ", 1)[-1].lstrip("*") for text in declared),
             tuple(each.index for each in self._inputs),
         )
@@ -222,7 +228,8 @@ class _Writer:
             return [*lines, *(line[2:] for line in stores)]
         lines += [*lay_out_test(tests), *stores]
         if each.index in self._layout.forgets:
-            lines += ["  } else {", f"    {self._layout.forgets[each.index]}(m);"]
+            forget = self._layout.forgets[each.index]
+            lines += ["  } else {", f"    news = {forget}(m) || news;"]
         return [*lines, "  }"]
 
     def _tests(self, each: Input) -> list[str]:
@@ -252,32 +259,49 @@ class _Writer:
         return list(tests)
 
     def _values(self, each: Input, terms: Sequence[Term]) -> Iterator[str]:
-        known = self._layout.inputs[each.index].known
-        if known:
-            yield f"  m->{known} = true;"
+        """Yield the statements that store values; what rules read of them is news if it differs."""
+        yield from self._lengths(each)
         for value, memory in self._layout.memories_of(each.index).items():
             operand = as_double(value.arguments[0], self._program, self._arguments)
             name = f"{memory.last}_rate"
             places = f"&m->{memory.last}, &m->{memory.last_t}"
             yield f"  const double {name} = rate({operand}, m->now, {places});"
             self._arguments.computed[value] = name
+        known = self._layout.inputs[each.index].known
+        if known:
+            yield from _news(known, "true")
         for term in terms:
             yield from self._value(term)
         conditions = Conditions(self._program, self._layout)
         for condition, finding in self._layout.findings.items():
             if each.index in finding.inputs:
-                holds = conditions.holds(condition)
-                yield from lay_out(2, f"m->{finding.name} = (", holds, ");")
+                yield from _news(finding.name, conditions.holds(condition))
 
-    def _value(self, term: Term) -> list[str]:
+    def _lengths(self, each: Input) -> Iterator[str]:
+        """Yield the statements that compute the length of each quaternion, once."""
+        lengths = self._arguments.lengths
+        for value in self._functions_of(each):
+            quaternion = FUNCTIONS[value.function].argument is Argument.QUATERNION
+            if quaternion and value.arguments not in lengths:
+                texts = [
+                    expression(part, self._program, self._arguments) for part in value.arguments
+                ]
+                name = f"length_{len(lengths) + 1}"
+                lengths[value.arguments] = name
+                yield from lay_out(2, f"const double {name} = ", Call("length_of", tuple(texts)))
+
+    def _value(self, term: Term) -> Iterator[str]:
         if term.texts:
             name = self._arguments.leaves[_leaf_of(term.value)]
-            return [f"  m->{term.name} = which_{term.name}({name}, {name}_length);"]
+            yield from _news(term.name, f"which_{term.name}({name}, {name}_length)", "text")
+            return
         text = expression(term.value, self._program, self._arguments)
-        lines = [f"  m->{term.name} = {text};"]
+        if term.type == "double":
+            yield f"  m->{term.name} = {text};"
+        else:
+            yield from _news(term.name, text, _PUT[term.type])
         if not isinstance(term.value, Read):
-            lines.append(f"  m->{term.known} = {self._is_known(term)};")
-        return lines
+            yield from _news(term.known, self._is_known(term))
 
     def _is_known(self, term: Term) -> str:
         if term.type == "double":
@@ -290,14 +314,23 @@ class _Writer:
         yield f"  m->{fields.base} = m->now;"
         yield f"  m->{fields.came} = true;"
         if fields.missing:
-            yield f"  m->{fields.missing} = false;"
+            yield from _news(fields.missing, "false")
         waits = [each.timeout_ns] if each.timeout_ns is not None else []
-        for condition in walk.conditions(self._program):
-            if isinstance(condition, Age) and condition.input == each.index:
-                waits += [change for change in age_changes(condition) if change > 0]
+        ages = self._ages(each)
+        if ages:
+            yield "  news = true;  /* its age is another */"
+        for condition in ages:
+            waits += [change for change in age_changes(condition) if change > 0]
         if waits:
             soonest = f"m->now + INT64_C({min(waits)})"
             yield f"  m->due = earlier(m->due, {soonest});"
+
+    def _ages(self, each: Input) -> list[Age]:
+        return [
+            condition
+            for condition in walk.conditions(self._program)
+            if isinstance(condition, Age) and condition.input == each.index
+        ]
 
     def _functions_of(self, each: Input) -> list[Apply]:
         return [
@@ -305,6 +338,16 @@ class _Writer:
             for value in walk.values(walk.conditions(self._program))
             if isinstance(value, Apply) and value.input == each.index
         ]
+
+
+_PUT = {"bool": "truth", "int64_t": "integer", "uint64_t": "unsigned", "uint32_t": "text"}
+"""By the type of a field, what the function is called that stores a value in it."""
+
+
+def _news(field: str, value: Expression, kind: str = "truth") -> list[str]:
+    """Return the statement that stores a value, and finds whether it is another one."""
+    call = Call(f"store_{kind}", (f"&m->{field}", value))
+    return [f"  {line}" for line in lay_out(0, "news = ", call, " || news;")]
 
 
 def lay_out_test(tests: Sequence[str]) -> list[str]:

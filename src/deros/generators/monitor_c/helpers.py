@@ -20,7 +20,7 @@ _IS_NUMBER = """\
     ensures \\result == 0 <==> \\is_NaN(value); */
 static bool is_number(double value)
 {
-  return (value <= 0.0) || (value > 0.0);
+  return value == value;
 }
 """
 
@@ -126,32 +126,46 @@ static @_verdict either(@_verdict a, @_verdict b)
 
 _LASTING = """\
 /* 'for': true once the operand has been true without a break for so long, since *since. */
-/*@ requires \\valid(m) && \\valid(since) && \\separated(since, &m->due, &m->now);
-    requires is_verdict(operand) && 0 <= m->now <= $_LATEST && 0 < duration <= $_LATEST;
-    requires *since == $_UNSET || 0 <= *since <= m->now;
-    assigns *since, m->due;
+/*@ requires \\valid(since) && \\valid(due) && \\separated(since, due);
+    requires is_verdict(operand) && 0 <= now <= $_LATEST && 0 < duration <= $_LATEST;
+    requires *since == $_UNSET || 0 <= *since <= now;
+    assigns *since, *due;
     ensures operand != $_TRUE ==> *since == $_UNSET && \\result == operand;
-    ensures operand == $_TRUE && \\old(*since) == $_UNSET ==> *since == m->now;
+    ensures operand == $_TRUE && \\old(*since) == $_UNSET ==> *since == now;
     ensures operand == $_TRUE && \\old(*since) != $_UNSET ==> *since == \\old(*since);
-    ensures operand == $_TRUE && m->now - *since >= duration ==> \\result == $_TRUE;
-    ensures operand == $_TRUE && m->now - *since < duration ==> \\result == $_FALSE;
+    ensures operand == $_TRUE && now - *since >= duration ==> \\result == $_TRUE;
+    ensures operand == $_TRUE && now - *since < duration ==> \\result == $_FALSE;
     ensures operand == $_TRUE && \\old(*since) == $_UNSET
-      ==> m->due == \\min(\\old(m->due), m->now + duration);
-    ensures operand != $_TRUE || \\old(*since) != $_UNSET ==> m->due == \\old(m->due); */
+      ==> *due == \\min(\\old(*due), now + duration);
+    ensures operand != $_TRUE || \\old(*since) != $_UNSET ==> *due == \\old(*due); */
 static @_verdict lasting(
-  @_monitor *m, int64_t *since, @_verdict operand, int64_t duration)
+  @_verdict operand, int64_t duration, int64_t now, int64_t *since, int64_t *due)
 {
   @_verdict verdict = operand;
   if (operand != $_TRUE) {
     *since = $_UNSET;
   } else {
     if (*since == $_UNSET) {
-      *since = m->now;
-      m->due = earlier(m->due, m->now + duration);
+      *since = now;
+      *due = earlier(*due, now + duration);
     }
-    verdict = ((m->now - *since) >= duration) ? $_TRUE : $_FALSE;
+    verdict = ((now - *since) >= duration) ? $_TRUE : $_FALSE;
   }
   return verdict;
+}
+"""
+
+_PUT = """\
+/* Stores a value, and tells whether it is another one than before. */
+/*@ requires \\valid(place);
+    assigns *place;
+    ensures *place == value;
+    ensures \\result != 0 <==> value != \\old(*place); */
+static bool store_KIND(TYPE *place, TYPE value)
+{
+  const bool other = (*place != value);
+  *place = value;
+  return other;
 }
 """
 
@@ -202,6 +216,8 @@ static int64_t bounded(int64_t t)
 }
 """
 
+_STORED = {"truth": "bool", "integer": "int64_t", "unsigned": "uint64_t", "text": "uint32_t"}
+
 _LOOP = """\
   /*@ loop invariant 0 <= i <= count;
       loop assigns LOOP;
@@ -230,7 +246,9 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     for base in sorted(FLOAT_TYPES):
         yield f"are_numbers_{base}", _of_elements(_ARE_NUMBERS, base)
     yield "is_text", _IS_TEXT
-    for name in ("clamped", "roll", "pitch", "yaw", "tilt", "norm"):
+    for kind, type_ in _STORED.items():
+        yield f"store_{kind}", _PUT.replace("KIND", kind).replace("TYPE", type_)
+    for name in ("length_of", "clamped", "roll", "pitch", "yaw", "tilt", "norm"):
         yield name, f"/*@ assigns \\nothing; */\n{C[name]}"
     yield "magnitude", _MAGNITUDE + C["magnitude"]
     yield "rate", _RATE + C["rate"]

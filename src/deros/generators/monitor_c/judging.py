@@ -80,7 +80,7 @@ def _intervals(conditions: Conditions, layout: Layout, condition: Condition) -> 
             since = layout.since[part.index]
             operand = conditions.verdict(part.operand)
             duration = integer(part.duration_ns)
-            call = Call("lasting", ("m", f"&m->{since}", operand, duration))
+            call = Call("lasting", (operand, duration, "m->now", f"&m->{since}", "&m->due"))
             name = conditions.interval(part)
             yield from lay_out(2, f"const {layout.prefix}_verdict {name} = ", call)
 

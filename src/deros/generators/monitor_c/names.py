@@ -11,10 +11,10 @@ _C = """auto break case char const continue default do double else enum extern f
 inline int long register restrict return short signed sizeof static struct switch typedef union
 unsigned void volatile while"""
 _CPP = """alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t class compl
-concept constexpr const_cast decltype delete dynamic_cast explicit export false friend mutable namespace
-new noexcept not not_eq nullptr operator or or_eq private protected public reinterpret_cast requires
-static_assert static_cast template this thread_local throw true try typeid typename using virtual
-wchar_t xor xor_eq"""
+concept constexpr const_cast decltype delete dynamic_cast explicit export false friend
+mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
+public reinterpret_cast requires static_assert static_cast template this thread_local
+throw true try typeid typename using virtual wchar_t xor xor_eq"""
 _STANDARD = """assert errno main NULL NAN INFINITY INT64_MAX INT64_C abs fabs hypot sqrt atan2 asin
 fmod fmin fmax index time signal"""
 _OURS = """m t now due owner started count verdict holds rises changed done grace enabled value

@@ -12,7 +12,7 @@ from deros.generators.monitor_c.view import MonitorView, monitor_view
 from deros.generators.templates import environment
 from deros.monitor.ir import Program
 
-_OF_LIBM = re.compile(r"\b(?:NAN|INFINITY|fabs|hypot|atan2|asin|fmod)\b")
+_OF_LIBM = re.compile(r"\b(?:NAN|INFINITY|fabs|sqrt|atan2|asin|fmod)\b")
 
 
 def render_monitor(program: Program) -> dict[str, str]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from deros.generators.monitor_python.conditions import literal, scaled
 from deros.generators.monitor_python.layout import Layout, input_of
 from deros.generators.monitor_python.logic import (
+    MAX_LINE,
     Atom,
     Logic,
     all_of,
@@ -218,7 +219,7 @@ class _Writer:
                 results.append(f"{blank}    {name} = {row.python_of_unit[-1]}")
                 names.append(name)
         return [
-            *lay_out_call(indent, "length = math.hypot(", texts),
+            *_lay_out_length(indent, texts),
             f"{blank}if 0.0 < length < math.inf:",
             *(
                 f"{blank}    {unit} = {part} / length"
@@ -309,6 +310,18 @@ class _Writer:
                 return scaled(self._value(value.operand), value)
             case Apply():
                 return self._locals[value]
+
+
+def _lay_out_length(indent: int, parts: Sequence[str]) -> list[str]:
+    """Return the statement that computes the length of a quaternion, as the reference does."""
+    blank = " " * indent
+    squares = [f"{part} * {part}" for part in parts]
+    line = f"{blank}length = math.sqrt({' + '.join(squares)})"
+    if len(line) <= MAX_LINE:
+        return [line]
+    first, *rest = squares
+    lines = [f"{blank}    {first}", *(f"{blank}    + {square}" for square in rest)]
+    return [f"{blank}length = math.sqrt(", *lines, f"{blank})"]
 
 
 def _call_at(wait_ns: int) -> list[str]:
