@@ -25,7 +25,7 @@ constexpr std::chrono::milliseconds AGAIN{20};
 
 sem_t asked_to_end;  // posted by the handler, which may do little else
 
-void take_signal(int /*number*/)
+void take_signal([[maybe_unused]] int number)
 {
   const int kept = errno;
   sem_post(&asked_to_end);
