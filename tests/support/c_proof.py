@@ -94,7 +94,8 @@ def prove(
     """Prove the contracts of a source, or of some of its functions."""
     chosen = ["-wp-fct", ",".join(functions)] if functions else []
     options = [
-        *("-wp", "-wp-rte", "-wp-model", "Typed+float", "-wp-no-init-const"),
+        *("-wp", "-wp-rte", "-wp-model", "Typed+ref+float", "-wp-check-memory-model"),
+        "-wp-no-init-const",
         *("-wp-prover", "cvc4,z3", "-wp-timeout", str(timeout_s), "-wp-par", str(jobs)),
     ]
     lines: list[str] = []

@@ -1,0 +1,135 @@
+"""What holds of a monitor, as predicates in ACSL: ranges, deadlines, and what the rules mean."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from deros.generators.monitor_c.contracts import all_of, iff
+from deros.generators.monitor_c.meaning import Meaning
+from deros.generators.monitor_c.view import MonitorView
+from deros.monitor import walk
+from deros.monitor.ir import Behaviour, Condition, For, Rule
+
+
+class Predicates:
+    """Writes the predicates of one monitor."""
+
+    def __init__(self, view: MonitorView) -> None:
+        """Remember what is named how."""
+        self._view = view
+        self._layout = view.layout
+        self.meaning = Meaning(view.layout)
+        self._types = {each.name: each.type.strip() for each in view.fields}
+
+    def fors(self, condition: Condition) -> list[For]:
+        """Return the intervals of a condition that are remembered."""
+        return [
+            part
+            for part in walk.parts(condition)
+            if isinstance(part, For) and part.index in self._layout.since
+        ]
+
+    def declarations(self) -> str:
+        """Return the predicates that say what the rules mean, and what a sane monitor is."""
+        verdicts = " || ".join(f"v == {self.macro(each)}" for each in ("FALSE", "UNKNOWN", "TRUE"))
+        lines = ["/* What the rules mean, and what holds of a monitor between two calls. */"]
+        lines.append(f"/*@ predicate is_verdict(integer v) = {verdicts};")
+        for name, parameters, parts in self._predicates():
+            lines.append(f"    predicate {name}({self._view.prefix}_monitor *m{parameters}) =")
+            lines += [f"      {part} &&" for part in parts[:-1]]
+            lines.append(f"      {parts[-1]};")
+        lines[-1] += " */"
+        return "\n".join(lines) + "\n\n"
+
+    def _predicates(self) -> Iterator[tuple[str, str, list[str]]]:
+        for rule in self._view.program.rules:
+            name = self._layout.verdicts[rule.index]
+            yield f"true_{name}", "", [self.meaning.true(rule.condition)]
+            yield f"false_{name}", "", [self.meaning.false(rule.condition)]
+            yield f"judged_{name}", "", self._judged(rule)
+        for each in walk.behaviours(self._view.program):
+            yield f"acted_{self._layout.behave[each.index]}", "", self._acted(each)
+        yield "ranged", "", self.ranges(self._types)
+        restarted = {each.name for each in self._view.fields if each.restarted}
+        restarted |= {name for each in self._view.forgets for name in each.known}
+        kept = [name for name in self._types if name not in restarted]
+        yield "ranged_but_for_restart", "", self.ranges(kept)
+        yield "timeouts_in_time", ", integer due", self._timeouts_in_time() or ["\\true"]
+        yield "ends_in_time", ", integer due", self._ends_in_time() or ["\\true"]
+        yield "unexpired", "", self._unexpired() or ["\\true"]
+        yield "judged", "", [f"judged_{name}(m)" for name in self._layout.verdicts.values()]
+        yield "acted", "", [f"acted_{name}(m)" for name in self._layout.behave.values()]
+        yield "sane", "", [*SOUND, "m->due > m->now", "(m->started != 0 ==> judged(m) && acted(m))"]
+
+    def macro(self, name: str) -> str:
+        """Return the name of one of the monitor's macros."""
+        return f"{self._view.macro}_{name}"
+
+    def ranges(self, names: Iterable[str]) -> list[str]:
+        """Return what each of the named fields is in."""
+        latest, unset = self.macro("LATEST"), self.macro("UNSET")
+        sinces = set(self._layout.since.values())
+        free = {term.name for term in self._layout.terms.values()} | {"due"}
+        free |= set(self._layout.turned.values())
+        found = []
+        for name in names:
+            kind = self._types[name]
+            if name in sinces:
+                found.append(f"(m->{name} == {unset} || 0 <= m->{name} <= m->now)")
+            elif kind == "bool":
+                found.append(f"(m->{name} == 0 || m->{name} == 1)")
+            elif kind.endswith("_verdict"):
+                found.append(f"is_verdict(m->{name})")
+            elif kind == "int64_t" and name not in free:
+                found.append(f"0 <= m->{name} <= {latest}")
+        return found
+
+    def _timeouts_in_time(self) -> list[str]:
+        return [
+            f"(m->{each.missing} == 0 ==> due <= m->{each.base} + {each.duration_ns})"
+            for each in self._view.timeouts
+        ]
+
+    def _ends_in_time(self) -> list[str]:
+        found = []
+        for each in self._view.ends:
+            end = f"m->{each.base} + {each.wait_ns}"
+            condition = each.condition if "!=" in each.condition else f"{each.condition} != 0"
+            found.append(f"({condition} && {end} > m->now ==> due <= {end})")
+        return found
+
+    def _unexpired(self) -> list[str]:
+        return [
+            f"(m->{each.missing} == 0 ==> m->{each.base} + {each.duration_ns} > m->now)"
+            for each in self._view.timeouts
+        ]
+
+    def _judged(self, rule: Rule) -> list[str]:
+        """Return that a rule's verdict is what it means, and its intervals run if they must."""
+        name = self._layout.verdicts[rule.index]
+        return [
+            *map(self._runs, self.fors(rule.condition)),
+            iff(f"m->{name} == {self.macro('TRUE')}", f"true_{name}(m)"),
+            iff(f"m->{name} == {self.macro('FALSE')}", f"false_{name}(m)"),
+        ]
+
+    def _runs(self, condition: For) -> str:
+        since = self._layout.since[condition.index]
+        return iff(f"m->{since} != {self.macro('UNSET')}", self.meaning.true(condition.operand))
+
+    def _acted(self, behaviour: Behaviour) -> list[str]:
+        """Return that a behaviour holds if its condition does, within what encloses it."""
+        tests = [self.meaning.true(behaviour.condition)]
+        if behaviour.parent is not None:
+            tests.append(f"m->{self._layout.holds[behaviour.parent]} != 0")
+        if behaviour.optional:
+            tests.append(f"m->{self._layout.enabled[behaviour.index]} != 0")
+        runs = map(self._runs, self.fors(behaviour.condition))
+        return [*runs, iff(f"m->{self._layout.holds[behaviour.index]} != 0", all_of(tests))]
+
+
+IN_TIME = ("timeouts_in_time(m, m->due)", "ends_in_time(m, m->due)")
+"""No deadline lies before the one that the owner was told."""
+
+SOUND = ("ranged(m)", *IN_TIME, "unexpired(m)")
+"""What holds of a monitor at all times, but for the verdicts."""
