@@ -118,7 +118,7 @@ class RobotByHand:
             if self.imu_gone:
                 self.imu_gone = False
                 self.due = min(self.due, t + TIMEOUT)
-            length = math.hypot(x, y, z, w)
+            length = math.sqrt(x * x + y * y + z * z + w * w)
             if 0.0 < length < math.inf:
                 x, y, z, w = x / length, y / length, z / length, w / length
                 roll = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))

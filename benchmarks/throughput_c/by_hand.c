@@ -91,9 +91,7 @@ void by_hand_imu(by_hand *m, int64_t t, double x, double y, double z, double w)
   arrive(m, t);
   if (!isnan(square)) { /* nor is any of the four */
     heard(m, t, &m->imu_at, &m->imu_gone);
-    /* The squares are exact enough but for lengths that no sensor sends. */
-    const bool usual = square > 1e-200 && square < 1e200;
-    const double length = usual ? sqrt(square) : hypot(hypot(x, y), hypot(z, w));
+    const double length = sqrt(square);
     if (length > 0.0 && length < (double)INFINITY) {
       x /= length;
       y /= length;

@@ -99,6 +99,7 @@ def test_output_that_nobody_reads_holds_nothing_up(robot: Robot) -> None:
             assert len(unread) <= 4096
             assert b"slow, by heavy" in unread
         finally:
+            toggling.kill()
             node.kill()
 
 

@@ -32,7 +32,7 @@ COMPILERS = {
     "Cortex-M4": ("arm-none-eabi-gcc", "-std=c99", "-ffreestanding", "-mcpu=cortex-m4"),
 }
 
-LIBM = {"fabs", "hypot", "atan2", "asin", "fmod"}
+LIBM = {"fabs", "sqrt", "atan2", "asin", "fmod"}
 """What the functions of rules need of the mathematical library."""
 
 

@@ -347,7 +347,8 @@ _PUT = {"bool": "truth", "int64_t": "integer", "uint64_t": "unsigned", "uint32_t
 def _news(field: str, value: Expression, kind: str = "truth") -> list[str]:
     """Return the statement that stores a value, and finds whether it is another one."""
     call = Call(f"store_{kind}", (f"&m->{field}", value))
-    return [f"  {line}" for line in lay_out(0, "news = ", call, " || news;")]
+    # It stands in a block in the end, two columns further.
+    return [line[2:] for line in lay_out(4, "news = ", call, " || news;")]
 
 
 def lay_out_test(tests: Sequence[str]) -> list[str]:

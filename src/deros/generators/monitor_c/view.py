@@ -256,13 +256,13 @@ def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
         if fields.missing:
             yield Field("bool ", fields.missing, "whether its timeout has passed", 1, "", "false")
         if fields.known:
-            yield Field("bool ", fields.known, f"whether {each.name} is known", 1)
+            yield Field("bool ", fields.known, f"whether {each.name} is known", 1, "false")
     for term in layout.terms.values():
         size = {"bool": 1, "uint32_t": 4}.get(term.type, 8)
         initial = {"bool": "false", "uint32_t": "0U", "double": "0.0"}.get(term.type, "0")
         yield Field(f"{term.type} ", term.name, "as of the last message", size, initial)
         if term.known != layout.inputs[term.input].known:
-            yield Field("bool ", term.known, "whether it is known", 1)
+            yield Field("bool ", term.known, "whether it is known", 1, "false")
     for finding in layout.findings.values():
         yield Field("bool ", finding.name, "how values compare", 1, "false")
     for memory in layout.memories.values():
