@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.faults import NODE, PACKAGE, Robot
+from tests.support.faults import NODE, Robot
 from tests.support.played import load
 from tests.support.ros import LIMIT
 from tests.support.victims import Process
@@ -81,10 +81,10 @@ def test_ten_thousand_triggers_in_a_row_are_all_carried_out(robot: Robot) -> Non
 
 def test_output_that_nobody_reads_holds_nothing_up(robot: Robot) -> None:
     """A launcher that hangs leaves the output in a full pipe; the node loses it, and acts."""
-    command = [sys.executable, "-m", f"{PACKAGE}.{NODE}"]
+    command, env = robot.software.command(NODE, robot.env)
     with (
         subprocess.Popen(
-            command, env=robot.env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, pipesize=4096
+            command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, pipesize=4096
         ) as node,
         toggler(robot, UNREAD) as toggling,
     ):
