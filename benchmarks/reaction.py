@@ -44,6 +44,13 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument("--only", choices=("rclpy", "rclcpp"), help="one client library alone")
     parser.add_argument("--load", action="store_true", help="put the machine under load")
+    parser.add_argument(
+        "--priority",
+        type=int,
+        default=0,
+        metavar="N",
+        help="real-time priority, 1 to 99, of the nodes on rclcpp that keep deadlines",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all results there, too")
     parser.add_argument(
         "--assert", action="store_true", dest="must_hold", help="exit with 1 if a bar fails"
@@ -58,7 +65,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 def _measure(options: argparse.Namespace, folder: Path) -> list[Results]:
     """Measure on each client library."""
-    wanted = Wanted(options.immediate, options.repeat, options.load)
+    wanted = Wanted(options.immediate, options.repeat, options.load, options.priority)
     found = []
     for name, session in (("rclpy", reaction_rclpy), ("rclcpp", reaction_rclcpp)):
         is_there = name != "rclcpp" or rclcpp_environment() is not None

@@ -44,7 +44,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
         # The domain is one of this process's variables by now.
         env = {**os.environ, "LD_LIBRARY_PATH": base["LD_LIBRARY_PATH"]}
         env.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None)
-        _start_nodes(processes, programs, lanes, env)
+        _start_nodes(processes, programs, lanes, env, wanted.priority)
         if wanted.load:
             start_load(processes)
         records = [*map(events_of, lanes.nodes), events_of(_TIMED_NODE)]
@@ -76,6 +76,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             sleeps=[],
             lost=lost((*at_once[SAFETY], later[0])),
             traffic=processes.end("listener") if wanted.load else 0.0,
+            priority=wanted.priority,
         )
 
 
@@ -122,13 +123,18 @@ def _build(shop: Path, timed: Sequence[Lane], env: Mapping[str, str]) -> dict[st
 
 
 def _start_nodes(
-    processes: Processes, programs: Mapping[str, Path], lanes: _Lanes, env: Mapping[str, str]
+    processes: Processes,
+    programs: Mapping[str, Path],
+    lanes: _Lanes,
+    env: Mapping[str, str],
+    priority: int,
 ) -> None:
     for node, lane in zip(lanes.nodes, lanes.immediate[SAFETY], strict=True):
         remaps = {"__node": node, _RULE.imu: lane.imu, _RULE.state: lane.state}
         processes.start_program([str(programs["immediate"]), *_ros(remaps)], env, node)
     # The many states of the timed rules, repeated as often as usual, would be a load.
     parameters = ["--ros-args", "-p", "publish_freq:=2.0"]
+    parameters += ["-p", f"realtime_priority:={priority}"]
     processes.start_program([str(programs["timed"]), *parameters], env, _TIMED_NODE)
     for lane in lanes.immediate[FASTEST]:
         command = [str(programs["fastest_relay"]), _relayed(lane)]
@@ -136,7 +142,8 @@ def _start_nodes(
     for lane in lanes.immediate[USUAL]:
         remaps = {"__node": lane.name, "imu": lane.imu, "state": lane.state}
         processes.start_program([str(programs["usual_relay"]), *_ros(remaps)], env, lane.name)
-    command = [str(programs["fastest_relay"]), *map(_relayed, lanes.floor)]
+    first = ["chrt", "--fifo", str(priority)] if priority else []
+    command = [*first, str(programs["fastest_relay"]), *map(_relayed, lanes.floor)]
     processes.start_program([*command, *_ros({"__node": "timed_relay"})], env, "timed_relay")
 
 

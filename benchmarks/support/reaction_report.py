@@ -58,6 +58,10 @@ def paper_rows() -> list[tuple[str, float, Summary]]:
 def show(results: Sequence[Results], console: Console) -> None:
     """Print the table, with a verdict per bar below it."""
     machine = "under load" if any(each.run.loaded for each in results) else "idle machine"
+    for each in results:
+        if each.run.priority:
+            client = each.run.client.section.rstrip(", ")
+            machine += f"; {client}'s deadlines at real-time priority {each.run.priority}"
     table = Table(title=f"Reaction in ms, {machine}", title_justify="left", pad_edge=False)
     table.add_column("")
     for head in ("n", "avg", "SD", "min", "median", "99 %", "max", "/ floor: median", "99 %"):
@@ -133,6 +137,7 @@ def as_json(results: Sequence[Results]) -> dict[str, Any]:
     return {
         "benchmark": "reaction",
         "loaded": any(each.run.loaded for each in results),
+        "priority": max((each.run.priority for each in results), default=0),
         "machine": {
             "processors": os.cpu_count(),
             "system": platform.platform(),

@@ -57,6 +57,7 @@ class Run:
         sleeps: how late a plain sleep ended, in ns.
         lost: how many reactions have not come.
         traffic: messages per second of the load that have come to their receiver.
+        priority: the real-time priority of those that keep deadlines; 0 for none.
     """
 
     client: Client
@@ -69,6 +70,7 @@ class Run:
     sleeps: list[int]
     lost: int
     traffic: float
+    priority: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,11 +25,13 @@ class Wanted:
         immediate: how many reactions at once, of each.
         repeat: how many reactions after a while, of each duration.
         load: whether the machine is put under load.
+        priority: the real-time priority of the nodes on rclcpp that keep deadlines; 0 for none.
     """
 
     immediate: int
     repeat: int
     load: bool
+    priority: int = 0
 
 
 def events_of(node: str) -> str:

@@ -79,14 +79,19 @@ void Agenda::run()
 /// Wait until there is something to do; return the source whose turn it is, if it is one's.
 std::size_t Agenda::next_source()
 {
-  const Time limit = next_instant();
+  const Times next = next_times();
   std::unique_lock<std::mutex> lock(mutex_);
   const auto is_awaited = [this] {return count_ > 0 || ends_;};
-  if (limit == NEVER) {
+  if (next.wake == NEVER) {
     came_.wait(lock, is_awaited);
   } else {
     using Instant = std::chrono::steady_clock::time_point;
-    came_.wait_until(lock, Instant(std::chrono::nanoseconds(limit)), is_awaited);
+    came_.wait_until(lock, Instant(std::chrono::nanoseconds(next.wake)), is_awaited);
+    lock.unlock();
+    while (!is_awaited() && steady_now() < next.ring) {
+      // A thread that sleeps wakes up late: the last moments are spent awake.
+    }
+    lock.lock();
   }
   if (count_ == 0 || ends_) {
     return NOTHING;
@@ -98,13 +103,14 @@ std::size_t Agenda::next_source()
   return source;
 }
 
-/// Return when the next alarm rings that waits for steady time.
-Time Agenda::next_instant() const
+/// Return when the next alarm rings that waits for steady time, and when to wake up for it.
+Agenda::Times Agenda::next_times() const
 {
-  Time next = NEVER;
+  Times next{NEVER, NEVER};
   for (const Alarm * alarm : alarms_) {
     if (alarm->is_set_ && alarm->clock_.is_steady) {
-      next = std::min(next, alarm->wait_until_);
+      next.ring = std::min(next.ring, alarm->wait_until_);
+      next.wake = std::min(next.wake, alarm->wait_until_ - alarm->lead_);
     }
   }
   return next;
@@ -118,8 +124,10 @@ void Agenda::ring_alarms()
 }
 
 Alarm::Alarm(
-  Agenda & agenda, Clock clock, std::function<void()> callback, std::function<Time()> put_off)
-: clock_(std::move(clock)), callback_(std::move(callback)), put_off_(std::move(put_off))
+  Agenda & agenda, Clock clock, std::function<void()> callback, std::function<Time()> put_off,
+  Time lead)
+: clock_(std::move(clock)), callback_(std::move(callback)), put_off_(std::move(put_off)),
+  lead_(lead)
 {
   agenda.alarms_.push_back(this);
 }

@@ -1,6 +1,7 @@
 #ifndef DEROS_RUNTIME__RUNTIME__AGENDA_HPP_
 #define DEROS_RUNTIME__RUNTIME__AGENDA_HPP_
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -67,8 +68,14 @@ private:
 
   static constexpr std::size_t NOTHING = static_cast<std::size_t>(-1);
 
+  struct Times
+  {
+    Time wake;
+    Time ring;
+  };
+
   std::size_t next_source();
-  Time next_instant() const;
+  Times next_times() const;
   void ring_alarms();
 
   std::vector<Source> sources_;
@@ -78,8 +85,8 @@ private:
   std::condition_variable came_;
   std::vector<std::size_t> queue_;  // a ring of numbers of sources
   std::size_t first_ = 0;
-  std::size_t count_ = 0;
-  bool ends_ = false;
+  std::atomic<std::size_t> count_{0};  // changed under the mutex, as is the next
+  std::atomic<bool> ends_{false};
 };
 
 /// Rings at an instant of a clock, once; belongs to the thread of its agenda.
@@ -88,10 +95,11 @@ class Alarm
 public:
   /**
    * \param put_off tells of an alarm that is not urgent for how long something else goes before it
+   * \param lead for how long before it rings the thread stays awake, so that it rings on the dot
    */
   Alarm(
     Agenda & agenda, Clock clock, std::function<void()> callback,
-    std::function<Time()> put_off = {});
+    std::function<Time()> put_off = {}, Time lead = 0);
   Alarm(const Alarm &) = delete;
   Alarm & operator=(const Alarm &) = delete;
 
@@ -125,6 +133,7 @@ private:
   Clock clock_;
   std::function<void()> callback_;
   std::function<Time()> put_off_;
+  Time lead_;
   Time due_ = 0;
   Time wait_until_ = 0;
   bool is_set_ = false;

@@ -14,6 +14,7 @@ namespace
 constexpr Time NEVER = std::numeric_limits<Time>::max();
 constexpr Time NEAR = 2'000'000;  // ns before a deadline in which nothing is begun that can wait
 constexpr Time AFTER = 1'000'000;  // ns after it in which what it orders is done
+constexpr Time LEAD = 200'000;  // ns before it in which its thread is awake: few wake up later
 constexpr std::size_t EVENTS = 1024;  // of one evaluation, for which there is room from the start
 
 }  // namespace
@@ -22,7 +23,7 @@ Watch::Watch(Agenda & agenda, Clock clock, Watched & watched)
 : agenda_(agenda),
   clock_(std::move(clock)),
   watched_(watched),
-  deadline_(agenda, clock_, [this] {advance();}),
+  deadline_(agenda, clock_, [this] {advance();}, {}, LEAD),
   step_(agenda.add_source([this] {look_at_clock();}, 1))
 {
   ordered_.reserve(EVENTS);
