@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from importlib import resources
 
 from deros.generators.cpp_source import arguments, call, comment, include_lines, mark_long_lines
 from deros.generators.gate_cpp.node import base_node
@@ -12,20 +11,23 @@ from deros.generators.gate_cpp.source import condition, string_lines
 from deros.generators.gate_cpp.view import GateView, gate_view
 from deros.generators.protocol import File
 from deros.generators.rosnode_cpp.generate import Provided, licensed
-from deros.generators.safety_cpp.verbatim import runtime_sources
+from deros.generators.safety_cpp.verbatim import runtime_sources, runtime_text
 from deros.generators.safety_python.description import node_description
 from deros.generators.templates import environment
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType
 from deros.monitor.ir import Program
 
-_SHARED = ("agenda", "instance", "machine", "process", "publishers", "sha256", "text", "worker")
+_SHARED = (
+    *("agenda", "instance", "machine", "process", "publishers", "sha256", "simulated", "text"),
+    "worker",
+)
 """The sources that gates have in common with the safety node."""
 
 _OWN = ("gate_report", "gatekeeper")
 """Those that are the same for all gates."""
 
-_NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils")
+_NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils", "rosgraph_msgs")
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,13 +128,6 @@ def runtime_texts(package: str) -> dict[str, str]:
     include, source = f"{include_folder(package)}/runtime", f"{package}/src/runtime"
     headers = {f"{include}/{name}.hpp": f"{name}.hpp" for name in ("gate_numbers", *_OWN)}
     sources = {f"{source}/{name}.cpp": f"{name}.cpp" for name in _OWN}
-    return {path: runtime_text(name, package) for path, name in (headers | sources).items()}
-
-
-def runtime_text(name: str, package: str) -> str:
-    """Return one of these files in the namespace ``runtime`` of a package."""
-    folder = resources.files("deros.generators.gate_cpp.runtime")
-    text = (folder / name).read_text(encoding="utf-8")
-    text = text.replace("DEROS_RUNTIME", package.upper())
-    text = text.replace("deros_runtime/", f"{package}/")
-    return text.replace("deros_runtime", f"{package}::runtime")
+    return {
+        path: runtime_text(name, package, "gate_cpp") for path, name in (headers | sources).items()
+    }

@@ -27,7 +27,14 @@ from deros.generators.templates import environment
 from deros.metamodels.rules import Rules
 from deros.monitor.build import build
 
-_NEEDS = ("diagnostic_msgs", "rclcpp", "rclcpp_components", "rcutils", "std_msgs")
+_NEEDS = (
+    "diagnostic_msgs",
+    "rclcpp",
+    "rclcpp_components",
+    "rcutils",
+    "rosgraph_msgs",
+    "std_msgs",
+)
 
 
 def generate(model: Rules, context: Context, options: Options) -> Files:

@@ -11,7 +11,8 @@ from deros.generators.rosnode_cpp.generate import licensed
 _HEADERS_ONLY = ("descriptor", "refusal")
 _SOURCES = (
     *("agenda", "diagnostics", "events", "guardian", "instance", "latches", "machine", "ports"),
-    *("process", "publishers", "sha256", "siblings", "text", "told", "watch", "worker"),
+    *("process", "publishers", "sha256", "siblings", "simulated", "text", "told", "watch"),
+    "worker",
 )
 
 
@@ -32,9 +33,9 @@ def runtime_files(package: str, copyright_line: str = "") -> dict[str, File]:
     return files
 
 
-def runtime_text(name: str, package: str) -> str:
-    """Return one file in the namespace ``runtime`` of a package."""
-    folder = resources.files("deros.generators.safety_cpp.runtime")
+def runtime_text(name: str, package: str, generator: str = "safety_cpp") -> str:
+    """Return one file of a generator's runtime in the namespace ``runtime`` of a package."""
+    folder = resources.files(f"deros.generators.{generator}.runtime")
     text = (folder / name).read_text(encoding="utf-8")
     text = text.replace("DEROS_RUNTIME", package.upper())
     return text.replace("deros_runtime/", f"{package}/").replace(

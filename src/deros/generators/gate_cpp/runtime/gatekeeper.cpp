@@ -14,37 +14,18 @@
 namespace deros_runtime
 {
 
-namespace
-{
-
-bool is_simulated(rclcpp::Node & node)
-{
-  return node.get_parameter("use_sim_time").as_bool();
-}
-
-Clock chosen_clock(rclcpp::Node & node)
-{
-  if (!is_simulated(node)) {
-    return Clock();
-  }
-  const rclcpp::Clock::SharedPtr clock = node.get_clock();
-  return {[clock] {return clock->now().nanoseconds();}, false};
-}
-
-}  // namespace
-
 Gatekeeper::Gatekeeper(
   rclcpp::Node & node, Kept & gate, std::vector<std::string> lines, Settings settings)
 : node_(node),
   gate_(gate),
   refused_(prepare(settings.realtime_priority, settings.lock_memory)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
-  clock_(chosen_clock(node)),
+  simulated_(simulated_time(node, agenda_, [this](bool) {advance();})),
+  clock_(clock_of(simulated_)),
   report_(
     agenda_, node, gate, std::move(lines), [this] {return now();},
     [this](const GateReport::Message & message) {gate_.report(message);}),
   deadline_(agenda_, clock_, [this] {advance();}),
-  step_(agenda_.add_source([this] {advance();}, 1)),
   worker_(agenda_, [this](const char * why) {RCLCPP_FATAL(node_.get_logger(), "%s", why);})
 {
   const std::size_t domain = node.get_node_base_interface()->get_context()->get_domain_id();
@@ -70,7 +51,6 @@ void Gatekeeper::start()
     report_.fault("process", refusal);
   }
   report_.begin();
-  follow_clock();
   advance();
   worker_.start();
 }
@@ -122,20 +102,6 @@ void Gatekeeper::advance()
 {
   gate_.advance(now());
   settle();
-}
-
-/// Look at simulated time whenever it goes on, or back.
-void Gatekeeper::follow_clock()
-{
-  if (!is_simulated(node_)) {
-    return;
-  }
-  rcl_jump_threshold_t threshold{};
-  threshold.on_clock_change = true;
-  threshold.min_forward.nanoseconds = 1;
-  threshold.min_backward.nanoseconds = -1;
-  jumps_ = node_.get_clock()->create_jump_callback(
-    nullptr, [this](const rcl_time_jump_t &) {agenda_.notify(step_);}, threshold);
 }
 
 }  // namespace deros_runtime

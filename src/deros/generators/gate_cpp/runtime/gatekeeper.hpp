@@ -16,6 +16,7 @@
 #include "deros_runtime/runtime/agenda.hpp"
 #include "deros_runtime/runtime/descriptor.hpp"
 #include "deros_runtime/runtime/gate_report.hpp"
+#include "deros_runtime/runtime/simulated.hpp"
 #include "deros_runtime/runtime/worker.hpp"
 #include "rclcpp/rclcpp.hpp"
 #include "rclcpp/serialization.hpp"
@@ -114,7 +115,6 @@ public:
 private:
   void serve(const rclcpp::SubscriptionBase::SharedPtr & subscription, const std::string & type);
   void advance();
-  void follow_clock();
 
   rclcpp::Node & node_;
   Kept & gate_;
@@ -122,12 +122,11 @@ private:
   Descriptor lock_;
   rclcpp::CallbackGroup::SharedPtr group_;  // that no executor spins
   Agenda agenda_;
+  std::unique_ptr<SimulatedTime> simulated_;
   const Clock clock_;
   GateReport report_;
   Alarm deadline_;
-  std::size_t step_;  // the source of the agenda for simulated time
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
-  rclcpp::JumpHandler::SharedPtr jumps_;
   Worker worker_;
 };
 

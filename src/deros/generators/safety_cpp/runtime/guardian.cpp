@@ -47,7 +47,8 @@ Guardian::Guardian(
   period_(std::llrint(1e9 / settings_.publish_freq)),
   refused_(prepare(settings_.realtime_priority, settings_.lock_memory)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
-  watch_(agenda_, choose_clock(), *this),
+  simulated_(simulated_time(node, agenda_, [this](bool back) {watch_.clock_changed(back);})),
+  watch_(agenda_, clock_of(simulated_), *this),
   events_(origins, outside_of_events()),
   diagnostics_(agenda_, origins, settings_.diagnostics_freq, outside_of_diagnostics()),
   siblings_(
@@ -58,7 +59,7 @@ Guardian::Guardian(
     [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);}),
   active_(origins.actions.size()),
   enabled_(origins.behaviours.size(), true),
-  publishing_(agenda_, choose_clock(), [this] {publish();}),
+  publishing_(agenda_, clock_of(simulated_), [this] {publish();}),
   telling_(agenda_, Clock(), [this] {tell();}, [this] {return watch_.put_off();}),
   chores_(agenda_, Clock(), [this] {do_chores();}),
   switching_(agenda_.add_source([this] {switch_behaviours();}, 1)),
@@ -81,15 +82,6 @@ Guardian::~Guardian()
   stop();
 }
 
-Clock Guardian::choose_clock()
-{
-  if (!node_.get_parameter("use_sim_time").as_bool()) {
-    return Clock();
-  }
-  const rclcpp::Clock::SharedPtr clock = node_.get_clock();
-  return {[clock] {return clock->now().nanoseconds();}, false};
-}
-
 // Start
 
 void Guardian::start(const std::vector<Topic> & topics)
@@ -106,16 +98,6 @@ void Guardian::start(const std::vector<Topic> & topics)
         }
         return found;
       });
-  }
-  if (node_.get_parameter("use_sim_time").as_bool()) {
-    rcl_jump_threshold_t threshold{};
-    threshold.on_clock_change = true;
-    threshold.min_forward.nanoseconds = 1;
-    threshold.min_backward.nanoseconds = -1;
-    jumps_ = node_.get_clock()->create_jump_callback(
-      nullptr,
-      [this](const rcl_time_jump_t & jump) {watch_.clock_jumped(jump.delta.nanoseconds < 0);},
-      threshold);
   }
   watch_.start();
   chores_.ring_at(0);

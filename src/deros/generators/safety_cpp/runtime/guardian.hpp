@@ -18,6 +18,7 @@
 #include "deros_runtime/runtime/ports.hpp"
 #include "deros_runtime/runtime/publishers.hpp"
 #include "deros_runtime/runtime/siblings.hpp"
+#include "deros_runtime/runtime/simulated.hpp"
 #include "deros_runtime/runtime/told.hpp"
 #include "deros_runtime/runtime/watch.hpp"
 #include "deros_runtime/runtime/worker.hpp"
@@ -169,7 +170,6 @@ private:
   void stepped() override;
 
   std::optional<std::size_t> action_of(const Event & event) const;
-  Clock choose_clock();
   void open_latches();
   void latch_again();
   void tell_start();
@@ -195,6 +195,7 @@ private:
   Descriptor lock_;
   rclcpp::CallbackGroup::SharedPtr group_;
   Agenda agenda_;
+  std::unique_ptr<SimulatedTime> simulated_;
   Watch watch_;
   Events events_;
   Diagnostics diagnostics_;
@@ -212,7 +213,6 @@ private:
   Alarm chores_;
   std::size_t switching_;  // the source of the agenda
   Ports ports_;
-  rclcpp::JumpHandler::SharedPtr jumps_;
   Worker worker_;
 };
 

@@ -20,11 +20,9 @@ constexpr std::size_t EVENTS = 1024;  // of one evaluation, for which there is r
 }  // namespace
 
 Watch::Watch(Agenda & agenda, Clock clock, Watched & watched)
-: agenda_(agenda),
-  clock_(std::move(clock)),
+: clock_(std::move(clock)),
   watched_(watched),
-  deadline_(agenda, clock_, [this] {advance();}, {}, LEAD),
-  step_(agenda.add_source([this] {look_at_clock();}, 1))
+  deadline_(agenda, clock_, [this] {advance();}, {}, LEAD)
 {
   ordered_.reserve(EVENTS);
   dealt_with_.reserve(EVENTS);
@@ -82,23 +80,13 @@ Time Watch::put_off() const
   return left < NEAR ? left + AFTER : 0;
 }
 
-void Watch::clock_jumped(bool back)
+void Watch::clock_changed(bool back)
 {
-  if (back) {
-    has_stepped_ = true;
-  }
-  agenda_.notify(step_);
-}
-
-/// Start when simulated time begins, and settle a step back without waiting.
-void Watch::look_at_clock()
-{
-  const bool begins = has_started_ && began_at_ == 0 && now() != 0;
-  const bool steps = has_stepped_.exchange(false);
+  const bool begins = has_started_ && began_at_ == 0;
   if (begins) {
     start();
   }
-  if (begins || steps) {
+  if (begins || back) {
     watched_.stepped();
     advance();
   }

@@ -1,7 +1,6 @@
 #ifndef DEROS_RUNTIME__RUNTIME__WATCH_HPP_
 #define DEROS_RUNTIME__RUNTIME__WATCH_HPP_
 
-#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -84,25 +83,21 @@ public:
   /// Return for how long what can wait has to, as a deadline is near.
   Time put_off() const;
 
-  /// Note that simulated time has gone on, or back; from any thread.
-  void clock_jumped(bool back);
+  /// Start when simulated time begins, and settle a step back without waiting.
+  void clock_changed(bool back);
 
 private:
-  void look_at_clock();
   void carry_out();
   void arm();
 
-  Agenda & agenda_;
   Clock clock_;
   Watched & watched_;
   Time began_at_ = 0;
   bool has_started_ = false;
-  std::atomic<bool> has_stepped_{false};
   std::vector<Event> ordered_;  // and not done yet
   std::vector<Event> dealt_with_;
   std::vector<Time> done_;  // when each of these was done
   Alarm deadline_;
-  std::size_t step_;  // the source of the agenda
 };
 
 }  // namespace deros_runtime

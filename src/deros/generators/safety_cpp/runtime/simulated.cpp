@@ -1,0 +1,64 @@
+#include "deros_runtime/runtime/simulated.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+namespace deros_runtime
+{
+
+namespace
+{
+
+constexpr std::size_t TICKS = 100;  // that may wait: each is due at its place among the messages
+
+}  // namespace
+
+SimulatedTime::SimulatedTime(
+  rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed)
+: changed_(std::move(changed)),
+  group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false))
+{
+  rclcpp::SubscriptionOptions options;
+  options.callback_group = group_;
+  subscription_ = node.create_subscription<Message>(
+    "/clock", rclcpp::ClockQoS(rclcpp::KeepLast(TICKS)),
+    [](const Message &) { /* taken by the agenda */}, options);
+  const std::size_t source = agenda.add_source([this] {take();}, TICKS);
+  subscription_->set_on_new_message_callback(
+    [&agenda, source](std::size_t count) {agenda.notify(source, count);});
+}
+
+SimulatedTime::~SimulatedTime()
+{
+  subscription_->clear_on_new_message_callback();
+}
+
+void SimulatedTime::take()
+{
+  rclcpp::MessageInfo info;
+  if (!subscription_->take(message_, info)) {
+    return;
+  }
+  const Time before = now_;
+  now_ = static_cast<Time>(message_.clock.sec) * 1'000'000'000 + message_.clock.nanosec;
+  if (now_ != before) {
+    changed_(now_ < before);
+  }
+}
+
+std::unique_ptr<SimulatedTime> simulated_time(
+  rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed)
+{
+  if (!node.get_parameter("use_sim_time").as_bool()) {
+    return nullptr;
+  }
+  return std::make_unique<SimulatedTime>(node, agenda, std::move(changed));
+}
+
+Clock clock_of(const std::unique_ptr<SimulatedTime> & simulated)
+{
+  return simulated ? simulated->clock() : Clock();
+}
+
+}  // namespace deros_runtime

@@ -1,0 +1,59 @@
+#ifndef DEROS_RUNTIME__RUNTIME__SIMULATED_HPP_
+#define DEROS_RUNTIME__RUNTIME__SIMULATED_HPP_
+
+#include <functional>
+#include <memory>
+
+#include "deros_runtime/runtime/agenda.hpp"
+#include "rclcpp/rclcpp.hpp"
+#include "rosgraph_msgs/msg/clock.hpp"
+
+namespace deros_runtime
+{
+
+/// The time of a simulation as an agenda's thread sees it: in order with all that comes.
+/**
+ * rclcpp takes /clock in a thread of its own, whose time runs ahead of messages that wait to be
+ * taken: an input would be found missing while its message is there.
+ */
+class SimulatedTime
+{
+public:
+  /**
+   * \param changed is called, in the agenda's thread, whenever time has gone on, or back if told so
+   */
+  SimulatedTime(rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed);
+
+  /// From here on nothing is noted any more.
+  ~SimulatedTime();
+  SimulatedTime(const SimulatedTime &) = delete;
+  SimulatedTime & operator=(const SimulatedTime &) = delete;
+
+  /// Return the clock that shows it; 0 before simulated time begins.
+  Clock clock() const
+  {
+    return {[this] {return now_;}, false};
+  }
+
+private:
+  using Message = rosgraph_msgs::msg::Clock;
+
+  void take();
+
+  std::function<void(bool)> changed_;
+  Time now_ = 0;
+  Message message_;
+  rclcpp::CallbackGroup::SharedPtr group_;  // that no executor spins
+  rclcpp::Subscription<Message>::SharedPtr subscription_;
+};
+
+/// Return the simulated time of a node under use_sim_time, and nothing for others.
+std::unique_ptr<SimulatedTime> simulated_time(
+  rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed);
+
+/// Return the clock of simulated time, or the steady one if there is none.
+Clock clock_of(const std::unique_ptr<SimulatedTime> & simulated);
+
+}  // namespace deros_runtime
+
+#endif  // DEROS_RUNTIME__RUNTIME__SIMULATED_HPP_
