@@ -33,7 +33,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Prove the programs asked for; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     examples = [REPOSITORY / "examples" / name / f"{name}.deros" for name in EXAMPLES]
-    parser.add_argument("rules", nargs="*", type=Path, default=examples, help="files of rules")
+    parser.add_argument(
+        "rules",
+        nargs="*",
+        type=Path,
+        default=examples,
+        help="files of rules, or sources of monitors with the contracts beside them",
+    )
     parser.add_argument("--functions", default="", help="prove these alone, with commas between")
     parser.add_argument("--timeout", type=int, default=60, help="seconds for a goal")
     parser.add_argument("--jobs", type=int, default=2, help="provers at once")
@@ -42,11 +48,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if c_proof.missing():
         print(c_proof.missing(), file=sys.stderr)
         return 2
-    with tempfile.TemporaryDirectory(prefix="deros-proof-") as folder:
-        results = [
-            _prove(path, options, (options.output or Path(folder)) / path.stem)
-            for path in options.rules
-        ]
+    results = []
+    with tempfile.TemporaryDirectory(prefix="deros-proof-") as temporary:
+        for path in options.rules:
+            if path.suffix == ".c":
+                results.append(_prove(path.resolve(), path.stem, options))
+            else:
+                folder = (options.output or Path(temporary)) / path.stem
+                source = c_proof.write(_program(path), folder)
+                results.append(_prove(source, path.stem, options))
+                if not options.functions:
+                    results.append(_analyse(source, path.stem))
     return 0 if all(results) else 1
 
 
@@ -58,14 +70,13 @@ def _program(path: Path) -> Program:
     return built.program
 
 
-def _prove(path: Path, options: argparse.Namespace, folder: Path) -> bool:
+def _prove(source: Path, name: str, options: argparse.Namespace) -> bool:
     """Prove one program, and tell how it went."""
     console = Console()
-    source = c_proof.write(_program(path), folder)
     functions = [each for each in options.functions.split(",") if each]
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, TimeElapsedColumn(), console=console) as progress:
-        task = progress.add_task(f"{path.stem}: goals", total=None)
+        task = progress.add_task(f"{name}: functions", total=None)
         proof = c_proof.prove(
             source,
             functions,
@@ -73,19 +84,23 @@ def _prove(path: Path, options: argparse.Namespace, folder: Path) -> bool:
             options.jobs,
             lambda done, total: progress.update(task, completed=done, total=total),
         )
-    (folder / "wp.log").write_text(proof.log, encoding="utf-8")
-    for name in proof.left:
-        console.print(f"  not proved: {name}", style="red", highlight=False)
+    if options.output:
+        options.output.mkdir(parents=True, exist_ok=True)
+        (options.output / f"{name}.wp.log").write_text(proof.log, encoding="utf-8")
+    for goal in proof.left:
+        console.print(f"  not proved: {goal}", style="red", highlight=False)
     for complaint in proof.complaints:
         console.print(f"  assumed: {complaint}", style="red", highlight=False)
-    console.print(f"{path.stem}: {proof.proved} of {proof.all} goals proved", highlight=False)
-    if functions:
-        return proof.is_complete
+    console.print(f"{name}: {proof.proved} of {proof.all} goals proved", highlight=False)
+    return proof.is_complete
+
+
+def _analyse(source: Path, name: str) -> bool:
+    """Look for run-time errors in one program, and tell how it went."""
     analysis = c_proof.analyse(source)
-    (folder / "eva.log").write_text(analysis.log, encoding="utf-8")
     told = "not finished" if analysis.alarms is None else str(analysis.alarms)
-    console.print(f"{path.stem}: possible run-time errors: {told}", highlight=False)
-    return proof.is_complete and analysis.is_clean
+    Console().print(f"{name}: possible run-time errors: {told}", highlight=False)
+    return analysis.is_clean
 
 
 if __name__ == "__main__":

@@ -92,7 +92,7 @@ def test_a_makefile_of_ones_own(tmp_path: Path) -> None:
     assert "wrote build/robot_monitor.c" in made()
     assert "up to date" in made()
     touch(tmp_path / "robot_robot.rnd")
-    assert "2 files unchanged" in made()
+    assert "3 files unchanged" in made()
     assert "up to date" in made()
 
 
@@ -164,7 +164,7 @@ def test_without_a_stamp_the_rule_is_of_the_output(tmp_path: Path) -> None:
     models(tmp_path)
     run("generate", "robot.deros", "--target", "c", "-o", "out", "--depfile", "d")
     head = Path("d").read_text().partition(": \\\n")[0]
-    assert head == "out/robot_monitor.c out/robot_monitor.h"
+    assert head == "out/robot_contracts.h out/robot_monitor.c out/robot_monitor.h"
 
 
 def test_what_is_no_longer_made_is_removed(tmp_path: Path) -> None:

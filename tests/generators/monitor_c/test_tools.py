@@ -87,7 +87,7 @@ SLIPS = {
     "a step back is overlooked": ("(now < m->now) || ", ""),
     "a time is not bounded": ("return (t < 0) ? 0 :", "return (t < 0) ? t :"),
     "a loop does not end": ("m->speed_missing = true;", "(void)m;"),
-    "what is missing is known": ("news = store_truth(&m->speed_known, false) || news;", "(void)m;"),
+    "what is missing is known": ("news = store_truth(&m->speed_known, false, news);", "(void)m;"),
 }
 """Slips by name, and what the invariants say of them."""
 

@@ -15,12 +15,15 @@ class Contract:
 
     Nothing under ``assigns`` means that it changes nothing. What is ``checked`` is ensured, too,
     but not relied on by callers: what is said of numbers would make their proofs long for nothing.
+    With ``cases``, names and conditions of which one always holds, all is ensured of each by
+    itself: so no proof is about the branches of a function at once.
     """
 
     requires: list[str] = field(default_factory=list)
     assigns: list[str] = field(default_factory=list)
     ensures: list[str] = field(default_factory=list)
     checked: list[str] = field(default_factory=list)
+    cases: dict[str, str] = field(default_factory=dict)
     invariants: list[str] = field(default_factory=list)
     variant: str = ""
     is_loop: bool = False
@@ -50,8 +53,14 @@ class Contract:
         for each in dict.fromkeys(self.invariants):
             yield f"loop invariant {each}"
         yield f"{loop}assigns {', '.join(dict.fromkeys(self.assigns)) or chr(92) + 'nothing'}"
-        for each in dict.fromkeys(self.ensures):
-            yield f"ensures {each}"
+        for name, condition in (self.cases or {"": ""}).items():
+            if name:
+                yield f"behavior {name}: assumes {condition}"
+            for each in dict.fromkeys(self.ensures):
+                yield f"ensures {each}"
+        if self.cases:
+            yield "complete behaviors"
+            yield "disjoint behaviors"
         for each in dict.fromkeys(self.checked):
             yield f"check ensures {each}"
         if self.variant:

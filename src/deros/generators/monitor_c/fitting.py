@@ -57,15 +57,18 @@ def _code(line: str) -> list[str]:
 
 def _filled(before: str, items: list[str], after: str) -> list[str]:
     """Return what stands before and after items, which are filled into lines between them."""
-    indent = " " * (len(before) - len(before.lstrip()) + 2)
+    blank = " " * (len(before) - len(before.lstrip()))
+    indent = f"{blank}  "
     lines = [before, ""]
+    closing = [f"{blank}{after}"] if before.endswith("{") else []
     for number, item in enumerate(items):
         *pieces, last = _pieces(item)
-        for piece in (*pieces, f"{last}{after if number == len(items) - 1 else ','}"):
+        ending = ("" if closing else after) if number == len(items) - 1 else ","
+        for piece in (*pieces, f"{last}{ending}"):
             if lines[-1] and len(lines[-1]) + 1 + len(piece) > MAX_LINE:
                 lines.append("")
             lines[-1] = f"{lines[-1]} {piece}" if lines[-1] else f"{indent}{piece}"
-    return lines
+    return [*lines, *closing]
 
 
 def _pieces(item: str) -> list[str]:

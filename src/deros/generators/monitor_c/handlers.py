@@ -14,7 +14,14 @@ from deros.generators.monitor_c.expressions import (
 )
 from deros.generators.monitor_c.layout import InputFields, Layout, Term, c_type
 from deros.generators.monitor_c.names import new_names
-from deros.generators.monitor_c.source import Call, Expression, comment, lay_out, lay_out_list
+from deros.generators.monitor_c.source import (
+    Call,
+    Expression,
+    comment,
+    lay_out,
+    lay_out_if,
+    lay_out_list,
+)
 from deros.generators.monitor_python.names import Names
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, STRING_TYPES
 from deros.monitor import walk
@@ -226,7 +233,7 @@ class _Writer:
         tests = self._tests(each)
         if not tests:
             return [*lines, *(line[2:] for line in stores)]
-        lines += [*lay_out_test(tests), *stores]
+        lines += [*lay_out_if(" && ", tests), *stores]
         if each.index in self._layout.forgets:
             forget = self._layout.forgets[each.index]
             lines += ["  } else {", f"    news = {forget}(m) || news;"]
@@ -346,22 +353,9 @@ _PUT = {"bool": "truth", "int64_t": "integer", "uint64_t": "unsigned", "uint32_t
 
 def _news(field: str, value: Expression, kind: str = "truth") -> list[str]:
     """Return the statement that stores a value, and finds whether it is another one."""
-    call = Call(f"store_{kind}", (f"&m->{field}", value))
+    call = Call(f"store_{kind}", (f"&m->{field}", value, "news"))
     # It stands in a block in the end, two columns further.
-    return [line[2:] for line in lay_out(4, "news = ", call, " || news;")]
-
-
-def lay_out_test(tests: Sequence[str]) -> list[str]:
-    """Return the line or lines that open a block where all tests hold."""
-    line = f"  if ({' && '.join(tests)}) {{"
-    if len(line) <= 99:
-        return [line]
-    return [
-        f"  if ({tests[0]} &&",
-        *(f"    {test} &&" for test in tests[1:-1]),
-        f"    {tests[-1]})",
-        "  {",
-    ]
+    return [line[2:] for line in lay_out(4, "news = ", call)]
 
 
 def _has_index(leaf: Leaf) -> bool:

@@ -156,16 +156,16 @@ static @_verdict lasting(
 """
 
 _PUT = """\
-/* Stores a value, and tells whether it is another one than before. */
+/* Stores a value; tells whether it is another one than before, or there was news already. */
 /*@ requires \\valid(place);
     assigns *place;
     ensures *place == value;
-    ensures \\result != 0 <==> value != \\old(*place); */
-static bool store_KIND(TYPE *place, TYPE value)
+    ensures \\result != 0 <==> news != 0 || value != \\old(*place); */
+static bool store_KIND(TYPE *place, TYPE value, bool news)
 {
   const bool other = (*place != value);
   *place = value;
-  return other;
+  return news || other;
 }
 """
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deros.generators.monitor_c.expressions import Conditions, integer
 from deros.generators.monitor_c.layout import Layout
-from deros.generators.monitor_c.source import MAX_LINE, Call, comment, lay_out
+from deros.generators.monitor_c.source import Call, comment, lay_out, lay_out_if
 from deros.generators.monitor_python.source import header
 from deros.monitor import walk
 from deros.monitor.ir import Action, Behaviour, Condition, For, Program, Rule, Trigger
@@ -139,31 +139,25 @@ def _trigger(layout: Layout, item: Trigger, site: int, program: Program) -> Iter
 
 
 def settle(layout: Layout, action: Action, places: Sites) -> list[str]:
-    """Return the lines that reset an active action, or refuse to while it is called for."""
+    """Return the lines that reset an action if it is active and its reset ran, if it needs one.
+
+    They refuse to while a behaviour calls for it.
+    """
     site, active = places.declarations[action.index], layout.active[action.index]
-    reset = [f"m->{active} = false;", _emit(layout, "RESET", site)]
+    asked = [f"m->{active}"]
+    if action.reset_by is not None:
+        asked.insert(0, f"m->{layout.ran[action.reset_by]}")
+    lines = [f"    m->{active} = false;", f"    {_emit(layout, 'RESET', site)}"]
     holds = [f"m->{layout.holds[each]}" for each in action.triggered_by]
-    if not holds:
-        return [f"  {line}" for line in reset]
-    return [
-        *_any_holds(holds),
-        f"    {_emit(layout, 'REFUSED', site)}",
-        "  } else {",
-        *(f"    {line}" for line in reset),
-        "  }",
-    ]
-
-
-def _any_holds(holds: list[str]) -> list[str]:
-    line = f"  if ({' || '.join(holds)}) {{"
-    if len(line) <= MAX_LINE:
-        return [line]
-    return [
-        f"  if ({holds[0]} ||",
-        *(f"    {each} ||" for each in holds[1:-1]),
-        f"    {holds[-1]})",
-        "  {",
-    ]
+    if holds:
+        lines = [
+            *lay_out_if(" || ", holds, 4),
+            f"      {_emit(layout, 'REFUSED', site)}",
+            "    } else {",
+            *(f"  {line}" for line in lines),
+            "    }",
+        ]
+    return [*lay_out_if(" && ", asked), *lines, "  }"]
 
 
 def _emit(layout: Layout, kind: str, site: int) -> str:

@@ -98,6 +98,7 @@ class Layout:
         findings: of each comparison of floating-point values.
         inputs: of each input, by index.
         forgets: of each input with values, the function that makes them unknown.
+        expires: of each input with a timeout, the function that looks whether it has passed.
         since: of each ``For`` with a duration, since when its operand has been true.
         verdicts, turned: of each rule, what it is worth, and when it last became true or ceased to.
         judges: of each rule, the function that judges it; ``behave`` the same of each behaviour.
@@ -112,6 +113,7 @@ class Layout:
     findings: dict[Condition, Finding] = field(default_factory=dict)
     inputs: dict[int, InputFields] = field(default_factory=dict)
     forgets: dict[int, str] = field(default_factory=dict)
+    expires: dict[int, str] = field(default_factory=dict)
     since: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
     turned: dict[int, str] = field(default_factory=dict)
@@ -158,6 +160,8 @@ def lay_out(program: Program) -> Layout:
     for each in program.inputs:
         if layout.terms_of(each.index) or layout.memories_of(each.index):
             layout.forgets[each.index] = layout.names.new("forget", each.name)
+        if each.timeout_ns is not None:
+            layout.expires[each.index] = layout.names.new("expire", each.name)
     _name_verdicts(program, layout)
     _name_actions(program, layout)
     return layout

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import textwrap
+from collections.abc import Collection, Iterable, Iterator
 
 from deros.generators.monitor_c.contracts import all_of, iff
 from deros.generators.monitor_c.meaning import Meaning
+from deros.generators.monitor_c.source import MAX_LINE
 from deros.generators.monitor_c.view import MonitorView
 from deros.monitor import walk
 from deros.monitor.ir import Behaviour, Condition, For, Rule
@@ -30,16 +32,22 @@ class Predicates:
         ]
 
     def declarations(self) -> str:
-        """Return the predicates that say what the rules mean, and what a sane monitor is."""
-        verdicts = " || ".join(f"v == {self.macro(each)}" for each in ("FALSE", "UNKNOWN", "TRUE"))
-        lines = ["/* What the rules mean, and what holds of a monitor between two calls. */"]
-        lines.append(f"/*@ predicate is_verdict(integer v) = {verdicts};")
+        """Return the predicates that say what the rules mean, and what a sane monitor is.
+
+        They are macros, which Frama-C replaces by what they stand for: most of it is as it was
+        before a statement, and is seen to be so only where nothing hides it.
+        """
+        lines = [
+            "/* What the rules mean, and what holds of a monitor between two calls. */",
+            *_macro("is_verdict", "v", self._verdicts()),
+        ]
         for name, parameters, parts in self._predicates():
-            lines.append(f"    predicate {name}({self._view.prefix}_monitor *m{parameters}) =")
-            lines += [f"      {part} &&" for part in parts[:-1]]
-            lines.append(f"      {parts[-1]};")
-        lines[-1] += " */"
-        return "\n".join(lines) + "\n\n"
+            lines += _macro(name, f"m{parameters}", parts)
+        return "\n".join([*lines, ""])
+
+    def _verdicts(self) -> list[str]:
+        values = ("FALSE", "UNKNOWN", "TRUE")
+        return ["(" + " || ".join(f"(v) == {self.macro(each)}" for each in values) + ")"]
 
     def _predicates(self) -> Iterator[tuple[str, str, list[str]]]:
         for rule in self._view.program.rules:
@@ -54,9 +62,11 @@ class Predicates:
         restarted |= {name for each in self._view.forgets for name in each.known}
         kept = [name for name in self._types if name not in restarted]
         yield "ranged_but_for_restart", "", self.ranges(kept)
-        yield "timeouts_in_time", ", integer due", self._timeouts_in_time() or ["\\true"]
-        yield "ends_in_time", ", integer due", self._ends_in_time() or ["\\true"]
-        yield "unexpired", "", self._unexpired() or ["\\true"]
+        bases = {each.base for each in self._view.timeouts}
+        bases |= {each.base for each in self._view.ends}
+        yield "timeouts_in_time", ", due", self.timeouts_in_time("due", bases) or ["\\true"]
+        yield "ends_in_time", ", due", self.ends_in_time("due", bases) or ["\\true"]
+        yield "unexpired", "", self.unexpired(bases) or ["\\true"]
         yield "judged", "", [f"judged_{name}(m)" for name in self._layout.verdicts.values()]
         yield "acted", "", [f"acted_{name}(m)" for name in self._layout.behave.values()]
         yield "sane", "", [*SOUND, "m->due > m->now", "(m->started != 0 ==> judged(m) && acted(m))"]
@@ -84,24 +94,31 @@ class Predicates:
                 found.append(f"0 <= m->{name} <= {latest}")
         return found
 
-    def _timeouts_in_time(self) -> list[str]:
+    def timeouts_in_time(self, due: str, bases: Collection[str]) -> list[str]:
+        """Return that no timeout that counts from one of the named fields lies before ``due``."""
         return [
-            f"(m->{each.missing} == 0 ==> due <= m->{each.base} + {each.duration_ns})"
+            f"(m->{each.missing} == 0 ==> {due} <= m->{each.base} + {each.duration_ns})"
             for each in self._view.timeouts
+            if each.base in bases
         ]
 
-    def _ends_in_time(self) -> list[str]:
+    def ends_in_time(self, due: str, bases: Collection[str]) -> list[str]:
+        """Return that no end of an interval from one of the named fields lies before ``due``."""
         found = []
         for each in self._view.ends:
+            if each.base not in bases:
+                continue
             end = f"m->{each.base} + {each.wait_ns}"
             condition = each.condition if "!=" in each.condition else f"{each.condition} != 0"
-            found.append(f"({condition} && {end} > m->now ==> due <= {end})")
+            found.append(f"({condition} && {end} > m->now ==> {due} <= {end})")
         return found
 
-    def _unexpired(self) -> list[str]:
+    def unexpired(self, bases: Collection[str]) -> list[str]:
+        """Return that no timeout that counts from one of the named fields has passed unseen."""
         return [
             f"(m->{each.missing} == 0 ==> m->{each.base} + {each.duration_ns} > m->now)"
             for each in self._view.timeouts
+            if each.base in bases
         ]
 
     def _judged(self, rule: Rule) -> list[str]:
@@ -126,6 +143,21 @@ class Predicates:
             tests.append(f"m->{self._layout.enabled[behaviour.index]} != 0")
         runs = map(self._runs, self.fors(behaviour.condition))
         return [*runs, iff(f"m->{self._layout.holds[behaviour.index]} != 0", all_of(tests))]
+
+
+def _macro(name: str, parameters: str, parts: list[str]) -> list[str]:
+    lines = [f"#define {name}({parameters}) ("]
+    for number, part in enumerate(parts, 1):
+        text = f"{part} &&" if number < len(parts) else f"{part})"
+        lines += textwrap.wrap(
+            text,
+            MAX_LINE - len(" \\"),
+            initial_indent="  ",
+            subsequent_indent="    ",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+    return [f"{line} \\" for line in lines[:-1]] + lines[-1:]
 
 
 IN_TIME = ("timeouts_in_time(m, m->due)", "ends_in_time(m, m->due)")

@@ -8,6 +8,7 @@ of those that it calls.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
@@ -15,9 +16,11 @@ from deros.generators.monitor_c.contracts import Contract, all_of, iff
 from deros.generators.monitor_c.handlers import Handler
 from deros.generators.monitor_c.layout import Term
 from deros.generators.monitor_c.predicates import SOUND, Predicates
-from deros.generators.monitor_c.view import MonitorView
+from deros.generators.monitor_c.view import MessageView, MonitorView, Timeout
 from deros.monitor import walk
-from deros.monitor.ir import Action, Behaviour, For, Read, Rule, Trigger
+from deros.monitor.ir import Action, Behaviour, Condition, For, Read, Rule, Trigger
+
+_FIELD = re.compile(r"m->(\w+)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +61,7 @@ class _Writer:
         self._layout = view.layout
         self.predicates = Predicates(view)
         self._behaviours = tuple(walk.behaviours(view.program))
+        self._latched = [each for each in view.program.actions if each.latched]
 
     # Contracts ----------------------------------------------------------------------------------
 
@@ -83,6 +87,8 @@ class _Writer:
             yield self._layout.behave[behaviour.index], self._behave(behaviour)
         yield "act", self._act()
         yield "evaluate", self._evaluate()
+        for timeout in self._view.timeouts:
+            yield timeout.function, self._expire_one(timeout)
         if self._view.timeouts:
             yield "expire", self._expire()
         yield "restart", self._restart()
@@ -98,36 +104,54 @@ class _Writer:
 
     def _judge(self, rule: Rule) -> Contract:
         name = self._layout.verdicts[rule.index]
+        fors = self.predicates.fors(rule.condition)
         contract = Contract(["\\valid(m)"])
+        contract.requires.append(self._ranges_read(rule.condition, fors))
         contract.assigns += [f"m->{name}", f"m->{self._layout.turned[rule.index]}"]
-        contract.ensures += ["ranged(m)", f"judged_{name}(m)"]
+        contract.ensures += self.predicates.ranges([name])
+        contract.ensures.append(f"judged_{name}(m)")
         contract.ensures.append(iff("\\result != 0", f"m->{name} != \\old(m->{name})"))
-        self._with_intervals(contract, self.predicates.fors(rule.condition))
+        self._with_own_intervals(contract, fors)
         return contract
 
-    def _with_intervals(self, contract: Contract, fors: Iterable[For]) -> None:
-        """Add what becomes of intervals: begun now, kept, or cleared; and in time."""
-        contract.requires += ["ranged(m)", "ends_in_time(m, m->due)"]
-        contract.ensures.append("ends_in_time(m, m->due)")
-        unset = self.predicates.macro("UNSET")
+    def _ranges_read(self, condition: Condition, fors: Iterable[For]) -> str:
+        """Return that all that a condition reads, and its intervals, are in range."""
+        meaning = self.predicates.meaning
+        text = f"m->now {meaning.true(condition)} {meaning.false(condition)}"
         sinces = [self._layout.since[each.index] for each in fors]
+        names = dict.fromkeys([*_FIELD.findall(text), *sinces])
+        return all_of(self.predicates.ranges(names))
+
+    def _with_own_intervals(self, contract: Contract, fors: Iterable[For]) -> None:
+        """Add what becomes of the intervals of a condition; they stay in range and in time."""
+        sinces = [self._layout.since[each.index] for each in fors]
+        if sinces:
+            in_time = self.predicates.ends_in_time("m->due", sinces)
+            contract.requires += in_time
+            contract.ensures += [*self.predicates.ranges(sinces), *in_time]
+            self._with_intervals(contract, sinces)
+
+    def _with_intervals(self, contract: Contract, sinces: Iterable[str]) -> None:
+        """Add what becomes of intervals: begun now, kept, or cleared."""
+        unset = self.predicates.macro("UNSET")
         for since in sinces:
             contract.assigns.append(f"m->{since}")
             kept = f"(\\old(m->{since}) == {unset} ? m->now : \\old(m->{since}))"
             contract.ensures.append(f"m->{since} != {unset} ==> m->{since} == {kept}")
-        if sinces:
-            contract.assigns.append("m->due")
-            contract.ensures.append("m->due <= \\old(m->due)")
-            contract.ensures.append("\\old(m->due) > m->now ==> m->due > m->now")
+            _with_earlier_deadline(contract)
 
     def _settle(self, action: Action) -> Contract:
         active = self._layout.active[action.index]
         holds = [self._layout.holds[each] for each in action.triggered_by]
-        contract = Contract(["\\valid(m)", "ranged(m)"], [f"m->{active}"])
-        called = " || ".join(f"m->{each} != 0" for each in holds) or "\\false"
-        contract.ensures.append("ranged(m)")
-        contract.ensures.append(f"({called}) ==> m->{active} == \\old(m->{active})")
-        contract.ensures.append(f"!({called}) ==> m->{active} == 0")
+        read = [active, *holds]
+        asked = [f"!({' || '.join(f'm->{each} != 0' for each in holds)})"] if holds else []
+        if action.reset_by is not None:
+            ran = self._layout.ran[action.reset_by]
+            read.append(ran)
+            asked.append(f"m->{ran} != 0")
+        contract = Contract(["\\valid(m)", all_of(self.predicates.ranges(read))], [f"m->{active}"])
+        reset = all_of(asked) if asked else "\\true"
+        contract.ensures.append(f"m->{active} == ({reset} ? 0 : \\old(m->{active}))")
         return contract
 
     def _closure(self, behaviour: Behaviour) -> list[Behaviour]:
@@ -138,19 +162,28 @@ class _Writer:
         return found
 
     def _behave(self, behaviour: Behaviour) -> Contract:
-        return self._of_behaviours(self._closure(behaviour))
-
-    def _of_behaviours(self, group: list[Behaviour]) -> Contract:
-        """Return the contract of a function that runs some behaviours."""
-        contract = Contract(["\\valid(m)"])
-        contract.assigns += [f"m->{self._layout.holds[each.index]}" for each in group]
-        contract.assigns += [f"m->{name}" for name in self._touched(group)]
-        contract.ensures.append("ranged(m)")
+        """Return the contract of the function that runs a behaviour, and those within it."""
+        group = self._closure(behaviour)
+        fors = [each for one in group for each in self.predicates.fors(one.condition)]
+        changed = [self._layout.holds[each.index] for each in group] + self._touched(group)
+        contract = Contract(["\\valid(m)"], [f"m->{name}" for name in changed])
+        for each in group:
+            own = self.predicates.fors(each.condition)
+            contract.requires.append(self._ranges_read(each.condition, own))
+        contract.requires.append(all_of(self.predicates.ranges([*self._guards(group), *changed])))
+        contract.ensures += self.predicates.ranges(changed)
         contract.ensures += [f"acted_{self._layout.behave[each.index]}(m)" for each in group]
         contract.ensures += self._done(group)
-        fors = [each for one in group for each in self.predicates.fors(one.condition)]
-        self._with_intervals(contract, fors)
+        self._with_own_intervals(contract, fors)
         return contract
+
+    def _guards(self, group: list[Behaviour]) -> Iterator[str]:
+        """Yield the fields beside its condition by which a behaviour holds."""
+        for each in group:
+            if each.parent is not None:
+                yield self._layout.holds[each.parent]
+            if each.optional:
+                yield self._layout.enabled[each.index]
 
     def _touched(self, group: list[Behaviour]) -> list[str]:
         names: dict[str, None] = {}
@@ -176,32 +209,40 @@ class _Writer:
         return f"(m->{holds} != 0 && \\old(m->{holds}) == 0)"
 
     def _act(self) -> Contract:
-        contract = self._of_behaviours(list(self._behaviours))
-        done = set(self._done(list(self._behaviours)))
-        contract.ensures[:] = [each for each in contract.ensures if each not in done]
-        changed = (*self._layout.ran.values(), *self._layout.active.values())
-        contract.assigns += [f"m->{name}" for name in changed]
-        contract.ensures += ["acted(m)", *self._kept_latched(), *self._kept_called()]
+        tables = (self._layout.holds, self._layout.ran, self._layout.active)
+        contract = self._run([each for table in tables for each in table.values()])
+        contract.ensures += ["acted(m)", *self._kept_latched()]
+        for action in self._program.actions:
+            if action.reset_by is not None:
+                contract.ensures += self._kept_called(action)
         contract.ensures += self._begun()
+        self._with_intervals(contract, self._sinces(self._behaviours))
+        contract.requires.append("changed == 0 ==> acted(m)")
+        contract.cases |= {"change": "changed != 0", "none": "changed == 0"}
         return contract
 
-    def _kept_latched(self) -> list[str]:
-        """Return that a latched action never clears by itself."""
-        return [
-            f"\\old(m->{self._layout.active[each.index]}) != 0"
-            f" ==> m->{self._layout.active[each.index]} != 0"
-            for each in self._program.actions
-            if each.latched
-        ]
+    def _run(self, changed: Iterable[str]) -> Contract:
+        """Return what is common to what runs rules or behaviours: all stays in range and time."""
+        contract = Contract(["\\valid(m)", "ranged(m)", "ends_in_time(m, m->due)"])
+        contract.assigns += [f"m->{name}" for name in changed]
+        contract.ensures += ["ranged(m)", "ends_in_time(m, m->due)"]
+        return contract
 
-    def _kept_called(self) -> Iterator[str]:
-        """Yield that no action clears while a behaviour calls for it."""
-        for each in self._program.actions:
-            if each.reset_by is not None:
-                active = self._layout.active[each.index]
-                for index in each.triggered_by:
-                    holds = self._layout.holds[index]
-                    yield (f"\\old(m->{active}) != 0 && m->{holds} != 0 ==> m->{active} != 0")
+    def _sinces(self, group: Iterable[Rule | Behaviour]) -> list[str]:
+        fors = [each for one in group for each in self.predicates.fors(one.condition)]
+        return [self._layout.since[each.index] for each in fors]
+
+    def _kept_latched(self, before: str = "\\old({})") -> list[str]:
+        """Return that a latched action never clears by itself."""
+        names = [f"m->{self._layout.active[each.index]}" for each in self._latched]
+        return [f"{before.format(name)} != 0 ==> {name} != 0" for name in names]
+
+    def _kept_called(self, action: Action) -> Iterator[str]:
+        """Yield that an action stays active while a behaviour calls for it."""
+        active = self._layout.active[action.index]
+        for index in action.triggered_by:
+            holds = self._layout.holds[index]
+            yield f"\\old(m->{active}) != 0 && m->{holds} != 0 ==> m->{active} != 0"
 
     def _begun(self) -> Iterator[str]:
         """Yield that what a behaviour calls for becomes active when its condition turns true."""
@@ -211,34 +252,41 @@ class _Writer:
                     yield f"{self._rises(behaviour)} ==> m->{active} != 0"
 
     def _evaluate(self) -> Contract:
-        conditions = [each.condition for each in self._program.rules]
-        conditions += [each.condition for each in self._behaviours]
-        fors = [each for condition in conditions for each in self.predicates.fors(condition)]
-        contract = Contract(["\\valid(m)"], ["m->started"])
-        tables = (self._layout.verdicts, self._layout.turned, self._layout.holds)
-        for table in (*tables, self._layout.active, self._layout.ran):
-            contract.assigns += [f"m->{name}" for name in table.values()]
-        contract.ensures += ["ranged(m)", "m->started == 1", "judged(m)", "acted(m)"]
-        contract.ensures += self._kept_latched()
-        self._with_intervals(contract, fors)
+        contract = self._run([])
+        contract.assigns += self._judging()
+        contract.ensures += ["m->started == 1", "judged(m)", "acted(m)", *self._kept_latched()]
+        self._with_intervals(contract, self._layout.since.values())
         return contract
 
-    def _expire(self) -> Contract:
-        contract = Contract(["\\valid(m)", "ranged(m)", "ends_in_time(m, m->due)"])
-        forgets = {each.function: each for each in self._view.forgets}
-        for each in self._view.timeouts:
-            contract.assigns.append(f"m->{each.missing}")
-            passed = f"m->{each.base} + {each.duration_ns} <= m->now"
-            was = f"\\old(m->{each.missing}) != 0"
-            contract.ensures.append(iff(f"m->{each.missing} != 0", f"({was} || {passed})"))
-            if each.forget:
-                forget = forgets[each.forget]
+    def _judging(self) -> list[str]:
+        """Return the fields that are changed where all is judged."""
+        layout = self._layout
+        tables = (layout.verdicts, layout.turned, layout.holds, layout.active, layout.ran)
+        names = [each for table in (*tables, layout.since) for each in table.values()]
+        return [f"m->{name}" for name in ("started", *names, "due")]
+
+    def _expire_one(self, timeout: Timeout) -> Contract:
+        """Return that an input is missing if its timeout has passed, and its values with it."""
+        missing = f"m->{timeout.missing}"
+        ranges = self.predicates.ranges(["now", timeout.base, timeout.missing])
+        contract = Contract(["\\valid(m)", all_of(ranges)], [missing])
+        passed = f"m->{timeout.base} + {timeout.duration_ns} <= m->now"
+        contract.ensures += self.predicates.ranges([timeout.missing])
+        contract.ensures.append(iff(f"{missing} != 0", f"(\\old({missing}) != 0 || {passed})"))
+        for forget in self._view.forgets:
+            if forget.function == timeout.forget:
                 contract.assigns += [f"m->{name}" for name in (*forget.known, *forget.last)]
-                gone = f"(\\old(m->{each.missing}) == 0 && {passed})"
+                gone = f"(\\old({missing}) == 0 && {passed})"
                 contract.ensures += [
                     f"m->{name} == ({gone} ? 0 : \\old(m->{name}))" for name in forget.known
                 ]
-        contract.ensures += ["ranged(m)", "unexpired(m)", "ends_in_time(m, m->due)"]
+        return contract
+
+    def _expire(self) -> Contract:
+        contract = Contract(["\\valid(m)", "ranged(m)"])
+        for each in map(self._expire_one, self._view.timeouts):
+            contract.assigns += each.assigns
+        contract.ensures += ["ranged(m)", "unexpired(m)"]
         return contract
 
     def _restart(self) -> Contract:
@@ -269,11 +317,7 @@ class _Writer:
     def loop(self) -> Contract:
         """Return the invariant of the loop over the deadlines that are due."""
         contract = Contract([], self._changing(), is_loop=True)
-        contract.invariants += ["sane(m)", "m->now <= t"]
-        contract.invariants += [
-            each.replace("\\old(", "\\at(").replace(") != 0 ==>", ", Pre) != 0 ==>", 1)
-            for each in self._kept_latched()
-        ]
+        contract.invariants += ["sane(m)", "m->now <= t", *self._kept_latched("\\at({}, Pre)")]
         contract.variant = "t - m->now"
         return contract
 
@@ -291,12 +335,11 @@ class _Writer:
         start = Contract(["\\valid(m)"], ["*m"])
         start.ensures += ["sane(m)", *(f"m->{n} == 0" for n in self._layout.active.values())]
         yield f"{prefix}_start", start
-        for action in self._program.actions:
-            if action.latched:
-                active = self._layout.active[action.index]
-                contract = Contract(["\\valid(m)", "sane(m)"], [f"m->{active}"])
-                contract.ensures += ["sane(m)", f"m->{active} == 1"]
-                yield f"{prefix}_latch_{action.name}", contract
+        for action in self._latched:
+            active = self._layout.active[action.index]
+            contract = Contract(["\\valid(m)", "sane(m)"], [f"m->{active}"])
+            contract.ensures += ["sane(m)", f"m->{active} == 1"]
+            yield f"{prefix}_latch_{action.name}", contract
         advance = Contract(["\\valid(m)", "sane(m)"], self._changing())
         advance.ensures += ["sane(m)", "\\result == m->due", *self._kept_latched()]
         yield f"{prefix}_advance", advance
@@ -313,7 +356,11 @@ class _Writer:
         for message in self._view.messages:
             if message.handler.observer:
                 yield message.handler.observer, self._observe(message.handler)
-            yield message.handler.function, self._message(message.handler.function)
+            if len(message.judges) > 1:
+                yield message.judge, self._judge_by(message)
+            if message.after:
+                yield message.after, self._after(message)
+            yield message.handler.function, self._message(message.handler)
 
     def _waiting(self) -> Contract:
         contract = Contract(["\\valid_read(m)", "ranged(m)"])
@@ -326,26 +373,51 @@ class _Writer:
     def _reset(self) -> Contract:
         contract = Contract(["\\valid(m)", "sane(m)"], self._changing())
         contract.ensures.append("sane(m)")
-        actives = []
-        for each in self._program.actions:
-            if each.latched:
-                active = self._layout.active[each.index]
-                actives.append(f"m->{active} == 0")
-                for index in each.triggered_by:
-                    holds = self._layout.holds[index]
-                    contract.ensures.append(
-                        f"\\old(m->{active}) != 0 && m->{holds} != 0 ==> m->{active} != 0"
-                    )
-        contract.ensures.append(iff("\\result != 0", all_of(actives)))
+        for action in self._latched:
+            contract.ensures += self._kept_called(action)
+        cleared = [f"m->{self._layout.active[each.index]} == 0" for each in self._latched]
+        contract.ensures.append(iff("\\result != 0", all_of(cleared)))
         return contract
 
-    def _message(self, function: str) -> Contract:
-        handler = next(m.handler for m in self._view.messages if m.handler.function == function)
+    def _judge_by(self, message: MessageView) -> Contract:
+        """Return that the rules that read a topic are judged, and whether a verdict changes."""
+        rules = [each for each in self._program.rules if each.index in message.rules]
+        names = [self._layout.verdicts[each.index] for each in rules]
+        turned = [self._layout.turned[each.index] for each in rules]
+        contract = Contract(["\\valid(m)", "ranged(m)"])
+        contract.assigns += [f"m->{name}" for name in (*names, *turned)]
+        contract.ensures += self.predicates.ranges(names)
+        contract.ensures += [f"judged_{name}(m)" for name in names]
+        contract.ensures += [f"\\result == 0 ==> m->{n} == \\old(m->{n})" for n in names]
+        fors = [each for rule in rules for each in self.predicates.fors(rule.condition)]
+        self._with_own_intervals(contract, fors)
+        return contract
+
+    def _after(self, message: MessageView) -> Contract:
+        """Return that all is judged anew that a message can have changed."""
+        contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], self._judging())
+        names = self._layout.verdicts
+        others = [f"judged_{name}(m)" for each, name in names.items() if each not in message.rules]
+        touched = [f"judged_{names[each]}(m)" for each in message.rules]
+        contract.requires.append(f"m->started != 0 ==> {all_of([*others, 'acted(m)'])}")
+        contract.requires.append(f"m->started != 0 && news == 0 ==> {all_of(touched)}")
+        contract.ensures += self._settled()
+        contract.cases["first"] = "m->started == 0"
+        contract.cases["news"] = "m->started != 0 && news != 0"
+        contract.cases["none"] = "m->started != 0 && news == 0"
+        return contract
+
+    def _message(self, handler: Handler) -> Contract:
         contract = Contract(["\\valid(m)", "sane(m)"], self._changing())
         contract.requires += self._arrays(handler)
         contract.assigns += [f"m->{name}" for name in self._stored(handler)]
-        contract.ensures += ["sane(m)", "m->started == 1", *self._kept_latched()]
+        contract.ensures += self._settled()
         return contract
+
+    def _settled(self) -> list[str]:
+        """Return that a monitor is sane and has judged, in parts: each is a proof of its own."""
+        parts = [*SOUND, "m->due > m->now", "m->started == 1", "judged(m)", "acted(m)"]
+        return [*parts, *self._kept_latched()]
 
     def _stored(self, handler: Handler) -> list[str]:
         """Return the fields that hold what a message says."""
@@ -365,15 +437,18 @@ class _Writer:
         flags = [each.missing for each in fields if each.missing]
         flags += [term.known for term in terms]
         stored = self._stored(handler)
-        contract = Contract(["\\valid(m)", *SOUND, *self._arrays(handler)])
-        contract.assigns += [f"m->{name}" for name in (*bases, *flags, *stored)]
-        contract.assigns += [f"m->{name}" for each in memories for name in (each.last, each.last_t)]
-        contract.ensures += [*SOUND, *self._says_nothing_new(handler, [*flags, *stored])]
+        changed = [*bases, *flags, *stored]
+        changed += [name for each in memories for name in (each.last, each.last_t)]
+        own = self.predicates.ranges(["now", *dict.fromkeys(changed)])
+        own += self.predicates.timeouts_in_time("m->due", bases)
+        own += self.predicates.ends_in_time("m->due", bases)
+        own += self.predicates.unexpired(bases)
+        contract = Contract(["\\valid(m)", all_of(own), *self._arrays(handler)])
+        contract.assigns += [f"m->{name}" for name in changed]
+        contract.ensures += [*own, *self._says_nothing_new(handler, [*flags, *stored])]
         contract.checked += self._values_of(handler)
         if bases:
-            contract.assigns.append("m->due")
-            contract.ensures.append("m->due <= \\old(m->due)")
-            contract.ensures.append("\\old(m->due) > m->now ==> m->due > m->now")
+            _with_earlier_deadline(contract)
         return contract
 
     def _says_nothing_new(self, handler: Handler, names: list[str]) -> Iterator[str]:
@@ -418,6 +493,12 @@ class _Writer:
             if extent:
                 yield f"\\valid_read({extent})"
                 yield f"\\separated(m, {extent})"
+
+
+def _with_earlier_deadline(contract: Contract) -> None:
+    contract.assigns.append("m->due")
+    contract.ensures.append("m->due <= \\old(m->due)")
+    contract.ensures.append("\\old(m->due) > m->now ==> m->due > m->now")
 
 
 def _triggers(behaviour: Behaviour, action: int) -> bool:

@@ -1,4 +1,4 @@
-"""The text of the C monitor: a header and a source."""
+"""The text of the C monitor: a header and a source, and a file that only proofs read."""
 
 from __future__ import annotations
 
@@ -12,6 +12,14 @@ from deros.generators.monitor_c.view import MonitorView, monitor_view
 from deros.generators.templates import environment
 from deros.monitor.ir import Program
 
+_CONTRACT = re.compile(
+    r"(?P<said>(?:^/\*(?!@)(?:(?!\*/).)*\*/\n)?)"
+    r"^(?P<contract>/\*@(?:(?!\*/).)*\*/)\n"
+    r"(?P<declared>[^{}]+?)\n\{",
+    re.MULTILINE | re.DOTALL,
+)
+"""A function with a contract above it, from the comment to the brace."""
+
 _OF_LIBM = re.compile(r"\b(?:NAN|INFINITY|fabs|sqrt|atan2|asin|fmod)\b")
 
 
@@ -19,31 +27,47 @@ def render_monitor(program: Program) -> dict[str, str]:
     """Return the texts of the header and the source of a program's monitor, by their names.
 
     Both are freestanding C99; the mathematical library is needed by what the rules use of it alone.
+    The third file holds the contracts of the functions. No compiler reads it, Frama-C does.
 
     Raises:
         GenerationError: what a rule compares has no place in a monitor of fixed size.
     """
     view = monitor_view(program)
     header = _template("monitor.h.j2", monitor=view)
-    texts = {f"{view.prefix}_monitor.h": header, f"{view.prefix}_monitor.c": _source(view)}
+    source, contracts = _source(view)
+    texts = {
+        f"{view.prefix}_monitor.h": header,
+        f"{view.prefix}_monitor.c": source,
+        f"{view.prefix}_contracts.h": contracts,
+    }
     return {name: fitted(text) for name, text in texts.items()}
 
 
-def _source(view: MonitorView) -> str:
+def _source(view: MonitorView) -> tuple[str, str]:
+    """Return the source, and the contracts of its functions, with what they are to do above them.
+
+    Templates have each contract above its function; apart from it they are read with the rules in
+    the other hand, and the code is half as long.
+    """
     proof = proof_of(view)
     body = _template("body.c.j2", monitor=view, proof=proof)
     body = re.sub(rf"^ *{re.escape(NO_CONTRACT)}\n", "", body, flags=re.MULTILINE)
     texts = [_named(each, view) for each in helper_texts(view.program, body)]
-    helpers = "".join(f"{each}\n" for each in texts)
-    return _template(
+    text = "".join(f"{each}\n" for each in texts) + body
+    source = _template(
         "monitor.c.j2",
         monitor=view,
         deviations=DEVIATIONS,
-        needs_math=_OF_LIBM.search(body + helpers) is not None,
-        declarations=proof.declarations,
-        helpers=helpers,
-        body=body,
+        needs_math=_OF_LIBM.search(text) is not None,
+        functions=_CONTRACT.sub(lambda each: each["said"] + each["declared"] + "\n{", text),
     )
+    contracts = _template(
+        "contracts.h.j2",
+        monitor=view,
+        declarations=proof.declarations,
+        functions=[each.groupdict() for each in _CONTRACT.finditer(text)],
+    )
+    return source, contracts
 
 
 def _named(text: str, view: MonitorView) -> str:

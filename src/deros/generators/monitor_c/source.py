@@ -78,6 +78,16 @@ def lay_out_list(indent: int, before: str, items: Sequence[str], after: str) -> 
     return [line.rstrip() for line in lines]
 
 
+def lay_out_if(joined: str, tests: Sequence[str], indent: int = 2) -> list[str]:
+    """Return the line or lines that open a block where the tests, joined by a word, hold."""
+    blank = " " * indent
+    line = f"{blank}if ({joined.join(tests)}) {{"
+    if len(line) <= MAX_LINE:
+        return [line]
+    middle = f"{joined.rstrip()}\n{blank}  ".join(tests)
+    return [*f"{blank}if ({middle})".splitlines(), f"{blank}{{"]
+
+
 def comment(indent: int, title: str, span: Span, text: str | None = None) -> list[str]:
     """Return the comment above a block: its title, its origin and the source's text."""
     blank = " " * indent

@@ -38,8 +38,10 @@ class Field:
 
 @dataclass(frozen=True, slots=True)
 class Timeout:
-    """A timeout: its duration and the fields that it concerns."""
+    """A timeout: its duration, the fields that it concerns, and the function that looks at it."""
 
+    input: str
+    function: str
     duration_ns: int
     base: str
     came: str
@@ -68,10 +70,19 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class MessageView:
-    """The function that takes a topic's messages, and the judges that it calls."""
+    """The function that takes a topic's messages, and what it calls after it.
+
+    Attributes:
+        rules: the indices of the rules that a message can change; ``judges`` their functions.
+        judge: the function that judges them all; empty if there are none.
+        after: the function that does so if there is news; empty if there are none.
+    """
 
     handler: Handler
+    rules: tuple[int, ...]
     judges: tuple[str, ...]
+    judge: str
+    after: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -299,10 +310,12 @@ def _forgets(program: Program, layout: Layout) -> Iterator[Forget]:
 
 
 def _timeouts(program: Program, layout: Layout) -> Iterator[Timeout]:
-    for each in program.inputs:
-        if each.timeout_ns is not None:
-            fields, forget = layout.inputs[each.index], layout.forgets.get(each.index, "")
-            yield Timeout(each.timeout_ns, fields.base, fields.came, fields.missing, forget)
+    for index, function in layout.expires.items():
+        each, fields = program.inputs[index], layout.inputs[index]
+        forget = layout.forgets.get(index, "")
+        assert each.timeout_ns is not None
+        times = (each.timeout_ns, fields.base, fields.came, fields.missing)
+        yield Timeout(each.name, function, *times, forget)
 
 
 def ends(program: Program, layout: Layout) -> Iterator[End]:
@@ -323,12 +336,15 @@ def ends(program: Program, layout: Layout) -> Iterator[End]:
 
 def _messages(program: Program, layout: Layout) -> Iterator[MessageView]:
     for handler in handlers(program, layout):
-        judges = tuple(
-            layout.judges[rule.index]
+        rules = tuple(
+            rule.index
             for rule in program.rules
             if inputs_of(program, rule.condition) & set(handler.inputs)
         )
-        yield MessageView(handler, judges)
+        judges = tuple(layout.judges[index] for index in rules)
+        after = handler.observer.replace("observe", "after", 1) if judges else ""
+        judge = handler.observer.replace("observe", "judge_by", 1) if judges else ""
+        yield MessageView(handler, rules, judges, judges[0] if len(judges) == 1 else judge, after)
 
 
 def inputs_of(program: Program, condition: Condition) -> set[int]:

@@ -1,0 +1,111 @@
+"""Contracts come from the rules: the code keeps them, and code with a slip does not."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.support import c_proof
+from tests.support.c_everything import everything, examples
+from tests.support.c_harness import Unit, unit
+from tools import prove
+
+needs_frama_c = pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
+
+PROVED = ("lasting", "judge_drive_system_max_speed_exceeded", "expire_speed", "settle_stop")
+"""Functions of the smallest example that take seconds; `make prove` proves all."""
+
+SLIPS = {
+    "a wrong comparison": ("lasting", "(now - *since) >= duration", "(now - *since) > duration"),
+    "a wrong bound": ("observe_speed", "m->speed > 0.5", "m->speed > 0.6"),
+    "a missed clear": ("lasting", "    *since = INTELLIGENT_ONE_UNSET;\n", "    ;\n"),
+    "a clear too many": ("settle_stop", "if (m->too_fast_holds || m->tilted_holds)", "if (false)"),
+    "a wrong duration": (
+        "judge_drive_system_max_speed_exceeded",
+        "INT64_C(2000000000)",
+        "INT64_C(2000000001)",
+    ),
+    "a wrong timeout": (
+        "expire_speed",
+        "m->speed_base + INT64_C(500000000)",
+        "m->speed_base + INT64_C(500000001)",
+    ),
+    "a value that outlives its input": ("expire_speed", "(void)forget_speed(m);", "(void)m;"),
+    "an operand that is left out": (
+        "judge_drive_system_max_speed_exceeded",
+        "either(for_1, truth_of(true, m->speed_missing))",
+        "for_1",
+    ),
+    "a latch that clears itself": (
+        "behave_too_fast",
+        "m->too_fast_holds = holds;",
+        "m->too_fast_holds = holds;\n  m->stop_active = holds;",
+    ),
+    "a deadline that is forgotten": (
+        "observe_speed",
+        "m->due = earlier(m->due, m->now + INT64_C(500000000));",
+        "(void)m;",
+    ),
+}
+"""Slips by name: the function that each is in, what is right, and what is wrong."""
+
+
+@pytest.fixture(scope="module")
+def example() -> Unit:
+    """Return the monitor of the smallest example."""
+    (found,) = (each for each in examples() if each.name == "intelligent_one")
+    return unit(found)
+
+
+def written(made: Unit, folder: Path, source: str | None = None) -> Path:
+    """Write a monitor, or what a slip has made of it, and return its source."""
+    path = folder / f"{made.prefix}_monitor.c"
+    for name, text in made.texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    path.write_text(source or made.source, encoding="utf-8")
+    return path
+
+
+@needs_frama_c
+def test_contracts_are_kept(example: Unit, tmp_path: Path) -> None:
+    """Nothing is left to be proved, and nothing was assumed."""
+    proof = c_proof.prove(written(example, tmp_path), PROVED)
+    assert proof.left == ()
+    assert proof.complaints == ()
+    assert proof.is_complete
+
+
+@needs_frama_c
+@pytest.mark.parametrize("slip", SLIPS)
+def test_slip_is_found(
+    slip: str, example: Unit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The command that proves all fails with a slip, and names the function that it is in."""
+    function, right, wrong = SLIPS[slip]
+    definition = re.search(rf"^static \w+ {function}\(.*?^}}", example.source, re.M | re.S)
+    assert definition is not None
+    assert right in definition.group()
+    start, end = definition.span()
+    slipped = definition.group().replace(right, wrong)
+    source = example.source[:start] + slipped + example.source[end:]
+    path = written(example, tmp_path, source)
+    assert prove.main([str(path), "--functions", function, "--timeout", "3"]) == 1
+    assert f"not proved: typed_{function}_" in re.sub(r"\s+", " ", capsys.readouterr().out)
+
+
+def test_every_function_has_a_contract() -> None:
+    """Each function that a monitor defines is in the file of contracts, and no other."""
+    for program in (everything(), *examples()):
+        made = unit(program)
+        contracts = made.texts[f"{made.prefix}_contracts.h"]
+        declared = re.findall(r"^\w[^;{}=#\"]*?\b(\w+)\([^;{}]*\);", contracts, re.MULTILINE)
+        assert declared == c_proof.functions_in(made.source)
+        assert len(declared) == contracts.count("/*@ ")
+        assert not re.search(r"^/\*@", made.source, re.MULTILINE)
+
+
+def test_contracts_are_not_in_the_code(example: Unit) -> None:
+    """Without Frama-C nothing of the contracts is compiled."""
+    assert '#ifdef __FRAMAC__\n#include "intelligent_one_contracts.h"\n#endif' in example.source
