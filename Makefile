@@ -45,6 +45,10 @@ fuzz: $(READY)  ## Fuzz the monitors in C of the examples, 30 seconds each; need
 misra: $(READY)  ## Hold the emitted C against MISRA C:2012; needs cppcheck
 	@$(ALONE) $(BIN)/python tools/misra.py
 
+.PHONY: prove
+prove: $(READY)  ## Prove that the monitors in C of the examples do what the rules mean; needs Frama-C
+	@$(ALONE) $(BIN)/python tools/prove.py --jobs $(JOBS)
+
 .PHONY: lint
 lint: $(READY)  ## Check format, style, types and the layering of the packages
 	$(BIN)/ruff format --check $(CHECKED)

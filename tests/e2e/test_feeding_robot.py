@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.cpp import BUILD_LIMIT, needs_rclcpp, python_overlay
 from tests.support.examples import EXAMPLES
 from tests.support.processes import processes_with
 
@@ -33,10 +34,16 @@ def start(
 
 
 @pytest.mark.ros
-def test_the_fifteen_cases_pass(ros_env: dict[str, str], tmp_path: Path) -> None:
+@pytest.mark.parametrize("language", ["python", pytest.param("cpp", marks=needs_rclcpp)])
+def test_the_fifteen_cases_pass(language: str, ros_env: dict[str, str], tmp_path: Path) -> None:
     """Every case reacts as it must, the picture tells so, and nothing is left running."""
-    with start([], ros_env, tmp_path) as demo:
-        text, _ = demo.communicate(timeout=LONGEST)
+    arguments: list[str] = []
+    limit = LONGEST
+    if language == "cpp":
+        arguments, limit = ["--cpp"], LONGEST + BUILD_LIMIT
+        ros_env = python_overlay(tmp_path / "cpp/install", ros_env)
+    with start(arguments, ros_env, tmp_path) as demo:
+        text, _ = demo.communicate(timeout=limit)
     assert demo.returncode == 0, text
     assert "15 of 15 cases passed" in (tmp_path / "run.html").read_text()
     assert "median" in text

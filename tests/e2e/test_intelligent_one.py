@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from tests.support.cpp import colcon_build, needs_rclcpp, python_overlay
 from tests.support.examples import EXAMPLES
 from tests.support.ros import Peer, running
 
@@ -31,16 +32,44 @@ def commands(folder: Path) -> tuple[list[str], list[str]]:
     return generate, up.split()
 
 
-@pytest.fixture
-def packages(tmp_path: Path, ros_env: dict[str, str]) -> tuple[list[str], dict[str, str]]:
-    """Generate the packages as the README says; return the command that runs them."""
+@pytest.fixture(params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+def packages(
+    request: pytest.FixtureRequest, tmp_path: Path, ros_env: dict[str, str]
+) -> tuple[list[str], dict[str, str]]:
+    """Generate the packages as the README says; return the command that runs them.
+
+    In C++ the safety node and the gate are built, and named by one more word in the system each.
+    """
     environment = dict(ros_env)
     environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
     generate, up = commands(tmp_path / "packages")
     for line in generate:
         subprocess.run(line, shell=True, check=True, cwd=EXAMPLES.parent, env=environment)
     up[2] = str(EXAMPLES.parent / up[2])
+    if request.param == "cpp":
+        subprocess.run(
+            [*generate[-1].replace("python -o", "cpp -o").split()[:-1], str(tmp_path / "cpp")],
+            check=True,
+            cwd=EXAMPLES.parent,
+            env=environment,
+        )
+        install = colcon_build(tmp_path / "cpp")
+        up[2] = str(in_cpp(Path(up[2]), tmp_path))
+        up += ["--package-path", str(install)]
+        environment = python_overlay(install, environment)
     return [str(Path(sys.executable).with_name(up[0])), *up[1:]], environment
+
+
+def in_cpp(system: Path, folder: Path) -> Path:
+    """Write the system with two nodes in C++; return its path."""
+    text = system.read_text(encoding="utf-8")
+    for node in ("intelligent_one_safety_node", "command_gate"):
+        assert f" : {node}\n" in text
+        text = text.replace(f" : {node}\n", f" : {node}_cpp\n")
+    path = folder / system.name
+    nodes = os.path.relpath(system.parent, folder)
+    path.write_text(text.replace('import "', f'import "{nodes}/'), encoding="utf-8")
+    return path
 
 
 @dataclass(frozen=True)

@@ -116,6 +116,14 @@ def overlay(install: Path, env: Mapping[str, str]) -> dict[str, str]:
     return merged
 
 
+def python_overlay(install: Path, env: Mapping[str, str]) -> dict[str, str]:
+    """Return the same for Python that starts such programs.
+
+    It finds its own libraries where theirs are; its wheels would put others in front.
+    """
+    return {**overlay(install, env), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
+
+
 def program(install: Path, package: str, name: str) -> str:
     """Return the path of a package's program in an install folder of :func:`colcon_build`."""
     return str(install / "lib" / package / name)

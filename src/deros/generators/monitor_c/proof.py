@@ -97,7 +97,12 @@ class _Writer:
         yield from self._public()
 
     def _earliest(self) -> Contract:
-        contract = Contract(["\\valid_read(m)", "ranged(m)", "unexpired(m)"])
+        fields = [
+            each for end in self._view.ends for each in (end.base, *_FIELD.findall(end.condition))
+        ]
+        fields += [each for t in self._view.timeouts for each in (t.base, t.missing)]
+        ranges = self.predicates.ranges(dict.fromkeys(["now", *fields]))
+        contract = Contract(["\\valid_read(m)", all_of(ranges), "unexpired(m)"])
         contract.ensures += ["\\result > m->now", "timeouts_in_time(m, \\result)"]
         contract.ensures.append("ends_in_time(m, \\result)")
         return contract
@@ -324,8 +329,11 @@ class _Writer:
     def _arrive(self) -> Contract:
         contract = Contract(["\\valid(m)", "sane(m)"], self._changing())
         latest = self.predicates.macro("LATEST")
-        contract.ensures += ["sane(m)", *self._kept_latched()]
-        contract.ensures.append(f"m->now == (t < 0 ? 0 : t > {latest} ? {latest} : t)")
+        now = f"(t < 0 ? 0 : t > {latest} ? {latest} : t)"
+        contract.ensures += ["sane(m)", *self._kept_latched(), f"m->now == {now}"]
+        contract.cases["back"] = f"{now} < m->now"
+        contract.cases["due"] = f"m->now <= {now} && m->due <= {now}"
+        contract.cases["idle"] = f"m->now <= {now} < m->due"
         return contract
 
     # Public functions ---------------------------------------------------------------------------
@@ -363,7 +371,8 @@ class _Writer:
             yield message.handler.function, self._message(message.handler)
 
     def _waiting(self) -> Contract:
-        contract = Contract(["\\valid_read(m)", "ranged(m)"])
+        fields = [each for t in self._view.timeouts for each in (t.came, t.missing)]
+        contract = Contract(["\\valid_read(m)", *self.predicates.ranges(fields)])
         waits = " || ".join(
             f"(m->{each.came} == 0 && m->{each.missing} == 0)" for each in self._view.timeouts
         )
