@@ -9,16 +9,17 @@ of those that it calls.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from deros.generators.monitor_c.contracts import Contract, all_of, iff
 from deros.generators.monitor_c.handlers import Handler
 from deros.generators.monitor_c.layout import Term
 from deros.generators.monitor_c.predicates import SOUND, Predicates
+from deros.generators.monitor_c.rule_contracts import RuleContracts, with_earlier_deadline
 from deros.generators.monitor_c.view import MessageView, MonitorView, Timeout
 from deros.monitor import walk
-from deros.monitor.ir import Action, Behaviour, Condition, For, Read, Rule, Trigger
+from deros.monitor.ir import Read
 
 _FIELD = re.compile(r"m->(\w+)")
 
@@ -60,6 +61,7 @@ class _Writer:
         self._program = view.program
         self._layout = view.layout
         self.predicates = Predicates(view)
+        self._rules = RuleContracts(view, self.predicates)
         self._behaviours = tuple(walk.behaviours(view.program))
         self._latched = [each for each in view.program.actions if each.latched]
 
@@ -79,14 +81,14 @@ class _Writer:
             yield forget.function, contract
         yield "earliest", self._earliest()
         for rule in self._program.rules:
-            yield self._layout.judges[rule.index], self._judge(rule)
+            yield self._layout.judges[rule.index], self._rules.judge(rule)
         for action in self._program.actions:
             if action.index in self._layout.active:
-                yield f"settle_{action.name}", self._settle(action)
+                yield f"settle_{action.name}", self._rules.settle(action)
         for behaviour in self._behaviours:
-            yield self._layout.behave[behaviour.index], self._behave(behaviour)
-        yield "act", self._act()
-        yield "evaluate", self._evaluate()
+            yield self._layout.behave[behaviour.index], self._rules.behave(behaviour)
+        yield "act", self._rules.act()
+        yield "evaluate", self._rules.evaluate()
         for timeout in self._view.timeouts:
             yield timeout.function, self._expire_one(timeout)
         if self._view.timeouts:
@@ -106,169 +108,6 @@ class _Writer:
         contract.ensures += ["\\result > m->now", "timeouts_in_time(m, \\result)"]
         contract.ensures.append("ends_in_time(m, \\result)")
         return contract
-
-    def _judge(self, rule: Rule) -> Contract:
-        name = self._layout.verdicts[rule.index]
-        fors = self.predicates.fors(rule.condition)
-        contract = Contract(["\\valid(m)"])
-        contract.requires.append(self._ranges_read(rule.condition, fors))
-        contract.assigns += [f"m->{name}", f"m->{self._layout.turned[rule.index]}"]
-        contract.ensures += self.predicates.ranges([name])
-        contract.ensures.append(f"judged_{name}(m)")
-        contract.ensures.append(iff("\\result != 0", f"m->{name} != \\old(m->{name})"))
-        self._with_own_intervals(contract, fors)
-        return contract
-
-    def _ranges_read(self, condition: Condition, fors: Iterable[For]) -> str:
-        """Return that all that a condition reads, and its intervals, are in range."""
-        meaning = self.predicates.meaning
-        text = f"m->now {meaning.true(condition)} {meaning.false(condition)}"
-        sinces = [self._layout.since[each.index] for each in fors]
-        names = dict.fromkeys([*_FIELD.findall(text), *sinces])
-        return all_of(self.predicates.ranges(names))
-
-    def _with_own_intervals(self, contract: Contract, fors: Iterable[For]) -> None:
-        """Add what becomes of the intervals of a condition; they stay in range and in time."""
-        sinces = [self._layout.since[each.index] for each in fors]
-        if sinces:
-            in_time = self.predicates.ends_in_time("m->due", sinces)
-            contract.requires += in_time
-            contract.ensures += [*self.predicates.ranges(sinces), *in_time]
-            self._with_intervals(contract, sinces)
-
-    def _with_intervals(self, contract: Contract, sinces: Iterable[str]) -> None:
-        """Add what becomes of intervals: begun now, kept, or cleared."""
-        unset = self.predicates.macro("UNSET")
-        for since in sinces:
-            contract.assigns.append(f"m->{since}")
-            kept = f"(\\old(m->{since}) == {unset} ? m->now : \\old(m->{since}))"
-            contract.ensures.append(f"m->{since} != {unset} ==> m->{since} == {kept}")
-            _with_earlier_deadline(contract)
-
-    def _settle(self, action: Action) -> Contract:
-        active = self._layout.active[action.index]
-        holds = [self._layout.holds[each] for each in action.triggered_by]
-        read = [active, *holds]
-        asked = [f"!({' || '.join(f'm->{each} != 0' for each in holds)})"] if holds else []
-        if action.reset_by is not None:
-            ran = self._layout.ran[action.reset_by]
-            read.append(ran)
-            asked.append(f"m->{ran} != 0")
-        contract = Contract(["\\valid(m)", all_of(self.predicates.ranges(read))], [f"m->{active}"])
-        reset = all_of(asked) if asked else "\\true"
-        contract.ensures.append(f"m->{active} == ({reset} ? 0 : \\old(m->{active}))")
-        return contract
-
-    def _closure(self, behaviour: Behaviour) -> list[Behaviour]:
-        found = [behaviour]
-        for item in behaviour.body:
-            if isinstance(item, Behaviour):
-                found += self._closure(item)
-        return found
-
-    def _behave(self, behaviour: Behaviour) -> Contract:
-        """Return the contract of the function that runs a behaviour, and those within it."""
-        group = self._closure(behaviour)
-        fors = [each for one in group for each in self.predicates.fors(one.condition)]
-        changed = [self._layout.holds[each.index] for each in group] + self._touched(group)
-        contract = Contract(["\\valid(m)"], [f"m->{name}" for name in changed])
-        for each in group:
-            own = self.predicates.fors(each.condition)
-            contract.requires.append(self._ranges_read(each.condition, own))
-        contract.requires.append(all_of(self.predicates.ranges([*self._guards(group), *changed])))
-        contract.ensures += self.predicates.ranges(changed)
-        contract.ensures += [f"acted_{self._layout.behave[each.index]}(m)" for each in group]
-        contract.ensures += self._done(group)
-        self._with_own_intervals(contract, fors)
-        return contract
-
-    def _guards(self, group: list[Behaviour]) -> Iterator[str]:
-        """Yield the fields beside its condition by which a behaviour holds."""
-        for each in group:
-            if each.parent is not None:
-                yield self._layout.holds[each.parent]
-            if each.optional:
-                yield self._layout.enabled[each.index]
-
-    def _touched(self, group: list[Behaviour]) -> list[str]:
-        names: dict[str, None] = {}
-        for each in group:
-            for item in each.body:
-                if isinstance(item, Trigger):
-                    for table in (self._layout.active, self._layout.ran):
-                        if item.action in table:
-                            names[table[item.action]] = None
-        return list(names)
-
-    def _done(self, group: list[Behaviour]) -> Iterator[str]:
-        """Yield that what is triggered becomes active, and that nothing else changes that."""
-        for index, active in self._layout.active.items():
-            callers = [each for each in group if _triggers(each, index)]
-            if not callers:
-                continue
-            rises = " || ".join(self._rises(each) for each in callers)
-            yield iff(f"m->{active} != 0", f"(\\old(m->{active}) != 0 || {rises})")
-
-    def _rises(self, behaviour: Behaviour) -> str:
-        holds = self._layout.holds[behaviour.index]
-        return f"(m->{holds} != 0 && \\old(m->{holds}) == 0)"
-
-    def _act(self) -> Contract:
-        tables = (self._layout.holds, self._layout.ran, self._layout.active)
-        contract = self._run([each for table in tables for each in table.values()])
-        contract.ensures += ["acted(m)", *self._kept_latched()]
-        for action in self._program.actions:
-            if action.reset_by is not None:
-                contract.ensures += self._kept_called(action)
-        contract.ensures += self._begun()
-        self._with_intervals(contract, self._sinces(self._behaviours))
-        contract.requires.append("changed == 0 ==> acted(m)")
-        contract.cases |= {"change": "changed != 0", "none": "changed == 0"}
-        return contract
-
-    def _run(self, changed: Iterable[str]) -> Contract:
-        """Return what is common to what runs rules or behaviours: all stays in range and time."""
-        contract = Contract(["\\valid(m)", "ranged(m)", "ends_in_time(m, m->due)"])
-        contract.assigns += [f"m->{name}" for name in changed]
-        contract.ensures += ["ranged(m)", "ends_in_time(m, m->due)"]
-        return contract
-
-    def _sinces(self, group: Iterable[Rule | Behaviour]) -> list[str]:
-        fors = [each for one in group for each in self.predicates.fors(one.condition)]
-        return [self._layout.since[each.index] for each in fors]
-
-    def _kept_latched(self, before: str = "\\old({})") -> list[str]:
-        """Return that a latched action never clears by itself."""
-        names = [f"m->{self._layout.active[each.index]}" for each in self._latched]
-        return [f"{before.format(name)} != 0 ==> {name} != 0" for name in names]
-
-    def _kept_called(self, action: Action) -> Iterator[str]:
-        """Yield that an action stays active while a behaviour calls for it."""
-        active = self._layout.active[action.index]
-        for index in action.triggered_by:
-            holds = self._layout.holds[index]
-            yield f"\\old(m->{active}) != 0 && m->{holds} != 0 ==> m->{active} != 0"
-
-    def _begun(self) -> Iterator[str]:
-        """Yield that what a behaviour calls for becomes active when its condition turns true."""
-        for behaviour in self._behaviours:
-            for index, active in self._layout.active.items():
-                if _triggers(behaviour, index):
-                    yield f"{self._rises(behaviour)} ==> m->{active} != 0"
-
-    def _evaluate(self) -> Contract:
-        contract = self._run([])
-        contract.assigns += self._judging()
-        contract.ensures += ["m->started == 1", "judged(m)", "acted(m)", *self._kept_latched()]
-        self._with_intervals(contract, self._layout.since.values())
-        return contract
-
-    def _judging(self) -> list[str]:
-        """Return the fields that are changed where all is judged."""
-        layout = self._layout
-        tables = (layout.verdicts, layout.turned, layout.holds, layout.active, layout.ran)
-        names = [each for table in (*tables, layout.since) for each in table.values()]
-        return [f"m->{name}" for name in ("started", *names, "due")]
 
     def _expire_one(self, timeout: Timeout) -> Contract:
         """Return that an input is missing if its timeout has passed, and its values with it."""
@@ -316,13 +155,14 @@ class _Writer:
     def _catch_up(self) -> Contract:
         latest = self.predicates.macro("LATEST")
         contract = Contract(["\\valid(m)", "sane(m)", f"0 <= t <= {latest}"], self._changing())
-        contract.ensures += ["sane(m)", "m->now == t", *self._kept_latched()]
+        contract.ensures += ["sane(m)", "m->now == t", *self._rules.kept_latched()]
         return contract
 
     def loop(self) -> Contract:
         """Return the invariant of the loop over the deadlines that are due."""
         contract = Contract([], self._changing(), is_loop=True)
-        contract.invariants += ["sane(m)", "m->now <= t", *self._kept_latched("\\at({}, Pre)")]
+        kept = self._rules.kept_latched("\\at({}, Pre)")
+        contract.invariants += ["sane(m)", "m->now <= t", *kept]
         contract.variant = "t - m->now"
         return contract
 
@@ -330,7 +170,7 @@ class _Writer:
         contract = Contract(["\\valid(m)", "sane(m)"], self._changing())
         latest = self.predicates.macro("LATEST")
         now = f"(t < 0 ? 0 : t > {latest} ? {latest} : t)"
-        contract.ensures += ["sane(m)", *self._kept_latched(), f"m->now == {now}"]
+        contract.ensures += ["sane(m)", *self._rules.kept_latched(), f"m->now == {now}"]
         contract.cases["back"] = f"{now} < m->now"
         contract.cases["due"] = f"m->now <= {now} && m->due <= {now}"
         contract.cases["idle"] = f"m->now <= {now} < m->due"
@@ -349,7 +189,7 @@ class _Writer:
             contract.ensures += ["sane(m)", f"m->{active} == 1"]
             yield f"{prefix}_latch_{action.name}", contract
         advance = Contract(["\\valid(m)", "sane(m)"], self._changing())
-        advance.ensures += ["sane(m)", "\\result == m->due", *self._kept_latched()]
+        advance.ensures += ["sane(m)", "\\result == m->due", *self._rules.kept_latched()]
         yield f"{prefix}_advance", advance
         yield f"{prefix}_waiting", self._waiting()
         if self._view.has_latched:
@@ -359,13 +199,13 @@ class _Writer:
                 ["\\valid(m)", "sane(m)", "(enabled == 0 || enabled == 1)"],
                 [*self._changing(), f"m->{enabled}"],
             )
-            contract.ensures += ["sane(m)", f"m->{enabled} == enabled", *self._kept_latched()]
+            contract.ensures += ["sane(m)", f"m->{enabled} == enabled", *self._rules.kept_latched()]
             yield function, contract
         for message in self._view.messages:
             if message.handler.observer:
                 yield message.handler.observer, self._observe(message.handler)
             if len(message.judges) > 1:
-                yield message.judge, self._judge_by(message)
+                yield message.judge, self._rules.judge_by(message)
             if message.after:
                 yield message.after, self._after(message)
             yield message.handler.function, self._message(message.handler)
@@ -383,28 +223,14 @@ class _Writer:
         contract = Contract(["\\valid(m)", "sane(m)"], self._changing())
         contract.ensures.append("sane(m)")
         for action in self._latched:
-            contract.ensures += self._kept_called(action)
+            contract.ensures += self._rules.kept_called(action)
         cleared = [f"m->{self._layout.active[each.index]} == 0" for each in self._latched]
         contract.ensures.append(iff("\\result != 0", all_of(cleared)))
         return contract
 
-    def _judge_by(self, message: MessageView) -> Contract:
-        """Return that the rules that read a topic are judged, and whether a verdict changes."""
-        rules = [each for each in self._program.rules if each.index in message.rules]
-        names = [self._layout.verdicts[each.index] for each in rules]
-        turned = [self._layout.turned[each.index] for each in rules]
-        contract = Contract(["\\valid(m)", "ranged(m)"])
-        contract.assigns += [f"m->{name}" for name in (*names, *turned)]
-        contract.ensures += self.predicates.ranges(names)
-        contract.ensures += [f"judged_{name}(m)" for name in names]
-        contract.ensures += [f"\\result == 0 ==> m->{n} == \\old(m->{n})" for n in names]
-        fors = [each for rule in rules for each in self.predicates.fors(rule.condition)]
-        self._with_own_intervals(contract, fors)
-        return contract
-
     def _after(self, message: MessageView) -> Contract:
         """Return that all is judged anew that a message can have changed."""
-        contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], self._judging())
+        contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], self._rules.judging())
         names = self._layout.verdicts
         others = [f"judged_{name}(m)" for each, name in names.items() if each not in message.rules]
         touched = [f"judged_{names[each]}(m)" for each in message.rules]
@@ -426,7 +252,7 @@ class _Writer:
     def _settled(self) -> list[str]:
         """Return that a monitor is sane and has judged, in parts: each is a proof of its own."""
         parts = [*SOUND, "m->due > m->now", "m->started == 1", "judged(m)", "acted(m)"]
-        return [*parts, *self._kept_latched()]
+        return [*parts, *self._rules.kept_latched()]
 
     def _stored(self, handler: Handler) -> list[str]:
         """Return the fields that hold what a message says."""
@@ -457,7 +283,7 @@ class _Writer:
         contract.ensures += [*own, *self._says_nothing_new(handler, [*flags, *stored])]
         contract.checked += self._values_of(handler)
         if bases:
-            _with_earlier_deadline(contract)
+            with_earlier_deadline(contract)
         return contract
 
     def _says_nothing_new(self, handler: Handler, names: list[str]) -> Iterator[str]:
@@ -502,13 +328,3 @@ class _Writer:
             if extent:
                 yield f"\\valid_read({extent})"
                 yield f"\\separated(m, {extent})"
-
-
-def _with_earlier_deadline(contract: Contract) -> None:
-    contract.assigns.append("m->due")
-    contract.ensures.append("m->due <= \\old(m->due)")
-    contract.ensures.append("\\old(m->due) > m->now ==> m->due > m->now")
-
-
-def _triggers(behaviour: Behaviour, action: int) -> bool:
-    return any(isinstance(item, Trigger) and item.action == action for item in behaviour.body)
