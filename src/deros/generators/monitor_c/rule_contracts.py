@@ -96,7 +96,8 @@ class RuleContracts:
             if action.reset_by is not None:
                 contract.ensures += self.kept_called(action)
         contract.ensures += self._begun()
-        self._with_intervals(contract, self._sinces(self._behaviours))
+        fors = [part for each in self._behaviours for part in self._predicates.fors(each.condition)]
+        self._with_intervals(contract, self._sinces(fors))
         contract.requires.append("changed == 0 ==> acted(m)")
         contract.cases |= {"change": "changed != 0", "none": "changed == 0"}
         return contract
@@ -132,13 +133,13 @@ class RuleContracts:
         """Return that all that a condition reads, and its intervals, are in range."""
         meaning = self._predicates.meaning
         text = f"m->now {meaning.true(condition)} {meaning.false(condition)}"
-        sinces = [self._layout.since[each.index] for each in fors]
+        sinces = self._sinces(fors)
         names = dict.fromkeys([*_FIELD.findall(text), *sinces])
         return all_of(self._predicates.ranges(names))
 
     def _with_own_intervals(self, contract: Contract, fors: Iterable[For]) -> None:
         """Add what becomes of the intervals of a condition; they stay in range and in time."""
-        sinces = [self._layout.since[each.index] for each in fors]
+        sinces = self._sinces(fors)
         if sinces:
             in_time = self._predicates.ends_in_time("m->due", sinces)
             contract.requires += in_time
@@ -199,8 +200,7 @@ class RuleContracts:
         contract.ensures += ["ranged(m)", "ends_in_time(m, m->due)"]
         return contract
 
-    def _sinces(self, group: Iterable[Rule | Behaviour]) -> list[str]:
-        fors = [each for one in group for each in self._predicates.fors(one.condition)]
+    def _sinces(self, fors: Iterable[For]) -> list[str]:
         return [self._layout.since[each.index] for each in fors]
 
     def _begun(self) -> Iterator[str]:
