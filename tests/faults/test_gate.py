@@ -47,6 +47,11 @@ def stands(robot: Robot) -> bool:
     return len(robot.commands) >= 5 and not any(each.value for each in robot.commands[-5:])
 
 
+def drives(robot: Robot) -> bool:
+    """Tell whether the drive gets commands that are no zero, and has for half a second."""
+    return len(robot.commands) >= 10 and all(each.value for each in robot.commands[-10:])
+
+
 @pytest.mark.parametrize("fault", [Process.kill, Process.freeze])
 def test_a_safety_node_that_dies_or_hangs_stops_the_robot(
     robot: Robot, fault: Callable[[Process], None]
@@ -54,14 +59,12 @@ def test_a_safety_node_that_dies_or_hangs_stops_the_robot(
     """The last command that is no zero leaves the gate 0.3 s after the last heartbeat."""
     with robot.safety_node() as node, robot.gate(), robot.sensors() as sensors:
         sensors.drive()
-        robot.until_driving()
-        driving = len(robot.commands)
-        robot.until(lambda: len(robot.commands) > driving + 10)
+        robot.until(lambda: drives(robot))
         fault(node)
         robot.until(lambda: stands(robot))
         zero = max(n for n, each in enumerate(robot.commands) if each.value) + 1
         late = robot.commands[zero].sent - robot.beats[-1].sent - LOST_HEARTBEAT
-        assert late < LATE + lateness(robot.commands[driving:zero], PERIOD)
+        assert late < LATE + lateness(robot.commands[zero - 10 : zero], PERIOD)
         assert_zeros_only(robot, zero)
         node.kill()
         robot.restart()

@@ -4,14 +4,15 @@
 
 Each line of the input is a command in JSON, and is answered by one line when it is done:
 
-    {"match": TOPIC, "count": N}                         wait until so many listen
+    {"match": TOPIC, "count": N}                         wait until so many, from 1 on, listen
     {"play": TOPIC, "messages": [BASE64, …], "rate": HZ} publish them in turn, for ever
     {"quiet": TOPIC}                                     play nothing any more; answer how many
     {"send": TOPIC, "messages": [BASE64, …], "times": N, "rate": HZ}
                                                          publish them in turn, N messages in all
 
-It knows nothing of what it publishes, so it can publish what no sensor should. It ends with its
-input. What is killed or frozen in a test is this process.
+It goes on playing while it waits for listeners: a sensor does not fall silent because somebody
+else is slow to be found. It knows nothing of what it publishes, so it can publish what no sensor
+should. It ends with its input. What is killed or frozen in a test is this process.
 """
 
 from __future__ import annotations
@@ -34,10 +35,13 @@ from rclpy.signals import SignalHandlerOptions
 CATCH_UP = 0.025
 """Seconds by which a player may be late and still play all that it has missed."""
 
+LOOK = 0.01
+"""Seconds between two looks for listeners: the graph has no event to await without an executor."""
+
 
 @dataclass
 class Player:
-    """One topic: what is published on it, and when next."""
+    """One topic: what is published on it, and when next; and how many listeners are awaited."""
 
     publisher: Any
     messages: list[bytes] = field(default_factory=list)
@@ -45,6 +49,7 @@ class Player:
     due: float = math.inf
     left: float = math.inf
     count: int = 0
+    awaited: int = 0
 
     def start(self, command: dict[str, Any]) -> None:
         """Play the messages of a command, beginning now."""
@@ -64,6 +69,16 @@ class Player:
                 self.due = math.inf
                 answer(self.count)
 
+    def wakes(self, now: float) -> float:
+        """Return when there is something to do again."""
+        return min(self.due, now + LOOK) if self.awaited else self.due
+
+    def look(self) -> None:
+        """Answer once the awaited listeners are there."""
+        if self.awaited and self.publisher.get_subscription_count() >= self.awaited:
+            self.awaited = 0
+            answer(1)
+
 
 def answer(result: int) -> None:
     """Tell that a command is done."""
@@ -75,9 +90,7 @@ def obey(command: dict[str, Any], players: dict[str, Player]) -> None:
     (verb,) = command.keys() & {"match", "play", "quiet", "send"}
     player = players[command[verb]]
     if verb == "match":
-        while player.publisher.get_subscription_count() < command["count"]:
-            time.sleep(0.01)  # the graph has no event that a process without executor could await
-        answer(1)
+        player.awaited = command["count"]
     elif verb == "send":
         player.start(command)
     elif verb == "play":
@@ -106,7 +119,7 @@ def main(topics: list[str]) -> None:
     pending = b""
     while True:
         now = time.monotonic()
-        due = min(player.due for player in players.values())
+        due = min(player.wakes(now) for player in players.values())
         wait = None if due == math.inf else max(due - now, 0.0)
         if select.select([0], [], [], wait)[0]:
             read = os.read(0, 1 << 20)
@@ -119,6 +132,7 @@ def main(topics: list[str]) -> None:
         for player in players.values():
             if player.due <= now:
                 player.play(now)
+            player.look()
 
 
 if __name__ == "__main__":
