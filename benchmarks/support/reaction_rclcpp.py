@@ -20,7 +20,7 @@ from support.progress import Line
 from support.rclcpp_programs import build, rclcpp_environment, workshop
 from support.reaction_results import FASTEST, RCLCPP, SAFETY, USUAL, Run
 from support.reaction_rules import Lane, generate, timed_lanes
-from support.reaction_session import Wanted, carry_out, events_of, lost, start_load
+from support.reaction_session import Wanted, carry_out, events_of, hear_out, lost, start_load
 from support.samples import Fired, Trigger
 
 INSTANCES = 4
@@ -62,16 +62,20 @@ def measure(wanted: Wanted, folder: Path) -> Run:
         ]
         immediate = [each for group in at_once.values() for each in group]
         carry_out("rclcpp", driver, processes, immediate, later)
+        samples = {
+            name: [sample for each in group for sample in each.samples]
+            for name, group in at_once.items()
+        }
+        told = hear_out(
+            driver, lambda: _triggers(driver, lanes), [*samples[SAFETY], *later[0].samples]
+        )
         return Run(
             client=RCLCPP,
             loaded=wanted.load,
-            immediate={
-                name: [sample for each in group for sample in each.samples]
-                for name, group in at_once.items()
-            },
+            immediate=samples,
             timed=later[0].samples,
             floor=later[1].samples,
-            triggers=_triggers(driver, lanes),
+            triggers=told,
             firings=[Fired(*each) for each in processes.end("timed_relay")],
             sleeps=[],
             lost=lost((*at_once[SAFETY], later[0])),

@@ -9,7 +9,7 @@ from support.experiment import Immediate, Timed
 from support.processes import Processes, own_domain
 from support.reaction_results import FASTEST, RCLPY, SAFETY, USUAL, Run
 from support.reaction_rules import Lane, generate, timed_lanes
-from support.reaction_session import Wanted, carry_out, events_of, lost, start_load
+from support.reaction_session import Wanted, carry_out, events_of, hear_out, lost, start_load
 from support.samples import Fired
 
 _EVENTS = (events_of("immediate_safety_node"), events_of("timed_safety_node"))
@@ -43,6 +43,11 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             for lanes, resets in ((timed, True), (floor, False))
         ]
         carry_out("rclpy", driver, processes, list(at_once.values()), later)
+        told = hear_out(
+            driver,
+            lambda: [each for topic in _EVENTS for each in triggers(driver.records[topic])],
+            [*at_once[SAFETY].samples, *later[0].samples],
+        )
         driver.close()
         return Run(
             client=RCLPY,
@@ -50,7 +55,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             immediate={name: each.samples for name, each in at_once.items()},
             timed=later[0].samples,
             floor=later[1].samples,
-            triggers=[each for topic in _EVENTS for each in triggers(driver.records[topic])],
+            triggers=told,
             firings=[Fired(*each) for each in processes.end("timed_relay")],
             sleeps=processes.end("sleeper"),
             lost=lost((at_once[SAFETY], later[0])),

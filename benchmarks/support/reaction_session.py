@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from support.experiment import Driver, Experiment, Immediate, Timed
+from support.experiment import LIMIT_NS, Driver, Experiment, Immediate, Timed
 from support.processes import Processes
 from support.progress import Line
+from support.samples import Sample, Trigger, match
 
 LOAD_TOPICS = 20
 
 MEETING = 60.0
 """Seconds after which nobody is waited for any more."""
+
+LISTEN_NS = 20_000_000
+"""For how long the driver receives events before it is seen whether all have come."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +75,22 @@ def carry_out(
             line.show(f"{title}: {done} of {wanted} reactions{tail}")
 
         Experiment(driver, at_once, later, watch).run()
+
+
+def hear_out(
+    driver: Driver, told: Callable[[], list[Trigger]], samples: Sequence[Sample]
+) -> list[Trigger]:
+    """Receive until the safety nodes have told of all reactions; return what they have told.
+
+    They tell after they have acted, so the last of it comes after the last reaction. What has not
+    come within the time in which a reaction would count as lost, is not told.
+    """
+    end = time.monotonic_ns() + LIMIT_NS
+    while len(match(samples, triggers := told())) < len(samples):
+        if (now := time.monotonic_ns()) > end:
+            break
+        driver.spin_until(now + LISTEN_NS)
+    return triggers
 
 
 def lost(safety: Iterable[Immediate | Timed]) -> int:
