@@ -14,31 +14,21 @@ from deros.generators.cpp_source import (
     cpp_type,
 )
 from deros.generators.names import Emitted, camel_case, check_collisions
+from deros.generators.node_view import (
+    NodeBase,
+    check_names,
+    duration_text,
+    port_notes,
+    timer_notes,
+    topic_parameter,
+)
 from deros.generators.python_source import one_line, sentence
 from deros.generators.rosnode_cpp.parameters import ParameterView, cpp_parameter_views
 from deros.generators.rosnode_cpp.qos import qos_expression
 from deros.generators.rosnode_python.parameters import ParameterView as FileParameter
 from deros.generators.rosnode_python.parameters import parameter_views
-from deros.generators.rosnode_python.view import duration_text
 from deros.metamodels.node import NodeType, Port, PortKind
 
-_HOOKS = ("on_parameters_changed",)
-_LIFECYCLE_HOOKS = (
-    "on_activate",
-    "on_cleanup",
-    "on_configure",
-    "on_deactivate",
-    "on_error",
-    "on_shutdown",
-)
-_METHODS = {
-    PortKind.PUBLISHER: ("publish_{}",),
-    PortKind.SUBSCRIPTION: ("on_{}",),
-    PortKind.SERVICE: ("handle_{}",),
-    PortKind.CLIENT: ("call_{}", "client_{}"),
-    PortKind.ACTION: ("accept_{}", "execute_{}", "cancel_{}"),
-    PortKind.ACTION_CLIENT: ("send_{}", "client_{}"),
-}
 # Other packages, those of interfaces above all, have a variable that lists their targets.
 _TARGETS = {
     "rclcpp": "rclcpp::rclcpp",
@@ -120,40 +110,22 @@ class TimerView:
         return self.identifier.rstrip("_")
 
 
-@dataclass(frozen=True, slots=True)
-class NodeView:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NodeView(NodeBase[PortView, TimerView]):
     """One node of the package.
 
     Attributes:
         stem: what its files are named after.
         default_name: its name at run time.
-        source: file name of the node description.
         provided: what the caller makes of it; ``None`` for a node of the user's.
         file_parameters: the parameters as the parameter file shows them.
     """
 
-    name: str
     stem: str
-    class_name: str
     default_name: str
-    lifecycle: bool
-    source: str
-    summary: str
     provided: Provided | None
     parameters: tuple[ParameterView, ...]
     file_parameters: tuple[FileParameter, ...]
-    publishers: tuple[PortView, ...]
-    subscriptions: tuple[PortView, ...]
-    services: tuple[PortView, ...]
-    clients: tuple[PortView, ...]
-    actions: tuple[PortView, ...]
-    action_clients: tuple[PortView, ...]
-    timers: tuple[TimerView, ...]
-
-    @property
-    def base_class(self) -> str:
-        """Class that the generator owns."""
-        return f"{self.class_name}Base"
 
     @property
     def parent(self) -> str:
@@ -161,19 +133,9 @@ class NodeView:
         return "rclcpp_lifecycle::LifecycleNode" if self.lifecycle else "rclcpp::Node"
 
     @property
-    def gated(self) -> bool:
-        """Whether there are callbacks that rest while a managed node is not active."""
-        return self.lifecycle and bool(self.subscriptions or self.timers)
-
-    @property
     def checked(self) -> tuple[ParameterView, ...]:
         """The parameters that need more checks than rclcpp makes."""
         return tuple(p for p in self.parameters if p.checks)
-
-    @property
-    def has_handlers(self) -> bool:
-        """Whether the user's class has something to fill in."""
-        return bool(self.subscriptions or self.timers or self.services or self.actions)
 
     @property
     def equal(self) -> Chain:
@@ -298,14 +260,7 @@ def _needed(node: NodeView) -> tuple[str, ...]:
 def _node(model: NodeType, provided: Provided | None) -> NodeView:
     name = (provided and provided.default_name) or model.name
     class_name = camel_case(name)
-    check_collisions(_methods(model), f"the methods of class {class_name}")
-    check_collisions(
-        (
-            Emitted(cpp_identifier(p.name), f"parameter {p.name!r}", p.name_span)
-            for p in model.parameters
-        ),
-        "the struct Parameters",
-    )
+    check_names(model, class_name, "struct Parameters", cpp_identifier)
     views = {
         kind: tuple(_port(p, model, provided) for p in model.ports_of(kind)) for kind in PortKind
     }
@@ -331,7 +286,7 @@ def _node(model: NodeType, provided: Provided | None) -> NodeView:
                 cpp_identifier(timer.name),
                 _period(timer.period_ns),
                 duration_text(timer.period_ns),
-                _notes(sentence(timer.description)),
+                timer_notes(timer),
             )
             for timer in model.timers
         ),
@@ -343,30 +298,12 @@ def _period(nanoseconds: int) -> str:
     return f"std::chrono::{_CHRONO[unit]}({count})"
 
 
-def _methods(model: NodeType) -> Iterator[Emitted]:
-    """Yield every method that the base class gets, the hooks first."""
-    for hook in (*_HOOKS, *(_LIFECYCLE_HOOKS if model.lifecycle else ())):
-        yield Emitted(hook, f"the hook {hook!r}", model.name_span)
-    for port in model.ports:
-        for method in _METHODS[port.kind]:
-            name = method.format(cpp_identifier(port.name))
-            yield Emitted(name, f"port {port.name!r}", port.name_span)
-    for timer in model.timers:
-        name = f"on_{cpp_identifier(timer.name)}"
-        yield Emitted(name, f"timer {timer.name!r}", timer.name_span)
-
-
 def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
     kind = cpp_type(port.type)
     topic = cpp_string(port.name)
-    notes = [sentence(port.description)]
-    if port.units:
-        listed = ", ".join(f"{unit.path} [{unit.unit}]" for unit in port.units)
-        notes.append(f"Units: {listed}.")
-    if port.via is not None and model.parameter(port.via) is not None:
-        field = f"parameters_->{cpp_identifier(port.via)}"
+    if parameter := topic_parameter(port, model):
+        field = f"parameters_->{cpp_identifier(parameter.name)}"
         topic = f"{field}.empty() ? {topic} : {field}"
-        notes.append(f"The parameter {port.via} gives the topic's name at start.")
     return PortView(
         identifier=cpp_identifier(port.name),
         type=kind,
@@ -374,12 +311,8 @@ def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
         topic=topic,
         name=port.name,
         qos=qos_expression(port.qos),
-        notes=_notes(*notes),
+        notes=port_notes(port, model),
         memory=f"std::make_shared<{provided.memory}<{kind}>>()"
         if provided and provided.memory and port.kind is PortKind.SUBSCRIPTION
         else None,
     )
-
-
-def _notes(*texts: str) -> tuple[str, ...]:
-    return tuple(text for text in texts if text)

@@ -2,36 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from deros.generators.names import Emitted, camel_case, check_collisions, python_identifier
+from deros.generators.node_view import (
+    NodeBase,
+    check_names,
+    duration_text,
+    port_notes,
+    timer_notes,
+    topic_parameter,
+)
 from deros.generators.python_source import Call, Text, one_line, sentence, wrapped
 from deros.generators.rosnode_python.parameters import ParameterView, parameter_views
 from deros.generators.rosnode_python.qos import qos_view
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 
-_HOOKS = ("on_parameters_changed",)
 _RAW_HOOKS = ("on_named",)
-_LIFECYCLE_HOOKS = (
-    "on_activate",
-    "on_cleanup",
-    "on_configure",
-    "on_deactivate",
-    "on_error",
-    "on_shutdown",
-)
-_METHODS = {
-    PortKind.PUBLISHER: ("publish_{}",),
-    PortKind.SUBSCRIPTION: ("on_{}",),
-    PortKind.SERVICE: ("handle_{}",),
-    PortKind.CLIENT: ("call_{}", "client_{}"),
-    PortKind.ACTION: ("accept_{}", "execute_{}", "cancel_{}"),
-    PortKind.ACTION_CLIENT: ("send_{}", "client_{}"),
-}
-_UNITS_OF_TIME = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
 
 # Names that the templates use themselves; a message type called so is imported under another name.
 _TAKEN = frozenset(
@@ -107,53 +97,25 @@ class TimerView:
     notes: tuple[tuple[str, ...], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class NodeView:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NodeView(NodeBase[PortView, TimerView]):
     """One node of the package.
 
     Attributes:
-        source: file name of the node description.
         raw: whether its subscriptions hand over serialized messages, and its class and program
             come from elsewhere.
         interfaces: for each interface type, module, class name, and its name in the modules.
     """
 
-    name: str
     module: str
-    class_name: str
-    lifecycle: bool
-    source: str
     raw: bool
-    summary: str
     interfaces: tuple[tuple[InterfaceType, str], ...]
     parameters: tuple[ParameterView, ...]
-    publishers: tuple[PortView, ...]
-    subscriptions: tuple[PortView, ...]
-    services: tuple[PortView, ...]
-    clients: tuple[PortView, ...]
-    actions: tuple[PortView, ...]
-    action_clients: tuple[PortView, ...]
-    timers: tuple[TimerView, ...]
 
     @property
     def base_module(self) -> str:
         """Module of the class that the generator owns."""
         return f"{self.module}_base"
-
-    @property
-    def base_class(self) -> str:
-        """Class that the generator owns."""
-        return f"{self.class_name}Base"
-
-    @property
-    def has_handlers(self) -> bool:
-        """Whether the user's class has something to fill in."""
-        return bool(self.subscriptions or self.timers or self.services or self.actions)
-
-    @property
-    def gated(self) -> bool:
-        """Whether there are callbacks that rest while a managed node is not active."""
-        return self.lifecycle and bool(self.subscriptions or self.timers)
 
     @property
     def configured(self) -> bool:
@@ -172,15 +134,9 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
     Raises:
         GenerationError: if two ports, timers or parameters would get one name.
     """
-    check_collisions(_methods(model, raw), f"the methods of class {camel_case(model.name)}")
-    check_collisions(
-        (
-            Emitted(python_identifier(p.name), f"parameter {p.name!r}", p.name_span)
-            for p in model.parameters
-        ),
-        "the class Parameters",
-    )
     class_name = camel_case(model.name)
+    hooks = _RAW_HOOKS if raw else ()
+    check_names(model, class_name, "class Parameters", python_identifier, hooks)
     interfaces = _interface_names(model, class_name)
     views = {
         kind: tuple(_port(p, interfaces, model) for p in model.ports_of(kind)) for kind in PortKind
@@ -206,34 +162,14 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
                 python_identifier(timer.name),
                 repr(timer.period_ns / 10**9),
                 duration_text(timer.period_ns),
-                _paragraphs(sentence(timer.description)),
+                _paragraphs(timer_notes(timer)),
             )
             for timer in model.timers
         ),
     )
 
 
-def duration_text(nanoseconds: int) -> str:
-    """Return a duration in the greatest unit that needs no fraction, ``20 ms``."""
-    size, unit = next((s, u) for s, u in _UNITS_OF_TIME if nanoseconds % s == 0)
-    return f"{nanoseconds // size} {unit}"
-
-
 # Names --------------------------------------------------------------------------------------------
-
-
-def _methods(model: NodeType, raw: bool) -> Iterator[Emitted]:
-    """Yield every method that the base class gets, the hooks first."""
-    lifecycle_hooks = _LIFECYCLE_HOOKS if model.lifecycle else ()
-    for hook in (*_HOOKS, *(_RAW_HOOKS if raw else ()), *lifecycle_hooks):
-        yield Emitted(hook, f"the hook {hook!r}", model.name_span)
-    for port in model.ports:
-        for method in _METHODS[port.kind]:
-            name = method.format(python_identifier(port.name))
-            yield Emitted(name, f"port {port.name!r}", port.name_span)
-    for timer in model.timers:
-        name = f"on_{python_identifier(timer.name)}"
-        yield Emitted(name, f"timer {timer.name!r}", timer.name_span)
 
 
 def _interface_names(model: NodeType, class_name: str) -> dict[InterfaceType, str]:
@@ -274,13 +210,8 @@ def interface_imports(
 
 def _port(port: Port, interfaces: Mapping[InterfaceType, str], model: NodeType) -> PortView:
     topic = repr(port.name)
-    notes = [sentence(port.description)]
-    if port.units:
-        listed = ", ".join(f"{unit.path} [{unit.unit}]" for unit in port.units)
-        notes.append(f"Units: {listed}.")
-    if port.via is not None and model.parameter(port.via) is not None:
-        topic = f"self.parameters.{python_identifier(port.via)} or {topic}"
-        notes.append(f"The parameter {port.via} gives the topic's name at start.")
+    if parameter := topic_parameter(port, model):
+        topic = f"self.parameters.{python_identifier(parameter.name)} or {topic}"
     qos = qos_view(port.qos)
     return PortView(
         identifier=python_identifier(port.name),
@@ -289,12 +220,12 @@ def _port(port: Port, interfaces: Mapping[InterfaceType, str], model: NodeType) 
         name=port.name,
         qos=qos.expression if qos else None,
         qos_imports=qos.imports if qos else (),
-        notes=_paragraphs(*notes),
+        notes=_paragraphs(port_notes(port, model)),
     )
 
 
-def _paragraphs(*texts: str) -> tuple[tuple[str, ...], ...]:
-    return tuple(tuple(wrapped(text, indent=8)) for text in texts if text)
+def _paragraphs(texts: Iterable[str]) -> tuple[tuple[str, ...], ...]:
+    return tuple(tuple(wrapped(text, indent=8)) for text in texts)
 
 
 # The package --------------------------------------------------------------------------------------
