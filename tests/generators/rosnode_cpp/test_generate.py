@@ -18,71 +18,30 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from tests.support.cpp_lint import assert_cpp_lint_clean
-
-
-def model_of(text: str) -> NodeType:
-    """Return the model of a node description in a folder of its own."""
-    loaded = Repository().load_text("/nonexistent/a_node.rnd", text)
-    assert isinstance(loaded.model, NodeType), loaded.diagnostics
-    return loaded.model
-
-
-def files_for(text: str, options: dict[str, str] | None = None) -> Files:
-    """Return what is generated for a node description."""
-    return generate(model_of(text), Context(InterfaceStore(), Repository()), options or {})
+from tests.support.node_targets import files_of, node_of, refusal
 
 
 def base_for(sections: str) -> str:
     """Return the source of the base class of a node with these sections, on one line."""
-    text = files_for(f"node a_node : a_package {sections}")["a_package/src/a_node_base.cpp"].text
-    return " ".join(text.split())
-
-
-def refusal(text: str) -> tuple[str, str, int]:
-    """Return code, message and line of the one diagnostic that a description ends in."""
-    with pytest.raises(GenerationError) as raised:
-        files_for(text)
-    (found,) = raised.value.diagnostics
-    return found.code.name, found.message, found.span.line
+    files = files_of(generate, f"node a_node : a_package {sections}")
+    return " ".join(files["a_package/src/a_node_base.cpp"].text.split())
 
 
 # Refusals -----------------------------------------------------------------------------------------
 
 
-def test_an_existing_program_needs_no_skeleton() -> None:
-    """A node with a binary of its own is refused with the way out."""
-    code, message, line = refusal('node odometry : wheels\nexecutable "odom"')
-    assert (code, line) == ("DRS402", 1)
-    assert "'odom'" in message
-
-
 @pytest.mark.parametrize(
-    ("sections", "method"),
+    ("sections", "name"),
     [
-        ("subscribes topic a/b : std_msgs.Bool\ntopic a_b : std_msgs.Bool", "on_a_b"),
         ("publishes topic _x : std_msgs.Bool\ntopic /x : std_msgs.Bool", "publish_x"),
-        ("subscribes topic tick : std_msgs.Bool timers\ntimer tick every 1 s", "on_tick"),
-        ("timers\ntimer parameters_changed every 1 s", "on_parameters_changed"),
-        ("lifecycle timers\ntimer activate every 1 s", "on_activate"),
-        ("clients client c : std_srvs.Empty action_clients\naction c : a_msgs.C", "client_c"),
+        ("parameters name a__b : double = 1.0\nname a_b : double = 1.0", "a_b"),
     ],
 )
-def test_two_things_of_one_name_collide(sections: str, method: str) -> None:
-    """Whatever becomes one method is refused at the second place."""
-    code, message, line = refusal(f"node a : b {sections}")
+def test_names_that_differ_in_underscores_collide(sections: str, name: str) -> None:
+    """C++ reserves many names with underscores: none stays at either end, one of several within."""
+    code, message, line = refusal(generate, f"node a : b {sections}")
     assert (code, line) == ("DRS401", 2)
-    assert repr(method) in message
-
-
-@pytest.mark.parametrize(
-    ("one", "other"), [("pid.p", "pid_p"), ("class", "class_"), ("a__b", "a_b")]
-)
-def test_parameters_of_one_field_collide(one: str, other: str) -> None:
-    """Names that C++ can only hold in one spelling may meet in one field."""
-    code, _, line = refusal(
-        f"node a : b parameters\nname {one} : double = 1.0\nname {other} : double = 1.0"
-    )
-    assert (code, line) == ("DRS401", 3)
+    assert repr(name) in message
 
 
 @pytest.mark.parametrize(
@@ -100,28 +59,10 @@ def test_nodes_of_one_package_collide(other: str, within: str, tmp_path: Path) -
         generate(model, context, {})
 
 
-@pytest.mark.parametrize("name", ["use_sim_time", "start_type_description_service"])
-def test_parameters_that_every_node_has_are_refused(name: str) -> None:
-    """Declaring them again would stop the node at start."""
-    assert refusal(f"node a : b parameters\nname {name} : bool = true")[::2] == ("DRS402", 2)
-
-
-def test_qos_of_an_action_is_refused() -> None:
-    """One profile for the five ends of an action has no meaning in rclcpp."""
-    text = "node a : b actions\naction dock : test_msgs.Fibonacci qos reliable"
-    assert refusal(text)[::2] == ("DRS402", 2)
-
-
 @pytest.mark.parametrize("package", ["namespace", "std"])
 def test_a_package_must_be_a_namespace(package: str) -> None:
     """A package named by a C++ keyword, or as the standard library, cannot hold the class."""
-    assert refusal(f"node a\n: {package}")[::2] == ("DRS402", 2)
-
-
-def test_a_maintainer_must_have_an_address() -> None:
-    """package.xml needs an address, so the option is checked."""
-    with pytest.raises(ValueError, match="'Jane' does not read 'Name <address>'"):
-        files_for("node a : b", {"maintainer": "Jane"})
+    assert refusal(generate, f"node a\n: {package}")[::2] == ("DRS402", 2)
 
 
 # Single constructs --------------------------------------------------------------------------------
@@ -171,7 +112,7 @@ def test_qos_is_as_stated(qos: str, expression: str) -> None:
 )
 def test_defaults_have_the_declared_type(declaration: str, declared: str, field: str) -> None:
     """An integer written for a double is declared as a double, and so on."""
-    files = files_for(f"node a : b parameters name x : {declaration}")
+    files = files_of(generate, f"node a : b parameters name x : {declaration}")
     assert f'declare_parameter("x", {declared});' in files["b/src/a_base.cpp"].text
     assert f" {field}\n" in files["b/include/b/a_base.hpp"].text
 
@@ -216,8 +157,8 @@ def test_a_topic_named_by_a_parameter_is_fixed_at_start() -> None:
 )
 def test_headers_are_named_as_rosidl_names_them(name: str, header: str) -> None:
     """The header of a type's name in capitals is found by the rule of the interface generators."""
-    text = files_for(f"node a : b publishes topic x : some_msgs.{name}")["b/include/b/a_base.hpp"]
-    assert f'#include "some_msgs/msg/{header}.hpp"' in text.text
+    files = files_of(generate, f"node a : b publishes topic x : some_msgs.{name}")
+    assert f'#include "some_msgs/msg/{header}.hpp"' in files["b/include/b/a_base.hpp"].text
 
 
 def test_headers_of_the_wheels_are_found() -> None:
@@ -239,7 +180,7 @@ def test_headers_of_the_wheels_are_found() -> None:
 
 def test_a_provided_node_is_opened_by_its_class() -> None:
     """The caller's sources are built, no file is the user's, and ports open on demand."""
-    model = model_of(
+    model = node_of(
         "node guard_cpp : b parameters name x : int = 1 subscribes topic y : std_msgs.Bool "
         "services service z : std_srvs.Trigger"
     )
@@ -268,7 +209,7 @@ def test_a_provided_node_is_opened_by_its_class() -> None:
 
 def test_a_provided_node_may_bring_its_program() -> None:
     """With a main of the caller's there is none of ours."""
-    model = model_of("node guard : b")
+    model = node_of("node guard : b")
     provided = Provided(("src/guard.cpp",), main=("src/own_main.cpp",))
     files = package_files([model], {}, {"guard": provided})
     assert "b/src/guard_main.cpp" not in files
@@ -291,7 +232,7 @@ def test_long_names_do_not_break_the_linters(tmp_path: Path) -> None:
         f"services service {long} : std_srvs.Trigger\n"
         f"timers timer {long} every 3 ns\n"
     )
-    write(files_for(text), tmp_path)
+    write(files_of(generate, text), tmp_path)
     assert_cpp_lint_clean(tmp_path / "chat")
 
 
@@ -299,7 +240,7 @@ def test_long_names_do_not_break_the_linters(tmp_path: Path) -> None:
 @given(description=st.text(max_size=200), default=st.text(max_size=40))
 def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
     """Whatever a text holds, XML parses, and the code beside comments and literals stays."""
-    model = model_of('node a : b parameters name x : string = "" publishes topic y : std_msgs.Bool')
+    model = node_of('node a : b parameters name x : string = "" publishes topic y : std_msgs.Bool')
     (parameter,), (port,) = model.parameters, model.ports
 
     def files_with(description: str, default: str) -> Files:

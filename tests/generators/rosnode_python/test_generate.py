@@ -11,75 +11,21 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deros.generators.protocol import Context, Files, GenerationError
+from deros.generators.protocol import Context, GenerationError
 from deros.generators.rosnode_python.generate import generate, package_files
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
-
-
-def model_of(text: str) -> NodeType:
-    """Return the model of a node description in a folder of its own."""
-    loaded = Repository().load_text("/nonexistent/a_node.rnd", text)
-    assert isinstance(loaded.model, NodeType), loaded.diagnostics
-    return loaded.model
-
-
-def files_for(text: str, options: dict[str, str] | None = None) -> Files:
-    """Return what is generated for a node description."""
-    return generate(model_of(text), Context(InterfaceStore(), Repository()), options or {})
+from tests.support.node_targets import files_of, node_of, refusal
 
 
 def base_for(sections: str) -> str:
     """Return the base class of a node with these sections."""
-    return files_for(f"node a_node : a_package {sections}")[
-        "a_package/a_package/a_node_base.py"
-    ].text
-
-
-def refusal(text: str) -> tuple[str, str, int]:
-    """Return code, message and line of the one diagnostic that a description ends in."""
-    with pytest.raises(GenerationError) as raised:
-        files_for(text)
-    (found,) = raised.value.diagnostics
-    return found.code.name, found.message, found.span.line
+    files = files_of(generate, f"node a_node : a_package {sections}")
+    return files["a_package/a_package/a_node_base.py"].text
 
 
 # Refusals -----------------------------------------------------------------------------------------
-
-
-def test_an_existing_program_needs_no_skeleton() -> None:
-    """A node with a binary of its own is refused with the way out."""
-    code, message, line = refusal('node odometry : wheels\nexecutable "odom"')
-    assert (code, line) == ("DRS402", 1)
-    assert "'odom'" in message
-
-
-@pytest.mark.parametrize(
-    ("sections", "method"),
-    [
-        ("subscribes topic a/b : std_msgs.Bool\ntopic a_b : std_msgs.Bool", "on_a_b"),
-        ("publishes topic ~/x : std_msgs.Bool\ntopic /x : std_msgs.Bool", "publish_x"),
-        ("subscribes topic tick : std_msgs.Bool timers\ntimer tick every 1 s", "on_tick"),
-        ("timers\ntimer parameters_changed every 1 s", "on_parameters_changed"),
-        ("lifecycle timers\ntimer activate every 1 s", "on_activate"),
-        ("clients client c : std_srvs.Empty action_clients\naction c : a_msgs.C", "client_c"),
-    ],
-)
-def test_two_things_of_one_name_collide(sections: str, method: str) -> None:
-    """Whatever becomes one method is refused at the second place."""
-    code, message, line = refusal(f"node a : b {sections}")
-    assert (code, line) == ("DRS401", 2)
-    assert repr(method) in message
-
-
-def test_parameters_of_one_field_collide() -> None:
-    """Dots and underscores in parameter names may meet in one field."""
-    code, message, line = refusal(
-        "node a : b parameters\nname pid.p : double = 1.0\nname pid_p : double = 1.0"
-    )
-    assert (code, line) == ("DRS401", 3)
-    assert "'pid_p'" in message
 
 
 def test_modules_of_one_package_collide(tmp_path: Path) -> None:
@@ -93,54 +39,9 @@ def test_modules_of_one_package_collide(tmp_path: Path) -> None:
         generate(model, context, {})
 
 
-@pytest.mark.parametrize(
-    ("beside", "refused"),
-    [
-        ("node listener : chat subscribes topic", True),
-        ("node listener : other subscribes topic", False),
-        ("\0 : no text", False),
-        ('node listener : chat executable "there_already"', False),
-    ],
-)
-def test_a_broken_node_of_the_package_is_not_dropped(
-    beside: str, refused: bool, tmp_path: Path
-) -> None:
-    """A description beside the model that cannot be read stops the run if it is of the package."""
-    (tmp_path / "talker.rnd").write_text("node talker : chat")
-    (tmp_path / "listener.rnd").write_text(beside)
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(tmp_path / "talker.rnd").model
-    assert isinstance(model, NodeType)
-    if refused:
-        with pytest.raises(GenerationError) as raised:
-            generate(model, context, {})
-        assert [d.code.name for d in raised.value.diagnostics] == ["DRS003"]
-    else:
-        assert "chat/chat/talker.py" in generate(model, context, {})
-        assert "chat/chat/listener.py" not in generate(model, context, {})
-
-
-@pytest.mark.parametrize("name", ["use_sim_time", "start_type_description_service"])
-def test_parameters_that_every_node_has_are_refused(name: str) -> None:
-    """Declaring them again would stop the node at start."""
-    assert refusal(f"node a : b parameters\nname {name} : bool = true")[::2] == ("DRS402", 2)
-
-
-def test_qos_of_an_action_is_refused() -> None:
-    """One profile for the five ends of an action has no meaning in rclpy."""
-    text = "node a : b actions\naction dock : test_msgs.Fibonacci qos reliable"
-    assert refusal(text)[::2] == ("DRS402", 2)
-
-
 def test_a_package_must_be_a_module() -> None:
     """A package named by a Python keyword cannot be imported."""
-    assert refusal("node a\n: class")[::2] == ("DRS402", 2)
-
-
-def test_a_maintainer_must_have_an_address() -> None:
-    """package.xml needs an address, so the option is checked."""
-    with pytest.raises(ValueError, match="'Jane' does not read 'Name <address>'"):
-        files_for("node a : b", {"maintainer": "Jane"})
+    assert refusal(generate, "node a\n: class")[::2] == ("DRS402", 2)
 
 
 # Single constructs --------------------------------------------------------------------------------
@@ -261,7 +162,7 @@ def test_ros_reads_every_parameter_file(parameters: str, tmp_path: Path) -> None
     import rclpy
     from rclpy.context import Context as RosContext
 
-    files = files_for(f"node a_node : a_package parameters {parameters}")
+    files = files_of(generate, f"node a_node : a_package parameters {parameters}")
     (tmp_path / "a.yaml").write_text(files["a_package/config/a_node.yaml"].text)
     context = RosContext()
     rclpy.init(args=["--ros-args", "--params-file", str(tmp_path / "a.yaml")], context=context)
@@ -275,7 +176,7 @@ def test_ros_reads_every_parameter_file(parameters: str, tmp_path: Path) -> None
 @given(description=st.text(max_size=200), default=st.text(max_size=40))
 def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
     """Whatever a text holds, Python compiles, XML parses, and YAML gives the default back."""
-    model = model_of('node a : b parameters name x : string = "" publishes topic y : std_msgs.Bool')
+    model = node_of('node a : b parameters name x : string = "" publishes topic y : std_msgs.Bool')
     (parameter,), (port,) = model.parameters, model.ports
     model = replace(
         model,
