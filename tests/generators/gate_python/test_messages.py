@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import random
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from deros.generators.gate_python.messages import type_views
 from deros.interfaces.fields import ResolvedField, resolve
+from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor import commands
 from deros.monitor.ir import Gate, GateLine, Limit
@@ -137,3 +140,18 @@ def _limit(kind: InterfaceType, path: tuple[str | int, ...]) -> Limit | None:
         return None
     ends = (-0.5, 0.5) if found.type.is_float else (0, 3)
     return Limit(path, found.type, *ends)
+
+
+def test_types_of_one_name_get_functions_of_their_own(tmp_path: Path) -> None:
+    """Also where the one is in the other, in another package."""
+    for package, field in (("inner", "float64 x"), ("outer", "inner/Speed speed")):
+        folder = tmp_path / package / "msg"
+        folder.mkdir(parents=True)
+        (folder / "Speed.msg").write_text(f"{field}\n", encoding="utf-8")
+    (tmp_path / "outer" / "msg" / "Command.msg").write_text("Speed speed\n", encoding="utf-8")
+    views = type_views(InterfaceStore([tmp_path]), message_type("outer.Command"))
+    assert [(view.prefix, view.finite) for view in views] == [
+        ("speed_", ("isfinite(msg.x)",)),
+        ("outer_speed_", ("speed_is_finite(msg.speed)",)),
+        ("", ("outer_speed_is_finite(msg.speed)",)),
+    ]

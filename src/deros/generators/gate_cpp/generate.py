@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 from deros.generators.cpp_source import arguments, call, comment, include_lines, mark_long_lines
 from deros.generators.gate_cpp.node import base_node
-from deros.generators.gate_cpp.source import condition, string_lines
-from deros.generators.gate_cpp.view import GateView, gate_view
+from deros.generators.gate_cpp.source import condition, origin_comment, string_lines
+from deros.generators.gate_cpp.view import GateView, gate_view, nanoseconds
 from deros.generators.protocol import File
 from deros.generators.rosnode_cpp.generate import Provided, licensed
 from deros.generators.safety_cpp.verbatim import runtime_sources, runtime_text
@@ -110,6 +110,8 @@ def render(template: str, view: GateView) -> str:
         call=call,
         comment=comment,
         condition=condition,
+        nanoseconds=nanoseconds,
+        origin_comment=origin_comment,
         string_lines=string_lines,
     )
     return mark_long_lines(text)

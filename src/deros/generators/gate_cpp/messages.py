@@ -2,43 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from deros.generators.cpp_source import cpp_header, cpp_type
+from deros.generators.gate_command import CommandType, TypeBase, command_types
 from deros.generators.gate_cpp.source import NUMBERS
-from deros.generators.monitor_python.names import Names
-from deros.interfaces.fields import FieldPath, ResolvedField, format_path, resolve
+from deros.generators.message_fields import field_type, unsized_arrays
+from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.store import InterfaceStore
-from deros.interfaces.types import (
-    FLOAT_TYPES,
-    STRING_TYPES,
-    FieldType,
-    InterfaceType,
-    MessageDefinition,
-)
-from deros.monitor.commands import HEADER, LAYOUT, QUATERNION
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.monitor.commands import HEADER
 
 
 @dataclass(frozen=True, slots=True)
-class TypeView:
-    """The functions for one message type.
+class TypeView(TypeBase):
+    """The functions for one type; overloading tells them apart."""
 
-    Attributes:
-        type: its name in ROS 2.
-        name: its struct.
-        header: what declares it.
-        finite: the operands whose conjunction tells whether each float in it is finite.
-        zeros: the statements that make zeros of it.
-        stamped: whether it, or a message in it, has a header that takes the time.
-    """
+    @property
+    def name(self) -> str:
+        """Its struct."""
+        return cpp_type(self.type)
 
-    type: str
-    name: str
-    header: str
-    finite: tuple[str, ...]
-    zeros: tuple[str, ...]
-    stamped: bool
+    @property
+    def header(self) -> str:
+        """What declares it."""
+        return cpp_header(self.type)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,70 +58,40 @@ class LimitedField:
 
 
 def type_views(store: InterfaceStore, kind: InterfaceType) -> tuple[TypeView, ...]:
-    """Return the views of a message type and of those in it, the innermost first.
-
-    Types that have no number, and so nothing to look at or to change, are left out.
-    """
-    found: dict[InterfaceType, TypeView] = {}
-    _view(store, kind, found)
-    return tuple(found.values())
-
-
-def _view(store: InterfaceStore, kind: InterfaceType, found: dict[InterfaceType, TypeView]) -> None:
-    definition = store.message(kind)
-    assert definition is not None, kind
-    nested = [f.base for _, f in definition.fields if isinstance(f.base, InterfaceType)]
-    for base in nested:
-        if base not in found and base not in (HEADER, LAYOUT):  # they command nothing
-            _view(store, base, found)
-    finite = tuple(_finite(definition, found))
-    zeros = tuple(_zeros(definition, found))
-    if finite or zeros:
-        parts = [found.get(base) for base in nested]
-        stamped = HEADER in nested or any(part.stamped for part in parts if part)
-        name, header = cpp_type(kind), cpp_header(kind)
-        found[kind] = TypeView(str(kind), name, header, finite, zeros, stamped)
+    """Return the views of a message type and of those in it that hold numbers, innermost first."""
+    views: dict[InterfaceType, TypeView] = {}
+    for each in command_types(store, kind):
+        finite = tuple(_is_finite(name, field) for name, field in each.finite)
+        zeros = tuple(_make_zero(each, name, field, views) for name, field in each.zeros)
+        views[each.type] = TypeView(each.type, finite, zeros, each.stamped)
+    return tuple(views.values())
 
 
-def _finite(definition: MessageDefinition, found: dict[InterfaceType, TypeView]) -> Iterator[str]:
-    for name, field in definition.fields:
-        place = f"message.{name}"
-        if isinstance(field.base, str):
-            if field.base in FLOAT_TYPES:
-                yield (
-                    f"runtime::all_finite({place})" if field.is_array else f"std::isfinite({place})"
-                )
-            continue
-        view = found.get(field.base)
-        if view is None or not view.finite:
-            continue
-        if field.is_array:
-            yield f"runtime::are_all({place}, [](const auto & each) {{return is_finite(each);}})"
-        else:
-            yield f"is_finite({place})"
+def _is_finite(name: str, field: FieldType) -> str:
+    place = f"message.{name}"
+    if isinstance(field.base, str):
+        return f"runtime::all_finite({place})" if field.is_array else f"std::isfinite({place})"
+    if field.is_array:
+        return f"runtime::are_all({place}, [](const auto & each) {{return is_finite(each);}})"
+    return f"is_finite({place})"
 
 
-def _zeros(definition: MessageDefinition, found: dict[InterfaceType, TypeView]) -> Iterable[str]:
-    for name, field in definition.fields:
-        if field.base in STRING_TYPES:
-            continue
-        place = f"message.{name}"
-        each = "each" if field.is_array else place
-        if definition.type == QUATERNION and name == "w":
-            yield f"{place} = 1.0;  // zero would be no rotation at all"
-            continue
-        if isinstance(field.base, str):
-            zero = _zero(field.base)
-            yield f"runtime::fill_with_zeros({place});" if field.is_array else f"{place} = {zero};"
-            continue
-        if field.base == HEADER:
-            statement = f"{each}.stamp = stamp;"
-        elif (view := found.get(field.base)) and view.zeros:
-            statement = f"make_zero({each}{', stamp' if view.stamped else ''});"
-        else:
-            continue
-        loop = f"for (auto & each : {place}) {{\n    {statement}\n  }}"
-        yield loop if field.is_array else statement
+def _make_zero(
+    command: CommandType, name: str, field: FieldType, views: Mapping[InterfaceType, TypeView]
+) -> str:
+    place = f"message.{name}"
+    if command.is_one(name):
+        return f"{place} = 1.0;  // zero would be no rotation at all"
+    if isinstance(field.base, str):
+        zero = _zero(field.base)
+        return f"runtime::fill_with_zeros({place});" if field.is_array else f"{place} = {zero};"
+    each = "each" if field.is_array else place
+    if field.base == HEADER:
+        statement = f"{each}.stamp = stamp;"
+    else:
+        statement = f"make_zero({each}{', stamp' if views[field.base].stamped else ''});"
+    loop = f"for (auto & each : {place}) {{\n    {statement}\n  }}"
+    return loop if field.is_array else statement
 
 
 def _zero(base: str) -> str:
@@ -144,33 +103,15 @@ def _zero(base: str) -> str:
 # Single fields ------------------------------------------------------------------------------------
 
 
-def limited_fields(
-    store: InterfaceStore, kind: InterfaceType, paths: Iterable[FieldPath], names: Names
-) -> tuple[LimitedField, ...]:
-    """Return the views of the fields at ``paths``, each once, in the order first named."""
-    return tuple(
-        _limited_field(store, kind, path, names.new(*path))
-        for path in dict.fromkeys(tuple(path) for path in paths)
-    )
-
-
-def _limited_field(
+def limited_field(
     store: InterfaceStore, kind: InterfaceType, path: FieldPath, name: str
 ) -> LimitedField:
-    access, guards = "", []
-    for position, part in enumerate(path):
-        if isinstance(part, str):
-            access += f".{part}"
-            continue
-        if _resolved(store, kind, path[:position]).array != "fixed":
-            guards.append(f"{access}.size() > {part}")
-        access += f"[{part}]"
-    base = _resolved(store, kind, path).base
+    """Return the view of the field at ``path``, by a name of its own."""
+    guards = tuple(
+        f".{format_path(array)}.size() > {index}"
+        for array, index in unsized_arrays(store, kind, path)
+    )
+    base = field_type(store, kind, path).base
     assert isinstance(base, str), path
-    return LimitedField(name, format_path(path), base, NUMBERS[base], access, tuple(guards))
-
-
-def _resolved(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> FieldType:
-    found = resolve(store, kind, path)
-    assert isinstance(found, ResolvedField), found
-    return found.type
+    spelt = format_path(path)
+    return LimitedField(name, spelt, base, NUMBERS[base], f".{spelt}", guards)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from deros.generators.gate_python.view import GateView, gate_view
+from deros.generators.gate_python.view import GateView, gate_view, nanoseconds
+from deros.generators.monitor_python.source import comment
 from deros.generators.protocol import File
-from deros.generators.python_source import call, expression, mark_long_lines
+from deros.generators.python_source import Text, call, expression, mark_long_lines
 from deros.generators.rosnode_python.generate import licensed
 from deros.generators.safety_python.description import node_description
 from deros.generators.safety_python.verbatim import runtime_files
@@ -66,5 +67,13 @@ def gate_files(
 def render(module: str, view: GateView, copyright_line: str = "") -> str:
     """Return the text of one module of a gate: its ``node``, or one of :data:`MODULES`."""
     loaded = environment("deros.generators.gate_python").get_template(f"{module}.py.j2")
-    text = loaded.render(gate=view, node=view.node, call=call, expression=expression)
+    text = loaded.render(
+        gate=view,
+        node=view.node,
+        Text=Text,
+        call=call,
+        expression=expression,
+        nanoseconds=nanoseconds,
+        origin_comment=comment,
+    )
     return mark_long_lines(licensed(text, copyright_line))

@@ -3,42 +3,24 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from deros.generators.monitor_python.names import Names
-from deros.interfaces.fields import FieldPath, ResolvedField, format_path, resolve
+from deros.generators.gate_command import CommandType, TypeBase, command_types
+from deros.generators.message_fields import field_type, unsized_arrays
+from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.store import InterfaceStore
-from deros.interfaces.types import (
-    FLOAT_TYPES,
-    INTEGER_RANGES,
-    STRING_TYPES,
-    FieldType,
-    InterfaceType,
-    MessageDefinition,
-)
-from deros.monitor.commands import HEADER, LAYOUT, QUATERNION
+from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
+from deros.monitor.commands import HEADER
 
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
 @dataclass(frozen=True, slots=True)
-class TypeView:
-    """The functions for one message type.
+class TypeView(TypeBase):
+    """The functions for one type; their names begin with ``prefix``, empty for the command's."""
 
-    Attributes:
-        type: its name in ROS 2.
-        prefix: of the functions' names; empty for the command itself.
-        finite: the operands whose conjunction tells whether each float in it is finite.
-        zeros: the statements that make zeros of it.
-        stamped: whether it, or a message in it, has a header that takes the time.
-    """
-
-    type: InterfaceType
     prefix: str
-    finite: tuple[str, ...]
-    zeros: tuple[str, ...]
-    stamped: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,69 +46,44 @@ class LimitedField:
 
 
 def type_views(store: InterfaceStore, kind: InterfaceType) -> tuple[TypeView, ...]:
-    """Return the views of a message type and of those in it, the innermost first.
-
-    Types that have no number, and so nothing to look at or to change, are left out.
-    """
-    found: dict[InterfaceType, TypeView] = {}
-    _view(store, kind, found, "")
-    return tuple(found.values())
-
-
-def _view(
-    store: InterfaceStore, kind: InterfaceType, found: dict[InterfaceType, TypeView], prefix: str
-) -> None:
-    definition = store.message(kind)
-    assert definition is not None, kind
-    nested = [f.base for _, f in definition.fields if isinstance(f.base, InterfaceType)]
-    for base in nested:
-        if base not in found and base not in (HEADER, LAYOUT):  # they command nothing
-            _view(store, base, found, _prefix(base, found))
-    finite = tuple(_finite(definition, found))
-    zeros = tuple(_zeros(definition, found))
-    if finite or zeros:
-        parts = [found.get(base) for base in nested]
-        stamped = HEADER in nested or any(part.stamped for part in parts if part)
-        found[kind] = TypeView(kind, prefix, finite, zeros, stamped)
+    """Return the views of a message type and of those in it that hold numbers, innermost first."""
+    views: dict[InterfaceType, TypeView] = {}
+    for each in command_types(store, kind):
+        finite = tuple(_is_finite(name, field, views) for name, field in each.finite)
+        zeros = tuple(_make_zero(each, name, field, views) for name, field in each.zeros)
+        prefix = "" if each.type == kind else _prefix(each.type, views)
+        views[each.type] = TypeView(each.type, finite, zeros, each.stamped, prefix)
+    return tuple(views.values())
 
 
-def _prefix(kind: InterfaceType, found: dict[InterfaceType, TypeView]) -> str:
+def _prefix(kind: InterfaceType, views: Mapping[InterfaceType, TypeView]) -> str:
     """Return the type's name in lower case; with that of its package where it is taken."""
     name = _WORD.sub("_", kind.name).lower()
-    taken = {view.prefix for view in found.values()}
+    taken = {view.prefix for view in views.values()}
     return f"{kind.package}_{name}_" if f"{name}_" in taken else f"{name}_"
 
 
-def _finite(definition: MessageDefinition, found: dict[InterfaceType, TypeView]) -> Iterable[str]:
-    for name, field in definition.fields:
-        if isinstance(field.base, str):
-            test = "isfinite" if field.base in FLOAT_TYPES else None
-        else:
-            view = found.get(field.base)
-            test = f"{view.prefix}is_finite" if view and view.finite else None
-        if test is None:
-            continue
-        yield f"all(map({test}, msg.{name}))" if field.is_array else f"{test}(msg.{name})"
+def _is_finite(name: str, field: FieldType, views: Mapping[InterfaceType, TypeView]) -> str:
+    base = field.base
+    test = "isfinite" if isinstance(base, str) else f"{views[base].prefix}is_finite"
+    return f"all(map({test}, msg.{name}))" if field.is_array else f"{test}(msg.{name})"
 
 
-def _zeros(definition: MessageDefinition, found: dict[InterfaceType, TypeView]) -> Iterable[str]:
-    for name, field in definition.fields:
-        if field.base in STRING_TYPES:
-            continue
-        each = "each" if field.is_array else f"msg.{name}"
-        if definition.type == QUATERNION and name == "w":
-            yield "msg.w = 1.0  # zero would be no rotation at all"
-            continue
-        if isinstance(field.base, str):
-            yield _zero_of_primitive(f"msg.{name}", field)
-            continue
-        if field.base == HEADER:
-            statement = f"{each}.stamp = stamp"
-        elif (view := found.get(field.base)) and view.zeros:
-            statement = f"{view.prefix}make_zero({each}{', stamp' if view.stamped else ''})"
-        else:
-            continue
-        yield f"for each in msg.{name}:\n    {statement}" if field.is_array else statement
+def _make_zero(
+    command: CommandType, name: str, field: FieldType, views: Mapping[InterfaceType, TypeView]
+) -> str:
+    place = f"msg.{name}"
+    if command.is_one(name):
+        return f"{place} = 1.0  # zero would be no rotation at all"
+    if isinstance(field.base, str):
+        return _zero_of_primitive(place, field)
+    each = "each" if field.is_array else place
+    if field.base == HEADER:
+        statement = f"{each}.stamp = stamp"
+    else:
+        view = views[field.base]
+        statement = f"{view.prefix}make_zero({each}{', stamp' if view.stamped else ''})"
+    return f"for each in {place}:\n    {statement}" if field.is_array else statement
 
 
 def _zero_of_primitive(place: str, field: FieldType) -> str:
@@ -145,42 +102,21 @@ def is_held_by_numpy(field: FieldType) -> bool:
 # Single fields ------------------------------------------------------------------------------------
 
 
-def limited_fields(
-    store: InterfaceStore, kind: InterfaceType, paths: Iterable[FieldPath], names: Names
-) -> tuple[LimitedField, ...]:
-    """Return the views of the fields at ``paths``, each once, in the order first named."""
-    return tuple(
-        _limited_field(store, kind, path, names.new(*path))
-        for path in dict.fromkeys(tuple(path) for path in paths)
-    )
-
-
-def _limited_field(
+def limited_field(
     store: InterfaceStore, kind: InterfaceType, path: FieldPath, name: str
 ) -> LimitedField:
-    text, tests = "msg", []
-    is_numpy = False
-    for position, part in enumerate(path):
-        if isinstance(part, str):
-            text += f".{part}"
-            continue
-        array = _resolved(store, kind, path[:position])
-        is_numpy = array.array == "fixed" and is_held_by_numpy(array)
-        if array.array != "fixed":
-            tests.append(f"len({text}) > {part}")
-        text += f"[{part}]"
-    here = _resolved(store, kind, path)
-    read, written = text, name
+    """Return the view of the field at ``path``, by a name of its own."""
+    place = f"msg.{format_path(path)}"
+    tests = [
+        f"len(msg.{format_path(array)}) > {index}"
+        for array, index in unsized_arrays(store, kind, path)
+    ]
+    here, holder = field_type(store, kind, path), field_type(store, kind, path[:-1])
+    read, written = place, name
     if here.base == "byte":
-        read, written = f"{text}[0]", f"bytes([{name}])"
-    elif is_numpy:
-        read = f"{'float' if here.base in FLOAT_TYPES else 'int'}({text})"
+        read, written = f"{place}[0]", f"bytes([{name}])"
+    elif holder.array == "fixed" and is_held_by_numpy(holder):
+        read = f"{'float' if here.base in FLOAT_TYPES else 'int'}({place})"
     if tests:
         read += f" if {' and '.join(tests)} else None"
-    return LimitedField(name, format_path(path), read, text, written)
-
-
-def _resolved(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> FieldType:
-    found = resolve(store, kind, path)
-    assert isinstance(found, ResolvedField), found
-    return found.type
+    return LimitedField(name, format_path(path), read, place, written)

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from deros.generators.gate_python.messages import (
-    LimitedField,
-    TypeView,
-    limited_fields,
-    type_views,
-)
+from deros.generators.gate_command import limited_paths
+from deros.generators.gate_python.messages import LimitedField, limited_field, type_views
 from deros.generators.gate_python.node import heartbeat_port
+from deros.generators.gate_view import (
+    ActionView,
+    GateBase,
+    LineView,
+    deciding_lines,
+    heeded_actions,
+    line_views,
+)
+from deros.generators.message_fields import field_type
 from deros.generators.monitor_python.names import RESERVED, Names
-from deros.generators.monitor_python.source import comment, origin
-from deros.generators.python_source import Call, Text, import_lines, one_line
+from deros.generators.monitor_python.source import origin
+from deros.generators.python_source import Call, import_lines
 from deros.generators.rosnode_python.view import (
     NodeView,
     PortView,
@@ -23,11 +28,11 @@ from deros.generators.rosnode_python.view import (
     node_view,
 )
 from deros.generators.safety_python.messages import literal
-from deros.interfaces.fields import ResolvedField, format_path, resolve
+from deros.interfaces.fields import format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType
-from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
+from deros.monitor.ir import Action, Binding, Gate, Limit, Program
 
 # Names that the template of the logic uses itself.
 _TAKEN = frozenset(
@@ -48,38 +53,6 @@ _TAKEN = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class LineView:
-    """One line of the gate.
-
-    Attributes:
-        name: the local variable that tells whether the line applies.
-        comment: where it stands, and what it says.
-        shown: the same on one line, for the diagnostics.
-        lost: ``heartbeat`` or ``input``, of a line about a loss; ``after`` is how long it may be
-            silent, as a literal.
-        action: the attribute with the state of the action, of any other line.
-        zero: whether it commands zero; else it limits.
-    """
-
-    name: str
-    comment: tuple[str, ...]
-    shown: Text
-    lost: str | None
-    after: str
-    action: str
-    zero: bool
-
-
-@dataclass(frozen=True, slots=True)
-class ActionView:
-    """An action that the gate heeds: the attribute of its state, and when a message says active."""
-
-    name: str
-    attribute: str
-    test: str
-
-
-@dataclass(frozen=True, slots=True)
 class StateView:
     """A topic with the states of actions; ``identifier`` is that of the port."""
 
@@ -91,7 +64,7 @@ class StateView:
     @property
     def parameters(self) -> tuple[str, ...]:
         """The parameters of the method that takes the states."""
-        return ("self", "t: int", *(f"{action.attribute}: bool" for action in self.actions))
+        return ("self", "t: int", *(f"{action.state}: bool" for action in self.actions))
 
     @property
     def arguments(self) -> tuple[str, ...]:
@@ -107,64 +80,27 @@ class FieldView:
     limit: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class GateView:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GateView(GateBase):
     """All that the templates print.
 
     Attributes:
-        rules: the file name of the rules, and ``origin`` the gate's place in it.
-        type: the command's type in ROS 2, and ``command`` as the node's module names it.
+        rules: the file name of the rules.
+        command: the command's type as the node's module names it.
         source: the port that commands come in by, and ``target`` that which they go out by.
         heartbeat: the port of the heartbeat, where a line needs one.
         imports: the statements that import the interfaces.
-        types: what is done to messages of each type in the command.
-        period: between two zeros, as a literal in nanoseconds.
     """
 
     node: NodeView
     rules: str
-    origin: str
-    type: str
     command: str
     source: PortView
     target: PortView
     heartbeat: PortView | None
     imports: tuple[str, ...]
-    period: str
-    types: tuple[TypeView, ...]
     fields: tuple[FieldView, ...]
-    lines: tuple[LineView, ...]
     states: tuple[StateView, ...]
-
-    @property
-    def has_floats(self) -> bool:
-        """Whether a command can hold a NaN."""
-        return bool(self.types and self.types[-1].finite)
-
-    @property
-    def stamped(self) -> bool:
-        """Whether a command carries the time."""
-        return bool(self.types and self.types[-1].stamped)
-
-    @property
-    def actions(self) -> tuple[ActionView, ...]:
-        """The actions that the gate heeds."""
-        return tuple(action for state in self.states for action in state.actions)
-
-    @property
-    def losses(self) -> tuple[LineView, ...]:
-        """The lines about a loss."""
-        return tuple(line for line in self.lines if line.lost)
-
-    @property
-    def loses_heartbeat(self) -> bool:
-        """Whether a line is about the loss of the heartbeat."""
-        return any(line.lost == "heartbeat" for line in self.lines)
-
-    @property
-    def loses_input(self) -> bool:
-        """Whether a line is about the loss of the input."""
-        return any(line.lost == "input" for line in self.lines)
 
     @property
     def lost_heartbeat(self) -> str:
@@ -214,12 +150,15 @@ class GateView:
         """The arguments of the method that does what follows."""
         if not self.fields:
             return "t, zero, is_new"
-        return f"t, zero, limits, is_new{f', {self.lost_input}' if self.loses_input else ''}"
+        return f"t, zero, limits, is_new{f', {self.lost_input}' if 'input' in self.lost else ''}"
 
     @property
     def lost_due(self) -> Call | str:
         """The earliest instant at which something will be lost."""
-        due = [f"NEVER if {e.name} else self._{e.lost} + {e.after}" for e in self.losses]
+        due = [
+            f"NEVER if {line.name} else self._{line.lost} + {nanoseconds(line.lost_ns)}"
+            for line in self.losses
+        ]
         return Call("min", tuple(due)) if len(due) > 1 else due[0]
 
 
@@ -250,15 +189,14 @@ def gate_view(
     base = node_view(node, raw=True)
     heartbeat = heartbeat_port(safety_node)
     names = Names(RESERVED | _TAKEN)
-    states = tuple(_states(gate, program, base, store, names))
-    attributes = {each.name: each.attribute for state in states for each in state.actions}
-    lines = tuple(_line(line, program, attributes, names) for line in gate.lines)
-    bound = {e.binding.type for e in program.actions if e.binding and e.name in attributes}
-    paths = (limit.path for line in gate.lines for limit in line.limits)
-    fields = tuple(
-        FieldView(field, _limit(field, gate.lines, lines))
-        for field in limited_fields(store, gate.type, paths, names)
+    heeded = heeded_actions(gate, program)
+    states = tuple(
+        _state(_port(base.subscriptions, topic), bound, store, names)
+        for topic, bound in heeded.items()
     )
+    actions = tuple(action for state in states for action in state.actions)
+    lines = line_views(gate, program, actions, names)
+    heard = {binding.type for bound in heeded.values() for _, binding in bound}
     return GateView(
         node=base,
         rules=origin(gate.span).rpartition(":")[0],
@@ -268,13 +206,19 @@ def gate_view(
         source=_port(base.subscriptions, gate.source),
         target=_port(base.publishers, gate.target),
         heartbeat=_port(base.subscriptions, heartbeat) if node.port(heartbeat) else None,
-        imports=tuple(_imports(base, node, {gate.type, *bound})),
-        period=f"{gate.period_ns:_}",
+        imports=tuple(_imports(base, node, {gate.type, *heard})),
+        period_ns=gate.period_ns,
         types=type_views(store, gate.type),
-        fields=fields,
+        fields=tuple(_fields(gate, lines, store, names)),
         lines=lines,
+        actions=actions,
         states=states,
     )
+
+
+def nanoseconds(count: int) -> str:
+    """Return a time as a literal."""
+    return f"{count:_}"
 
 
 def _port(ports: Iterable[PortView], name: str) -> PortView:
@@ -299,72 +243,36 @@ def _imports(base: NodeView, node: NodeType, used: Iterable[InterfaceType]) -> l
 # Actions ------------------------------------------------------------------------------------------
 
 
-def _states(
-    gate: Gate, program: Program, base: NodeView, store: InterfaceStore, names: Names
-) -> Iterable[StateView]:
-    heeded = dict.fromkeys(line.action for line in gate.lines if line.action is not None)
-    by_topic: dict[str, list[tuple[Action, Binding]]] = {}
-    for index in heeded:
-        action = program.actions[index]
-        assert action.binding is not None, action.name
-        by_topic.setdefault(action.binding.topic, []).append((action, action.binding))
-    for topic, bound in by_topic.items():
-        port = _port(base.subscriptions, topic)
-        yield StateView(
-            port.identifier,
-            topic,
-            port.type,
-            tuple(_action(action, binding, store, names) for action, binding in bound),
-        )
+def _state(
+    port: PortView, bound: Iterable[tuple[Action, Binding]], store: InterfaceStore, names: Names
+) -> StateView:
+    actions = tuple(_action(action, binding, store, names) for action, binding in bound)
+    return StateView(port.identifier, port.name, port.type, actions)
 
 
 def _action(action: Action, binding: Binding, store: InterfaceStore, names: Names) -> ActionView:
-    found = resolve(store, binding.type, binding.path)
-    assert isinstance(found, ResolvedField), found
     test = f"msg.{format_path(binding.path)}"
     if not isinstance(binding.value, bool):
-        test += f" == {literal(found.type, binding.value)}"
+        test += f" == {literal(field_type(store, binding.type, binding.path), binding.value)}"
     elif not binding.value:
         test = f"not {test}"
     return ActionView(action.name, names.new(action.name, "active"), test)
 
 
-# Lines --------------------------------------------------------------------------------------------
+# Limits -------------------------------------------------------------------------------------------
 
 
-def _line(
-    line: GateLine, program: Program, attributes: Mapping[str, str], names: Names
-) -> LineView:
-    if line.action is not None:
-        action = program.actions[line.action].name
-        name, title, attribute = names.new(action), f"Action {action}", attributes[action]
-    else:
-        assert line.lost is not None
-        name, title, attribute = names.new("lost", line.lost), f"Lost {line.lost}", ""
-    return LineView(
-        name=name,
-        comment=tuple(comment(8, title, line.span)),
-        shown=Text("", f"{one_line(line.span.text).rstrip('; ')} ({origin(line.span)})"),
-        lost=line.lost,
-        after=f"{line.lost_ns:_}" if line.lost_ns is not None else "",
-        action=attribute,
-        zero=not line.limits,
-    )
+def _fields(
+    gate: Gate, lines: Sequence[LineView], store: InterfaceStore, names: Names
+) -> Iterator[FieldView]:
+    for path in limited_paths(gate):
+        field = limited_field(store, gate.type, path, names.new(*path))
+        decided = (
+            f"{_interval(limit)} if {line.name}"
+            for line, limit in deciding_lines(lines, field.path)
+        )
+        yield FieldView(field, (*decided, "None"))
 
 
-def _limit(
-    field: LimitedField, lines: Sequence[GateLine], views: Sequence[LineView]
-) -> tuple[str, ...]:
-    """Return the choice of a field's limit, one line each: that of the first line that applies."""
-    chosen: list[str] = []
-    for line, view in zip(lines, views, strict=True):
-        chosen += [
-            f"({limit.lower!r}, {limit.upper!r}) if {view.name}"
-            for limit in line.limits
-            if format_path(limit.path) == field.path
-        ]
-        if not line.limits:
-            chosen.append(f"None if {view.name}")
-    while chosen[-1].startswith("None"):
-        chosen.pop()
-    return (*chosen, "None")
+def _interval(limit: Limit | None) -> str:
+    return f"({limit.lower!r}, {limit.upper!r})" if limit else "None"

@@ -26,7 +26,13 @@ Gatekeeper::Gatekeeper(
     agenda_, node, gate, std::move(lines), [this] {return now();},
     [this](const GateReport::Message & message) {gate_.report(message);}),
   deadline_(agenda_, clock_, [this] {advance();}),
-  worker_(agenda_, [this](const char * why) {RCLCPP_FATAL(node_.get_logger(), "%s", why);})
+  worker_(
+    agenda_,
+    [this](const char * why) {
+      if (node_.get_node_base_interface()->get_context()->is_valid()) {  // else all nodes end
+        RCLCPP_FATAL(node_.get_logger(), "%s", why);
+      }
+    })
 {
   const std::size_t domain = node.get_node_base_interface()->get_context()->get_domain_id();
   try {

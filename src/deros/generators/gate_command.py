@@ -1,0 +1,117 @@
+"""Commands as gates in all languages see them: the fields they look at, zero and limit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros.interfaces.fields import FieldPath
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import (
+    FLOAT_TYPES,
+    STRING_TYPES,
+    FieldType,
+    InterfaceType,
+    MessageDefinition,
+)
+from deros.monitor.commands import HEADER, LAYOUT, QUATERNION
+from deros.monitor.ir import Gate
+
+Fields = tuple[tuple[str, FieldType], ...]
+"""Fields of one message: their names and types."""
+
+
+@dataclass(frozen=True, slots=True)
+class CommandType:
+    """A message type in a command, the command's own included.
+
+    Attributes:
+        type: its name in ROS 2.
+        finite: the fields that hold floats, themselves or in the messages that they are.
+        zeros: the fields that zero changes; of a header that is its stamp.
+        stamped: whether it, or a message in it, has a header that takes the time.
+    """
+
+    type: InterfaceType
+    finite: Fields
+    zeros: Fields
+    stamped: bool
+
+    def is_one(self, field: str) -> bool:
+        """Tell whether zero sets a field to 1: four zeros would be no rotation at all."""
+        return self.type == QUATERNION and field == "w"
+
+
+@dataclass(frozen=True, slots=True)
+class TypeBase:
+    """What the views of the functions for one message type have in common.
+
+    Attributes:
+        type: its name in ROS 2.
+        finite: the operands whose conjunction tells whether each float in it is finite.
+        zeros: the statements that make zeros of it.
+        stamped: whether it, or a message in it, has a header that takes the time.
+    """
+
+    type: InterfaceType
+    finite: tuple[str, ...]
+    zeros: tuple[str, ...]
+    stamped: bool
+
+
+def command_types(store: InterfaceStore, kind: InterfaceType) -> tuple[CommandType, ...]:
+    """Return a message type and those in it, the innermost first.
+
+    Types that have no number, and so nothing to look at or to change, are left out.
+    """
+    found: dict[InterfaceType, CommandType] = {}
+    _collect(store, kind, found)
+    return tuple(found.values())
+
+
+def _collect(
+    store: InterfaceStore, kind: InterfaceType, found: dict[InterfaceType, CommandType]
+) -> None:
+    definition = store.message(kind)
+    assert definition is not None, kind
+    nested = [f.base for _, f in definition.fields if isinstance(f.base, InterfaceType)]
+    for base in nested:
+        if base not in found and base not in (HEADER, LAYOUT):  # they command nothing
+            _collect(store, base, found)
+    finite = tuple(_finite(definition, found))
+    zeros = tuple(_zeros(definition, found))
+    if finite or zeros:
+        parts = [found.get(base) for base in nested]
+        stamped = HEADER in nested or any(part.stamped for part in parts if part)
+        found[kind] = CommandType(kind, finite, zeros, stamped)
+
+
+def _finite(
+    definition: MessageDefinition, found: dict[InterfaceType, CommandType]
+) -> Iterator[tuple[str, FieldType]]:
+    for name, field in definition.fields:
+        if isinstance(field.base, str):
+            is_looked_at = field.base in FLOAT_TYPES
+        else:
+            is_looked_at = field.base in found and bool(found[field.base].finite)
+        if is_looked_at:
+            yield name, field
+
+
+def _zeros(
+    definition: MessageDefinition, found: dict[InterfaceType, CommandType]
+) -> Iterator[tuple[str, FieldType]]:
+    for name, field in definition.fields:
+        if isinstance(field.base, str):
+            is_changed = field.base not in STRING_TYPES
+        else:
+            is_changed = field.base == HEADER or (
+                field.base in found and bool(found[field.base].zeros)
+            )
+        if is_changed:
+            yield name, field
+
+
+def limited_paths(gate: Gate) -> tuple[FieldPath, ...]:
+    """Return the paths of the fields that the limits of a gate speak of, as first named."""
+    return tuple(dict.fromkeys(limit.path for line in gate.lines for limit in line.limits))

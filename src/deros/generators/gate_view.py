@@ -1,0 +1,157 @@
+"""What the templates of a gate see in every language: its lines, and the actions they heed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from deros.diagnostics import Span
+from deros.generators.gate_command import TypeBase
+from deros.generators.monitor_python.names import Names
+from deros.generators.monitor_python.source import origin
+from deros.generators.python_source import one_line
+from deros.interfaces.fields import format_path
+from deros.monitor.ir import Action, Binding, Gate, GateLine, Limit, Program
+
+
+@dataclass(frozen=True, slots=True)
+class ActionView:
+    """An action that the gate heeds: the name of its state, and when a message says active."""
+
+    name: str
+    state: str
+    test: str
+
+
+@dataclass(frozen=True, slots=True)
+class LineView:
+    """One line of the gate.
+
+    Attributes:
+        name: the local variable that tells whether the line applies.
+        title: what it is about, and ``span`` where it stands.
+        shown: what it says, in one line, for the diagnostics.
+        lost: ``heartbeat`` or ``input``, of a line about a loss; ``lost_ns`` is how long it may be
+            silent; 0 of any other line.
+        state: the name of the action's state, of a line about an action.
+        limits: what it keeps fields within; none: it commands zero.
+    """
+
+    name: str
+    title: str
+    span: Span
+    shown: str
+    lost: str | None
+    lost_ns: int
+    state: str
+    limits: tuple[Limit, ...]
+
+    @property
+    def zero(self) -> bool:
+        """Whether it commands zero; else it limits."""
+        return not self.limits
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GateBase:
+    """What the views of a gate have in common.
+
+    Attributes:
+        origin: its place in the rules.
+        type: the command's type in ROS 2.
+        period_ns: between two zeros.
+        types: what is done to messages of each type in the command, which is the last.
+        actions: those that it heeds.
+    """
+
+    origin: str
+    type: str
+    period_ns: int
+    types: tuple[TypeBase, ...]
+    actions: tuple[ActionView, ...]
+    lines: tuple[LineView, ...]
+
+    @property
+    def has_floats(self) -> bool:
+        """Whether a command can hold a NaN."""
+        return bool(self.types and self.types[-1].finite)
+
+    @property
+    def stamped(self) -> bool:
+        """Whether a command carries the time."""
+        return bool(self.types and self.types[-1].stamped)
+
+    @property
+    def losses(self) -> tuple[LineView, ...]:
+        """The lines about a loss."""
+        return tuple(line for line in self.lines if line.lost)
+
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """What the lines about a loss are about."""
+        return tuple(dict.fromkeys(line.lost for line in self.losses if line.lost))
+
+
+def heeded_actions(gate: Gate, program: Program) -> dict[str, list[tuple[Action, Binding]]]:
+    """Return the actions that the lines of a gate speak of, by the topics of their states."""
+    heeded = dict.fromkeys(line.action for line in gate.lines if line.action is not None)
+    by_topic: dict[str, list[tuple[Action, Binding]]] = {}
+    for index in heeded:
+        action = program.actions[index]
+        assert action.binding is not None, action.name
+        by_topic.setdefault(action.binding.topic, []).append((action, action.binding))
+    return by_topic
+
+
+def line_views(
+    gate: Gate, program: Program, actions: Iterable[ActionView], names: Names
+) -> tuple[LineView, ...]:
+    """Return the views of a gate's lines.
+
+    Args:
+        gate: the gate.
+        program: the rules that it is of.
+        actions: those that its lines speak of.
+        names: hands out the names of the local variables.
+    """
+    states = {action.name: action.state for action in actions}
+    return tuple(_line(line, program, states, names) for line in gate.lines)
+
+
+def _line(line: GateLine, program: Program, states: Mapping[str, str], names: Names) -> LineView:
+    if line.action is not None:
+        action = program.actions[line.action].name
+        name, title, state = names.new(action), f"Action {action}", states[action]
+    else:
+        assert line.lost is not None
+        name, title, state = names.new("lost", line.lost), f"Lost {line.lost}", ""
+    return LineView(
+        name=name,
+        title=title,
+        span=line.span,
+        shown=f"{one_line(line.span.text).rstrip('; ')} ({origin(line.span)})",
+        lost=line.lost,
+        lost_ns=line.lost_ns or 0,
+        state=state,
+        limits=line.limits,
+    )
+
+
+def deciding_lines(lines: Sequence[LineView], path: str) -> list[tuple[LineView, Limit | None]]:
+    """Return the lines that speak of a field, of which the first that applies decides on it.
+
+    Each comes with its limit, or without one where it commands zero. Those that command zero after
+    the last limit are left out: there is no limit where they apply, and none where they do not.
+
+    Args:
+        lines: the lines of a gate, one of which limits the field.
+        path: the field's spelling in the rules.
+    """
+    found: list[tuple[LineView, Limit | None]] = []
+    for line in lines:
+        found += [(line, limit) for limit in line.limits if format_path(limit.path) == path]
+        if line.zero:
+            found.append((line, None))
+    while found[-1][1] is None:
+        found.pop()
+    return found
