@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.generators.gate_cpp.source import scalar
+from deros.generators.message_fields import field_type, unsized_arrays
 from deros.generators.monitor_c.handlers import Parameter
-from deros.interfaces.fields import ResolvedField, format_path, resolve
+from deros.interfaces.fields import format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
 from deros.monitor.ir import Scalar
@@ -15,8 +16,11 @@ from deros.monitor.ir import Scalar
 def arguments(store: InterfaceStore, kind: InterfaceType, parameter: Parameter) -> Iterator[str]:
     """Yield what is handed to the monitor for one of its parameters, out of ``msg``."""
     place = f"msg.{format_path(parameter.path)}"
-    there = " && ".join(_tests(store, kind, parameter.path))
-    type_ = _type(store, kind, parameter.path)
+    there = " && ".join(
+        f"msg.{format_path(array)}.size() > {index}"
+        for array, index in unsized_arrays(store, kind, parameter.path)
+    )
+    type_ = field_type(store, kind, parameter.path)
     match parameter.form:
         case "given":
             pass
@@ -48,26 +52,11 @@ def _if(condition: str, value: str, otherwise: str) -> str:
     return f"{condition} ? {value} : {otherwise}" if condition else value
 
 
-def _tests(
-    store: InterfaceStore, kind: InterfaceType, path: tuple[str | int, ...]
-) -> Iterator[str]:
-    """Yield the tests that the arrays have the elements that a path names."""
-    for place, part in enumerate(path):
-        if isinstance(part, int) and _type(store, kind, path[:place]).array != "fixed":
-            yield f"msg.{format_path(path[:place])}.size() > {part}"
-
-
-def _type(store: InterfaceStore, kind: InterfaceType, path: tuple[str | int, ...]) -> FieldType:
-    found = resolve(store, kind, path)
-    assert isinstance(found, ResolvedField), found
-    return found.type
-
-
 def literal(
     store: InterfaceStore, kind: InterfaceType, path: tuple[str | int, ...], value: Scalar
 ) -> str:
     """Return the literal that a field is set to."""
-    base = _type(store, kind, path).base
+    base = field_type(store, kind, path).base
     assert isinstance(base, str)
     if isinstance(value, int) and not isinstance(value, bool) and base in FLOAT_TYPES:
         value = float(value)

@@ -7,9 +7,16 @@ from collections.abc import Iterator
 from deros.generators.cpp_source import LINE_LENGTH, Text, cpp_string, expression
 from deros.generators.monitor_c.judging import Site
 from deros.generators.monitor_c.view import MonitorView
-from deros.generators.safety_python.view import LOG_STATE, behaviour_views, lasts, origin_file
+from deros.generators.safety_view import (
+    behaviour_views,
+    lasts,
+    needs_code,
+    origin_file,
+    refusing_behaviours,
+)
 from deros.metamodels.rules import Rules
 from deros.monitor import walk
+from deros.monitor.actions import LOG_STATE
 from deros.monitor.ir import Action, Program
 
 NONE = "std::nullopt"
@@ -50,7 +57,7 @@ def _behaviours(program: Program) -> Iterator[list[Item]]:
         yield [
             cpp_string(each.name),
             cpp_string(each.origin),
-            Text(each.condition.text),
+            Text(each.condition),
             [*map(cpp_string, each.rules)],
             _truth(optional[each.name]),
         ]
@@ -68,20 +75,15 @@ def _actions(program: Program, monitor: MonitorView) -> Iterator[list[Item]]:
             *_kind(action),
             str(latched.index(action.index)) if action.latched else NONE,
             str(first[action.index]) if action.index in first else NONE,
-            [*(str(each) for each in _callers(action))],
+            [*(str(each) for each in refusing_behaviours(action))],
         ]
 
 
 def _kind(action: Action) -> Iterator[str]:
-    is_code = action.binding is None and action.name != LOG_STATE
     yield _truth(action.binding is not None)
-    yield _truth(is_code)
+    yield _truth(needs_code(action))
     yield _truth(lasts(action))
     yield _truth(action.name != LOG_STATE)
-
-
-def _callers(action: Action) -> tuple[int, ...]:
-    return action.triggered_by if action.latched or action.reset_by is not None else ()
 
 
 def _sites(program: Program, monitor: MonitorView) -> Iterator[list[Item]]:

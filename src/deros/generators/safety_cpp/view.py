@@ -18,7 +18,6 @@ from deros.generators.cpp_source import (
     cpp_type,
 )
 from deros.generators.monitor_c.view import MonitorView, monitor_view
-from deros.generators.monitor_python.source import origin
 from deros.generators.names import Emitted, camel_case, check_collisions
 from deros.generators.protocol import GenerationError
 from deros.generators.python_source import sentence
@@ -32,13 +31,21 @@ from deros.generators.safety_python.node import (
     bound_actions,
     enabled_parameter,
 )
-from deros.generators.safety_python.view import LOG_STATE, origin_file
+from deros.generators.safety_view import (
+    ChannelView,
+    FieldView,
+    action_notes,
+    argument_types,
+    calls,
+    needs_code,
+    origin_file,
+    states_by_path,
+)
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.rules import Rules
-from deros.monitor import walk
-from deros.monitor.ir import Action, Binding, Program, Scalar, Trigger
+from deros.monitor.ir import Action, Binding, Program, Scalar
 
 _PARAMETER_TYPES = {
     "bool": "bool",
@@ -62,32 +69,6 @@ class HandlerView:
     def is_read(self) -> bool:
         """Whether the monitor is handed anything of the message."""
         return len(self.call.arguments) > 2
-
-
-@dataclass(frozen=True, slots=True)
-class FieldView:
-    """A field that carries states: each action's number with what it publishes there.
-
-    ``single`` is a boolean field of one action, written without a choice; ``inactive`` what the
-    field is set to while none is active.
-    """
-
-    target: str
-    inactive: str
-    single: str | None
-    states: tuple[tuple[str, str], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class ChannelView:
-    """A topic that carries the states of bound actions, by their enumerators."""
-
-    identifier: str
-    type: str
-    topic: str
-    actions: tuple[str, ...]
-    stamped: bool
-    fields: tuple[FieldView, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,11 +215,6 @@ def _headers(*ports: Iterable[Port]) -> tuple[str, ...]:
     return tuple(sorted({cpp_header(port.type) for group in ports for port in group}))
 
 
-def needs_code(action: Action) -> bool:
-    """Tell whether an action is robot code."""
-    return action.binding is None and action.name != LOG_STATE
-
-
 def _check_names(actions: tuple[ActionView, ...], code: list[Action], node: NodeType) -> None:
     reserved = Emitted("node", "the accessor of the class itself", node.name_span)
     methods = [
@@ -272,40 +248,36 @@ def _channels(
 ) -> Iterator[ChannelView]:
     enumerators = {each.name: each.enumerator for each in monitor.actions}
     for port in node.ports_of(PortKind.PUBLISHER):
-        names = bound_actions(program, port.name)
-        if not names:
+        actions = tuple(enumerators[name] for name in bound_actions(program, port.name))
+        if not actions:
             continue
-        bound = [
-            (enumerators[action.name], action.binding)
-            for action in program.actions
-            if action.binding is not None and action.binding.topic == port.name
-        ]
         yield ChannelView(
             cpp_identifier(port.name),
             cpp_type(port.type),
             port.name,
-            tuple(enumerators[name] for name in names),
+            actions,
             is_stamped(store, port.type),
-            tuple(_fields(port.type, bound, store)),
+            tuple(
+                _field(port.type, path, [(enumerators[a.name], b) for a, b in states], store)
+                for path, states in states_by_path(program, port.name).items()
+            ),
         )
 
 
-def _fields(
-    kind: InterfaceType, bound: list[tuple[str, Binding]], store: InterfaceStore
-) -> Iterator[FieldView]:
-    by_path: dict[tuple[str, ...], list[tuple[str, Binding]]] = {}
-    for name, binding in bound:
-        by_path.setdefault(binding.path, []).append((name, binding))
-    for path, states in by_path.items():
-        target = f"msg.{'.'.join(path)}"
-        values = tuple((name, literal(store, kind, path, b.value)) for name, b in states)
-        name, first = states[0]
-        inactive, single = f"{cpp_type(kind)}().{'.'.join(path)}", None
-        if isinstance(first.value, bool):
-            inactive = "false" if first.value else "true"
-            active = f"active[{name}]"
-            single = (active if first.value else f"!{active}") if len(states) == 1 else None
-        yield FieldView(target, inactive, single, values)
+def _field(
+    kind: InterfaceType,
+    path: tuple[str, ...],
+    bound: list[tuple[str, Binding]],
+    store: InterfaceStore,
+) -> FieldView:
+    states = tuple((name, literal(store, kind, path, b.value)) for name, b in bound)
+    name, first = bound[0]
+    inactive, single = f"{cpp_type(kind)}().{'.'.join(path)}", None
+    if isinstance(first.value, bool):
+        inactive = "false" if first.value else "true"
+        active = f"active[{name}]" if first.value else f"!active[{name}]"
+        single = active if len(bound) == 1 else None
+    return FieldView(f"msg.{'.'.join(path)}", inactive, single, states)
 
 
 def _optional(monitor: MonitorView) -> Iterator[tuple[str, str, str]]:
@@ -318,12 +290,8 @@ def _optional(monitor: MonitorView) -> Iterator[tuple[str, str, str]]:
 
 
 def _action(action: Action, program: Program, monitor: MonitorView, description: str) -> ActionView:
-    callers = [b.name for b in walk.behaviours(program) if b.index in action.triggered_by]
-    place = f"Declared in {origin(action.span)}" if action.span else "Declared"
-    note = f"{place}, run by {', '.join(callers) if callers else 'no behaviour'}."
     types = _argument_types(action, program)
     method = cpp_identifier(action.name)
-    sites = _calls(program)
     return ActionView(
         action.name,
         monitor.actions[action.index].enumerator,
@@ -332,23 +300,13 @@ def _action(action: Action, program: Program, monitor: MonitorView, description:
             f"{_PARAMETER_TYPES[kind]} {cpp_identifier(name)}"
             for name, kind in zip(action.parameters, types, strict=True)
         ),
-        tuple(filter(None, (sentence(description), note))),
+        tuple(action_notes(action, program, description)),
         tuple(
             (site, Call(f"actions_.{method}", tuple(map(_argument, call.arguments, types))))
-            for site, call in enumerate(sites)
+            for site, call in enumerate(calls(program))
             if call.action == action.index
         ),
     )
-
-
-def _calls(program: Program) -> list[Trigger]:
-    """Return the calls in the order of their sites."""
-    return [
-        item
-        for behaviour in walk.behaviours(program)
-        for item in behaviour.body
-        if isinstance(item, Trigger)
-    ]
 
 
 def _argument_types(action: Action, program: Program) -> list[str]:
@@ -357,12 +315,8 @@ def _argument_types(action: Action, program: Program) -> list[str]:
     Raises:
         GenerationError: if one is a number here and a text there.
     """
-    calls = [call for call in _calls(program) if call.action == action.index]
     found: list[str] = []
-    for place, name in enumerate(action.parameters):
-        types = {type(call.arguments[place]).__name__: call for call in calls}
-        if "float" in types:
-            types.pop("int", None)
+    for name, types in zip(action.parameters, argument_types(action, program), strict=True):
         if len(types) > 1:
             message = (
                 f"parameter {name!r} of action {action.name!r} is given values of several types: "

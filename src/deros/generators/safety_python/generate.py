@@ -6,7 +6,7 @@ from deros.generators.cdr_python import render_decoders
 from deros.generators.gate_python import gate_files, gate_nodes
 from deros.generators.monitor_python import render_monitor
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
-from deros.generators.python_source import call, expression, mark_long_lines
+from deros.generators.python_source import Text, call, expression, mark_long_lines
 from deros.generators.rosnode_python.generate import licensed, package_files
 from deros.generators.safety_python.description import node_description
 from deros.generators.safety_python.node import safety_node
@@ -59,5 +59,5 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
 
 def _render(template: str, view: SafetyView, copyright_line: str) -> str:
     loaded = environment("deros.generators.safety_python").get_template(f"{template}.j2")
-    text = loaded.render(safety=view, node=view.node, call=call, expression=expression)
+    text = loaded.render(safety=view, node=view.node, Text=Text, call=call, expression=expression)
     return mark_long_lines(licensed(text, copyright_line))

@@ -2,33 +2,45 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros.generators.cdr_python import Topic
+from deros.generators.message_fields import field_type
 from deros.generators.monitor_python import monitor_view
-from deros.generators.monitor_python.source import header, origin
 from deros.generators.names import Emitted, check_collisions, python_identifier
-from deros.generators.python_source import (
-    Text,
-    import_lines,
-    one_line,
-    sentence,
-    wrapped,
-)
+from deros.generators.python_source import import_lines, one_line, wrapped
 from deros.generators.rosnode_python.view import NodeView, interface_imports, node_view
 from deros.generators.safety_python.messages import is_stamped, literal
-from deros.generators.safety_python.node import HEARTBEAT, RESET, enabled_parameter
-from deros.interfaces.fields import ResolvedField, format_path, resolve
+from deros.generators.safety_python.node import (
+    HEARTBEAT,
+    RESET,
+    bound_actions,
+    enabled_parameter,
+)
+from deros.generators.safety_view import (
+    BehaviourView,
+    ChannelView,
+    FieldView,
+    action_notes,
+    argument_types,
+    behaviour_views,
+    calls,
+    lasts,
+    needs_code,
+    origin_file,
+    refusing_behaviours,
+    states_by_path,
+)
+from deros.interfaces.fields import format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, PortKind
 from deros.metamodels.rules import Rules
 from deros.monitor import walk
-from deros.monitor.ir import Action, Binding, Program, RuleRef, Scalar, Trigger
+from deros.monitor.actions import LOG_STATE
+from deros.monitor.ir import Action, Binding, Program, Scalar
 
-LOG_STATE = "log_state"
 RUNTIME = (
     "alarm",
     "diagnostics",
@@ -41,9 +53,6 @@ RUNTIME = (
     "watch",
 )
 """The modules of every safety node that are the same for all programs."""
-
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-_CONDITION = re.compile(r"\bif\b(.*?)\bthen\b", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,31 +79,6 @@ class HandlerView:
 
 
 @dataclass(frozen=True, slots=True)
-class FieldView:
-    """A field that carries states: ``states`` pairs an action with what it publishes there.
-
-    ``single`` is a boolean field of one action, written without a choice.
-    """
-
-    target: str
-    inactive: str | None
-    single: str | None
-    states: tuple[tuple[str, str], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class ChannelView:
-    """A topic that carries the states of bound actions."""
-
-    identifier: str
-    type: str
-    topic: str
-    actions: tuple[str, ...]
-    stamped: bool
-    fields: tuple[FieldView, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class ActionView:
     """An action whose code the user writes."""
 
@@ -102,22 +86,6 @@ class ActionView:
     method: str
     signature: str
     notes: tuple[tuple[str, ...], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class BehaviourView:
-    """What people want to know of a behaviour.
-
-    Attributes:
-        origin: file and line.
-        condition: as written, on one line.
-        rules: those that it depends on, also through the behaviours around it.
-    """
-
-    name: str
-    origin: str
-    condition: Text
-    rules: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,12 +163,12 @@ def safety_view(
     """
     base = node_view(node, raw=True)
     handlers = tuple(_handlers(program, base))
-    channels = _channels(program, base, node, store)
+    channels = tuple(_channels(program, base, node, store))
     described = {action.name.text: action.description for action in model.actions}
     actions = tuple(
         _action(each, program, described.get(each.name, ""))
         for each in program.actions
-        if _needs_code(each)
+        if needs_code(each)
     )
     view = SafetyView(
         package=node.package,
@@ -223,15 +191,6 @@ def safety_view(
     )
     _check_names(view, program, node)
     return view
-
-
-def origin_file(model: Rules) -> str:
-    """Return the file name of the rules, without the folder: no output depends on the machine."""
-    return re.split(r"[/\\]", model.source.path)[-1]
-
-
-def _needs_code(action: Action) -> bool:
-    return action.binding is None and action.name != LOG_STATE
 
 
 def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
@@ -314,50 +273,36 @@ def _handlers(program: Program, base: NodeView) -> Iterator[HandlerView]:
 
 def _channels(
     program: Program, base: NodeView, node: NodeType, store: InterfaceStore
-) -> tuple[ChannelView, ...]:
-    bound: dict[str, list[tuple[str, Binding]]] = {}
-    for action in program.actions:
-        if action.binding is not None:
-            bound.setdefault(action.binding.topic, []).append((action.name, action.binding))
+) -> Iterator[ChannelView]:
     types = {port.name: port.type for port in node.ports_of(PortKind.PUBLISHER)}
-    return tuple(
-        ChannelView(
-            port.identifier,
-            port.type,
-            port.name,
-            tuple(name for name, _ in bound[port.name]),
-            is_stamped(store, types[port.name]),
-            tuple(_fields(types[port.name], bound[port.name], store)),
+    for port in base.publishers:
+        actions = tuple(bound_actions(program, port.name))
+        if not actions:
+            continue
+        kind = types[port.name]
+        fields = tuple(
+            _field(kind, path, states, store)
+            for path, states in states_by_path(program, port.name).items()
         )
-        for port in base.publishers
-        if port.name in bound
-    )
-
-
-def _fields(
-    kind: InterfaceType, bound: list[tuple[str, Binding]], store: InterfaceStore
-) -> list[FieldView]:
-    by_path: dict[tuple[str, ...], list[tuple[str, Binding]]] = {}
-    for name, binding in bound:
-        by_path.setdefault(binding.path, []).append((name, binding))
-    return [_field(kind, path, states, store) for path, states in by_path.items()]
+        yield ChannelView(
+            port.identifier, port.type, port.name, actions, is_stamped(store, kind), fields
+        )
 
 
 def _field(
     kind: InterfaceType,
     path: tuple[str, ...],
-    bound: list[tuple[str, Binding]],
+    bound: list[tuple[Action, Binding]],
     store: InterfaceStore,
 ) -> FieldView:
-    found = resolve(store, kind, path)
-    assert isinstance(found, ResolvedField), found
-    states = tuple((name, literal(found.type, binding.value)) for name, binding in bound)
-    first_name, first = bound[0]
-    is_boolean = isinstance(first.value, bool)
-    single = None
-    if is_boolean and len(bound) == 1:
-        single = f"{first_name!r} {'in' if first.value else 'not in'} active"
-    inactive = repr(not first.value) if is_boolean else None
+    type_ = field_type(store, kind, path)
+    states = tuple((action.name, literal(type_, binding.value)) for action, binding in bound)
+    action, first = bound[0]
+    inactive, single = None, None
+    if isinstance(first.value, bool):
+        inactive = repr(not first.value)
+        active = f"{action.name!r} {'in' if first.value else 'not in'} active"
+        single = active if len(bound) == 1 else None
     return FieldView(f"msg.{format_path(path)}", inactive, single, states)
 
 
@@ -365,10 +310,7 @@ def _field(
 
 
 def _action(action: Action, program: Program, description: str) -> ActionView:
-    callers = [b.name for b in walk.behaviours(program) if b.index in action.triggered_by]
-    place = f"Declared in {origin(action.span)}" if action.span else "Declared"
-    note = f"{place}, run by {', '.join(callers) if callers else 'no behaviour'}."
-    types = _argument_types(action, program)
+    types = (" | ".join(sorted(each)) or "object" for each in argument_types(action, program))
     parameters = zip(action.parameters, types, strict=True)
     arguments = ["self", *(f"{python_identifier(name)}: {kind}" for name, kind in parameters)]
     method = python_identifier(action.name)
@@ -376,39 +318,17 @@ def _action(action: Action, program: Program, description: str) -> ActionView:
         action.name,
         method,
         f"def {method}({', '.join(arguments)}) -> None:",
-        tuple(tuple(wrapped(text, indent=8)) for text in (sentence(description), note) if text),
+        tuple(
+            tuple(wrapped(text, indent=8)) for text in action_notes(action, program, description)
+        ),
     )
-
-
-def _argument_types(action: Action, program: Program) -> list[str]:
-    """Return the type of each parameter: that of all arguments given for it in the rules."""
-    given: list[set[str]] = [set() for _ in action.parameters]
-    for behaviour in walk.behaviours(program):
-        for item in behaviour.body:
-            if isinstance(item, Trigger) and item.action == action.index:
-                for types, argument in zip(given, item.arguments, strict=True):
-                    types.add(type(argument).__name__)
-    for types in given:
-        if "float" in types:
-            types.discard("int")  # as annotations have it, an int is a float
-    return [" | ".join(sorted(types)) or "object" for types in given]
-
-
-def lasts(action: Action) -> bool:
-    """Tell whether an action has a state, and is not just run."""
-    return action.binding is not None or action.latched or action.reset_by is not None
 
 
 def _latched(program: Program) -> Iterator[tuple[str, tuple[Scalar, ...]]]:
     for action in program.actions:
         if action.latched:
-            calls = (
-                item.arguments
-                for behaviour in walk.behaviours(program)
-                for item in behaviour.body
-                if isinstance(item, Trigger) and item.action == action.index
-            )
-            yield action.name, next(calls, ())
+            first = (call.arguments for call in calls(program) if call.action == action.index)
+            yield action.name, next(first, ())
 
 
 def _optional(program: Program) -> Iterator[tuple[str, str]]:
@@ -417,27 +337,8 @@ def _optional(program: Program) -> Iterator[tuple[str, str]]:
             yield each.name, python_identifier(enabled_parameter(each.name))
 
 
-def behaviour_views(program: Program) -> Iterator[BehaviourView]:
-    """Yield what people want to know of each behaviour, from top to bottom."""
-    rules: dict[int, tuple[str, ...]] = {}
-    for each in walk.behaviours(program):
-        around = rules[each.parent] if each.parent is not None else ()
-        own = (
-            program.rules[part.rule].full_name
-            for part in walk.parts(each.condition)
-            if isinstance(part, RuleRef)
-        )
-        rules[each.index] = tuple(dict.fromkeys((*around, *own)))
-        text = _COMMENT.sub(" ", header(each.span.text))
-        condition = _CONDITION.search(text)
-        shown = Text("", one_line(condition[1] if condition else text))
-        yield BehaviourView(each.name, origin(each.span), shown, rules[each.index])
-
-
-def _callers(program: Program) -> list[tuple[str, tuple[str, ...]]]:
+def _callers(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
     names = {each.index: each.name for each in walk.behaviours(program)}
-    return [
-        (action.name, tuple(names[index] for index in action.triggered_by))
-        for action in program.actions
-        if (action.latched or action.reset_by is not None) and action.triggered_by
-    ]
+    for action in program.actions:
+        if refusing := refusing_behaviours(action):
+            yield action.name, tuple(names[index] for index in refusing)
