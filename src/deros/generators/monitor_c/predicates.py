@@ -43,6 +43,8 @@ class Predicates:
         ]
         for name, parameters, parts in self._predicates():
             lines += _macro(name, f"m{parameters}", parts)
+        lines += _set("changed_by_judging", self._changed_by_judging())
+        lines += _set("changed_by_time", self._changed_by_time())
         return "\n".join([*lines, ""])
 
     def _verdicts(self) -> list[str]:
@@ -70,6 +72,20 @@ class Predicates:
         yield "judged", "", [f"judged_{name}(m)" for name in self._layout.verdicts.values()]
         yield "acted", "", [f"acted_{name}(m)" for name in self._layout.behave.values()]
         yield "sane", "", [*SOUND, "m->due > m->now", "(m->started != 0 ==> judged(m) && acted(m))"]
+
+    def _changed_by_judging(self) -> list[str]:
+        """Return the fields that are changed where all is judged."""
+        layout = self._layout
+        tables = (layout.verdicts, layout.turned, layout.holds, layout.active, layout.ran)
+        names = [each for table in (*tables, layout.since) for each in table.values()]
+        return [f"m->{name}" for name in ("started", *names, "due")]
+
+    def _changed_by_time(self) -> list[str]:
+        """Return the fields that the passing of time can change."""
+        values = {term.name for term in self._layout.terms.values()}
+        values |= {finding.name for finding in self._layout.findings.values()}
+        fixed = {"owner", *values, *self._layout.enabled.values()}
+        return [f"m->{each.name}" for each in self._view.fields if each.name not in fixed]
 
     def macro(self, name: str) -> str:
         """Return the name of one of the monitor's macros."""
@@ -146,9 +162,19 @@ class Predicates:
 
 
 def _macro(name: str, parameters: str, parts: list[str]) -> list[str]:
-    lines = [f"#define {name}({parameters}) ("]
-    for number, part in enumerate(parts, 1):
-        text = f"{part} &&" if number < len(parts) else f"{part})"
+    """Return the lines of a macro that stands for a conjunction."""
+    joined = [f"{part} &&" for part in parts[:-1]]
+    return _lines(f"{name}({parameters}) (", [*joined, f"{parts[-1]})"])
+
+
+def _set(name: str, fields: list[str]) -> list[str]:
+    """Return the lines of a macro that stands for fields of a monitor."""
+    return _lines(f"{name}(m)", [", ".join(fields)])
+
+
+def _lines(head: str, parts: list[str]) -> list[str]:
+    lines = [f"#define {head}"]
+    for text in parts:
         lines += textwrap.wrap(
             text,
             MAX_LINE - len(" \\"),
@@ -159,6 +185,9 @@ def _macro(name: str, parameters: str, parts: list[str]) -> list[str]:
         )
     return [f"{line} \\" for line in lines[:-1]] + lines[-1:]
 
+
+BY_JUDGING, BY_TIME = "changed_by_judging(m)", "changed_by_time(m)"
+"""The fields that change where all is judged, and those that change as time passes."""
 
 IN_TIME = ("timeouts_in_time(m, m->due)", "ends_in_time(m, m->due)")
 """No deadline lies before the one that the owner was told."""

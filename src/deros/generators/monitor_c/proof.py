@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from deros.generators.monitor_c.contracts import Contract, all_of, iff
 from deros.generators.monitor_c.handlers import Handler
 from deros.generators.monitor_c.layout import Term
-from deros.generators.monitor_c.predicates import SOUND, Predicates
+from deros.generators.monitor_c.predicates import BY_JUDGING, BY_TIME, SOUND, Predicates
 from deros.generators.monitor_c.rule_contracts import RuleContracts, with_earlier_deadline
 from deros.generators.monitor_c.view import MessageView, MonitorView, Timeout
 from deros.monitor import walk
@@ -145,29 +145,22 @@ class _Writer:
         contract.ensures += [f"m->{name} == 0" for name in known]
         return contract
 
-    def _changing(self) -> list[str]:
-        """Return the fields that the passing of time can change."""
-        values = {term.name for term in self._layout.terms.values()}
-        values |= {finding.name for finding in self._layout.findings.values()}
-        fixed = {"owner", *values, *self._layout.enabled.values()}
-        return [f"m->{each.name}" for each in self._view.fields if each.name not in fixed]
-
     def _catch_up(self) -> Contract:
         latest = self.predicates.macro("LATEST")
-        contract = Contract(["\\valid(m)", "sane(m)", f"0 <= t <= {latest}"], self._changing())
+        contract = Contract(["\\valid(m)", "sane(m)", f"0 <= t <= {latest}"], [BY_TIME])
         contract.ensures += ["sane(m)", "m->now == t", *self._rules.kept_latched()]
         return contract
 
     def loop(self) -> Contract:
         """Return the invariant of the loop over the deadlines that are due."""
-        contract = Contract([], self._changing(), is_loop=True)
+        contract = Contract([], [BY_TIME], is_loop=True)
         kept = self._rules.kept_latched("\\at({}, Pre)")
         contract.invariants += ["sane(m)", "m->now <= t", *kept]
         contract.variant = "t - m->now"
         return contract
 
     def _arrive(self) -> Contract:
-        contract = Contract(["\\valid(m)", "sane(m)"], self._changing())
+        contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
         latest = self.predicates.macro("LATEST")
         now = f"(t < 0 ? 0 : t > {latest} ? {latest} : t)"
         contract.ensures += ["sane(m)", *self._rules.kept_latched(), f"m->now == {now}"]
@@ -188,7 +181,7 @@ class _Writer:
             contract = Contract(["\\valid(m)", "sane(m)"], [f"m->{active}"])
             contract.ensures += ["sane(m)", f"m->{active} == 1"]
             yield f"{prefix}_latch_{action.name}", contract
-        advance = Contract(["\\valid(m)", "sane(m)"], self._changing())
+        advance = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
         advance.ensures += ["sane(m)", "\\result == m->due", *self._rules.kept_latched()]
         yield f"{prefix}_advance", advance
         yield f"{prefix}_waiting", self._waiting()
@@ -197,7 +190,7 @@ class _Writer:
         for _, function, enabled in self._view.optional:
             contract = Contract(
                 ["\\valid(m)", "sane(m)", "(enabled == 0 || enabled == 1)"],
-                [*self._changing(), f"m->{enabled}"],
+                [BY_TIME, f"m->{enabled}"],
             )
             contract.ensures += ["sane(m)", f"m->{enabled} == enabled", *self._rules.kept_latched()]
             yield function, contract
@@ -220,7 +213,7 @@ class _Writer:
         return contract
 
     def _reset(self) -> Contract:
-        contract = Contract(["\\valid(m)", "sane(m)"], self._changing())
+        contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
         contract.ensures.append("sane(m)")
         for action in self._latched:
             contract.ensures += self._rules.kept_called(action)
@@ -230,7 +223,7 @@ class _Writer:
 
     def _after(self, message: MessageView) -> Contract:
         """Return that all is judged anew that a message can have changed."""
-        contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], self._rules.judging())
+        contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], [BY_JUDGING])
         names = self._layout.verdicts
         others = [f"judged_{name}(m)" for each, name in names.items() if each not in message.rules]
         touched = [f"judged_{names[each]}(m)" for each in message.rules]
@@ -243,7 +236,7 @@ class _Writer:
         return contract
 
     def _message(self, handler: Handler) -> Contract:
-        contract = Contract(["\\valid(m)", "sane(m)"], self._changing())
+        contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
         contract.requires += self._arrays(handler)
         contract.assigns += [f"m->{name}" for name in self._stored(handler)]
         contract.ensures += self._settled()

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from deros.generators.monitor_c.contracts import Contract, all_of, iff
-from deros.generators.monitor_c.predicates import Predicates
+from deros.generators.monitor_c.predicates import BY_JUDGING, Predicates
 from deros.generators.monitor_c.view import MessageView, MonitorView
 from deros.monitor import walk
 from deros.monitor.ir import Action, Behaviour, Condition, For, Rule, Trigger
@@ -105,17 +105,10 @@ class RuleContracts:
     def evaluate(self) -> Contract:
         """Return that all is judged, and acted upon."""
         contract = self._run([])
-        contract.assigns += self.judging()
         contract.ensures += ["m->started == 1", "judged(m)", "acted(m)", *self.kept_latched()]
         self._with_intervals(contract, self._layout.since.values())
+        contract.assigns = [BY_JUDGING]
         return contract
-
-    def judging(self) -> list[str]:
-        """Return the fields that are changed where all is judged."""
-        layout = self._layout
-        tables = (layout.verdicts, layout.turned, layout.holds, layout.active, layout.ran)
-        names = [each for table in (*tables, layout.since) for each in table.values()]
-        return [f"m->{name}" for name in ("started", *names, "due")]
 
     def kept_latched(self, before: str = "\\old({})") -> list[str]:
         """Return that a latched action never clears by itself."""
