@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import itertools
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -26,23 +28,46 @@ _PIPE_BYTES = 1 << 20
 """What a process may print before anybody reads it; most that Linux lets a user have."""
 
 _DOMAINS = range(1, 102)  # the ports of higher ones may be taken by outgoing connections
+_NEXT = itertools.count(os.getpid())
+
+_SHARED_MEMORY = Path("/dev/shm")
+_PORT = re.compile(r"(?:sem\.)?fastrtps_port(?P<number>\d+)(?:_\w+)?")
 
 
 @contextlib.contextmanager
 def own_domain() -> Iterator[int]:
-    """Hold a ROS_DOMAIN_ID that no other test process of this machine holds."""
+    """Hold a ROS_DOMAIN_ID that no other test process of this machine holds.
+
+    Each time it is another one, as long as there are any: what is on its way in the last one, or
+    has been left behind there, is not met in this one.
+    """
     folder = Path(tempfile.gettempdir()) / "deros-test-domains"
     folder.mkdir(mode=0o777, exist_ok=True)
-    first = os.getpid() % len(_DOMAINS)
+    first = next(_NEXT) % len(_DOMAINS)
     for number in [*_DOMAINS[first:], *_DOMAINS[:first]]:
         with (folder / str(number)).open("w") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 continue
-            yield number
+            try:
+                yield number
+            finally:
+                _clear_shared_memory(number)
             return
     raise RuntimeError("all ROS domains are taken by other tests")
+
+
+def _clear_shared_memory(domain: int) -> None:
+    """Remove the ports of a domain that killed processes have left in shared memory.
+
+    They hold locks, for which Fast DDS may wait. Its ports begin at 7400, 250 for each domain.
+    """
+    ports = range(7400 + 250 * domain, 7400 + 250 * (domain + 1))
+    for path in _SHARED_MEMORY.glob("*fastrtps_port*"):
+        match = _PORT.fullmatch(path.name)
+        if match and int(match["number"]) in ports:
+            path.unlink(missing_ok=True)
 
 
 @pytest.fixture
