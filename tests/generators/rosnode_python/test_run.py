@@ -1,132 +1,41 @@
-"""Generated packages build with colcon, and their nodes run from the install space."""
+"""Generated packages in either language build with colcon, and their nodes run where installed."""
 
 from __future__ import annotations
 
-import ast
-import os
 import signal
-import subprocess
-import sys
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import pytest
 
-from deros.generators.protocol import Context
-from deros.generators.rosnode_python.generate import generate
-from deros.generators.writer import write
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
-from tests.support.ros import LIMIT, Peer, running, set_parameter, stop
+from tests.support.cpp import needs_rclcpp
+from tests.support.node_packages import CppPackages, NodePackages, PythonPackages, Start
+from tests.support.ros import LIMIT, Peer, set_parameter, stop
 
 pytestmark = pytest.mark.ros
 
-MODELS = Path(__file__).resolve().parent / "models"
 
-TICKS_TO_ODOMETRY = """
-    def on_ticks(self, msg: Int32) -> None:
-        from nav_msgs.msg import Odometry
-        odometry = Odometry()
-        odometry.pose.pose.position.x = msg.data * self.parameters.scale
-        self.publish_odom(odometry)
-
-    def on_parameters_changed(self, previous: object) -> None:
-        self.get_logger().info(f'scale is {self.parameters.scale}')
-"""
-COMMAND_TO_STATE = """
-    def on_command(self, msg: Bool) -> None:
-        self.publish_state(msg)
-"""
-RELEASE = """
-    def on_release(self, msg: Empty) -> None:
-        self.released.set()
-"""
-COUNT = """
-    import threading
-    released = threading.Event()
-
-    def execute_count(self, goal_handle: ServerGoalHandle) -> Fibonacci.Result:
-        goal_handle.publish_feedback(Fibonacci.Feedback(sequence=[0]))
-        self.released.wait()  # blocks this thread, as a user's loop may
-        goal_handle.succeed()
-        return Fibonacci.Result(sequence=list(range(goal_handle.request.order)))
-"""
-ASK = """
-    def on_ask(self, msg: Int32) -> None:
-        from std_msgs.msg import Int32
-        from test_msgs.action import Fibonacci
-
-        def accepted(future):
-            future.result().get_result_async().add_done_callback(done)
-
-        def done(future):
-            self.publish_outcome(Int32(data=sum(future.result().result.sequence)))
-
-        def feedback(message):
-            self.get_logger().info(f'feedback {list(message.feedback.sequence)}')
-
-        self.client_count.wait_for_server()
-        future = self.send_count(Fibonacci.Goal(order=msg.data), feedback)
-        future.add_done_callback(accepted)
-"""
-
-
-@pytest.fixture(scope="module")
-def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give the install space of a workspace with the generated packages."""
-    workspace = tmp_path_factory.mktemp("workspace")
-    for name in ("odometry_node", "valve", "talker", "counter"):
-        context = Context(InterfaceStore(), Repository())
-        model = context.repository.load(MODELS / f"{name}.rnd").model
-        assert isinstance(model, NodeType)
-        write(generate(model, context, {}), workspace / "src")
-    source = workspace / "src/differential_odometry/differential_odometry/odometry_node.py"
-    _fill_in(source, "on_ticks", TICKS_TO_ODOMETRY)
-    _fill_in(workspace / "src/process/process/valve.py", "on_command", COMMAND_TO_STATE)
-    counting = workspace / "src/counting/counting"
-    _fill_in(counting / "counter.py", "on_release", RELEASE)
-    _fill_in(counting / "counter.py", "execute_count", COUNT)
-    _fill_in(counting / "asker.py", "on_ask", ASK)
-    env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
-    colcon = str(Path(sys.executable).with_name("colcon"))
-    command = [colcon, "--log-base", "log", "build", "--executor", "sequential"]
-    done = subprocess.run(
-        command, cwd=workspace, env=env, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "4 packages finished" in done.stdout
-    return workspace / "install"
-
-
-def _fill_in(path: Path, handler: str, code: str) -> None:
-    """Do a user's work: replace one handler."""
-    lines = path.read_text().splitlines()
-    functions = (f for f in ast.walk(ast.parse("\n".join(lines))) if isinstance(f, ast.FunctionDef))
-    (found,) = (f for f in functions if f.name == handler)
-    lines[found.lineno - 1 : found.end_lineno] = code.strip("\n").splitlines()
-    path.write_text("\n".join([*lines, ""]))
-
-
-Start = Callable[..., Any]
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(PythonPackages, id="python"),
+        pytest.param(CppPackages, id="cpp", marks=needs_rclcpp),
+    ],
+)
+def packages(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> NodePackages:
+    """Give the built packages, in one language after the other."""
+    built: NodePackages = request.param(tmp_path_factory.mktemp("workspace"))
+    return built
 
 
 @pytest.fixture
-def start(installed: Path, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs a program of the install space, as setup.sh would have it."""
+def start(packages: NodePackages, ros_env: dict[str, str]) -> Start:
+    """Give a function that runs a program of the packages."""
+    return packages.starting(ros_env)
 
-    def run(package: str, program: str, *arguments: str) -> Any:
-        prefix = installed / package
-        (site,) = prefix.glob("lib/python*/site-packages")
-        env = {
-            **ros_env,
-            "PYTHONPATH": str(site),
-            "AMENT_PREFIX_PATH": f"{prefix}:{ros_env['AMENT_PREFIX_PATH']}",
-        }
-        return running([str(prefix / "lib" / package / program), *arguments], env)
 
-    return run
+# Messages, services, parameters -------------------------------------------------------------------
 
 
 def odometry_for(peer: Peer, count: int) -> Callable[[], float]:
@@ -153,7 +62,9 @@ def odometry_for(peer: Peer, count: int) -> Callable[[], float]:
     return exchange
 
 
-def test_messages_parameters_and_the_end(start: Start, ros_peer: Peer) -> None:
+def test_messages_parameters_and_the_end(
+    packages: NodePackages, start: Start, ros_peer: Peer
+) -> None:
     """The node answers a message, refuses bad parameters with a reason, and ends with 0."""
     with start("differential_odometry", "odometry_node") as process:
         exchange = odometry_for(ros_peer, 3)
@@ -167,7 +78,7 @@ def test_messages_parameters_and_the_end(start: Start, ros_peer: Peer) -> None:
             "scale": (0.0, "scale must lie in (0.0, 2.0]"),
             "mode": ("idle", "mode must be one of 'auto', 'manual'"),
             "gains": ([1.0], "gains must have 3 elements"),
-            "ticks_per_turn": (0, "Parameter ticks_per_turn out of range"),
+            "ticks_per_turn": (0, packages.out_of_range["ticks_per_turn"]),
             "wheel_base": (1.0, "read-only"),
             "imu_topic": ("/other", "read-only"),
             "frames": (1.5, "Wrong parameter type"),
@@ -180,8 +91,29 @@ def test_messages_parameters_and_the_end(start: Start, ros_peer: Peer) -> None:
 
         code, output = stop(process, signal.SIGINT)
     assert (code, "Traceback" in output) == (0, False), output
-    assert "scale is 2.0" in output
-    assert "on_control does nothing yet" in output
+    assert output.count("scale was 1 and is 2") == 1
+    assert output.count("on_control does nothing yet") == 1
+
+
+def test_parameters_set_together_are_checked_together(start: Start, ros_peer: Peer) -> None:
+    """One bad value in an atomic request leaves all parameters as they were."""
+    from rcl_interfaces.srv import GetParameters, SetParametersAtomically
+    from rclpy.parameter import Parameter
+
+    with start("differential_odometry", "odometry_node"):
+        node = "/odometry_node"
+        setter = ros_peer.node.create_client(
+            SetParametersAtomically, f"{node}/set_parameters_atomically"
+        )
+        values = {"scale": 2.0, "gains": [1.0, 2.0, 11.0]}
+        wanted = [Parameter(n, value=value).to_parameter_msg() for n, value in values.items()]
+        request = SetParametersAtomically.Request(parameters=wanted)
+        result = ros_peer.call(setter, request).result
+        assert not result.successful
+        assert result.reason == "gains must have all elements in [0.0, 10.0]"
+        getter = ros_peer.node.create_client(GetParameters, f"{node}/get_parameters")
+        found = ros_peer.call(getter, GetParameters.Request(names=["scale", "gains"])).values
+        assert (found[0].double_value, list(found[1].double_array_value)) == (1.0, [1.0, 0.1, 0.0])
 
 
 def test_descriptors_tell_what_a_parameter_is(start: Start, ros_peer: Peer) -> None:
@@ -207,24 +139,47 @@ def test_descriptors_tell_what_a_parameter_is(start: Start, ros_peer: Peer) -> N
 
 
 def test_parameters_at_start_come_from_the_file(
-    start: Start, ros_peer: Peer, installed: Path
+    packages: NodePackages, start: Start, ros_peer: Peer
 ) -> None:
     """The generated parameter file is read, and the topic's name follows its parameter."""
-    config = (
-        installed / "differential_odometry/share/differential_odometry/config/odometry_node.yaml"
-    )
+    config = packages.share("differential_odometry") / "config/odometry_node.yaml"
     arguments = ["--ros-args", "--params-file", str(config), "-p", "imu_topic:=/other_imu"]
     with start("differential_odometry", "odometry_node", *arguments):
         ros_peer.until(lambda: ros_peer.node.count_subscribers("/other_imu"))
         assert ros_peer.node.count_subscribers("/fmInformation/imu") == 0
 
 
-def test_a_bad_value_at_start_is_refused(start: Start) -> None:
-    """A node that is given a forbidden value does not start, and says why."""
-    with start("differential_odometry", "odometry_node", "--ros-args", "-p", "scale:=2.5") as node:
+def test_an_empty_topic_parameter_leaves_the_ports_own_name(start: Start, ros_peer: Peer) -> None:
+    """A port whose parameter holds no name keeps the one of the node description."""
+    arguments = ["--ros-args", "-p", "imu_topic:=''"]
+    with start("differential_odometry", "odometry_node", *arguments):
+        ros_peer.until(lambda: ros_peer.node.count_subscribers("/imu"))
+
+
+def refused_at_start(start: Start, setting: str) -> str:
+    """Return what a node prints that is given a forbidden value, and so does not start."""
+    with start("differential_odometry", "odometry_node", "--ros-args", "-p", setting) as node:
         output, _ = node.communicate(timeout=LIMIT)
-    assert node.returncode != 0
-    assert "out of range" in output
+    assert node.returncode == 1, output
+    return output
+
+
+@pytest.mark.parametrize(
+    ("setting", "reason"),
+    [
+        ("gains:=[1.0, 2.0]", "gains must have 3 elements"),
+        ("mode:=idle", "mode must be one of 'auto', 'manual'"),
+        ("scale:=fast", "scale"),
+    ],
+)
+def test_a_bad_value_at_start_is_refused(start: Start, setting: str, reason: str) -> None:
+    """A node that is given a forbidden value does not start, and says why."""
+    assert reason in refused_at_start(start, setting)
+
+
+def test_a_value_out_of_range_at_start_is_refused(packages: NodePackages, start: Start) -> None:
+    """What the client library refuses itself is told in its own words."""
+    assert packages.out_of_range["scale"] in refused_at_start(start, "scale:=2.5")
 
 
 def test_a_service_is_answered_and_sigterm_ends_the_node(start: Start, ros_peer: Peer) -> None:
@@ -234,8 +189,13 @@ def test_a_service_is_answered_and_sigterm_ends_the_node(start: Start, ros_peer:
     with start("differential_odometry", "odometry_node") as process:
         client = ros_peer.node.create_client(Trigger, "/reset")
         assert ros_peer.call(client, Trigger.Request()) == Trigger.Response()
+        assert ros_peer.call(client, Trigger.Request()) == Trigger.Response()
         code, output = stop(process, signal.SIGTERM)
     assert (code, "Traceback" in output) == (0, False), output
+    assert output.count("handle_reset does nothing yet") == 1
+
+
+# Managed nodes, actions ---------------------------------------------------------------------------
 
 
 def test_a_managed_node_rests_until_activated(start: Start, ros_peer: Peer) -> None:
@@ -263,6 +223,8 @@ def test_a_managed_node_rests_until_activated(start: Start, ros_peer: Peer) -> N
         command.publish(Bool(data=False))
         ros_peer.until(lambda: states)
         assert states == [False]
+        assert process.stdout is not None
+        assert "on_report does nothing yet" in process.stdout.readline()  # the timer's handler
         assert change(Transition.TRANSITION_DEACTIVATE)
         code, output = stop(process, signal.SIGINT)
     assert (code, "Traceback" in output) == (0, False), output
@@ -277,8 +239,11 @@ def test_nodes_of_one_package_share_it(start: Start, ros_peer: Peer) -> None:
     assert names
 
 
-def test_a_goal_runs_beside_the_other_handlers(start: Start, ros_peer: Peer) -> None:
-    """A client node sends a goal; a message still reaches the server while it is pursued."""
+@pytest.mark.parametrize(("order", "outcome"), [(5, 0 + 1 + 2 + 3 + 4), (0, -1)])
+def test_a_goal_runs_beside_the_other_handlers(
+    order: int, outcome: int, start: Start, ros_peer: Peer
+) -> None:
+    """A message reaches the server while a goal is pursued; a goal left open is aborted."""
     from std_msgs.msg import Empty, Int32
 
     with start("counting", "counter") as counter, start("counting", "asker") as asker:
@@ -297,12 +262,12 @@ def test_a_goal_runs_beside_the_other_handlers(start: Start, ros_peer: Peer) -> 
                 and ros_peer.node.count_subscribers("/count/_action/feedback")
             )
         )
-        ask.publish(Int32(data=5))
-        line = asker.stdout.readline()
-        assert "feedback [0]" in line
+        ask.publish(Int32(data=order))
+        assert asker.stdout is not None
+        assert "feedback [0]" in asker.stdout.readline()
         release.publish(Empty())
         ros_peer.until(lambda: outcomes)
-        assert outcomes == [0 + 1 + 2 + 3 + 4]
+        assert outcomes == [outcome]
         for process in (counter, asker):
             code, output = stop(process, signal.SIGINT)
             assert (code, "Traceback" in output) == (0, False), output
