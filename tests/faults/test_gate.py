@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -84,9 +85,9 @@ def test_a_latched_stop_holds_through_any_crash(robot: Robot) -> None:
         robot.restart()
         assert_zeros_only(robot, stopped)
         gate.kill()
+        killed = time.time()
         gate = robot.start(GATE)
-        before = len(robot.commands)
-        robot.until(lambda: len(robot.commands) > before)
+        robot.until(lambda: robot.commands[-1].sent > killed)
         robot.spin(1.0)
         assert_zeros_only(robot, stopped)
         robot.until(lambda: robot.reset()[0])

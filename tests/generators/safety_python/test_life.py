@@ -75,6 +75,7 @@ def test_a_second_instance_is_refused(start: Start, robot: Robot) -> None:
         assert "Traceback" not in output
         beats = len(robot.beats)
         robot.peer.until(lambda: len(robot.beats) > beats + 2)
+        robot.peer.until(lambda: robot.status().values)
         assert robot.status().values.keys() == {"state"}
 
 
