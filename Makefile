@@ -33,6 +33,10 @@ test: $(READY)  ## Run all tests, those on the real middleware included
 property: $(READY)  ## Compare generated monitors with the reference on 120,000 random pairs (nightly)
 	@$(ALONE) $(BIN)/python tools/property.py --jobs $(JOBS)
 
+.PHONY: repeat
+repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (nightly)
+	@$(ALONE) $(BIN)/python tools/repeat.py --jobs $(JOBS)
+
 .PHONY: sanitize
 sanitize: $(READY)  ## Compare monitors in C with the reference, watched by gcc's sanitizers
 	@$(ALONE) $(BIN)/python tools/sanitize.py
