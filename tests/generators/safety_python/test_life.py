@@ -127,7 +127,7 @@ def test_the_diagnostics_show_rules_actions_and_values(start: Start, robot: Robo
     """An operator sees what is true and why, what is active since when, and what is unknown."""
     with start("diagnostics_freq:=20.0"):
         break_the_rule(robot)
-        robot.peer.until(lambda: robot.status("action stop").level == WARN)
+        robot.drive_until(0.9, lambda: robot.status("action stop").level == WARN)
         rule, action = robot.status("drive.fast"), robot.status("action stop")
         assert rule.level == ERROR
         assert rule.message == "true: fast: speed > limit;"
