@@ -6,7 +6,7 @@ import re
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -30,10 +30,11 @@ class Container:
         process: the container's process.
     """
 
-    def __init__(self, process: subprocess.Popen[str], env: Mapping[str, str]) -> None:
-        """Take a running container, and the environment in which its components are found."""
+    def __init__(self, process: subprocess.Popen[str], env: dict[str, str], peer: Peer) -> None:
+        """Take a running container, the environment of its components, and who waits for them."""
         self.process = process
         self._env = env
+        self._peer = peer
 
     def load(self, package: str, plugin: str, *options: str) -> str:
         """Load a component and return its number.
@@ -46,33 +47,36 @@ class Container:
         Raises:
             LoadError: if its constructor throws.
         """
-        done = self._component("load", *options, _NAME, package, plugin)
-        if "Failed to load" in done.stdout + done.stderr:
-            raise LoadError(done.stdout + done.stderr)
-        found = re.search(r"Loaded component (\d+)", done.stdout)
-        assert found, done.stdout + done.stderr
+        _, output = self._component("load", *options, _NAME, package, plugin)
+        if "Failed to load" in output:
+            raise LoadError(output)
+        found = re.search(r"Loaded component (\d+)", output)
+        assert found, output
         return found[1]
 
     def unload(self, number: str) -> None:
         """Unload a component; its node is destroyed when this returns."""
-        done = self._component("unload", _NAME, number)
-        assert done.returncode == 0, done.stdout + done.stderr
+        code, output = self._component("unload", _NAME, number)
+        assert code == 0, output
 
-    def _component(self, verb: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-        """Run a command as soon as it has discovered the container."""
+    def _component(self, verb: str, *arguments: str) -> tuple[int, str]:
+        """Run a command as soon as it has discovered the container, and return code and output.
+
+        The peer hears what comes all the while.
+        """
         command = ["ros2", "component", verb, "--no-daemon", "--spin-time", "1", *arguments]
         end = time.monotonic() + 2 * LIMIT
         while True:
-            done = subprocess.run(
-                command, env=self._env, capture_output=True, text=True, timeout=LIMIT, check=False
-            )
-            if "Unable to find" not in done.stderr or time.monotonic() > end:
-                return done
+            with running(command, self._env) as process:
+                self._peer.until(lambda: process.poll() is not None)
+                output, _ = process.communicate()
+            if "Unable to find" not in output or time.monotonic() > end:
+                return process.returncode, output
 
 
 @contextmanager
 def running_container(
-    env: Mapping[str, str], peer: Peer, kind: str = "component_container"
+    env: dict[str, str], peer: Peer, kind: str = "component_container"
 ) -> Iterator[Container]:
     """Run an empty container, one of rclcpp_components' programs, that ends with the block.
 
@@ -84,9 +88,9 @@ def running_container(
     name = f"lib/rclcpp_components/{kind}"
     (prefix,) = (p for p in env["AMENT_PREFIX_PATH"].split(":") if (Path(p) / name).exists())
     command = [f"{prefix}/{name}", "--ros-args", "-r", f"__node:={_NAME[1:]}"]
-    with running(command, dict(env)) as process:
+    with running(command, env) as process:
         peer.until(lambda: _serves(peer, f"{_NAME}/_container/load_node"))
-        yield Container(process, env)
+        yield Container(process, env, peer)
 
 
 def _serves(peer: Peer, name: str) -> bool:

@@ -66,7 +66,13 @@ Guardian::Guardian(
   ports_(
     agenda_,
     [this](const std::string & topic, const std::string & why) {refuse(topic, why);}),
-  worker_(agenda_, [this](const char * why) {RCLCPP_FATAL(node_.get_logger(), "%s", why);})
+  worker_(
+    agenda_,
+    [this](const char * why) {
+      if (node_.get_node_base_interface()->get_context()->is_valid()) {  // else all nodes end
+        RCLCPP_FATAL(node_.get_logger(), "%s", why);
+      }
+    })
 {
   untold_.reserve(2 * SLOTS);
   try {

@@ -21,6 +21,7 @@ SimulatedTime::SimulatedTime(
 {
   rclcpp::SubscriptionOptions options;
   options.callback_group = group_;
+  options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
   subscription_ = node.create_subscription<Message>(
     "/clock", rclcpp::ClockQoS(rclcpp::KeepLast(TICKS)),
     [](const Message &) { /* taken by the agenda */}, options);
@@ -34,6 +35,7 @@ SimulatedTime::~SimulatedTime()
   subscription_->clear_on_new_message_callback();
 }
 
+/// Take a tick from the middleware, which has those of this process, too.
 void SimulatedTime::take()
 {
   rclcpp::MessageInfo info;
