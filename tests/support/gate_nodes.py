@@ -108,6 +108,7 @@ class World:
         self.status: dict[str, str] = {}
         self.reports = 0
         self._types = Twist, Bool, UInt8, UInt64
+        self._said: dict[Any, Any] = {}
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node = peer.node
         self._wish = node.create_publisher(Twist, "/cmd_vel_nav", 10)
@@ -117,7 +118,7 @@ class World:
         node.create_subscription(Twist, "/cmd_vel", self._take, 10, raw=True)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         node.create_subscription(DiagnosticArray, "/diagnostics", self._take_status, 10)
-        self.beating = node.create_timer(0.05, self.beat, clock=steady)
+        self.beating = node.create_timer(0.05, self.live, clock=steady)
 
     def _take_status(self, message: Any) -> None:
         (status,) = message.status
@@ -143,15 +144,29 @@ class World:
         """Be the safety node's heartbeat, once."""
         self._heartbeat.publish(self._types[3]())
 
+    def live(self) -> None:
+        """Be the safety node, once: its heartbeat, and what is active, which it says steadily.
+
+        Should this process be held up for longer than a heartbeat may be missing, everything
+        counts as active until the gate is told otherwise again.
+        """
+        self.beat()
+        for publisher, state in self._said.items():
+            publisher.publish(state)
+
     def stop(self, active: bool) -> float:
         """Publish whether the stop is active, and return when that was."""
         before = time.monotonic()
-        self._stop.publish(self._types[1](data=active))
+        self._say(self._stop, self._types[1](data=active))
         return before
 
     def mode(self, value: int) -> None:
         """Publish which limits are active: 1 those of slow, 2 those of slower, 0 none."""
-        self._mode.publish(self._types[2](data=value))
+        self._say(self._mode, self._types[2](data=value))
+
+    def _say(self, publisher: Any, state: Any) -> None:
+        self._said[publisher] = state
+        publisher.publish(state)
 
     def wish(self, x: float, turn: float = 0.0, y: float = 0.0) -> bytes:
         """Command a speed, and return the command as it goes out."""
