@@ -225,6 +225,8 @@ class Drive:
         speed: what it measures, and publishes.
     """
 
+    PERIOD_S = 0.02
+
     def __init__(self, peer: Peer) -> None:
         """Start to publish; safety node and gate may come later."""
         from geometry_msgs.msg import Twist
@@ -234,6 +236,7 @@ class Drive:
 
         self.peer = peer
         self.speed = 0.05
+        self._lived = self._held_up = 0.0
         self._heard: list[tuple[float, bool]] = []
         self._float = Float64
         self._wish = peer.node.create_publisher(Twist, "/cmd_vel_nav", 10)
@@ -241,12 +244,15 @@ class Drive:
         self._message = Twist()
         self._message.linear.x = 0.3
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        peer.node.create_timer(0.02, self._live, clock=steady)
+        peer.node.create_timer(self.PERIOD_S, self._live, clock=steady)
         # Deep enough to lose none of them should this process itself be kept waiting, as shared
         # memory can keep all who write into it when a reader is stopped.
         peer.node.create_subscription(Twist, "/cmd_vel", self._take, 1000)
 
     def _live(self) -> None:
+        now = time.monotonic()
+        self._held_up = max(self._held_up, now - self._lived - self.PERIOD_S)
+        self._lived = now
         self.measure(self.speed)
         self._wish.publish(self._message)
 
@@ -266,15 +272,18 @@ class Drive:
     def until_zero(self, happens: Callable[[], Any]) -> float:
         """Let something happen, and return after how many seconds the gate commanded zero.
 
-        After it there are zeros only, as far as can be told in a quarter of a second.
+        By how much this process itself was late meanwhile, at the worst, does not count. After it
+        there are zeros only, as far as can be told in a quarter of a second.
         """
         happened = time.time()
+        self._lived, self._held_up = time.monotonic(), 0.0
         happens()
 
         def zeros() -> list[float]:
             return [sent for sent, moves in self._heard if sent > happened and not moves]
 
         first: float = self.peer.until(zeros)[0]
+        held_up = self._held_up
         self.peer.until(lambda: time.time() > first + 0.25)
         assert not any(moves for sent, moves in self._heard if sent > first)
-        return first - happened
+        return max(first - happened - held_up, 0.0)

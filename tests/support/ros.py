@@ -142,10 +142,19 @@ class Peer:
         from rclpy.context import Context
         from rclpy.executors import SingleThreadedExecutor
         from rclpy.node import Node
+        from rclpy.parameter import Parameter
 
         self._context = Context()
         rclpy.init(context=self._context, domain_id=domain)
-        self.node: Any = Node("test_peer", context=self._context)
+        # Without what every node has and no test asks for: it is found, and gone, the sooner.
+        described = Parameter("start_type_description_service", value=False)
+        self.node: Any = Node(
+            "test_peer",
+            context=self._context,
+            enable_rosout=False,
+            start_parameter_services=False,
+            parameter_overrides=[described],
+        )
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
 
@@ -170,8 +179,9 @@ class Peer:
 
     def close(self) -> None:
         """Take the node out of the domain."""
-        self._executor.shutdown()
+        self._executor.remove_node(self.node)
         self.node.destroy_node()
+        self._executor.shutdown()
         self._context.try_shutdown()
 
 
