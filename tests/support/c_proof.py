@@ -31,12 +31,8 @@ Progress = Callable[[int, int], None]
 """Told how many functions are done, and how many there are."""
 
 _DEFINITION = re.compile(r"^(?!typedef)\w[^;{}=]*?\b(?P<name>\w+)\([^;{}]*\)\n\{", re.MULTILINE)
-_AT_ONCE = 4
-"""How many functions one process of Frama-C is given: it takes three seconds to begin."""
-
-_SOON = 5
-"""Seconds in which a prover proves a goal that suits it, in general. The first one asked would
-spend all of a long time on a goal that the second one proves at once."""
+_AT_ONCE = 2
+"""How many functions one process of Frama-C is given."""
 
 _PROVER = """
 [prover]
@@ -115,27 +111,21 @@ def prove(
     """Prove the contracts of a source, or of some of its functions.
 
     Most of the time goes into the simplifier, which works on one goal after the other: so several
-    processes share the functions. Those with goals that are not proved soon are begun anew, with
-    ``timeout_s`` for each prover and goal.
+    processes share the functions.
     """
     names = list(functions) or functions_of(source)
     options = [
         *("-wp", "-wp-rte", "-wp-model", "Typed+float", "-wp-check-memory-model"),
         "-wp-no-init-const",
-        *("-wp-prover", "cvc4-reals,z3", "-wp-par", "1"),
+        *("-wp-prover", "cvc4-reals,z3", "-wp-timeout", str(timeout_s), "-wp-par", "1"),
     ]
     groups = [names[i : i + _AT_ONCE] for i in range(0, len(names), _AT_ONCE)]
     done = 0
     with _provers() as environment, ThreadPoolExecutor(jobs) as pool:
 
         def prove_group(group: Sequence[str]) -> str:
-            for seconds in (min(_SOON, timeout_s), timeout_s):
-                limit = ["-wp-timeout", str(seconds)]
-                arguments = [*options, *limit, "-wp-fct", ",".join(group), source.name]
-                log = "".join(_run(arguments, source.parent, environment))
-                if not _LEFT.search(log):
-                    break
-            return log
+            arguments = [*options, "-wp-fct", ",".join(group), source.name]
+            return "".join(_run(arguments, source.parent, environment))
 
         running = {pool.submit(prove_group, group): group for group in groups}
         for finished in as_completed(running):
