@@ -226,6 +226,8 @@ class Drive:
     """
 
     PERIOD_S = 0.02
+    MISSING_S = 0.6
+    """Longer than the rules let the speed be missing, in s."""
 
     def __init__(self, peer: Peer) -> None:
         """Start to publish; safety node and gate may come later."""
@@ -268,6 +270,18 @@ class Drive:
         """Wait until commands pass."""
         self._heard.clear()
         self.peer.until(lambda: self._heard and self._heard[-1][1])
+
+    def until_watched(self) -> None:
+        """Wait until it has moved for longer than its speed may be missing: so that is heard."""
+        self._heard.clear()
+
+        def moved() -> float:
+            if not self._heard:
+                return 0.0
+            still = [sent for sent, moves in self._heard if not moves]
+            return self._heard[-1][0] - max([self._heard[0][0], *still])
+
+        self.peer.until(lambda: moved() > self.MISSING_S)
 
     def until_zero(self, happens: Callable[[], Any]) -> float:
         """Let something happen, and return after how many seconds the gate commanded zero.

@@ -126,6 +126,7 @@ def test_a_rule_that_is_broken(drive: Drive, start_safety: StartSafety) -> None:
     """From the sensor's message to the zero, through safety node and gate, in a moment."""
     delays: list[float] = []
     with start_safety():
+        drive.until_watched()
         for _ in range(REPEATS):
             drive.until_moving()
             at_some_moment(drive)
