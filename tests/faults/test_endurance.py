@@ -107,7 +107,7 @@ def test_memory_does_not_grow(robot: Robot) -> None:
     """Fifty thousand messages at full speed, triggers among them, leave nothing behind.
 
     They come in bursts, each when the node has caught up with the last: while it has not, it does
-    take memory for what waits (see docs/safety-node.md).
+    take memory for what waits (see docs/guarantees.md).
     """
     each = 500
     messages = [load(99.0), *(load(float(number % 40)) for number in range(each - 1))]
