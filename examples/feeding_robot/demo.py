@@ -17,16 +17,34 @@ OUTPUT = EXAMPLE.parents[1] / ".demo" / EXAMPLE.name
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the demo; return 0 when all cases pass, 1 when one fails, 130 when interrupted."""
     options = _options(arguments)
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _leave)
+    interruption = Interruption()
     # From here on ROS is needed: the domain must be chosen before it is imported.
     from demonstration.domain import own_domain
 
-    try:
-        with own_domain():
-            return _demonstrate(options)
-    except KeyboardInterrupt:
-        return 128 + signal.SIGINT
+    with own_domain():
+        code = _demonstrate(options)
+    return interruption.code or code
+
+
+class Interruption:
+    """Ends the program at a signal, by an exception, so that all processes are cleaned up.
+
+    The exception is lost if it comes up where Python lets none pass, such as in a destructor; the
+    program then goes on to its end.
+
+    Attributes:
+        code: the exit code that tells of the signal; 0 if none has come.
+    """
+
+    def __init__(self) -> None:
+        """Take over the signals that ask a program to end."""
+        self.code = 0
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, self._leave)
+
+    def _leave(self, number: int, _frame: FrameType | None) -> None:
+        self.code = 128 + number
+        sys.exit(self.code)
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -63,10 +81,6 @@ def _numbers(text: str) -> list[int]:
     return numbers
 
 
-def _leave(number: int, _frame: FrameType | None) -> None:
-    sys.exit(128 + number)
-
-
 def _demonstrate(options: argparse.Namespace) -> int:
     from demonstration.build import BuildError, build, build_cpp, in_cpp
     from demonstration.cases import CASES
@@ -100,6 +114,8 @@ def _demonstrate(options: argparse.Namespace) -> int:
         if not result.passed:
             text = f"Case {result.number} failed: {result.failure}"
             console.print(text, style="red", soft_wrap=True, highlight=False)
+    if not board.complete:
+        console.print(f"What the nodes said: {output}/*.log", soft_wrap=True, highlight=False)
     console.print(sentence, soft_wrap=True, highlight=False)
     console.print(f"Picture of the run: {picture}", soft_wrap=True)
     return 0 if board.complete else 1

@@ -21,6 +21,8 @@ from typing import Any
 
 import pytest
 
+from tests.support.examples import EXAMPLES
+
 LIMIT = 30.0
 """Seconds after which an awaited event is taken not to come; discovery alone may need three."""
 
@@ -30,6 +32,7 @@ _PIPE_BYTES = 1 << 20
 _DOMAINS = range(1, 102)  # the ports of higher ones may be taken by outgoing connections
 _NEXT = itertools.count(os.getpid())
 
+_LOOPBACK = EXAMPLES / "feeding_robot/demonstration/loopback.xml"
 _SHARED_MEMORY = Path("/dev/shm")
 _PORT = re.compile(r"(?:sem\.)?fastrtps_port(?P<number>\d+)(?:_\w+)?")
 
@@ -78,11 +81,16 @@ def ros_env(tmp_path: Path) -> Iterator[dict[str, str]]:
 
 
 def environment(domain: int) -> dict[str, str]:
-    """Return this process's environment, confined to the loopback and to one domain."""
+    """Return this process's environment, confined to the loopback and to one domain.
+
+    It is UDP throughout: tests kill and freeze processes, and one that holds a lock in shared
+    memory then would keep the others waiting for seconds (``docs/gate.md``).
+    """
     env = dict(os.environ)
     env.setdefault("AMENT_PREFIX_PATH", sys.prefix)
     env["ROS_DOMAIN_ID"] = str(domain)
-    env["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    env["FASTRTPS_DEFAULT_PROFILES_FILE"] = str(_LOOPBACK)
+    env["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET"  # LOCALHOST would bring shared memory back
     env["PYTHONUNBUFFERED"] = "1"
     return env
 
@@ -198,7 +206,8 @@ def set_parameter(peer: Peer, node: str, **values: Any) -> list[Any]:
 @pytest.fixture
 def ros_peer(ros_env: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> Iterator[Peer]:
     """Give a node in the test's own process that shares the domain of ``ros_env``."""
-    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", ros_env["ROS_AUTOMATIC_DISCOVERY_RANGE"])
+    for name in ("FASTRTPS_DEFAULT_PROFILES_FILE", "ROS_AUTOMATIC_DISCOVERY_RANGE"):
+        monkeypatch.setenv(name, ros_env[name])
     peer = Peer(int(ros_env["ROS_DOMAIN_ID"]))
     yield peer
     peer.close()

@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 _DOMAINS = range(1, 102)  # the ports of higher ones may be taken by outgoing connections
+_PROFILES = Path(__file__).with_name("loopback.xml")
+_FAST_DDS = {"", "rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp"}
 _LOCKS = Path(tempfile.gettempdir()) / "deros-test-domains"  # shared with the project's tests
 
 
@@ -20,7 +22,11 @@ def own_domain() -> Iterator[None]:
     Raises:
         RuntimeError: if all domains are taken.
     """
-    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    if os.environ.get("RMW_IMPLEMENTATION", "") in _FAST_DDS:
+        os.environ["FASTRTPS_DEFAULT_PROFILES_FILE"] = str(_PROFILES)
+        os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET"
+    else:
+        os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     _LOCKS.mkdir(mode=0o777, exist_ok=True)
     for number in reversed(_DOMAINS):
         with (_LOCKS / str(number)).open("w") as lock:

@@ -22,6 +22,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock as ClockMessage
 from sensor_msgs.msg import Imu, LaserScan
 from std_msgs.msg import Bool, Float64, UInt8, UInt64
 from std_srvs.srv import Trigger
@@ -155,6 +156,12 @@ class Stage:
                 answer.add_done_callback(lambda _: pace.now == step and pace.answered())
 
         pace = Pace(lambda seconds: steps.publish(Float64(data=seconds)), ask)
+        self._node.create_subscription(
+            ClockMessage,
+            "/clock",
+            lambda message: pace.ticked(message.clock.sec * 10**9 + message.clock.nanosec),
+            50,
+        )
         self._node.create_timer(0.1, pace.remind, clock=Clock(clock_type=ClockType.STEADY_TIME))
         return pace
 
