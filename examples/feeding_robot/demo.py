@@ -17,34 +17,14 @@ OUTPUT = EXAMPLE.parents[1] / ".demo" / EXAMPLE.name
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the demo; return 0 when all cases pass, 1 when one fails, 130 when interrupted."""
     options = _options(arguments)
-    interruption = Interruption()
+    # SIGINT too: what a shell runs in the background is started deaf to it.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _leave)
     # From here on ROS is needed: the domain must be chosen before it is imported.
     from demonstration.domain import own_domain
 
     with own_domain():
-        code = _demonstrate(options)
-    return interruption.code or code
-
-
-class Interruption:
-    """Ends the program at a signal, by an exception, so that all processes are cleaned up.
-
-    The exception is lost if it comes up where Python lets none pass, such as in a destructor; the
-    program then goes on to its end.
-
-    Attributes:
-        code: the exit code that tells of the signal; 0 if none has come.
-    """
-
-    def __init__(self) -> None:
-        """Take over the signals that ask a program to end."""
-        self.code = 0
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, self._leave)
-
-    def _leave(self, number: int, _frame: FrameType | None) -> None:
-        self.code = 128 + number
-        sys.exit(self.code)
+        return _demonstrate(options)
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -79,6 +59,10 @@ def _numbers(text: str) -> list[int]:
     if not numbers or not set(numbers) <= set(range(1, 16)):
         raise argparse.ArgumentTypeError("the cases have the numbers 1 to 15")
     return numbers
+
+
+def _leave(number: int, _frame: FrameType | None) -> None:
+    sys.exit(128 + number)
 
 
 def _demonstrate(options: argparse.Namespace) -> int:

@@ -23,9 +23,10 @@ LONGEST = 900.0
 def start(
     arguments: list[str], environment: dict[str, str], output: Path, demo: Path = DEMO
 ) -> subprocess.Popen[str]:
-    """Start the demo, or the given one."""
+    """Start the demo, or the given one, as a shell starts what it runs in the background."""
+    command = [sys.executable, str(demo), "--output", str(output), *arguments]
     return subprocess.Popen(
-        [sys.executable, str(demo), "--output", str(output), *arguments],
+        ["sh", "-c", 'trap "" INT; exec "$@"', "sh", *command],
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

@@ -23,10 +23,8 @@ def test_a_flood_on_one_input_starves_no_other(robot: Robot) -> None:
         flood.match("/load")
         flood.play("/load", load(1.0), load(2.0), rate=20_000.0)
         begun = time.monotonic()
-        beats = len(robot.beats)
-        robot.spin(1.0)
+        robot.until_beats()
         assert not robot.is_active("/halt"), "a sensor that talks was taken for silent"
-        assert len(robot.beats) >= beats + 5, "the heartbeat was starved"
         sensors.play("/imu", imu(TILTED))
         robot.until_stopped("/halt", limit=0.4 + PROMPT)
         sensors.play("/speed", speed(2.0))

@@ -197,6 +197,16 @@ class Robot:
         self.until(lambda: _since(now, self.beats) >= 2)
         self.until(lambda: all(_since(now, seen) for seen in self.states.values()))
 
+    def until_beats(self, count: int = 10) -> None:
+        """Wait for so many heartbeats from now on, ten a second; see that they came in time.
+
+        When each was received counts, not when this process, which may be starved, looks at it.
+        """
+        now = time.time()
+        self.until(lambda: _since(now, self.beats) >= count)
+        passed = [each.received for each in self.beats if each.received > now][count - 1] - now
+        assert passed < 0.1 * count + PROMPT, f"{count} heartbeats took {passed:.1f} s"
+
     def spin(self, seconds: float) -> None:
         """Listen for a time in which something must *not* happen."""
         end = time.monotonic() + seconds
