@@ -7,6 +7,7 @@ import signal
 import statistics
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -44,8 +45,13 @@ def leak(node: Process, count: Callable[[], int], stretch: int, go_on: Callable[
     growths = []
     for _ in range(STRETCHES):
         first, before = count(), node.memory()
-        while count() < first + stretch:
+        counted, since = first, time.monotonic()
+        while counted < first + stretch:
             go_on()
+            last, counted = counted, count()
+            if counted > last:
+                since = time.monotonic()
+            assert time.monotonic() < since + LIMIT, "it does not go on"
         growths.append((node.memory() - before) / (count() - first))
     print(f"bytes for each, in {STRETCHES} stretches: {growths}")
     return statistics.median(growths)

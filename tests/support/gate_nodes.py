@@ -61,9 +61,12 @@ _PROFILES = """<?xml version="1.0" encoding="UTF-8"?>
     </transport_descriptor>
     <transport_descriptor><transport_id>shm</transport_id><type>SHM</type></transport_descriptor>
   </transport_descriptors>
-  <participant profile_name="loopback" is_default_profile="true">
+  <participant profile_name="both" is_default_profile="true">
     <rtps>
-      <userTransports>{}</userTransports>
+      <userTransports>
+        <transport_id>udp</transport_id>
+        <transport_id>shm</transport_id>
+      </userTransports>
       <useBuiltinTransports>false</useBuiltinTransports>
     </rtps>
   </participant>
@@ -71,18 +74,11 @@ _PROFILES = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
-def transports(folder: Path, *names: str) -> dict[str, str]:
-    """Return an environment for processes on the loopback that talk by these transports alone.
-
-    With the discovery range LOCALHOST, rmw_fastrtps would choose the transports itself.
-    """
-    path = folder / f"{'_'.join(names)}.xml"
-    chosen = "".join(f"<transport_id>{name}</transport_id>" for name in names)
-    path.write_text(_PROFILES.format(chosen), encoding="utf-8")
-    return {
-        "FASTRTPS_DEFAULT_PROFILES_FILE": str(path),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
-    }
+def with_shared_memory(folder: Path) -> dict[str, str]:
+    """Return an environment for processes on the loopback that talk through shared memory, too."""
+    path = folder / "with_shared_memory.xml"
+    path.write_text(_PROFILES, encoding="utf-8")
+    return {"FASTRTPS_DEFAULT_PROFILES_FILE": str(path)}
 
 
 class World:

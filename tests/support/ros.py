@@ -32,7 +32,10 @@ _PIPE_BYTES = 1 << 20
 _DOMAINS = range(1, 102)  # the ports of higher ones may be taken by outgoing connections
 _NEXT = itertools.count(os.getpid())
 
-_LOOPBACK = EXAMPLES / "feeding_robot/demonstration/loopback.xml"
+_CONFINED = {
+    "FASTRTPS_DEFAULT_PROFILES_FILE": str(EXAMPLES / "feeding_robot/demonstration/loopback.xml"),
+    "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",  # LOCALHOST would bring shared memory back
+}
 _SHARED_MEMORY = Path("/dev/shm")
 _PORT = re.compile(r"(?:sem\.)?fastrtps_port(?P<number>\d+)(?:_\w+)?")
 
@@ -88,11 +91,7 @@ def environment(domain: int) -> dict[str, str]:
     """
     env = dict(os.environ)
     env.setdefault("AMENT_PREFIX_PATH", sys.prefix)
-    env["ROS_DOMAIN_ID"] = str(domain)
-    env["FASTRTPS_DEFAULT_PROFILES_FILE"] = str(_LOOPBACK)
-    env["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET"  # LOCALHOST would bring shared memory back
-    env["PYTHONUNBUFFERED"] = "1"
-    return env
+    return {**env, **_CONFINED, "ROS_DOMAIN_ID": str(domain), "PYTHONUNBUFFERED": "1"}
 
 
 @contextlib.contextmanager
@@ -205,9 +204,12 @@ def set_parameter(peer: Peer, node: str, **values: Any) -> list[Any]:
 
 @pytest.fixture
 def ros_peer(ros_env: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> Iterator[Peer]:
-    """Give a node in the test's own process that shares the domain of ``ros_env``."""
-    for name in ("FASTRTPS_DEFAULT_PROFILES_FILE", "ROS_AUTOMATIC_DISCOVERY_RANGE"):
-        monkeypatch.setenv(name, ros_env[name])
+    """Give a node in the test's own process that shares the domain of ``ros_env``.
+
+    Fast DDS reads the profile once in a process, so it is the same for all tests.
+    """
+    for name, value in _CONFINED.items():
+        monkeypatch.setenv(name, value)
     peer = Peer(int(ros_env["ROS_DOMAIN_ID"]))
     yield peer
     peer.close()

@@ -26,7 +26,7 @@ from tests.support.gate_nodes import (
     PACKAGE,
     SAFETY_NODE,
     Drive,
-    transports,
+    with_shared_memory,
 )
 from tests.support.gate_runners import LANGUAGES, RunGate
 from tests.support.ros import Peer, running
@@ -40,17 +40,6 @@ LIMIT_S = 0.3 + 0.05
 """The time of the line about the heartbeat, and what the machine may add."""
 
 StartSafety = Callable[[], AbstractContextManager[Popen[str]]]
-
-
-@pytest.fixture
-def ros_env(
-    ros_env: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> dict[str, str]:
-    """Give an environment in which all but the gate use shared memory, as they do by default."""
-    env = transports(tmp_path, "udp", "shm")
-    for name, value in env.items():
-        monkeypatch.setenv(name, value)
-    return {**ros_env, **env}
 
 
 @pytest.fixture
@@ -68,17 +57,17 @@ def drive(
     request: pytest.FixtureRequest, ros_env: dict[str, str], ros_peer: Peer, tmp_path: Path
 ) -> Iterator[Drive]:
     """Give a robot whose gate runs, in either language, and whose safety node is to come."""
-    env = {**ros_env, **transports(tmp_path, "udp")}
     run_gate: RunGate = request.param(tmp_path / "gates")
-    with run_gate("cmd_vel_gate", env):
+    with run_gate("cmd_vel_gate", ros_env):
         yield Drive(ros_peer)
 
 
 @pytest.fixture
-def start_safety(package: Path, ros_env: dict[str, str]) -> StartSafety:
-    """Give a function that runs the safety node."""
+def start_safety(package: Path, ros_env: dict[str, str], tmp_path: Path) -> StartSafety:
+    """Give a function that runs the safety node, which has shared memory, as it has by default."""
     command = [sys.executable, "-m", f"{PACKAGE}.{SAFETY_NODE}"]
-    return lambda: running(command, {**ros_env, "PYTHONPATH": str(package)})
+    env = {**ros_env, **with_shared_memory(tmp_path), "PYTHONPATH": str(package)}
+    return lambda: running(command, env)
 
 
 def report(what: str, delays: list[float]) -> None:
