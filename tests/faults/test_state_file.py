@@ -79,9 +79,13 @@ def test_a_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
     with robot.safety_node(f"state_file:={folder / 'state'}", **disk.env):
         robot.violate()
         disk.fill()
-        success, message = robot.reset()
-        assert not success
-        assert "No space left on device" in message
+
+        def is_told_why() -> bool:
+            success, message = robot.reset()
+            assert not success
+            return "No space left on device" in message
+
+        robot.until(is_told_why)  # once it has heard that the rule is kept again
         assert robot.is_active("/stop")
         disk.clear()
         robot.until(lambda: robot.reset()[0])

@@ -3,7 +3,8 @@
 //
 // The kernel does not know of the step, but it would end or prolong the waits until a time of the
 // wall clock when the real one is set. So a thread looks at the file, and has such waits on condition
-// variables started anew; those on semaphores and locks, which forget nothing, are cut into short ones.
+// variables started anew, but for those that somebody else has ended meanwhile: that is told once only.
+// Waits on semaphores and locks, which forget nothing, are cut into short ones.
 
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -21,6 +22,8 @@
 
 static int (*real_clock_gettime)(clockid_t, struct timespec *);
 static int (*real_cond_timedwait)(pthread_cond_t *, pthread_mutex_t *, const struct timespec *);
+static int (*real_cond_signal)(pthread_cond_t *);
+static int (*real_cond_broadcast)(pthread_cond_t *);
 static int (*real_cond_clockwait)(pthread_cond_t *, pthread_mutex_t *, clockid_t,
                                   const struct timespec *);
 static int (*real_sem_timedwait)(sem_t *, const struct timespec *);
@@ -30,6 +33,7 @@ static int offset_file = -1;
 
 struct waiter {
   pthread_cond_t *condition;
+  int is_told;
   struct waiter *next;
 };
 
@@ -53,7 +57,7 @@ static void *watch(void *unused) {
     pthread_mutex_lock(&waiters_lock);
     known_offset = offset();
     for (struct waiter *each = waiters; each; each = each->next)
-      pthread_cond_broadcast(each->condition);
+      real_cond_broadcast(each->condition);
     pthread_mutex_unlock(&waiters_lock);
   }
   return unused;
@@ -63,6 +67,10 @@ __attribute__((constructor)) static void set_up(void) {
   real_clock_gettime = dlsym(RTLD_NEXT, "clock_gettime");
   real_cond_timedwait = dlvsym(RTLD_NEXT, "pthread_cond_timedwait", "GLIBC_2.3.2");  // x86-64 keeps an older
   if (!real_cond_timedwait) real_cond_timedwait = dlsym(RTLD_NEXT, "pthread_cond_timedwait");
+  real_cond_signal = dlvsym(RTLD_NEXT, "pthread_cond_signal", "GLIBC_2.3.2");
+  if (!real_cond_signal) real_cond_signal = dlsym(RTLD_NEXT, "pthread_cond_signal");
+  real_cond_broadcast = dlvsym(RTLD_NEXT, "pthread_cond_broadcast", "GLIBC_2.3.2");
+  if (!real_cond_broadcast) real_cond_broadcast = dlsym(RTLD_NEXT, "pthread_cond_broadcast");
   real_cond_clockwait = dlsym(RTLD_NEXT, "pthread_cond_clockwait");
   real_sem_timedwait = dlsym(RTLD_NEXT, "sem_timedwait");
   real_sem_clockwait = dlsym(RTLD_NEXT, "sem_clockwait");
@@ -120,7 +128,7 @@ int pthread_cond_timedwait(pthread_cond_t *restrict condition, pthread_mutex_t *
                            const struct timespec *restrict until) {
   if (until->tv_sec < OLDEST_WALL_TIME) return real_cond_timedwait(condition, mutex, until);
   pthread_mutex_lock(&waiters_lock);
-  struct waiter self = {condition, waiters};
+  struct waiter self = {condition, 0, waiters};
   waiters = &self;
   int result;
   long believed;
@@ -130,12 +138,31 @@ int pthread_cond_timedwait(pthread_cond_t *restrict condition, pthread_mutex_t *
     struct timespec target = {until->tv_sec - believed, until->tv_nsec};
     result = real_cond_timedwait(condition, mutex, &target);
     pthread_mutex_lock(&waiters_lock);
-  } while (known_offset != believed);
+  } while (known_offset != believed && !self.is_told);
   struct waiter **link = &waiters;
   while (*link != &self) link = &(*link)->next;
   *link = self.next;
   pthread_mutex_unlock(&waiters_lock);
   return result;
+}
+
+static void tell(const pthread_cond_t *condition) {
+  pthread_mutex_lock(&waiters_lock);
+  for (struct waiter *each = waiters; each; each = each->next)
+    if (each->condition == condition) each->is_told = 1;
+  pthread_mutex_unlock(&waiters_lock);
+}
+
+int pthread_cond_signal(pthread_cond_t *condition) {
+  if (!real_cond_signal) set_up();
+  tell(condition);
+  return real_cond_signal(condition);
+}
+
+int pthread_cond_broadcast(pthread_cond_t *condition) {
+  if (!real_cond_broadcast) set_up();
+  tell(condition);
+  return real_cond_broadcast(condition);
 }
 
 int pthread_cond_clockwait(pthread_cond_t *condition, pthread_mutex_t *mutex, clockid_t clock,
