@@ -131,6 +131,7 @@ def test_memory_does_not_grow(robot: Robot) -> None:
             robot.until_alive()  # its timers come after what waits
 
         with toggler(robot, EVENTS_KEPT) as toggling:
-            toggling.communicate(timeout=LIMIT)
+            output, _ = toggling.communicate(timeout=LIMIT)
+            assert toggling.returncode == 0, output
         send()
         assert leak(node, taken, SOAK_MESSAGES // STRETCHES, send) < LEAST_OBJECT
