@@ -168,8 +168,9 @@ def _await_end(case: Case, stage: Stage, referee: Referee) -> None:
         return
     # How fast simulated time passes is the machine's affair, as long as it does.
     end = stage.now + round((case.hold + MARGIN) * 1e9)
-    while not referee.complete and stage.now < end and _moves_on(stage, case.within):
-        pass
+    while not referee.complete and stage.now < end:
+        if not _moves_on(stage, case.within):
+            return
 
 
 def _moves_on(stage: Stage, patience: float) -> bool:

@@ -63,14 +63,17 @@ static void *watch(void *unused) {
   return unused;
 }
 
+// Condition variables have had their form since glibc 2.3.2; x86-64 keeps the one before, too.
+static void *of_condition_variables(const char *name) {
+  void *found = dlvsym(RTLD_NEXT, name, "GLIBC_2.3.2");
+  return found ? found : dlsym(RTLD_NEXT, name);
+}
+
 __attribute__((constructor)) static void set_up(void) {
   real_clock_gettime = dlsym(RTLD_NEXT, "clock_gettime");
-  real_cond_timedwait = dlvsym(RTLD_NEXT, "pthread_cond_timedwait", "GLIBC_2.3.2");  // x86-64 keeps an older
-  if (!real_cond_timedwait) real_cond_timedwait = dlsym(RTLD_NEXT, "pthread_cond_timedwait");
-  real_cond_signal = dlvsym(RTLD_NEXT, "pthread_cond_signal", "GLIBC_2.3.2");
-  if (!real_cond_signal) real_cond_signal = dlsym(RTLD_NEXT, "pthread_cond_signal");
-  real_cond_broadcast = dlvsym(RTLD_NEXT, "pthread_cond_broadcast", "GLIBC_2.3.2");
-  if (!real_cond_broadcast) real_cond_broadcast = dlsym(RTLD_NEXT, "pthread_cond_broadcast");
+  real_cond_timedwait = of_condition_variables("pthread_cond_timedwait");
+  real_cond_signal = of_condition_variables("pthread_cond_signal");
+  real_cond_broadcast = of_condition_variables("pthread_cond_broadcast");
   real_cond_clockwait = dlsym(RTLD_NEXT, "pthread_cond_clockwait");
   real_sem_timedwait = dlsym(RTLD_NEXT, "sem_timedwait");
   real_sem_clockwait = dlsym(RTLD_NEXT, "sem_clockwait");
