@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 import gc
 import sys
+from typing import Any
 
 import rclpy
 from rclpy.experimental.events_executor import EventsExecutor
@@ -19,9 +20,13 @@ from .waker import StopSignals, Waker
 WAIT = 1.0  # seconds; a wait without a limit is not woken by events in every release
 
 
-def run(node_class: Callable[[], Node], args: list[str] | None = None) -> None:
+def run(
+    node_class: Callable[[], Node],
+    args: list[str] | None = None,
+    end: Callable[[Any], None] = lambda _: None,
+) -> None:
     """
-    Run the node until SIGINT or SIGTERM, and end without an error then.
+    Run the node until SIGINT or SIGTERM, call end with it, and end without an error.
 
     All callbacks run in the calling thread. An exception of one of them ends the program: a node
     that does not watch any more must not go on saying that it does. A Refusal ends it with its
@@ -32,14 +37,16 @@ def run(node_class: Callable[[], Node], args: list[str] | None = None) -> None:
     signals = StopSignals()
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     try:
-        _spin(node_class, signals)
+        _spin(node_class, signals, end)
     except Refusal as refusal:
         sys.exit(str(refusal))
     finally:
         try_shutdown()
 
 
-def _spin(node_class: Callable[[], Node], signals: StopSignals) -> None:
+def _spin(
+    node_class: Callable[[], Node], signals: StopSignals, end: Callable[[Any], None]
+) -> None:
     node = node_class()
     executor = EventsExecutor()
     executor.add_node(node)
@@ -49,3 +56,5 @@ def _spin(node_class: Callable[[], Node], signals: StopSignals) -> None:
         gc.freeze()
         while ok() and not signals.came:
             executor.spin_once(timeout_sec=WAIT)
+        if ok():
+            end(node)

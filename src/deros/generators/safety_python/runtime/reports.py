@@ -1,0 +1,63 @@
+"""What was done is told afterwards, a little at a time, so that no message waits for it."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+import time
+from typing import Any
+
+from rclpy.clock import Clock
+from rclpy.node import Node
+
+from .alarm import Alarm
+
+SOON = 2_000_000  # ns after an action, when it is told of: those who have to act come first
+CHUNK = 4  # reports at once: more of them would keep the monitor waiting for too long
+PAUSE = 1_000_000  # ns from one chunk to the next, in which messages are judged
+ROOM = 256  # reports that can wait; of one more, the oldest is told of at once
+
+
+class Reports:
+    """
+    Tells of what was done, in order.
+
+    What happens faster than it can be told, on a busy machine, waits; what is told of is never
+    more than a chunk between two messages.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        steady: Clock,
+        tell: Callable[..., None],
+        told: Callable[[], None],
+        put_off: Callable[[], int],
+    ) -> None:
+        """Prepare; tell takes a report, told is called after some, put_off is that of an alarm."""
+        self._tell = tell
+        self._told = told
+        self._waiting: deque[tuple[Any, ...]] = deque()
+        self._alarm = Alarm(node, steady, time.monotonic_ns, self._ring, put_off)
+
+    def add(self, *report: Any) -> None:
+        """Tell of something soon."""
+        self._waiting.append(report)
+        if len(self._waiting) > ROOM:
+            self._tell_of(1)
+        if not self._alarm.is_set:
+            self._alarm.ring_at(time.monotonic_ns() + SOON)
+
+    def tell_rest(self) -> None:
+        """Tell of all that is left, at the end."""
+        self._tell_of(len(self._waiting))
+
+    def _ring(self) -> None:
+        self._tell_of(min(CHUNK, len(self._waiting)))
+        if self._waiting:
+            self._alarm.ring_at(time.monotonic_ns() + PAUSE)
+
+    def _tell_of(self, count: int) -> None:
+        for _ in range(count):
+            self._tell(*self._waiting.popleft())
+        self._told()
