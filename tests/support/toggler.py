@@ -20,6 +20,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import serialize_message
 from std_msgs.msg import Bool, Float64
 
+VALUE = 4
+"""Where the value of a serialized Bool is; it is padded with bytes that are not initialised."""
+
 ANSWER_S = 1.0
 DISCOVERY_S = 30.0
 
@@ -30,13 +33,12 @@ def main(source: str, target: str, broken: str, kept: str, times: str) -> None:
     node = rclpy.create_node("toggler")
     publisher = node.create_publisher(Float64, source, 10)
     messages = [serialize_message(Float64(data=float(text))) for text in (kept, broken)]
-    truth = serialize_message(Bool(data=True))
     end = 2 * int(times)
     wanted, done, asked = False, -1, time.monotonic()  # first it must say that nothing is broken
 
     def receive(state: bytes) -> None:
         nonlocal wanted, done, asked
-        if (state == truth) != wanted:
+        if bool(state[VALUE]) != wanted:
             return  # the state is repeated now and then
         wanted = not wanted
         done += 1

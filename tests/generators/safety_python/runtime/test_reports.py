@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
 from unittest.mock import Mock
 
 import pytest
@@ -12,30 +10,19 @@ pytest.importorskip("rclpy")
 
 from deros.generators.safety_python.runtime import reports as module
 from deros.generators.safety_python.runtime.reports import CHUNK, PAUSE, ROOM, SOON, Reports
+from tests.support.clockwork import Clockwork
 
 
-class Telling:
+class Telling(Clockwork):
     """Reports on a clock that the test moves, and what they have told."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Begin at zero, with nothing to tell."""
-        self.now = 0
+        super().__init__()
         self.told: list[int] = []
         self.pauses = 0
-        self.timer = Mock()
-        self.expire: Callable[[], None] = lambda: None
-        monkeypatch.setattr(module, "time", Mock(monotonic_ns=lambda: self.now))
-        node: Any = self
-        self.reports = Reports(node, Mock(), self.told.append, self.pause, lambda: 0)
-
-    def create_timer(
-        self, _period: float, callback: Callable[[], None], *, clock: Any, autostart: bool
-    ) -> Mock:
-        """Stand in for rclpy's node."""
-        assert clock is not None
-        assert not autostart
-        self.expire = callback
-        return self.timer
+        monkeypatch.setattr(module, "time", Mock(monotonic_ns=self.read))
+        self.reports = Reports(self.node, self.clock, self.told.append, self.pause, lambda: 0)
 
     def pause(self) -> None:
         """Count how often some have been told."""
@@ -47,9 +34,8 @@ class Telling:
             self.reports.add(number)
 
     def pass_time(self, time: int) -> None:
-        """Let time pass, and have the executor run the timer's callback."""
-        self.now += time
-        self.expire()
+        """Let time pass, and have the executor call the timer."""
+        self.pass_to(self.now + time)
 
 
 @pytest.fixture
@@ -74,7 +60,7 @@ def test_messages_come_between_chunks(telling: Telling) -> None:
     telling.add(*everything)
     telling.pass_time(SOON)
     assert telling.told == everything[:CHUNK]
-    assert telling.timer.timer_period_ns == PAUSE
+    assert telling.timer.expires == telling.now + PAUSE
     telling.pass_time(PAUSE)
     assert telling.told == everything[: 2 * CHUNK]
     telling.pass_time(PAUSE)
@@ -88,7 +74,7 @@ def test_what_comes_later_is_told_later(telling: Telling) -> None:
     telling.pass_time(SOON)
     telling.add(2)
     assert telling.told == [1]
-    assert telling.timer.timer_period_ns == SOON
+    assert telling.timer.expires == telling.now + SOON
     telling.pass_time(SOON)
     assert telling.told == [1, 2]
 
