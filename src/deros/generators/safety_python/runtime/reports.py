@@ -15,7 +15,7 @@ from .alarm import Alarm
 SOON = 2_000_000  # ns after an action, when it is told of: those who have to act come first
 CHUNK = 4  # reports at once: more of them would keep the monitor waiting for too long
 PAUSE = 1_000_000  # ns from one chunk to the next, in which messages are judged
-ROOM = 256  # reports that can wait; of one more, the oldest is told of at once
+ROOM = 16  # reports that can wait; of one more, the oldest is told of at once
 
 
 class Reports:
