@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 from unittest.mock import Mock
@@ -133,6 +134,47 @@ def test_a_clock_of_its_own_has_a_timer_of_its_own(clockwork: Clockwork) -> None
     alarm_on(clockwork)
     Alarm(clockwork.node, Mock(), clockwork.read, Mock())
     assert clockwork.timers == 2
+
+
+@pytest.mark.ros
+def test_calls_do_not_multiply_on_a_busy_node(ros_env: dict[str, str]) -> None:
+    """Alarms that set each other, at once and for long, keep rclpy's executor from nothing else.
+
+    With a timer for each of them it makes thirty calls for each time that one rings.
+    """
+    import rclpy
+    from rclpy.clock import Clock
+    from rclpy.clock_type import ClockType
+    from rclpy.context import Context
+    from rclpy.experimental.events_executor import EventsExecutor
+
+    context = Context()
+    rclpy.init(context=context, domain_id=int(ros_env["ROS_DOMAIN_ID"]))
+    node = rclpy.create_node("busy", context=context)
+    steady = Clock(clock_type=ClockType.STEADY_TIME)
+    alarms: list[Alarm] = []
+    rung = calls = 0
+
+    def ring() -> None:
+        nonlocal rung
+        rung += 1
+        busy_until = time.monotonic_ns() + 2 * MS
+        while time.monotonic_ns() < busy_until:
+            pass
+        for alarm in alarms:
+            alarm.ring_at(time.monotonic_ns() + MS)
+
+    alarms += [Alarm(node, steady, time.monotonic_ns, ring) for _ in range(4)]
+    alarms[0].ring_at(0)
+    executor = EventsExecutor(context=context)
+    executor.add_node(node)
+    while rung < 500:
+        executor.spin_once(timeout_sec=1.0)
+        calls += 1
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+    assert calls < 2 * rung
 
 
 def alarm_on(
