@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         help="files of rules, or sources of monitors with the contracts beside them",
     )
     parser.add_argument("--functions", default="", help="prove these alone, with commas between")
-    parser.add_argument("--timeout", type=int, default=60, help="seconds for a goal")
+    parser.add_argument("--timeout", type=int, default=300, help="seconds for a goal")
     parser.add_argument("--jobs", type=int, default=2, help="provers at once")
     parser.add_argument("--output", type=Path, help="keep the sources and Frama-C's words here")
     options = parser.parse_args(arguments)

@@ -104,7 +104,7 @@ def write(program: Program, folder: Path) -> Path:
 def prove(
     source: Path,
     functions: Sequence[str] = (),
-    timeout_s: int = 60,
+    timeout_s: int = 300,
     jobs: int = 2,
     progress: Progress | None = None,
 ) -> Proof:
