@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from typing import Any
 from unittest.mock import Mock
 
 import pytest
@@ -22,7 +23,16 @@ class Telling(Clockwork):
         self.told: list[int] = []
         self.pauses = 0
         monkeypatch.setattr(module, "time", Mock(monotonic_ns=self.read))
-        self.reports = Reports(self.node, self.clock, self.told.append, self.pause, lambda: 0)
+        self.diagnostics = Mock()
+        events: Any = Mock(ordered=self.note)
+        self.reports = Reports(
+            self.node, self.clock, events, self.diagnostics, {"stop": ("a", "b")}, self.pause, int
+        )
+
+    def note(self, event: Any, done: int, states: Any, callers: list[str]) -> None:
+        """Note what is told, with all that belongs to it."""
+        assert (done, states, callers) == (7, "states", ["b"])
+        self.told.append(event.number)
 
     def pause(self) -> None:
         """Count how often some have been told."""
@@ -31,7 +41,7 @@ class Telling(Clockwork):
     def add(self, *numbers: int) -> None:
         """Add reports."""
         for number in numbers:
-            self.reports.add(number)
+            self.reports.add([Mock(action="stop", number=number)], [7], "states", ["b", "c"])
 
     def pass_time(self, time: int) -> None:
         """Let time pass, and have the executor call the timer."""
@@ -66,6 +76,8 @@ def test_messages_come_between_chunks(telling: Telling) -> None:
     telling.pass_time(PAUSE)
     assert telling.told == everything
     assert telling.pauses == 3
+    assert telling.diagnostics.changed.call_count == 3
+    assert telling.diagnostics.ordered.call_count == len(everything)
 
 
 def test_what_comes_later_is_told_later(telling: Telling) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 import time
 from typing import Any
 
@@ -11,6 +11,8 @@ from rclpy.clock import Clock
 from rclpy.node import Node
 
 from .alarm import Alarm
+from .diagnostics import Diagnostics
+from .events import Events
 
 SOON = 2_000_000  # ns after an action, when it is told of: those who have to act come first
 CHUNK = 4  # reports at once: more of them would keep the monitor waiting for too long
@@ -30,19 +32,35 @@ class Reports:
         self,
         node: Node,
         steady: Clock,
-        tell: Callable[..., None],
-        told: Callable[[], None],
+        events: Events,
+        diagnostics: Diagnostics,
+        callers: Mapping[str, Sequence[str]],
+        prepare: Callable[[], None],
         put_off: Callable[[], int],
     ) -> None:
-        """Prepare; tell takes a report, told is called after some, put_off is that of an alarm."""
-        self._tell = tell
-        self._told = told
+        """
+        Prepare; callers names the behaviours that call for an action.
+
+        prepare is called after some have been told, for what can come next; put_off is that of an
+        alarm.
+        """
+        self._events = events
+        self._diagnostics = diagnostics
+        self._callers = callers
+        self._prepare = prepare
         self._waiting: deque[tuple[Any, ...]] = deque()
         self._alarm = Alarm(node, steady, time.monotonic_ns, self._ring, put_off)
 
-    def add(self, *report: Any) -> None:
-        """Tell of something soon."""
-        self._waiting.append(report)
+    def add(
+        self, events: Sequence[Any], done: Sequence[int], states: Any, holding: Sequence[str]
+    ) -> None:
+        """
+        Tell soon of events of the monitor.
+
+        done is when each was acted upon; states and holding are what the monitor explains after
+        them.
+        """
+        self._waiting.append((events, done, states, holding))
         if len(self._waiting) > ROOM:
             self._tell_of(1)
         if not self._alarm.is_set:
@@ -60,4 +78,13 @@ class Reports:
     def _tell_of(self, count: int) -> None:
         for _ in range(count):
             self._tell(*self._waiting.popleft())
-        self._told()
+        self._prepare()
+        self._diagnostics.changed()
+
+    def _tell(
+        self, events: Sequence[Any], done: Sequence[int], states: Any, holding: Sequence[str]
+    ) -> None:
+        for event, done_at in zip(events, done, strict=False):
+            callers = [name for name in self._callers.get(event.action, ()) if name in holding]
+            self._events.ordered(event, done_at, states, callers)
+            self._diagnostics.ordered(event)
