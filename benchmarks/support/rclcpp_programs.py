@@ -32,13 +32,15 @@ def rclcpp_environment() -> dict[str, str] | None:
 
 @contextlib.contextmanager
 def workshop(env: Mapping[str, str]) -> Iterator[Path]:
-    """Hold the folder in which programs are built for an rclcpp.
+    """Hold the folder in which this checkout's programs are built for an rclcpp.
 
     It outlives the benchmark, so that the next one builds only what has changed.
     """
     store = Path(tempfile.gettempdir()) / f"deros-benchmark-cpp-{os.getuid()}"
     store.mkdir(mode=0o700, exist_ok=True)
-    folder = store / hashlib.sha256(env["AMENT_PREFIX_PATH"].encode()).hexdigest()[:16]
+    # CMake refuses a folder that another checkout's sources were built in.
+    key = f"{Path(__file__).resolve()}:{env['AMENT_PREFIX_PATH']}"
+    folder = store / hashlib.sha256(key.encode()).hexdigest()[:16]
     folder.mkdir(exist_ok=True)
     with (store / f"{folder.name}.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)

@@ -61,7 +61,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             for timed in (lanes.timed, lanes.floor)
         ]
         immediate = [each for group in at_once.values() for each in group]
-        carry_out("rclcpp", driver, processes, immediate, later)
+        stolen = carry_out("rclcpp", driver, processes, immediate, later)
         samples = {
             name: [sample for each in group for sample in each.samples]
             for name, group in at_once.items()
@@ -80,6 +80,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             sleeps=[],
             lost=lost((*at_once[SAFETY], later[0])),
             traffic=processes.end("listener") if wanted.load else 0.0,
+            stolen=stolen,
             priority=wanted.priority,
         )
 

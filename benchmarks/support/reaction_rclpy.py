@@ -42,7 +42,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             Timed([driver.channel(lane, resets) for lane in lanes], wanted.repeat)
             for lanes, resets in ((timed, True), (floor, False))
         ]
-        carry_out("rclpy", driver, processes, list(at_once.values()), later)
+        stolen = carry_out("rclpy", driver, processes, list(at_once.values()), later)
         told = hear_out(
             driver,
             lambda: [each for topic in _EVENTS for each in triggers(driver.records[topic])],
@@ -60,6 +60,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             sleeps=processes.end("sleeper"),
             lost=lost((at_once[SAFETY], later[0])),
             traffic=processes.end("listener") if wanted.load else 0.0,
+            stolen=stolen,
         )
 
 

@@ -90,6 +90,10 @@ def show(results: Sequence[Results], console: Console) -> None:
 def _show_verdicts(results: Results, console: Console) -> None:
     if results.run.loaded:
         console.print(f"The load's own messages that arrived: {results.run.traffic:.0f} per second")
+    if results.run.stolen:
+        console.print(
+            f"Of the processors' time the machine's host gave {results.run.stolen:.2f} % to others"
+        )
     for bar in results.bars():
         mark = Text("holds", style="green") if bar.held else Text("FAILS", style="bold red")
         text = Text.assemble(mark, f"  {bar.what}: {bar.found} (asked for: {bar.allowed})")
@@ -153,6 +157,7 @@ def as_json(results: Sequence[Results]) -> dict[str, Any]:
             ],
         },
         "load_messages_per_second": {each.run.client.name: each.run.traffic for each in results},
+        "stolen_percent": {each.run.client.name: each.run.stolen for each in results},
         "bars": [asdict(bar) for each in results for bar in each.bars()],
     }
 

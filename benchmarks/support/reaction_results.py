@@ -57,6 +57,7 @@ class Run:
         sleeps: how late a plain sleep ended, in ns.
         lost: how many reactions have not come.
         traffic: messages per second of the load that have come to their receiver.
+        stolen: what the machine's host took of its processors, in percent of all of them.
         priority: the real-time priority of those that keep deadlines; 0 for none.
     """
 
@@ -70,6 +71,7 @@ class Run:
     sleeps: list[int]
     lost: int
     traffic: float
+    stolen: float
     priority: int = 0
 
 

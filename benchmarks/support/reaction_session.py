@@ -12,6 +12,7 @@ from support.experiment import LIMIT_NS, Driver, Experiment, Immediate, Timed
 from support.processes import Processes
 from support.progress import Line
 from support.samples import Sample, Trigger, match
+from support.usage import Theft
 
 LOAD_TOPICS = 20
 
@@ -59,8 +60,11 @@ def carry_out(
     processes: Processes,
     at_once: Sequence[Immediate],
     later: Sequence[Timed],
-) -> None:
-    """Wait until all nodes have met, and measure until there is enough of everything."""
+) -> float:
+    """Wait until all nodes have met, and measure until there is enough of everything.
+
+    Return what the machine's host took of its processors meanwhile, in percent.
+    """
     everything = [*(each.progress for each in at_once), *(each.progress for each in later)]
     with Line(sys.stderr) as line:
         line.show(f"{title}: waiting for all nodes to meet")
@@ -74,7 +78,9 @@ def carry_out(
             tail = f", {lost} lost" if lost else ""
             line.show(f"{title}: {done} of {wanted} reactions{tail}")
 
+        theft = Theft.start()
         Experiment(driver, at_once, later, watch).run()
+        return theft.percent()
 
 
 def hear_out(

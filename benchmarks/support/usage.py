@@ -1,7 +1,8 @@
-"""What a process takes of the machine, as Linux counts it."""
+"""What a process takes of the machine, and the machine's host of it, as Linux counts it."""
 
 from __future__ import annotations
 
+import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,6 +32,34 @@ def memory_mib(pid: int) -> float:
         if line.startswith("VmRSS:"):
             return int(line.split()[1]) / 1024
     raise ProcessLookupError(f"process {pid} has ended")
+
+
+def stolen_s() -> float:
+    """Return the processor time that was wanted but not given, all processors together, in s.
+
+    On a virtual machine that is what its host has given to others meanwhile ("steal", proc(5)), if
+    the host tells; elsewhere it is 0.
+    """
+    total = Path("/proc/stat").read_text(encoding="ascii").splitlines()[0]
+    return int(total.split()[8]) / os.sysconf("SC_CLK_TCK")
+
+
+@dataclass(frozen=True, slots=True)
+class Theft:
+    """Measures what a virtual machine's host takes of its processors, from :meth:`start` on."""
+
+    since_ns: int
+    stolen_s: float
+
+    @classmethod
+    def start(cls) -> Theft:
+        """Begin now."""
+        return cls(time.monotonic_ns(), stolen_s())
+
+    def percent(self) -> float:
+        """Return how much was taken so far, in percent of all processors."""
+        seconds = (time.monotonic_ns() - self.since_ns) / 1e9
+        return 100.0 * (stolen_s() - self.stolen_s) / (seconds * (os.cpu_count() or 1))
 
 
 @dataclass(frozen=True, slots=True)

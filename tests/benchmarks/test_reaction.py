@@ -98,6 +98,7 @@ def _run(file: Path, *options: str, env: Mapping[str, str], limit: float) -> dic
     counted = {bar["what"]: bar["held"] for bar in results["bars"] if bar["allowed"] == "none"}
     assert len(counted) == 3
     assert all(counted.values()), counted
+    assert all(0 <= percent < 100 for percent in results["stolen_percent"].values())
     return results
 
 
