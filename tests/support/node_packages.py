@@ -106,8 +106,10 @@ _PYTHON_EXECUTE_COUNT = """
     released = threading.Event()
 
     def execute_count(self, goal_handle: ServerGoalHandle) -> Fibonacci.Result:
-        goal_handle.publish_feedback(Fibonacci.Feedback(sequence=[0]))
-        self.released.wait()  # blocks this thread, as a user's loop may
+        # It blocks this thread, as a user's loop may. What a client hears of a goal before it knows
+        # that the goal was accepted is lost, so one feedback would not do.
+        while not self.released.wait(0.02):
+            goal_handle.publish_feedback(Fibonacci.Feedback(sequence=[0]))
         if goal_handle.request.order > 0:
             goal_handle.succeed()
         return Fibonacci.Result(sequence=list(range(goal_handle.request.order)))
@@ -210,8 +212,12 @@ _CPP_ON_RELEASE = """
 _CPP_EXECUTE_COUNT = """
   auto feedback = std::make_shared<test_msgs::action::Fibonacci::Feedback>();
   feedback->sequence = {0};
-  goal_handle.publish_feedback(feedback);
-  released_.get_future().wait();  // blocks this thread, as a user's loop may
+  // It blocks this thread, as a user's loop may. What a client hears of a goal before it knows
+  // that the goal was accepted is lost, so one feedback would not do.
+  auto released = released_.get_future();
+  while (released.wait_for(std::chrono::milliseconds(20)) == std::future_status::timeout) {
+    goal_handle.publish_feedback(feedback);
+  }
   auto result = std::make_shared<test_msgs::action::Fibonacci::Result>();
   for (int32_t i = 0; i < goal_handle.get_goal()->order; ++i) {
     result->sequence.push_back(i);
@@ -268,7 +274,7 @@ class CppPackages(NodePackages):
         counting = source / "counting"
         header = counting / "include/counting/counter.hpp"
         insert(header, "};", "  std::promise<void> released_;\n")
-        insert(header, "#include", "#include <future>\n\n")
+        insert(header, "#include", "#include <chrono>\n#include <future>\n\n")
         fill_in(counting / "src/counter.cpp", "on_release", _CPP_ON_RELEASE)
         fill_in(counting / "src/counter.cpp", "execute_count", _CPP_EXECUTE_COUNT)
         fill_in(counting / "src/asker.cpp", "on_ask", _CPP_ON_ASK)

@@ -14,6 +14,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -138,6 +139,17 @@ def stop(process: subprocess.Popen[str], number: signal.Signals) -> tuple[int, s
     process.send_signal(number)
     output, _ = process.communicate(timeout=LIMIT)
     return process.returncode, output
+
+
+def read_line(process: subprocess.Popen[str]) -> str:
+    """Return the next line that a program prints; if none comes in time, the program is killed."""
+    assert process.stdout is not None
+    watchdog = threading.Timer(LIMIT, process.kill)
+    watchdog.start()
+    try:
+        return process.stdout.readline()
+    finally:
+        watchdog.cancel()
 
 
 class Peer:

@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.cpp import needs_rclcpp
 from tests.support.node_packages import CppPackages, NodePackages, PythonPackages, Start
-from tests.support.ros import LIMIT, Peer, set_parameter, stop
+from tests.support.ros import LIMIT, Peer, read_line, set_parameter, stop
 
 pytestmark = pytest.mark.ros
 
@@ -223,8 +223,7 @@ def test_a_managed_node_rests_until_activated(start: Start, ros_peer: Peer) -> N
         command.publish(Bool(data=False))
         ros_peer.until(lambda: states)
         assert states == [False]
-        assert process.stdout is not None
-        assert "on_report does nothing yet" in process.stdout.readline()  # the timer's handler
+        assert "on_report does nothing yet" in read_line(process)  # the timer's handler
         assert change(Transition.TRANSITION_DEACTIVATE)
         code, output = stop(process, signal.SIGINT)
     assert (code, "Traceback" in output) == (0, False), output
@@ -263,8 +262,7 @@ def test_a_goal_runs_beside_the_other_handlers(
             )
         )
         ask.publish(Int32(data=order))
-        assert asker.stdout is not None
-        assert "feedback [0]" in asker.stdout.readline()
+        assert "feedback [0]" in read_line(asker)
         release.publish(Empty())
         ros_peer.until(lambda: outcomes)
         assert outcomes == [outcome]

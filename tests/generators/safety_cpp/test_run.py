@@ -73,19 +73,22 @@ def test_both_report_the_same_of_the_same_messages(
     """Every status has the same level, message and values, but for the times; and each event."""
     seen = []
     for each in (start, start_python):
+        robot.take_over(0)  # a node that starts is told the last mode
         with each("diagnostics_freq:=20.0"):
             robot.meet()
+            robot.event("trigger", action="crawl")  # nobody has driven yet
             robot.drive_until(0.9, lambda: robot.stop[-1])
             robot.take_over(1)
             robot.peer.until(lambda: robot.status("operator.manual").values.get("mode") == "1")
+            robot.event("reset", action="crawl")
+            robot.peer.until(lambda: robot.status("action crawl").values["runs"] == "2")
             robot.peer.until(lambda: robot.limit[-1] == 0.2)
-            robot.event("trigger", action="crawl")
             robot.peer.until(
                 lambda: robot.status("drive.silent").values["speed.missing()"] == "true"
             )
             robot.peer.until(lambda: robot.status("drive.fast").message.startswith("unknown"))
             assert robot.reset().success
-            robot.event("reset")
+            robot.event("reset", action="stop")
             robot.peer.until(lambda: robot.status("action stop").message == "inactive")
             statuses = {
                 name: (status.level, status.message, _timeless(status.values))
