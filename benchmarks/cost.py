@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,7 @@ from support.cost_rules import TOPICS, generate
 from support.processes import Processes, own_domain
 from support.program import Report, conduct
 from support.progress import Line
-from support.usage import Meter, memory_mib
+from support.usage import Meter, memory_mib, processor_time_ns
 
 if TYPE_CHECKING:
     from support.cost_loads import Talker
@@ -118,7 +119,7 @@ def _take_turns(
                 line.show(f"turn {turn + 1} of {options.turns}: {load.name}; {NODES[node]}")
                 processes.check()
                 talker.feed(node, load, options.settle)
-                meter = Meter.start(processes.pid(node))
+                meter = Meter.start(partial(processor_time_ns, processes.pid(node)))
                 talker.feed(node, load, options.seconds)
                 percents.setdefault((load.name, node), []).append(meter.percent())
         order.append(order.pop(0))

@@ -12,7 +12,7 @@ from support.experiment import LIMIT_NS, Driver, Experiment, Immediate, Timed
 from support.processes import Processes
 from support.progress import Line
 from support.samples import Sample, Trigger, match
-from support.usage import Theft
+from support.usage import Meter, stolen_ns
 
 LOAD_TOPICS = 20
 
@@ -78,9 +78,9 @@ def carry_out(
             tail = f", {lost} lost" if lost else ""
             line.show(f"{title}: {done} of {wanted} reactions{tail}")
 
-        theft = Theft.start()
+        stolen = Meter.start(stolen_ns)
         Experiment(driver, at_once, later, watch).run()
-        return theft.percent()
+        return stolen.percent()
 
 
 def hear_out(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,48 +35,35 @@ def memory_mib(pid: int) -> float:
     raise ProcessLookupError(f"process {pid} has ended")
 
 
-def stolen_s() -> float:
-    """Return the processor time that was wanted but not given, all processors together, in s.
+def stolen_ns() -> int:
+    """Return the time that a processor was wanted but not given, averaged over all, in ns.
 
     On a virtual machine that is what its host has given to others meanwhile ("steal", proc(5)), if
     the host tells; elsewhere it is 0.
     """
     total = Path("/proc/stat").read_text(encoding="ascii").splitlines()[0]
-    return int(total.split()[8]) / os.sysconf("SC_CLK_TCK")
-
-
-@dataclass(frozen=True, slots=True)
-class Theft:
-    """Measures what a virtual machine's host takes of its processors, from :meth:`start` on."""
-
-    since_ns: int
-    stolen_s: float
-
-    @classmethod
-    def start(cls) -> Theft:
-        """Begin now."""
-        return cls(time.monotonic_ns(), stolen_s())
-
-    def percent(self) -> float:
-        """Return how much was taken so far, in percent of all processors."""
-        seconds = (time.monotonic_ns() - self.since_ns) / 1e9
-        return 100.0 * (stolen_s() - self.stolen_s) / (seconds * (os.cpu_count() or 1))
+    ticks = int(total.split()[8])
+    return ticks * 1_000_000_000 // os.sysconf("SC_CLK_TCK") // (os.cpu_count() or 1)
 
 
 @dataclass(frozen=True, slots=True)
 class Meter:
-    """Measures the processor's use by one process, from :meth:`start` on."""
+    """Measures what is taken of a processor, from :meth:`start` on.
 
-    pid: int
+    Attributes:
+        counter: tells the time taken so far, in ns.
+    """
+
+    counter: Callable[[], int]
     since_ns: int
     taken_ns: int
 
     @classmethod
-    def start(cls, pid: int) -> Meter:
+    def start(cls, counter: Callable[[], int]) -> Meter:
         """Begin now."""
-        return cls(pid, time.monotonic_ns(), processor_time_ns(pid))
+        return cls(counter, time.monotonic_ns(), counter())
 
     def percent(self) -> float:
-        """Return the use so far, in percent of one core."""
-        taken = processor_time_ns(self.pid) - self.taken_ns
+        """Return what was taken so far, in percent of one processor."""
+        taken = self.counter() - self.taken_ns
         return 100.0 * taken / (time.monotonic_ns() - self.since_ns)
