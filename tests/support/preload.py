@@ -6,24 +6,34 @@ alone, by LD_PRELOAD; the machine's own clock and disks are left alone.
 
 from __future__ import annotations
 
+import mmap
 import shutil
+import struct
 import subprocess
 from pathlib import Path
 
 import pytest
 
 _SOURCES = Path(__file__).with_name("shims")
-_STRICT = ["-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC"]
+_STRICT = ["-Wall", "-Wextra", "-Werror", "-O2"]
+# Looking up a function by its first call would take kilobytes of the stack that it is called on.
+_LIBRARY = ["-shared", "-fPIC", "-Wl,-z,now"]
 
 
-def _built(name: str, folder: Path) -> str:
-    """Build one of the libraries into a folder, and return its path."""
-    compiler = shutil.which("gcc") or shutil.which("cc")
-    if compiler is None:
+def compiler() -> str:
+    """Return the C compiler; skip the test where there is none."""
+    found = shutil.which("gcc") or shutil.which("cc")
+    if found is None:
         pytest.skip("there is no C compiler to build the library that fakes the fault")
+    return found
+
+
+def build_shim(name: str, folder: Path, *options: str) -> str:
+    """Build one of the libraries into a folder, and return its path."""
     library = folder / f"{name}.so"
     source = _SOURCES / f"{name}.c"
-    subprocess.run([compiler, *_STRICT, "-o", str(library), str(source), "-ldl"], check=True)
+    command = [compiler(), *_STRICT, *_LIBRARY, *options, "-o", str(library), str(source), "-ldl"]
+    subprocess.run(command, check=True)
     return str(library)
 
 
@@ -32,18 +42,15 @@ class WallClock:
 
     def __init__(self, folder: Path) -> None:
         """Begin with the time that it really is."""
-        self._offset = folder / "wall_clock_offset"
-        self.step(0)
-        self.env = {
-            "LD_PRELOAD": _built("clock", folder),
-            "WALL_CLOCK_OFFSET": str(self._offset),
-        }
+        offset = folder / "wall_clock_offset"
+        offset.write_bytes(struct.pack("=q", 0))
+        with offset.open("r+b") as file:
+            self._offset = memoryview(mmap.mmap(file.fileno(), 0)).cast("q")
+        self.env = {"LD_PRELOAD": build_shim("clock", folder), "WALL_CLOCK_OFFSET": str(offset)}
 
     def step(self, seconds: int) -> None:
         """Set the clock to the real time plus so many seconds, in all running processes at once."""
-        # One write within one page: a reader sees the old text or the new one.
-        with self._offset.open("r+" if self._offset.exists() else "w") as file:
-            file.write(f"{seconds:<20}")
+        self._offset[0] = seconds
 
 
 class Disk:
@@ -53,8 +60,8 @@ class Disk:
         """Begin with space enough; the library is built into another folder."""
         self._full = library / "disk_full"
         self.env = {
-            "LD_PRELOAD": _built("disk", library),
-            "DISK": str(folder),
+            "LD_PRELOAD": build_shim("disk", library),
+            "DISK": str(folder.resolve()),
             "DISK_FULL": str(self._full),
         }
 

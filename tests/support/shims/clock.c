@@ -1,5 +1,9 @@
 // Steps the wall clock of one process, by LD_PRELOAD: CLOCK_REALTIME is off by as many seconds as
-// the file named by WALL_CLOCK_OFFSET says, whenever it is asked. No other clock is touched.
+// the file named by WALL_CLOCK_OFFSET says, whenever it is asked. No other clock is touched. The file
+// holds one number of 64 bits; it is mapped, so that whoever maps it, too, sets the clock by one store.
+//
+// What tells the time may be called by signal handlers, on alternate stacks of a few kilobytes: it
+// adds that number and calls nothing else. Waits may not be called there, nor may the real ones.
 //
 // The kernel does not know of the step, but it would end or prolong the waits until a time of the
 // wall clock when the real one is set. So a thread looks at the file, and has such waits on condition
@@ -12,7 +16,10 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <semaphore.h>
+#include <signal.h>
+#include <stdint.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
@@ -29,7 +36,8 @@ static int (*real_cond_clockwait)(pthread_cond_t *, pthread_mutex_t *, clockid_t
 static int (*real_sem_timedwait)(sem_t *, const struct timespec *);
 static int (*real_sem_clockwait)(sem_t *, clockid_t, const struct timespec *);
 static int (*real_mutex_timedlock)(pthread_mutex_t *, const struct timespec *);
-static int offset_file = -1;
+static const int64_t none;
+static const volatile int64_t *set_offset = &none;
 
 struct waiter {
   pthread_cond_t *condition;
@@ -41,13 +49,7 @@ static struct waiter *waiters;
 static pthread_mutex_t waiters_lock = PTHREAD_MUTEX_INITIALIZER;
 static volatile long known_offset;
 
-static long offset(void) {
-  char text[32];
-  ssize_t length = offset_file < 0 ? -1 : pread(offset_file, text, sizeof text - 1, 0);
-  if (length <= 0) return 0;
-  text[length] = 0;
-  return strtol(text, NULL, 10);
-}
+static long offset(void) { return (long)*set_offset; }
 
 static void *watch(void *unused) {
   const struct timespec slice = {0, SLICE_NS};
@@ -69,6 +71,22 @@ static void *of_condition_variables(const char *name) {
   return found ? found : dlsym(RTLD_NEXT, name);
 }
 
+// Every signal is left to the threads of the process under test.
+static void follow(const char *path) {
+  int file = open(path, O_RDONLY | O_CLOEXEC);
+  void *mapped = mmap(NULL, sizeof *set_offset, PROT_READ, MAP_SHARED, file, 0);
+  if (mapped == MAP_FAILED) abort();
+  close(file);
+  set_offset = mapped;
+  known_offset = offset();
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  pthread_t thread;
+  pthread_create(&thread, NULL, watch, NULL);
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
 __attribute__((constructor)) static void set_up(void) {
   real_clock_gettime = dlsym(RTLD_NEXT, "clock_gettime");
   real_cond_timedwait = of_condition_variables("pthread_cond_timedwait");
@@ -79,11 +97,7 @@ __attribute__((constructor)) static void set_up(void) {
   real_sem_clockwait = dlsym(RTLD_NEXT, "sem_clockwait");
   real_mutex_timedlock = dlsym(RTLD_NEXT, "pthread_mutex_timedlock");
   const char *path = getenv("WALL_CLOCK_OFFSET");
-  if (!path || offset_file >= 0) return;
-  offset_file = open(path, O_RDONLY | O_CLOEXEC);
-  known_offset = offset();
-  pthread_t thread;
-  pthread_create(&thread, NULL, watch, NULL);
+  if (path && set_offset == &none) follow(path);
 }
 
 int clock_gettime(clockid_t clock, struct timespec *now) {

@@ -1,0 +1,99 @@
+"""The libraries that fake faults: safe wherever the program under test may call them."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.support.preload import Disk, WallClock, build_shim, compiler
+
+HARNESS = Path(__file__).resolve().parents[1] / "support" / "c" / "signal_stack.c"
+
+STACK = 800
+"""Bytes of the stack that a function of a shim may use, of the two thousand that are certain."""
+
+WRITES = slice(2, 6)
+MAKES = slice(6, 9)
+
+
+@pytest.fixture(scope="session")
+def harness(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build what calls the functions from a signal handler on a small stack."""
+    program = tmp_path_factory.mktemp("harness") / "signal_stack"
+    options = ["-Wall", "-Wextra", "-Werror", "-O2", "-Wl,-z,now"]
+    subprocess.run([compiler(), *options, "-o", str(program), str(HARNESS)], check=True)
+    return program
+
+
+def call(harness: Path, folder: Path, env: dict[str, str]) -> tuple[list[int], list[int]]:
+    """Call all functions; return how each ended (an error number or 0) and the times read.
+
+    Raises:
+        CalledProcessError: with the signal that ended it, if a call overruns its stack.
+    """
+    stored = folder / "stored"
+    stored.touch()
+    command = [harness, folder.parent / "plain", stored, folder / "new"]
+    done = subprocess.run(
+        command, env={**os.environ, **env}, capture_output=True, text=True, check=True
+    )
+    words = [int(word) for word in done.stdout.split()]
+    return words[:12], words[12:]
+
+
+def preloads(tmp_path: Path) -> tuple[Disk, WallClock, dict[str, str]]:
+    """Return a disk, a clock, and the environment with both."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    disk, clock = Disk(folder, tmp_path), WallClock(tmp_path)
+    both = f"{disk.env['LD_PRELOAD']}:{clock.env['LD_PRELOAD']}"
+    return disk, clock, {**disk.env, **clock.env, "LD_PRELOAD": both}
+
+
+def test_signal_handlers_may_call_the_shims(harness: Path, tmp_path: Path) -> None:
+    """On the smallest stack, with a guard page below it, all calls succeed and spare errno."""
+    _, _, env = preloads(tmp_path)
+    results, times = call(harness, tmp_path / "disk", env)
+    assert results == [0] * 12
+    assert all(abs(seconds - time.time()) < 60 for seconds in times)
+
+
+def test_signal_handlers_see_the_faults(harness: Path, tmp_path: Path) -> None:
+    """There, too, the disk is full for the folder alone, and the clock is stepped."""
+    disk, clock, env = preloads(tmp_path)
+    (tmp_path / "disk" / "stored").touch()
+    disk.fill()
+    clock.step(-86_400)
+    results, times = call(harness, tmp_path / "disk", env)
+    assert results[:2] == [0, 0]
+    assert results[WRITES] == [errno.ENOSPC] * 4
+    assert results[MAKES] == [errno.ENOSPC] * 3
+    assert results[9:] == [0] * 3
+    assert all(abs(seconds - time.time() + 86_400) < 60 for seconds in times)
+    disk.clear()
+    assert call(harness, tmp_path / "disk", env)[0] == [0] * 12
+
+
+def test_another_folder_of_the_same_beginning_has_space(harness: Path, tmp_path: Path) -> None:
+    """What is full is the folder that was named, not each whose name begins like it."""
+    disk, _, env = preloads(tmp_path)
+    disk.fill()
+    (tmp_path / "disk2").mkdir()
+    assert call(harness, tmp_path / "disk2", env)[0] == [0] * 12
+
+
+@pytest.mark.parametrize("name", ["clock", "disk"])
+def test_the_shims_use_little_of_any_stack(name: str, tmp_path: Path) -> None:
+    """The compiler knows a bound for each function, and it is small."""
+    build_shim(name, tmp_path, "-fstack-usage")
+    ((report),) = tmp_path.glob("*.su")
+    uses = re.findall(r"^\S*?(\w+)\t(\d+)\t(\S+)$", report.read_text(), re.MULTILINE)
+    assert len(uses) > 8
+    assert {bound for _, _, bound in uses} == {"static"}
+    assert [use for use in uses if int(use[1]) > STACK] == []
