@@ -19,7 +19,7 @@ BENCHMARKS := $(filter-out benchmarks/big_system.py,$(wildcard benchmarks/*.py))
 
 .PHONY: help
 help:  ## Show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 .PHONY: demo
 demo: $(READY)  ## Generate the feeding robot, start it, play its fifteen test cases
@@ -60,6 +60,10 @@ lint: $(READY)  ## Check format, style, types and the layering of the packages
 	$(BIN)/mypy
 	MYPYPATH=benchmarks $(BIN)/mypy benchmarks
 	$(BIN)/lint-imports
+
+.PHONY: distribution
+distribution: $(READY)  ## Build sdist and wheel; use them with the lowest and the newest versions
+	@$(ALONE) $(BIN)/python tools/distribution.py
 
 .PHONY: docs
 docs: $(DOCS_READY)  ## Build the documentation into site/; a warning is an error
