@@ -43,6 +43,7 @@ UNKNOWN_VIA_PARAMETER = _declare(108, "port takes its name from an unknown param
 DUPLICATE_SECTION = _declare(109, "section given twice")
 BAD_CONSTRAINT = _declare(110, "constraint that does not fit the parameter's type")
 UNIT_CONFLICTS_WITH_REP103 = _declare(111, "unit of another dimension than REP 103 gives", _W)
+NOT_A_PROGRAM_NAME = _declare(119, "executable that is not a plain file name")
 
 # System descriptions
 UNKNOWN_IMPORT = _declare(201, "imported file not found")

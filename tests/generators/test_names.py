@@ -9,7 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from deros.diagnostics import SourceFile, Span
-from deros.generators.names import Emitted, camel_case, check_collisions, python_identifier
+from deros.generators.names import (
+    Emitted,
+    camel_case,
+    check_collisions,
+    file_label,
+    python_identifier,
+)
 from deros.generators.protocol import GenerationError
 
 SPAN = Span(SourceFile("a.rnd", "first second"), 0, 5)
@@ -68,3 +74,28 @@ def test_a_collision_names_both_places() -> None:
 def test_different_names_pass() -> None:
     """Names that differ are no collision, in case too."""
     check_collisions([Emitted("a", "port a", SPAN), Emitted("A", "port A", OTHER)], "class A")
+
+
+def test_files_that_differ_in_case_alone_collide() -> None:
+    """They are one file on some systems; identifiers of code are told apart everywhere."""
+    emitted = [Emitted("Ab", "node 'Ab'", SPAN), Emitted("ab", "node 'ab'", OTHER)]
+    check_collisions(emitted, "the code")
+    with pytest.raises(GenerationError) as raised:
+        check_collisions(emitted, "the package", files=True)
+    (diagnostic,) = raised.value.diagnostics
+    assert "one file where case does not count" in diagnostic.message
+
+
+@pytest.mark.parametrize(
+    ("path", "label"),
+    [
+        ("models/robot-2.0 (old).rnd", "robot-2.0 %28old%29.rnd"),
+        ("männchen.rnd", "männchen.rnd"),
+        ('a"""\nimport os\n"""b.rnd', "a%22%22%22%0Aimport os%0A%22%22%22b.rnd"),
+        ("a*\\.rnd", "a%2A%5C.rnd"),
+        ("a\u202eb\udcff.rnd", "a%E2%80%AEb%FF.rnd"),
+    ],
+)
+def test_file_label_holds_no_code(path: str, label: str) -> None:
+    """Quotes, line breaks, comment signs and invisible characters are written as numbers."""
+    assert file_label(path) == label

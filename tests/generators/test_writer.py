@@ -229,3 +229,22 @@ def test_a_directory_without_permission_is_reported(tmp_path: Path) -> None:
             write({"a.py": File(PYTHON)}, tmp_path)
     finally:
         tmp_path.chmod(0o700)
+
+
+def test_file_that_differs_in_case_alone_is_not_written(tmp_path: Path) -> None:
+    """Where case does not count, it would take the other's place; so it is refused everywhere."""
+    write({"demo/Ab.py": File("x = 1\n")}, tmp_path)
+    with pytest.raises(WriteError, match=r"differs from Ab\.py in case alone"):
+        write({"demo/ab.py": File("x = 2\n")}, tmp_path)
+    with pytest.raises(WriteError, match="in case alone"):
+        write({"new/Cd.py": File(""), "new/cd.py": File("")}, tmp_path)
+    assert [path.name for path in (tmp_path / "demo").iterdir()] == ["Ab.py"]
+    assert not (tmp_path / "new").exists()
+
+
+def test_files_that_differ_in_case_and_are_both_there_are_refreshed(tmp_path: Path) -> None:
+    """Whoever has both already loses neither, unless one run is to write both."""
+    (tmp_path / "Ab.txt").write_text("by hand", encoding="utf-8")
+    (tmp_path / "ab.txt").write_text("", encoding="utf-8")
+    write({"ab.txt": File("x")}, tmp_path, overwrite=True)
+    assert (tmp_path / "Ab.txt").read_text(encoding="utf-8") == "by hand"

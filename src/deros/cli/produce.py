@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import posixpath
+import re
 import shlex
 import time
 from collections.abc import Mapping
@@ -184,14 +185,21 @@ def scaffold_command(request: Request, source: Path) -> str:
 
 def _cmake_script(package: str, model: str, request: Request) -> str:
     more = "".join(
-        f'\n  OPTIONS "--{name}={value}"' for name, value in sorted(request.options.items())
+        f"\n  OPTIONS {_cmake_argument(f'--{name}={value}')}"
+        for name, value in sorted(request.options.items())
     )
     return (
         "cmake_minimum_required(VERSION 3.22)\n"
         f"project({package})\n\n"
         "find_package(deros REQUIRED)\n"
-        f'deros_package(MODEL "{model}" GENERATOR {request.target}{more})\n'
+        f"deros_package(MODEL {_cmake_argument(model)} GENERATOR {request.target}{more})\n"
     )
+
+
+def _cmake_argument(text: str) -> str:
+    """Return a text as a quoted argument of CMake, in which nothing is replaced."""
+    escaped = re.sub(r'[\\"$]', r"\\\g<0>", text)
+    return '"' + escaped.replace("\n", "\\n").replace("\r", "\\r") + '"'
 
 
 def _setup_script(model: str, request: Request) -> str:

@@ -6,12 +6,29 @@ import keyword
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.generators.protocol import GenerationError
 
 _NOT_IN_IDENTIFIERS = re.compile(r"\W+", re.ASCII)
+_PLAIN_IN_FILE_NAMES = " _.+-@"
+
+
+def file_label(path: str) -> str:
+    """Return the name of a file as generated text may show it, without its folder.
+
+    A file may be named anything but ``/`` and NUL: quotes, line breaks and comment signs in a name
+    would otherwise become code. Letters, digits, spaces and ``_.+-@`` stay, every other character
+    becomes ``%`` and the hexadecimal number of each byte, as in a URL.
+    """
+    return "".join(
+        character
+        if character.isalnum() or character in _PLAIN_IN_FILE_NAMES
+        else "".join(f"%{byte:02X}" for byte in character.encode("utf-8", "surrogateescape"))
+        for character in PurePosixPath(path).name
+    )
 
 
 def python_identifier(name: str) -> str:
@@ -49,8 +66,14 @@ class Emitted:
     span: Span
 
 
-def check_collisions(emitted: Iterable[Emitted], within: str) -> None:
+def check_collisions(emitted: Iterable[Emitted], within: str, *, files: bool = False) -> None:
     """Refuse a model of which two things would get one name in ``within``.
+
+    Args:
+        emitted: the names, in the order of the model.
+        within: what must not hold a name twice, for the message.
+        files: whether the names are those of files, which some file systems do not tell apart by
+            case.
 
     Raises:
         GenerationError: with one ``DRS401`` for each name that is taken already.
@@ -58,13 +81,19 @@ def check_collisions(emitted: Iterable[Emitted], within: str) -> None:
     first: dict[str, Emitted] = {}
     found: list[Diagnostic] = []
     for item in emitted:
-        other = first.setdefault(item.identifier, item)
+        key = item.identifier.casefold() if files else item.identifier
+        other = first.setdefault(key, item)
         if other is item:
             continue
+        both = f"{item.origin} and {other.origin}"
+        message = f"{both} both become {item.identifier!r} in {within}"
+        if item.identifier != other.identifier:
+            names = f"{item.identifier!r} and {other.identifier!r}"
+            message = f"{both} become {names} in {within}, one file where case does not count"
         found.append(
             report(
                 codes.NAME_COLLISION,
-                f"{item.origin} and {other.origin} both become {item.identifier!r} in {within}",
+                message,
                 item.span,
                 hint="rename one of them",
                 related=(Related(other.span, f"{other.origin} is here"),),

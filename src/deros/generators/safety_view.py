@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros.generators.monitor_python.source import header, origin
+from deros.generators.names import file_label
 from deros.generators.python_source import one_line, sentence
 from deros.metamodels.rules import Rules
 from deros.monitor import walk
@@ -19,7 +20,7 @@ _CONDITION = re.compile(r"\bif\b(.*?)\bthen\b", re.DOTALL)
 
 def origin_file(model: Rules) -> str:
     """Return the file name of the rules, without the folder: no output depends on the machine."""
-    return re.split(r"[/\\]", model.source.path)[-1]
+    return file_label(model.source.path)
 
 
 # States out ---------------------------------------------------------------------------------------

@@ -65,6 +65,7 @@ def write(files: Files, directory: Path, *, overwrite: bool = False) -> WriteRep
     paths = [_checked(path) for path in sorted(files)]
     _check_nesting(paths)
     try:
+        _check_case(paths, directory)
         return _write(files, paths, directory, overwrite)
     except OSError as error:
         where = error.filename if error.filename is not None else directory
@@ -154,6 +155,29 @@ def _check_nesting(paths: list[PurePosixPath]) -> None:
         for parent in path.parents:
             if parent in names:
                 raise WriteError(f"refused to write {path}: {parent} is to be a file")
+
+
+def _check_case(paths: list[PurePosixPath], directory: Path) -> None:
+    """Refuse a file that another one, there or to be written, differs from in case alone.
+
+    Where case does not count, one would silently take the other's place. It is refused everywhere,
+    so that what is generated does not depend on the machine, and can be checked out on any.
+    """
+    wanted = set(paths)
+    there: dict[PurePosixPath, dict[str, str]] = {}
+    for path in paths:
+        names = there.get(path.parent)
+        if names is None:
+            folder = directory / path.parent
+            listed = [each.name for each in folder.iterdir()] if folder.is_dir() else []
+            names = there[path.parent] = {name.casefold(): name for name in listed}
+            names |= {name.casefold(): name for name in listed if path.parent / name in wanted}
+        other = names.setdefault(path.name.casefold(), path.name)
+        if other != path.name:
+            raise WriteError(
+                f"refused to write {directory / path}: it differs from {other} in case alone, and "
+                "where case does not count both are one file; rename one of the two in the models"
+            )
 
 
 def _check_inside(target: Path, directory: Path) -> None:

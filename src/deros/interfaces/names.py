@@ -19,6 +19,7 @@ _FORBIDDEN = re.compile(r"[^A-Za-z0-9_]")
 _FORBIDDEN_IN_PATH = re.compile(r"[^A-Za-z0-9_/]")
 _CLOSE = 0.6
 _COMPARED_CLOSELY = 100
+_FORBIDDEN_IN_PROGRAM = re.compile(r"[^A-Za-z0-9_.+-]")
 
 
 def near(name: str, candidates: Iterable[str], n: int = 3) -> list[str]:
@@ -137,4 +138,23 @@ def check_parameter_name(name: str) -> str | None:
             return f"contains '{found[0]}'; a parameter name has only letters, digits, '_' and '.'"
         if part[0].isdigit():
             return f"has a part that starts with a digit ('{part}')"
+    return None
+
+
+def check_program_name(name: str) -> str | None:
+    """Say why a name is not the plain file name of a package's program, or return ``None``.
+
+    What ``ros2 run`` takes is a file in the package's own folder. A path, a pattern or an option
+    would let a description start any program of the machine.
+    """
+    if not name:
+        return "is empty"
+    if found := _FORBIDDEN_IN_PROGRAM.search(name):
+        return (
+            f"contains {found[0]!r}; a program's name has only letters, digits, '_', '.', '+', '-'"
+        )
+    if name[0] in ".-":
+        return f"starts with '{name[0]}'"
+    if len(name) > _NODE_LIMIT:
+        return f"is longer than {_NODE_LIMIT} characters"
     return None

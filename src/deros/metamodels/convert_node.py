@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from deros import codes
+from deros.diagnostics import Span
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import InterfaceKind
 from deros.metamodels.common import Scalar, Value
@@ -64,6 +65,7 @@ class NodeConverter(Converter):
         ports: list[Port] = []
         timers: list[Timer] = []
         executable: str | None = None
+        executable_span: Span | None = None
         lifecycle = False
         sections = Sections(self)
         for part in model.parts:
@@ -71,6 +73,7 @@ class NodeConverter(Converter):
             if kind == "Executable":
                 if sections.once("executable", self.span(part)):
                     executable = self.text(part.program)
+                    executable_span = self.token_span(part.program)
                 continue
             sections.once(str(part.keyword), self.token_span(part.keyword))
             if kind == "Lifecycle":
@@ -91,6 +94,7 @@ class NodeConverter(Converter):
             package_span=self.token_span(model.package),
             description=self.text(model.description),
             executable=executable,
+            executable_span=executable_span,
             lifecycle=lifecycle,
             parameters=tuple(parameters),
             ports=tuple(ports),

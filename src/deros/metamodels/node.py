@@ -111,6 +111,7 @@ class NodeType:
     package_span: Span = field(compare=False, repr=False)
     description: str = ""
     executable: str | None = None  # of an existing binary; None: the node's name
+    executable_span: Span | None = field(default=None, compare=False, repr=False)
     lifecycle: bool = False
     parameters: tuple[Parameter, ...] = ()
     ports: tuple[Port, ...] = ()  # all kinds, in the order written

@@ -13,6 +13,7 @@ from deros.interfaces.names import (
     check_node_name,
     check_package_name,
     check_parameter_name,
+    check_program_name,
     check_topic_name,
 )
 from deros.interfaces.store import InterfaceStore
@@ -28,6 +29,7 @@ def check_node(node: NodeType, store: InterfaceStore) -> Iterator[Diagnostic]:
     units = UnitRegistry()
     yield from _refused(check_node_name(node.name), node.name, node.name_span)
     yield from _refused(check_package_name(node.package), node.package, node.package_span)
+    yield from _program(node)
     yield from _duplicates(node)
     for parameter in node.parameters:
         yield from _parameter(parameter, units)
@@ -40,6 +42,20 @@ def check_node(node: NodeType, store: InterfaceStore) -> Iterator[Diagnostic]:
 def _refused(fault: str | None, name: str, span: Span) -> Iterator[Diagnostic]:
     if fault is not None:
         yield report(codes.INVALID_ROS_NAME, f"ROS 2 refuses the name '{name}': it {fault}", span)
+
+
+def _program(node: NodeType) -> Iterator[Diagnostic]:
+    """The program of an existing node is a file of its package, never another one."""
+    if node.executable is None:
+        return
+    fault = check_program_name(node.executable)
+    if fault is not None:
+        yield report(
+            codes.NOT_A_PROGRAM_NAME,
+            f"'executable' does not name a program of package '{node.package}': it {fault}",
+            node.executable_span or node.name_span,
+            hint=f"write the file name alone, as in 'ros2 run {node.package} NAME'",
+        )
 
 
 def _duplicates(node: NodeType) -> Iterator[Diagnostic]:

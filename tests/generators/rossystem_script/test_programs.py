@@ -31,6 +31,16 @@ def test_a_program_may_lie_deeper_in_that_folder(tmp_path: Path) -> None:
     assert programs.find("demo", "short") == [str(deeper / "short")]
 
 
+def test_path_or_pattern_finds_no_program(tmp_path: Path) -> None:
+    """Only a file of the package's own folder is started, whatever the description says."""
+    prefix = make_prefix(tmp_path / "prefix", names=["short"])
+    foreign = make_prefix(tmp_path / "foreign", names=["steady"]) / "lib/demo/steady"
+    programs = Programs([], {"AMENT_PREFIX_PATH": str(prefix)})
+    relative = os.path.relpath(foreign, prefix / "lib/demo")
+    for name in (str(foreign), relative, "../demo/short", "*", "sh*t", "[s]hort", "", ".", ".."):
+        assert programs.find("demo", name) is None, name
+
+
 def test_what_cannot_be_executed_is_no_program(tmp_path: Path) -> None:
     """A file without the permission, a folder, and another package's program are passed over."""
     prefix = make_prefix(tmp_path, names=["short", "steady"])

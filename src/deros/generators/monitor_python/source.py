@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 import textwrap
-from pathlib import PurePosixPath
 
 from deros.diagnostics import Span
 from deros.generators.monitor_python.logic import MAX_LINE
+from deros.generators.names import file_label
 
 
 def origin(span: Span) -> str:
     """Return ``file:line``, of the file the name alone: no output depends on the machine."""
-    return f"{PurePosixPath(span.file).name}:{span.line}"
+    return f"{file_label(span.file)}:{span.line}"
 
 
 def comment(indent: int, title: str, span: Span, text: str | None = None) -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 from deros.generators.cpp_source import (
     Chain,
@@ -13,7 +12,7 @@ from deros.generators.cpp_source import (
     cpp_string,
     cpp_type,
 )
-from deros.generators.names import Emitted, camel_case, check_collisions
+from deros.generators.names import Emitted, camel_case, check_collisions, file_label
 from deros.generators.node_view import (
     NodeBase,
     check_names,
@@ -213,7 +212,7 @@ def package_view(
     nodes = tuple(_node(model, provided.get(model.name)) for model in models)
     package = models[0].package
     pairs = list(zip(models, nodes, strict=True))
-    check_collisions(_files(pairs), f"the sources of package {package}")
+    check_collisions(_files(pairs), f"the sources of package {package}", files=True)
     check_collisions(
         (
             Emitted(name, f"node {model.name!r}", model.name_span)
@@ -270,7 +269,7 @@ def _node(model: NodeType, provided: Provided | None) -> NodeView:
         class_name=class_name,
         default_name=name,
         lifecycle=model.lifecycle,
-        source=Path(model.source.path).name,
+        source=file_label(model.source.path),
         summary=sentence(model.description) or f"The node {name}.",
         provided=provided,
         parameters=cpp_parameter_views(model),

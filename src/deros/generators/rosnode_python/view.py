@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
-from deros.generators.names import Emitted, camel_case, check_collisions, python_identifier
+from deros.generators.names import (
+    Emitted,
+    camel_case,
+    check_collisions,
+    file_label,
+    python_identifier,
+)
 from deros.generators.node_view import (
     NodeBase,
     check_names,
@@ -146,7 +151,7 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
         module=python_identifier(model.name),
         class_name=class_name,
         lifecycle=model.lifecycle,
-        source=Path(model.source.path).name,
+        source=file_label(model.source.path),
         raw=raw,
         summary=sentence(model.description) or f"The node {model.name}.",
         interfaces=tuple(interfaces.items()),
@@ -279,7 +284,7 @@ def package_view(
         name = python_identifier(model.name)
         origin = f"node {model.name!r}"
         modules += [Emitted(m, origin, model.name_span) for m in (name, f"{name}_base")]
-    check_collisions(modules, f"the modules of package {models[0].package}")
+    check_collisions(modules, f"the modules of package {models[0].package}", files=True)
     nodes = tuple(node_view(model, model.name in raw) for model in models)
     description = " ".join(node.summary for node in nodes)
     needed = {"ament_index_python", "launch", "launch_ros", "rclpy", *needs}

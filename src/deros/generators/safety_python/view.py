@@ -208,7 +208,7 @@ def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
     if view.actions:
         modules += [view.actions_module, f"{view.actions_module}_base"]
     emitted = (Emitted(name, f"module {name!r}", node.name_span) for name in modules)
-    check_collisions(emitted, f"package {view.package}")
+    check_collisions(emitted, f"package {view.package}", files=True)
 
 
 def _imports(

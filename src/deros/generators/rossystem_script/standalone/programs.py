@@ -30,7 +30,13 @@ class Programs:
         self._ambient = [Path(entry) for entry in named if entry]
 
     def find(self, package: str, executable: str) -> list[str] | None:
-        """Return the start of the command line, or None when there is no such program."""
+        """
+        Return the start of the command line, or None when there is no such program.
+
+        A program is a file of the package: a path or a pattern finds none.
+        """
+        if '/' in executable:
+            return None
         for prefix in [*self._prefixes, *self._ambient]:
             folder = prefix / 'lib' / package
             for path in itertools.chain([folder / executable], _nested(folder, executable)):
@@ -68,8 +74,8 @@ def _folders(folder: Path) -> list[Path]:
 
 
 def _nested(folder: Path, executable: str) -> Iterator[Path]:
-    if folder.is_dir():
-        yield from sorted(folder.rglob(Path(executable).name))
+    holders = (Path(path) for path, _, files in os.walk(folder) if executable in files)
+    yield from sorted(holder / executable for holder in holders)
 
 
 def _python_folders(prefix: Path) -> list[Path]:

@@ -1,0 +1,103 @@
+"""What a stranger's model may do: be read, and decide what is written below the output folder."""
+
+from __future__ import annotations
+
+import ast
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.support.cli import deros
+from tests.support.examples import EXAMPLES
+
+ROBOT = EXAMPLES / "intelligent_one"
+
+HOSTILE_NAMES = {
+    "python": 'a"""\nimport evil\n"""',
+    "quotes": "a'''\nimport evil\n'''\"",
+    "c": "a\n#error evil\n",
+    "line": "evil name\\",
+    "cmake": 'a"\n${evil}\n"',
+}
+"""File names that end a docstring, a string or a line, and go on with code, or join lines."""
+
+
+@pytest.mark.parametrize("name", HOSTILE_NAMES.values(), ids=HOSTILE_NAMES.keys())
+@pytest.mark.parametrize("target", ["python", "cpp", "c"])
+def test_file_name_of_rules_becomes_no_code(name: str, target: str, tmp_path: Path) -> None:
+    """Whatever the rules' file is called, no line of the output begins with what follows in it."""
+    models = tmp_path / "models"
+    shutil.copytree(ROBOT, models)
+    rules = models / f"{name}.deros"
+    (models / "intelligent_one.deros").rename(rules)
+    outcome = deros("generate", rules, "--target", target, "-o", tmp_path / "out")
+    assert outcome.code == 0, outcome.err
+    _assert_harmless(tmp_path / "out", name)
+
+
+@pytest.mark.parametrize("name", HOSTILE_NAMES.values(), ids=HOSTILE_NAMES.keys())
+@pytest.mark.parametrize("target", ["python", "cpp"])
+def test_file_name_of_node_becomes_no_code(name: str, target: str, tmp_path: Path) -> None:
+    """The same for node descriptions, and for the script that has a package generated."""
+    models = tmp_path / "models"
+    models.mkdir()
+    node = models / f"{name}.rnd"
+    shutil.copy(ROBOT / "marking_robot.rnd", node)
+    outcome = deros("generate", node, "--target", target, "-o", tmp_path / "out")
+    assert outcome.code == 0, outcome.err
+    _assert_harmless(tmp_path / "out", name)
+    outcome = deros("generate", node, "--target", target, "--scaffold", models)
+    assert outcome.code == 0, outcome.err
+    for script in (models / "CMakeLists.txt", models / "setup.py"):
+        if script.exists():
+            assert not _evil_lines(script), script
+
+
+@pytest.mark.parametrize("name", HOSTILE_NAMES.values(), ids=HOSTILE_NAMES.keys())
+@pytest.mark.parametrize("target", ["launch", "script", "params"])
+def test_file_name_of_system_becomes_no_code(name: str, target: str, tmp_path: Path) -> None:
+    """The same for systems."""
+    models = tmp_path / "models"
+    shutil.copytree(ROBOT, models)
+    system = models / f"{name}.system"
+    (models / "intelligent_one.system").rename(system)
+    outcome = deros("generate", system, "--target", target, "-o", tmp_path / "out")
+    assert outcome.code == 0, outcome.err
+    _assert_harmless(tmp_path / "out", name)
+
+
+def test_check_and_generate_write_below_the_output_alone(tmp_path: Path) -> None:
+    """Models stay as they were, and nothing appears beside them."""
+    models = tmp_path / "models"
+    shutil.copytree(ROBOT, models)
+    before = _contents(models)
+    assert deros("check", models / "intelligent_one.deros").code == 0
+    for target in ("python", "cpp", "c"):
+        out = tmp_path / "out" / target
+        assert deros("generate", models / "intelligent_one.deros", "--target", target, "-o", out)
+    assert _contents(models) == before
+    assert {path.name for path in tmp_path.iterdir()} == {"models", "out"}
+
+
+_EVIL = ("import evil", "${evil", "#error evil", "error evil")
+
+
+def _contents(folder: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def _assert_harmless(folder: Path, name: str) -> None:
+    written = [path for path in folder.rglob("*") if path.is_file()]
+    assert written
+    for path in written:
+        text = path.read_text(encoding="utf-8")
+        assert f"{name}\n" not in text, path
+        assert not _evil_lines(path), path
+        if path.suffix == ".py":
+            ast.parse(text)
+
+
+def _evil_lines(path: Path) -> list[str]:
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return [each for each in lines if each.strip(" #/*\"'").startswith(_EVIL)]
