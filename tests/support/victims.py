@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from tests.support.played import button, command, imu, speed
+from tests.support.processes import freeze, thaw
 from tests.support.ros import LIMIT
 
 _SENSOR = Path(__file__).with_name("sensor.py")
@@ -45,11 +46,11 @@ class Process:
 
     def freeze(self) -> None:
         """Let it hang, as a deadlock or a swapping machine would."""
-        self.popen.send_signal(signal.SIGSTOP)
+        freeze(self.popen.pid)
 
     def thaw(self) -> None:
         """Let it go on."""
-        self.popen.send_signal(signal.SIGCONT)
+        thaw(self.popen.pid)
 
     def output(self) -> str:
         """Return what it has printed up to now."""
@@ -128,11 +129,11 @@ class Sensors:
 
     def freeze(self) -> None:
         """Let the sensors hang."""
-        self._popen.send_signal(signal.SIGSTOP)
+        freeze(self._popen.pid)
 
     def thaw(self) -> None:
         """Let the sensors go on."""
-        self._popen.send_signal(signal.SIGCONT)
+        thaw(self._popen.pid)
 
     def close(self) -> None:
         """End the process, in whatever state it is."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import random
-import signal
 import statistics
 import sys
 import time
@@ -29,6 +28,7 @@ from tests.support.gate_nodes import (
     with_shared_memory,
 )
 from tests.support.gate_runners import LANGUAGES, RunGate
+from tests.support.processes import freeze, thaw
 from tests.support.ros import Peer, running
 
 pytestmark = pytest.mark.ros
@@ -106,8 +106,8 @@ def test_a_stopped_safety_node(drive: Drive, start_safety: StartSafety) -> None:
         for _ in range(REPEATS):
             drive.until_moving()
             at_some_moment(drive)
-            delays.append(drive.until_zero(lambda: safety.send_signal(signal.SIGSTOP)))
-            safety.send_signal(signal.SIGCONT)
+            delays.append(drive.until_zero(lambda: freeze(safety.pid)))
+            thaw(safety.pid)
     report("stopped", delays)
 
 

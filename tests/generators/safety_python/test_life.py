@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.support.processes import freeze, thaw
 from tests.support.ros import LIMIT, running
 from tests.support.safety_node import NODE, Process, Robot, Software, Start, end
 
@@ -283,12 +283,12 @@ def test_a_stopped_node_does_not_beat(start: Start, robot: Robot) -> None:
     """The heartbeat is the monitor's own: while that does nothing, there is none."""
     with start() as process:
         robot.meet()
-        process.send_signal(signal.SIGSTOP)
+        freeze(process.pid)
         beats = len(robot.beats) + 2  # with those under way
         try:
             with pytest.raises(AssertionError, match="did not come"):
                 robot.peer.until(lambda: len(robot.beats) > beats, limit=1.0)
         finally:
-            process.send_signal(signal.SIGCONT)
+            thaw(process.pid)
         beats = len(robot.beats)
         robot.peer.until(lambda: len(robot.beats) > beats)
