@@ -14,7 +14,7 @@ import pytest
 
 from tests.support.gate_nodes import SAFETY_NODE, World
 from tests.support.gate_runners import LANGUAGES, RunGate
-from tests.support.ros import LIMIT, Peer
+from tests.support.ros import LIMIT, Peer, set_parameter
 
 pytestmark = pytest.mark.ros
 
@@ -279,6 +279,20 @@ def test_simulated_time_pauses_and_steps_back(
         ticking(0.01, lambda: world.last == (0.3, 0.0, 0.0))
         tick(0.6)
         world.peer.until(lambda: world.last == STILL)
+
+
+@pytest.mark.parametrize("chosen", [False, True])
+def test_the_clock_cannot_change_while_it_runs(
+    run_gate: RunGate, ros_env: dict[str, str], world: World, chosen: bool
+) -> None:
+    """The change is refused with a reason, and the zeros go on."""
+    with run_gate(GATE, ros_env, f"use_sim_time:={str(chosen).lower()}"):
+        world.peer.until(lambda: world.status)
+        (result,) = set_parameter(world.peer, GATE, use_sim_time=not chosen)
+        assert not result.successful
+        assert "use_sim_time cannot change" in result.reason
+        seen = world.reports
+        world.peer.until(lambda: world.reports > seen + 1)
 
 
 def test_a_gate_of_numbers_alone(

@@ -21,6 +21,7 @@ MODULES = ("logic", "message")
 
 RUNTIME = (
     "alarm",
+    "clock_choice",
     "gate_report",
     "gate_watch",
     "instance",

@@ -10,9 +10,9 @@ from deros.generators.rosnode_cpp.generate import licensed
 
 _HEADERS_ONLY = ("descriptor", "refusal")
 _SOURCES = (
-    *("agenda", "diagnostics", "events", "guardian", "instance", "latches", "machine", "ports"),
-    *("process", "publishers", "sha256", "siblings", "simulated", "text", "told", "watch"),
-    "worker",
+    *("agenda", "clock_choice", "diagnostics", "events", "guardian", "instance", "latches"),
+    *("machine", "ports", "process", "publishers", "sha256", "siblings", "simulated", "text"),
+    *("told", "watch", "worker"),
 )
 
 

@@ -1,4 +1,4 @@
-"""Publishers that a node cannot hear, and those that speak in its name."""
+"""Publishers that a node cannot hear, those that are too many, and those that use its name."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def publisher(kind: str = "std_msgs/msg/Bool", qos: QoSProfile = RELIABLE) -> An
     )
 
 
-def report(*publishers: Any) -> tuple[str, str]:
+def report(*publishers: Any, shared: tuple[str, ...] = ()) -> tuple[str, str]:
     """Return what is reported of a topic with some publishers."""
     from std_msgs.msg import Bool
 
@@ -34,7 +34,7 @@ def report(*publishers: Any) -> tuple[str, str]:
     node = Mock(subscriptions=[subscription])
     node.get_publishers_info_by_topic.return_value = list(publishers)
     found = Mock()
-    Publishers(node, found).look()
+    Publishers(node, found, shared).look()
     topic, text = found.call_args.args
     return topic, text
 
@@ -51,6 +51,17 @@ def test_another_type_and_a_lesser_quality_are_faults() -> None:
     first, second = text.split("; ", 1)
     assert first == "/arm/driver publishes std_msgs/msg/String on it, which is not heard"
     assert second.startswith("/arm/driver offers a QoS on it that is not heard:")
+
+
+def test_a_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
+    """Only those that are heard count; one whose node is not known yet counts, too."""
+    unnamed = publisher()
+    unnamed.node_name = "_NODE_NAME_UNKNOWN_"
+    _, text = report(publisher(), publisher("std_msgs/msg/String"), unnamed)
+    assert text.endswith(
+        "; 2 publishers where one is expected: /arm/driver, a node that is not known yet"
+    )
+    assert report(publisher(), publisher(), shared=("/go",)) == ("/go", "")
 
 
 def test_a_node_without_subscriptions_has_nothing_to_look_at() -> None:

@@ -19,6 +19,7 @@ Gatekeeper::Gatekeeper(
 : node_(node),
   gate_(gate),
   refused_(prepare(settings.realtime_priority, settings.lock_memory)),
+  clock_choice_(refuse_clock_change(node)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
   simulated_(simulated_time(node, agenda_, [this](bool) {advance();})),
   clock_(clock_of(simulated_)),

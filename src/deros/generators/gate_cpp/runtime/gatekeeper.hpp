@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/clock_choice.hpp"
 #include "deros_runtime/runtime/descriptor.hpp"
 #include "deros_runtime/runtime/gate_report.hpp"
 #include "deros_runtime/runtime/simulated.hpp"
@@ -120,6 +121,7 @@ private:
   Kept & gate_;
   std::vector<std::string> refused_;  // by the machine
   Descriptor lock_;
+  const ClockChoice clock_choice_;
   rclcpp::CallbackGroup::SharedPtr group_;  // that no executor spins
   Agenda agenda_;
   std::unique_ptr<SimulatedTime> simulated_;

@@ -26,16 +26,42 @@ std::string bare(std::string reason)
   return reason;
 }
 
+/// Return why a subscription does not hear a publisher; empty if it does.
+std::string unheard(
+  const rclcpp::TopicEndpointInfo & info, const std::string & type, const rclcpp::QoS & qos)
+{
+  if (info.topic_type() != type) {
+    return "publishes " + info.topic_type() + " on it, which is not heard";
+  }
+  const auto fit = rclcpp::qos_check_compatible(info.qos_profile(), qos);
+  if (fit.compatibility == rclcpp::QoSCompatibility::Error) {
+    return "offers a QoS on it that is not heard: " + bare(fit.reason);
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string node_of(const rclcpp::TopicEndpointInfo & info)
+{
+  // What the middleware calls a node of which it knows no more yet.
+  if (info.node_name().empty() || info.node_name() == "_NODE_NAME_UNKNOWN_") {
+    return "";
+  }
+  const std::string & space = info.node_namespace();
+  return (space == "/" ? "" : space) + '/' + info.node_name();
+}
 
 Publishers::Publishers(rclcpp::Node & node, Report report)
 : node_(node), report_(std::move(report))
 {
 }
 
-void Publishers::add(const rclcpp::SubscriptionBase & subscription, const std::string & type)
+void Publishers::add(
+  const rclcpp::SubscriptionBase & subscription, const std::string & type, bool is_shared)
 {
-  topics_.push_back({subscription.get_topic_name(), type, subscription.get_actual_qos()});
+  topics_.push_back(
+    {subscription.get_topic_name(), type, subscription.get_actual_qos(), is_shared});
 }
 
 void Publishers::look()
@@ -51,21 +77,23 @@ void Publishers::look()
 std::string Publishers::faults(const Topic & topic) const
 {
   std::vector<std::string> found;
+  std::vector<std::string> heard;
   for (const rclcpp::TopicEndpointInfo & info : node_.get_publishers_info_by_topic(topic.name)) {
-    const std::string & space = info.node_namespace();
-    const std::string name = (space == "/" ? "" : space) + '/' + info.node_name();
-    std::string fault;
-    if (info.topic_type() != topic.type) {
-      fault = name + " publishes " + info.topic_type() + " on it, which is not heard";
-    } else {
-      const auto fit = rclcpp::qos_check_compatible(info.qos_profile(), topic.qos);
-      if (fit.compatibility == rclcpp::QoSCompatibility::Error) {
-        fault = name + " offers a QoS on it that is not heard: " + bare(fit.reason);
-      }
+    const std::string name = node_of(info);
+    const std::string reason = unheard(info, topic.type, topic.qos);
+    if (reason.empty()) {
+      heard.push_back(name.empty() ? "a node that is not known yet" : name);
+      continue;
     }
-    if (!fault.empty() && std::find(found.begin(), found.end(), fault) == found.end()) {
+    const std::string fault = (name.empty() ? info.node_name() : name) + ' ' + reason;
+    if (std::find(found.begin(), found.end(), fault) == found.end()) {
       found.push_back(fault);
     }
+  }
+  if (heard.size() > 1 && !topic.is_shared) {
+    std::sort(heard.begin(), heard.end());
+    found.push_back(
+      std::to_string(heard.size()) + " publishers where one is expected: " + joined(heard, ", "));
   }
   return joined(found, "; ");
 }

@@ -11,10 +11,14 @@
 namespace deros_runtime
 {
 
-/// Looks, one topic at a time, for publishers that a node cannot hear.
+/// Return the fully qualified name of the node of a publisher; empty if it is not known yet.
+std::string node_of(const rclcpp::TopicEndpointInfo & info);
+
+/// Looks, one topic at a time, at the publishers on the topics that a node subscribes to.
 /**
- * They have another type or an unfit quality of service. The middleware keeps silent about the
- * first, and does not say when the second ends.
+ * Those of another type or of an unfit quality of service cannot be heard: the middleware keeps
+ * silent about the first, and does not say when the second ends. And where one publisher is
+ * expected, a second one contradicts it, or hides that it has died.
  */
 class Publishers
 {
@@ -24,8 +28,10 @@ public:
 
   Publishers(rclcpp::Node & node, Report report);
 
-  /// Watch over a topic.
-  void add(const rclcpp::SubscriptionBase & subscription, const std::string & type);
+  /// Watch over a topic, on which there may be any number of publishers if it is shared.
+  void add(
+    const rclcpp::SubscriptionBase & subscription, const std::string & type,
+    bool is_shared = false);
 
   /// Look at the next topic.
   void look();
@@ -36,6 +42,7 @@ private:
     std::string name;
     std::string type;
     rclcpp::QoS qos;
+    bool is_shared;
   };
 
   std::string faults(const Topic & topic) const;

@@ -12,6 +12,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from .alarm import Alarm
+from .clock_choice import refuse_clock_change
 
 NEVER = 1 << 62  # or later, in nanoseconds; timers cannot wait for that
 
@@ -37,6 +38,7 @@ class GateWatch:
     def __init__(self, node: Node) -> None:
         """Prepare; start() comes next."""
         self._node = node
+        refuse_clock_change(node)
         self.now, clock = self._choose_clock()
         self._deadline = Alarm(node, clock, self.now, self.advance)
 

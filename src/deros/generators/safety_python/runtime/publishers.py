@@ -1,27 +1,57 @@
-"""Publishers that a node cannot hear."""
+"""The publishers on the topics of a node: unheard ones, and more than there may be."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container, Iterator
 import itertools
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import qos_check_compatible, QoSCompatibility
 from rclpy.subscription import Subscription
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+UNNAMED = '_NODE_NAME_UNKNOWN_'  # what the middleware calls a node of which it knows no more yet
+
+
+def node_of(info: TopicEndpointInfo) -> str:
+    """Return the fully qualified name of the node of a publisher; empty if it is not known yet."""
+    if info.node_name in ('', UNNAMED):
+        return ''
+    return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+
+
+def heard_publishers(node: Node, subscription: Subscription) -> list[TopicEndpointInfo]:
+    """Return the publishers whose messages a subscription gets, as far as the graph knows."""
+    infos = node.get_publishers_info_by_topic(subscription.topic_name)
+    return [info for info in infos if not _unheard(info, subscription)]
+
+
+def listed(infos: list[TopicEndpointInfo]) -> str:
+    """Return the names of the nodes of publishers, in order."""
+    return ', '.join(sorted(node_of(info) or 'a node that is not known yet' for info in infos))
 
 
 class Publishers:
     """
-    Looks, one topic at a time, for publishers of another type or of an unfit quality of service.
+    Looks, one topic at a time, at the publishers on the topics that a node subscribes to.
 
-    The middleware keeps silent about the first, and does not say when the second ends.
+    Those of another type or of an unfit quality of service cannot be heard: the middleware keeps
+    silent about the first, and does not say when the second ends. And where one publisher is
+    expected, a second one contradicts it, or hides that it has died.
     """
 
-    def __init__(self, node: Node, report: Callable[[str, str], None]) -> None:
-        """Prepare; report takes a topic and what is wrong with it, empty if nothing is."""
+    def __init__(
+        self, node: Node, report: Callable[[str, str], None], shared: Container[str] = ()
+    ) -> None:
+        """
+        Prepare; report takes a topic and what is wrong with it, empty if nothing is.
+
+        On the topics that are shared, by their full names, there may be any number of publishers.
+        """
         self._node = node
         self._report = report
+        self._shared = shared
         self._subscriptions = itertools.cycle(list(node.subscriptions))
 
     def look(self) -> None:
@@ -30,17 +60,28 @@ class Publishers:
         if subscription is not None:
             self._report(subscription.topic_name, '; '.join(self._faults(subscription)))
 
-    def _faults(self, subscription: Subscription) -> list[str]:
-        kind: Any = subscription.msg_type
-        wanted = f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'
-        found: dict[str, None] = {}
-        for info in self._node.get_publishers_info_by_topic(subscription.topic_name):
-            name = f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-            if info.topic_type != wanted:
-                found[f'{name} publishes {info.topic_type} on it, which is not heard'] = None
-                continue
-            fits, reason = qos_check_compatible(info.qos_profile, subscription.qos_profile)
-            if fits == QoSCompatibility.ERROR:
-                reason = reason.removeprefix('ERROR: ').strip(' ;')
-                found[f'{name} offers a QoS on it that is not heard: {reason}'] = None
-        return list(found)
+    def _faults(self, subscription: Subscription) -> Iterator[str]:
+        topic = subscription.topic_name
+        heard: list[TopicEndpointInfo] = []
+        unheard: dict[str, None] = {}
+        for info in self._node.get_publishers_info_by_topic(topic):
+            fault = _unheard(info, subscription)
+            if fault:
+                unheard[f'{node_of(info) or info.node_name} {fault}'] = None
+            else:
+                heard.append(info)
+        yield from unheard
+        if len(heard) > 1 and topic not in self._shared:
+            yield f'{len(heard)} publishers where one is expected: {listed(heard)}'
+
+
+def _unheard(info: TopicEndpointInfo, subscription: Subscription) -> str:
+    """Return why a subscription does not hear a publisher; empty if it does."""
+    kind: Any = subscription.msg_type
+    if info.topic_type != f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}':
+        return f'publishes {info.topic_type} on it, which is not heard'
+    fits, reason = qos_check_compatible(info.qos_profile, subscription.qos_profile)
+    if fits == QoSCompatibility.ERROR:
+        reason = reason.removeprefix('ERROR: ').strip(' ;')
+        return f'offers a QoS on it that is not heard: {reason}'
+    return ''
