@@ -57,6 +57,17 @@ for number in range(40_000):
     if number == 11_000:
         open(os.environ["MARK"], "w").close()""",
     "crashing": "signal.pthread_sigmask(signal.SIG_UNBLOCK, ALL); os.kill(os.getpid(), 11)",
+    # Python that is still starting: SIGINT may come in the middle of any import.
+    "starting": """\
+def fail(*_):
+    say("got SIGINT in an import"); os._exit(1)
+signal.signal(signal.SIGINT, fail); signal.pthread_sigmask(signal.SIG_UNBLOCK, ALL)
+say("ready"); signal.pause()""",
+    # The same failure, of a node that is up: it heeds SIGTERM, too.
+    "untidy": """\
+for number in ALL:
+    signal.signal(number, lambda *_: os._exit(1))
+signal.pthread_sigmask(signal.SIG_UNBLOCK, ALL); say("ready"); signal.pause()""",
     # A wrapper that ends at once on SIGINT, while what it started takes its time.
     "family": """\
 if os.fork():

@@ -258,6 +258,79 @@ def test_a_stubborn_node_is_killed_and_the_code_is_1(start: Start) -> None:
     assert "[Robot] b stopped" in run.lines
 
 
+def test_a_node_told_in_the_middle_of_its_start_has_stopped_well(start: Start) -> None:
+    """Python turns a SIGINT in some of its imports into code 1, and no harm is done."""
+    run = start("node a : starting node b : steady")
+    run.until("[a] ready", "[b] ready")
+    run.signal(signal.SIGINT)
+    assert run.end() == 0
+    assert {"[a] got SIGINT in an import", "[Robot] a stopped"} <= set(run.lines)
+
+
+def test_a_node_that_is_up_and_fails_when_told_to_stop_has_failed(start: Start) -> None:
+    """Whatever it had to put in order, it did not."""
+    run = start("node a : untidy")
+    run.until("[a] ready")
+    run.signal(signal.SIGINT)
+    assert run.end() == 1
+    assert "[Robot] a exited with code 1" in run.lines
+
+
+IN_SITE = """\
+import os, signal, time
+os.write(1, b"in site\\n")
+time.sleep(60)
+"""
+
+
+def test_pythons_own_start_may_be_interrupted(start: Start, tmp_path: Path) -> None:
+    """Before any line of the program runs, SIGINT is a fatal error of the interpreter."""
+    (tmp_path / "sitecustomize.py").write_text(IN_SITE)
+    program = tmp_path / "prefix" / "lib" / "demo" / "short"
+    program.write_text(f"#!{sys.executable}\nprint('done')\n")
+    run = start("node a : short", PYTHONPATH=str(tmp_path))
+    run.until("[a] in site")
+    run.signal(signal.SIGINT)
+    assert run.end() == 0
+    assert "Fatal Python error: init_import_site" in "\n".join(run.lines)
+
+
+INTERRUPTED = """\
+import os, runpy, signal, sys
+real = signal.{function}
+def interrupted(*arguments, **options):
+    signal.{function} = real
+    if "{moment}" == "before":
+        os.kill(os.getpid(), signal.SIGINT)
+    result = real(*arguments, **options)
+    if "{moment}" == "after":
+        os.kill(os.getpid(), signal.SIGINT)
+    return result
+signal.{function} = interrupted
+sys.argv = sys.argv[1:]
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
+
+
+@pytest.mark.parametrize("function", ["signal", "set_wakeup_fd"])
+@pytest.mark.parametrize("moment", ["before", "after"])
+def test_no_signal_is_lost_while_the_script_prepares_for_them(
+    tmp_path: Path, function: str, moment: str
+) -> None:
+    """One that comes before any node is there keeps all from starting, or stops them at once."""
+    prefix = make_prefix(tmp_path / "prefix")
+    (tmp_path / "models").mkdir()
+    script = make_script(tmp_path / "models", "node a : steady")
+    text = INTERRUPTED.format(function=function, moment=moment)
+    env = {"PATH": os.environ["PATH"], "AMENT_PREFIX_PATH": str(prefix)}
+    run = Run([sys.executable, "-IS", "-c", text, script], env)
+    try:
+        run.end()
+        assert "[a] ready" not in run.lines or "[a] got SIGINT" in run.lines
+    finally:
+        run.close()
+
+
 def test_a_second_signal_hurries(start: Start) -> None:
     """Each further Ctrl-C goes on to the next signal at once, whatever the patience."""
     run = start("node a : stubborn", "--stop-timeout", "1000")

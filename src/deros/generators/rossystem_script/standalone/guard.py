@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 import contextlib
 import ctypes
 import os
@@ -45,20 +45,49 @@ class Guard:
     that they are gone, too.
     """
 
-    def __init__(self, patience: float) -> None:
-        """Start the guard, which gives the nodes so many seconds from one signal to the next."""
+    def __init__(self, patience: float, handled: Sequence[int] = ()) -> None:
+        """
+        Start the guard, which gives the nodes so many seconds from one signal to the next.
+
+        The script's handlers of the handled signals are nothing for its children.
+        """
+        self._handled = handled
         notes, self._notes = os.pipe()
         alive, self._alive = os.pipe()
-        self.pid = os.fork()
-        if self.pid == 0:
-            try:
-                _watch(notes, alive, patience)
-            finally:
-                os._exit(0)
+        with self.signals_held():
+            self.pid = os.fork()
+            if self.pid == 0:
+                try:
+                    os.setsid()  # a Ctrl-C is for the script alone
+                    self._take_signals()
+                    _watch(notes, alive, patience)
+                finally:
+                    os._exit(0)
         os.close(notes)
         os.close(alive)
         self.lost = False
         self._ticket = 0
+
+    @contextlib.contextmanager
+    def signals_held(self) -> Iterator[None]:
+        """
+        Hold signals back while a child begins.
+
+        Until it runs its own program it has the script's handlers, which would tell the script
+        of a signal, such as a terminal's to all, a second time: it would hurry.
+        """
+        self._mask = signal.pthread_sigmask(signal.SIG_BLOCK, self._handled)
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, self._mask)
+
+    def _take_signals(self) -> None:
+        """Let signals do to the calling process, a child, what they do by default."""
+        signal.set_wakeup_fd(-1)
+        for number in self._handled:
+            signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, self._mask)
 
     @property
     def inherited(self) -> tuple[int, ...]:
@@ -72,6 +101,7 @@ class Guard:
 
     def enrol(self) -> None:
         """Put the calling process, a new group's first, under guard before it runs its program."""
+        self._take_signals()
         if not self.lost:
             os.write(self._notes, b'%d %d\n' % (self._ticket, os.getpid()))
         if PRCTL is not None:
@@ -91,7 +121,6 @@ class Guard:
 
 
 def _watch(notes: int, alive: int, patience: float) -> None:
-    os.setsid()
     nothing = os.open(os.devnull, os.O_RDWR)
     for standard in (0, 1, 2):
         os.dup2(nothing, standard)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import enum
 import os
+from pathlib import Path
 import signal
 import subprocess
 
@@ -35,6 +36,7 @@ class Process:
         self.due: float | None = 0.0  # monotonic time to go on; None: when something happens
         self.restarts = 0
         self.signals_sent = 0
+        self.told_at_its_start = False  # it was told to stop before it was up
         self.group = 0
         self.ticket = 0  # under which the guard knows the group
         self.exit_code: int | None = None  # the program's own; others of its group may live on
@@ -50,16 +52,17 @@ class Process:
         self.ticket = guard.ticket()
         read, write = os.pipe()
         try:
-            started = subprocess.Popen(
-                self.command,
-                stdin=subprocess.DEVNULL,
-                stdout=write,
-                stderr=write,
-                env=environment,
-                start_new_session=True,
-                pass_fds=guard.inherited,
-                preexec_fn=guard.enrol,
-            )
+            with guard.signals_held():
+                started = subprocess.Popen(
+                    self.command,
+                    stdin=subprocess.DEVNULL,
+                    stdout=write,
+                    stderr=write,
+                    env=environment,
+                    start_new_session=True,
+                    pass_fds=guard.inherited,
+                    preexec_fn=guard.enrol,
+                )
         except BaseException:
             os.close(read)
             raise
@@ -99,6 +102,20 @@ class Process:
     def _finish(self) -> list[bytes]:
         line, self._unfinished = self._unfinished, b''
         return [line] if line else []
+
+
+def starting(pid: int) -> bool:
+    """
+    Tell whether a program is not up yet: Python from its first instruction heeds SIGINT alone.
+
+    A node of ROS 2 heeds SIGTERM as well, from its initialization on.
+    """
+    try:
+        text = Path(f'/proc/{pid}/status').read_text(encoding='utf-8', errors='replace')
+        caught = int(text.partition('SigCgt:')[2].split()[0], 16)
+    except (OSError, LookupError):
+        return False
+    return bool(caught & 1 << signal.SIGINT - 1) and not caught & 1 << signal.SIGTERM - 1
 
 
 def describe(exit_code: int) -> str:

@@ -13,10 +13,12 @@ import time
 
 from .guard import Guard, PR_SET_CHILD_SUBREAPER, PRCTL, signal_group, STOP_SIGNALS
 from .output import Output
-from .process import describe, Process, State
+from .process import describe, Process, starting, State
 
 COLOURS = (36, 33, 32, 35, 34, 96, 93, 92, 95, 94)  # of ANSI terminals, for the nodes in turn
 BOLD = 1
+
+WATCHED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD)
 
 # A node that was told to stop has done so when it ends by itself or by the signal it was sent.
 STOPPED_BY = {
@@ -73,13 +75,13 @@ class Supervisor:
         if PRCTL is not None:
             # What a node leaves behind becomes our child, so that its end is told to us.
             PRCTL(PR_SET_CHILD_SUBREAPER, 1)
-        self._guard = Guard(self._patience)
-        try:
-            with self._signals():
+        with self._signals():
+            self._guard = Guard(self._patience, WATCHED)
+            try:
                 self._loop()
                 self._output.drain(self._patience)
-        finally:
-            self._guard.close()
+            finally:
+                self._guard.close()
         return 1 if self._failed else 0
 
     # What is waited for ---------------------------------------------------------------------
@@ -104,17 +106,17 @@ class Supervisor:
         read, write = os.pipe()
         os.set_blocking(read, False)
         os.set_blocking(write, False)
-        watched = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD)
-        before = {number: signal.signal(number, lambda *_: None) for number in watched}
+        # In this order: a signal that came in between would wake nobody up.
         wakeup = signal.set_wakeup_fd(write, warn_on_full_buffer=False)
+        before = {number: signal.signal(number, lambda *_: None) for number in WATCHED}
         self._selector.register(read, selectors.EVENT_READ, lambda: self._on_signals(read))
         try:
             yield
         finally:
             self._selector.unregister(read)
-            signal.set_wakeup_fd(wakeup)
             for number, handler in before.items():
                 signal.signal(number, handler)
+            signal.set_wakeup_fd(wakeup)
             os.close(read)
             os.close(write)
 
@@ -202,8 +204,7 @@ class Supervisor:
         process.state, process.due, process.group = State.ENDED, None, 0
         how = describe(process.exit_code)
         if self._stopping:
-            sent = STOP_SIGNALS[: process.signals_sent]
-            well = any(process.exit_code in STOPPED_BY[number] for number in sent)
+            well = self._has_stopped_well(process)
             self._failed |= not well
             self._say(f'{process.label} stopped' if well else f'{process.label} {how}')
         elif self._may_restart(process):
@@ -212,6 +213,13 @@ class Supervisor:
             self._say(f'{process.label} {how}')
             if process.exit_code != 0:
                 self._failure(process)
+
+    def _has_stopped_well(self, process: Process) -> bool:
+        sent = STOP_SIGNALS[: process.signals_sent]
+        if any(process.exit_code in STOPPED_BY[number] for number in sent):
+            return True
+        # A signal in the middle of Python's start ends it with any code, and harms nothing.
+        return process.told_at_its_start and process.exit_code in range(1, 128)
 
     def _may_restart(self, process: Process) -> bool:
         most = process.node.respawn_max
@@ -256,6 +264,8 @@ class Supervisor:
         number = STOP_SIGNALS[process.signals_sent]
         if process.signals_sent > 0:
             self._say(f'{process.label} is still running, sending {number.name}')
+        else:
+            process.told_at_its_start = starting(process.group)
         process.signals_sent += 1
         process.due = time.monotonic() + self._patience
         signal_group(process.group, number)
