@@ -12,7 +12,8 @@ def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
     """Return the import statements of the base class: standard library, then the rest."""
     standard: dict[str, set[str]] = {"typing": {"Any"}}
     if not node.raw:
-        standard |= {"contextlib": set(), "signal": set()}
+        standard |= {"os": set(), "signal": set(), "threading": {"Thread"}}
+        standard["typing"].add("Callable")
     if node.has_handlers:
         standard["abc"] = {"ABC", "abstractmethod"}
     if node.parameters:
@@ -26,6 +27,9 @@ def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
     add = _Adder(rest)
     if not node.raw:
         add("rclpy")
+        add("rclpy.executors", f"{'Multi' if node.actions else 'Single'}ThreadedExecutor")
+        add("rclpy.signals", "SignalHandlerOptions")
+        add("rclpy.task", "Future")
     if node.lifecycle:
         add("rclpy.lifecycle", "LifecycleNode")
         if node.gated:
@@ -37,7 +41,6 @@ def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
         add("rclpy.action", "ActionServer", "CancelResponse", "GoalResponse")
         add("rclpy.action.server", "ServerGoalHandle")
         add("rclpy.callback_groups", "ReentrantCallbackGroup")
-        add("rclpy.executors", "MultiThreadedExecutor")
     if node.action_clients:
         add("rclpy.action", "ActionClient")
     if node.clients or node.action_clients:

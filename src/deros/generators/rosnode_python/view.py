@@ -58,7 +58,10 @@ _TAKEN = frozenset(
         "ReliabilityPolicy",
         "ServerGoalHandle",
         "SetParametersResult",
+        "SignalHandlerOptions",
+        "SingleThreadedExecutor",
         "SimpleManagedEntity",
+        "Thread",
     )
 )
 
