@@ -30,6 +30,9 @@ SYNTAX_ERROR = _declare(3, "syntax error")
 NESTED_TOO_DEEPLY = _declare(4, "nested too deeply")
 UNKNOWN_LANGUAGE = _declare(5, "unknown kind of file")
 UNKNOWN_UNIT = _declare(6, "unknown unit")
+NAME_TOO_LONG = _declare(7, "name too long")
+FILE_TOO_LARGE = _declare(8, "file too large")
+FORBIDDEN_CHARACTER = _declare(9, "character that no text may hold")
 
 # Node descriptions
 UNKNOWN_PACKAGE = _declare(101, "unknown interface package")
@@ -43,6 +46,7 @@ UNKNOWN_VIA_PARAMETER = _declare(108, "port takes its name from an unknown param
 DUPLICATE_SECTION = _declare(109, "section given twice")
 BAD_CONSTRAINT = _declare(110, "constraint that does not fit the parameter's type")
 UNIT_CONFLICTS_WITH_REP103 = _declare(111, "unit of another dimension than REP 103 gives", _W)
+UNUSABLE_DEFINITION = _declare(112, "definition of an interface that cannot be used")
 NOT_A_PROGRAM_NAME = _declare(119, "executable that is not a plain file name")
 
 # System descriptions

@@ -13,6 +13,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
+_LONGEST_TEXT = 1000
+_END = 300
+
 
 class Severity(enum.Enum):
     """How bad a finding is; only errors fail a run, warnings do under ``--strict``."""
@@ -140,8 +143,23 @@ def report(
     hint: str = "",
     related: tuple[Related, ...] = (),
 ) -> Diagnostic:
-    """Make a diagnostic with the severity that its code declares."""
-    return Diagnostic(code, message, span, hint, related, code.severity)
+    """Make a diagnostic with the severity that its code declares, short enough to be read."""
+    return Diagnostic(code, _readable(message), span, _readable(hint), related, code.severity)
+
+
+def _readable(text: str) -> str:
+    """Return the text without its middle if that is longer than anybody reads, and encodable.
+
+    Names and texts of a model come into it as they are, and file names as the system has them.
+    """
+    if len(text) > _LONGEST_TEXT:
+        text = f"{text[: _LONGEST_TEXT - _END]} … {text[-_END:]}"
+    return encodable(text)
+
+
+def encodable(text: str) -> str:
+    """Return the text with an escape for each half of a character, which no stream takes."""
+    return text if text.isascii() else text.encode(errors="backslashreplace").decode()
 
 
 def in_file_order(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:

@@ -135,7 +135,7 @@ def test_a_missing_import_names_the_near_file(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["a" * 5000 + ".rnd", "a/" * 3000 + "*.rnd", "[.rnd", "*.rnd", "~/nix/*.rnd", "\0.rnd", ".rnd"],
+    ["a" * 5000 + ".rnd", "a/" * 3000 + "*.rnd", "[.rnd", "*.rnd", "~/nix/*.rnd", ".rnd"],
 )
 def test_names_that_no_file_can_have(tmp_path: Path, name: str) -> None:
     """Whatever stands between the quotes, an import that leads nowhere is one finding."""

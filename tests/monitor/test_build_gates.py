@@ -195,7 +195,7 @@ def test_type_with_an_unknown_part(tmp_path: Path) -> None:
 def test_topics_that_ros_refuses() -> None:
     """Each is named; private ones belong to a node, and a gate stands between two."""
     assert _findings("gate ~/a -> /b/2c : std_msgs.Int8 rate 1 Hz { }") == [
-        ("DRS332", "~/a", "the topic '~/a' is private; a gate stands between two nodes"),
+        ("DRS332", "~/a", "the topic '~/a' is private: rules name the topics of other nodes"),
         ("DRS332", "/b/2c", "the topic '/b/2c' has a part that starts with a digit ('2c')"),
     ]
 

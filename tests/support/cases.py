@@ -67,8 +67,9 @@ def run(name: str) -> tuple[list[Diagnostic], list[str]]:
     with _in_directory(DIRECTORY):
         repository = Repository()
         named = [repository.load(name)]
-        # No folders and no environment: a case must read the same on every machine.
-        findings = in_file_order(check(named, repository, InterfaceStore((), prefixes=())))
+        # No environment: a case must read the same on every machine.
+        store = InterfaceStore([Path("support", "interfaces")], prefixes=())
+        findings = in_file_order(check(named, repository, store))
         return findings, [each.path for each in repository.files]
 
 

@@ -9,7 +9,7 @@ from urllib.parse import quote
 
 from deros import __version__
 from deros.codes import ALL_CODES
-from deros.diagnostics import Diagnostic, Severity, Span
+from deros.diagnostics import Diagnostic, Severity, Span, encodable
 
 _SARIF_LEVEL = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 _GITHUB_COMMAND = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
@@ -23,7 +23,7 @@ def render_json(diagnostics: Sequence[Diagnostic]) -> str:
 def _json_object(diagnostic: Diagnostic) -> dict[str, Any]:
     span = diagnostic.span
     return {
-        "file": span.file,
+        "file": encodable(span.file),
         "line": span.line,
         "column": span.column,
         "end_line": span.end_line,
@@ -93,7 +93,7 @@ def _sarif_result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
 
 def _sarif_location(span: Span) -> dict[str, Any]:
     return {
-        "artifactLocation": {"uri": quote(span.file)},
+        "artifactLocation": {"uri": quote(encodable(span.file))},
         "region": {
             "startLine": span.line,
             "startColumn": span.column,
@@ -111,7 +111,7 @@ def render_github(diagnostics: Sequence[Diagnostic]) -> str:
 def _github_line(diagnostic: Diagnostic) -> str:
     span = diagnostic.span
     where = {
-        "file": span.file,
+        "file": encodable(span.file),
         "line": span.line,
         "col": span.column,
         "endLine": span.end_line,

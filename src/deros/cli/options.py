@@ -15,7 +15,9 @@ CLEAN = 0
 FINDINGS = 1
 UNUSABLE = 2
 
-_UNREADABLE = frozenset({codes.UNREADABLE_FILE, codes.NOT_UTF8, codes.UNKNOWN_LANGUAGE})
+_UNREADABLE = frozenset(
+    {codes.UNREADABLE_FILE, codes.NOT_UTF8, codes.UNKNOWN_LANGUAGE, codes.FILE_TOO_LARGE}
+)
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 

@@ -17,7 +17,8 @@ from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from deros.diagnostics import Diagnostic, has_errors
+from deros import codes
+from deros.diagnostics import Diagnostic, Span, has_errors, report
 from deros.generators.protocol import Context, Files, GenerateFunction, GenerationError, Option
 from deros.metamodels.textx_registration import GeneratorDesc, GeneratorParam, TextXError
 
@@ -74,7 +75,9 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
             raise ValueError(
                 f"{self.language} -> {self.target} has no option {', '.join(map(repr, unknown))}"
             )
-        return self.function(model, context, given)
+        files = self.function(model, context, given)
+        _check_path_lengths(files, model)
+        return files
 
     def __repr__(self) -> str:
         """Name language and target."""
@@ -136,6 +139,24 @@ def generator(
         return Generator(language, target, function, options)
 
     return decorate
+
+
+def _check_path_lengths(files: Files, model: Any) -> None:
+    """Refuse files that no file system could hold, before any of them is written.
+
+    Raises:
+        GenerationError: names of the model make the name of a file too long.
+    """
+    for path in files:
+        for part in path.split("/"):
+            if len(os.fsencode(part)) > _LONGEST_FILE_NAME:
+                span = getattr(model, "name_span", None) or Span(model.source, 0, 0)
+                message = f"the name of a file would have more than {_LONGEST_FILE_NAME} bytes"
+                hint = f"shorten the name that '{part[:40]}…' is made from"
+                raise GenerationError([report(codes.NAME_TOO_LONG, message, span, hint)])
+
+
+_LONGEST_FILE_NAME = 255
 
 
 # Discovery ----------------------------------------------------------------------------------------

@@ -7,9 +7,12 @@ definition says is returned; what cannot be read is a :class:`DefinitionError`, 
 from __future__ import annotations
 
 import ast
+import keyword
+import math
 import re
 from dataclasses import dataclass
 
+from deros.interfaces.names import not_text
 from deros.interfaces.types import (
     FLOAT_TYPES,
     INTEGER_RANGES,
@@ -31,11 +34,32 @@ SECTIONS = {
 
 _TYPE = re.compile(
     r"(?:(?P<package>\w+)/(?:msg/)?)?(?P<name>\w+)(?:<=(?P<bound>\d+))?"
-    r"(?P<array>\[(?P<upto><=)?(?P<size>\d*)\])?"
+    r"(?P<array>\[(?P<upto><=)?(?P<size>\d*)\])?",
+    re.ASCII,
 )
-_CONSTANT = re.compile(r"(?P<name>[A-Za-z]\w*)\s*=\s*(?P<value>.*)")
-_FIELD = re.compile(r"(?P<name>[A-Za-z]\w*)(?:\s+(?P<value>.*))?")
-_COMMENT = re.compile(r"""((?:[^#"']|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|["'])*)(?:\#.*)?""")
+_CONSTANT = re.compile(r"(?P<name>[A-Za-z]\w*)\s*=\s*(?P<value>.*)", re.ASCII)
+_FIELD = re.compile(r"(?P<name>[A-Za-z]\w*)(?:\s+(?P<value>.*))?", re.ASCII)
+# Each part takes as much as there is: a repetition of single characters would need memory for each.
+_TEXT = r"""[^#"']+|"[^"\\]*(?:\\.[^"\\]*)*"|'[^'\\]*(?:\\.[^'\\]*)*'|["']"""
+_COMMENT = re.compile(rf"((?:{_TEXT})*)(?:\#.*)?")
+_LINE_END = re.compile(r"\r\n|\n|\r")
+_INTEGER = re.compile(r"[+-]?\d+", re.ASCII)
+_NOT_FINITE = re.compile(r"[+-]?(?:inf(?:inity)?|nan)", re.IGNORECASE)
+_MOST_DIGITS = 400
+_SIZE_LIMIT = 2**32
+_LONGEST_NAME = 255
+_LONGEST_TEXT = 1 << 20
+_FLOAT32_MAX = (2 - 2**-23) * 2.0**127
+
+# No generator of ROS 2 could make a field of that name either.
+_RESERVED = frozenset(
+    {"alignas", "auto", "bool", "case", "catch", "char", "const", "default", "delete", "do"}
+    | {"double", "enum", "explicit", "export", "extern", "float", "friend", "goto", "inline"}
+    | {"int", "long", "mutable", "namespace", "new", "nullptr", "operator", "private"}
+    | {"protected", "public", "register", "short", "signed", "sizeof", "static", "struct"}
+    | {"switch", "template", "this", "throw", "typedef", "typename", "union", "unsigned"}
+    | {"using", "virtual", "void", "volatile", *keyword.kwlist}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +74,11 @@ def parse_definition(
     kind: InterfaceType, text: str
 ) -> tuple[MessageDefinition, ...] | DefinitionError:
     """Read the definition of ``kind``: one message, or the two or three parts of a file."""
+    if len(text) > _LONGEST_TEXT:
+        return DefinitionError(1, f"is longer than {_LONGEST_TEXT} characters")
     suffixes = SECTIONS[kind.kind]
     parts: list[_Part] = [_Part(kind.package)]
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in enumerate(_LINE_END.split(text), start=1):
         if line.strip() == "---":
             parts.append(_Part(kind.package))
             continue
@@ -85,20 +111,22 @@ class _Part:
         stripped = without_comment(line).strip()
         if not stripped:
             return None
-        type_text, _, rest = stripped.partition(" ")
-        if "\t" in type_text:
-            type_text, _, rest = stripped.partition("\t")
+        if found := not_text(stripped):
+            return f"the line holds the character U+{ord(found[0]):04X}"
+        type_text, *more = stripped.split(maxsplit=1)
         kind = parse_field_type(type_text, self._package)
         if kind is None:
             return f"'{type_text}' is no field type"
-        rest = rest.strip()
+        rest = more[0] if more else ""
         if constant := _CONSTANT.fullmatch(rest):
             return self._add_constant(kind, constant["name"], constant["value"])
-        if found := _FIELD.fullmatch(rest):
-            return self._add_field(kind, found["name"], found["value"])
+        if field := _FIELD.fullmatch(rest):
+            return self._add_field(kind, field["name"], field["value"])
         return f"'{rest}' is no field name"
 
     def _add_constant(self, kind: FieldType, name: str, text: str) -> str | None:
+        if len(name) > _LONGEST_NAME:
+            return f"a name has at most {_LONGEST_NAME} characters"
         if kind.is_array or not isinstance(kind.base, str):
             return f"constant '{name}' is of type {kind}, which is no primitive"
         value = _primitive(kind.base, text)
@@ -108,8 +136,12 @@ class _Part:
         return None
 
     def _add_field(self, kind: FieldType, name: str, text: str | None) -> str | None:
+        if len(name) > _LONGEST_NAME:
+            return f"a name has at most {_LONGEST_NAME} characters"
         if name in self._fields:
             return f"field '{name}' is there twice"
+        if name in _RESERVED:
+            return f"field '{name}' has the name of a keyword of Python or C++"
         self._fields[name] = kind
         if text is None:
             return None
@@ -135,16 +167,26 @@ def parse_field_type(text: str, package: str) -> FieldType | None:
     if match is None:
         return None
     base: str | InterfaceType = match["name"]
-    bound = int(match["bound"]) if match["bound"] else None
+    bound, size = _count(match["bound"]), _count(match["size"])
+    if bound == _SIZE_LIMIT or size == _SIZE_LIMIT or len(match["name"]) > _LONGEST_NAME:
+        return None
     if match["package"] or base not in PRIMITIVES:
         base = InterfaceType(match["package"] or package, "msg", match["name"])
     if bound is not None and base not in STRING_TYPES:
         return None
     if not match["array"]:
         return FieldType(base, string_bound=bound)
-    if not match["size"]:
+    if size is None:
         return None if match["upto"] else FieldType(base, "unbounded", string_bound=bound)
-    return FieldType(base, "bounded" if match["upto"] else "fixed", int(match["size"]), bound)
+    return FieldType(base, "bounded" if match["upto"] else "fixed", size, bound)
+
+
+def _count(digits: str | None) -> int | None:
+    """Return a size or bound, which stays below 2 ** 32; anything greater is that limit."""
+    if not digits:
+        return None
+    digits = digits.lstrip("0") or "0"
+    return int(digits) if len(digits) <= 10 and int(digits) < _SIZE_LIMIT else _SIZE_LIMIT
 
 
 def _value(kind: FieldType, text: str) -> Primitive | tuple[Primitive, ...] | None:
@@ -175,14 +217,25 @@ def _primitive(base: str, text: str) -> Primitive | None:
         return {"true": True, "1": True, "false": False, "0": False}.get(text.lower())
     if base in STRING_TYPES:
         return _unquote(text)
+    if len(text) > _MOST_DIGITS or not text.isascii() or "_" in text:
+        return None
     try:
         if base in FLOAT_TYPES:
-            return float(text)
-        value = int(text, 0) if not text.lstrip("+-").isdigit() else int(text)
+            return _float(base, text)
+        value = int(text) if _INTEGER.fullmatch(text) else int(text, 0)
     except ValueError:
         return None
     least, greatest = INTEGER_RANGES[base]
     return value if least <= value <= greatest else None
+
+
+def _float(base: str, text: str) -> float | None:
+    """Return a number, or ``None`` for one beyond the greatest of its type."""
+    value = float(text)
+    if _NOT_FINITE.fullmatch(text):
+        return value
+    fits = math.isfinite(value) and (base == "float64" or abs(value) <= _FLOAT32_MAX)
+    return value if fits else None
 
 
 def _unquote(text: str) -> str | None:
@@ -191,6 +244,8 @@ def _unquote(text: str) -> str | None:
         return text
     try:
         value = ast.literal_eval(text)
-    except (SyntaxError, ValueError):
+    except (SyntaxError, ValueError, MemoryError, RecursionError):
         return None
-    return value if isinstance(value, str) else None
+    if not isinstance(value, str) or not_text(value):
+        return None
+    return value

@@ -20,6 +20,14 @@ _FORBIDDEN_IN_PATH = re.compile(r"[^A-Za-z0-9_/]")
 _CLOSE = 0.6
 _COMPARED_CLOSELY = 100
 _FORBIDDEN_IN_PROGRAM = re.compile(r"[^A-Za-z0-9_.+-]")
+_MISTYPED_LENGTH = 300
+"""Nobody mistypes a longer name; comparing two of them would take time by the square."""
+
+# Control characters but tab and line ends, separators that some readers take for line ends, halves
+# of characters, and what turns the direction of writing, so that text reads as it does not run.
+_NOT_TEXT = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\u202a-\u202e\u2066-\u2069\ufeff]"
+)
 
 
 def near(name: str, candidates: Iterable[str], n: int = 3) -> list[str]:
@@ -29,7 +37,13 @@ def near(name: str, candidates: Iterable[str], n: int = 3) -> list[str]:
     """
     import difflib
 
-    distinct = [candidate for candidate in dict.fromkeys(candidates) if candidate != name]
+    if len(name) > _MISTYPED_LENGTH:
+        return []
+    distinct = [
+        candidate
+        for candidate in dict.fromkeys(candidates)
+        if candidate != name and len(candidate) <= _MISTYPED_LENGTH
+    ]
     lowered = name.lower()
     same = [candidate for candidate in distinct if candidate.lower() == lowered]
     close = difflib.get_close_matches(name, _most_alike(name, distinct), n, _CLOSE)
@@ -63,6 +77,20 @@ def did_you_mean(matches: Iterable[str]) -> str:
     return f"did you mean {', '.join(first)}{' or ' if first else ''}{last}?"
 
 
+def not_text(text: str) -> re.Match[str] | None:
+    """Find the first character that no text for people or programs may hold, or return ``None``."""
+    return _NOT_TEXT.search(text)
+
+
+def check_identifier(name: str) -> str | None:
+    """Say why a name cannot be one in generated code of every language, or return ``None``."""
+    if found := _FORBIDDEN.search(name):
+        return f"contains '{found[0]}'; a name has only the letters A to Z and a to z, digits, '_'"
+    if len(name) > _NODE_LIMIT:
+        return f"is longer than {_NODE_LIMIT} characters"
+    return None
+
+
 def check_node_name(name: str) -> str | None:
     """Say why ROS 2 refuses a node's name (the part without namespace), or return ``None``."""
     if not name:
@@ -86,6 +114,11 @@ def check_topic_name(name: str) -> str | None:
         if path and not path.startswith("/"):
             return "has '~' without '/' behind it"
     return _check_path(path, name)
+
+
+def is_too_long(name: str) -> bool:
+    """Tell whether a full name, of a topic or a node, is longer than ROS 2 takes."""
+    return len(name) > _TOPIC_LIMIT
 
 
 def check_namespace(name: str) -> str | None:

@@ -14,11 +14,13 @@ from pathlib import Path
 from typing import Protocol
 
 from deros.interfaces.definitions import SECTIONS, DefinitionError, parse_definition
+from deros.interfaces.files import read_regular
 from deros.interfaces.types import InterfaceKind, InterfaceType, MessageDefinition
 
 INDEX = Path("share", "ament_index", "resource_index", "rosidl_interfaces")
 """Where, in a prefix, the ament index lists the packages that have interfaces."""
 
+_LONGEST_FILE = 4 << 20
 _NOT_SEARCHED = frozenset({"__pycache__", "build", "node_modules"})
 _PACKAGE_XML_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
 
@@ -30,6 +32,11 @@ class DefinitionProblem:
     path: str
     line: int
     message: str
+
+    def about(self, kind: InterfaceType) -> str:
+        """Say in a sentence that the definition of ``kind`` cannot be used, and why."""
+        where = "" if self.path == str(kind) else f" ({self.path}:{self.line})"
+        return f"the definition of {kind.short} cannot be used: {self.message}{where}"
 
 
 Definition = tuple[MessageDefinition, ...] | DefinitionProblem | None
@@ -123,7 +130,10 @@ class AmentSource:
 
     def has_package(self, package: str) -> bool:
         """Tell whether the index of the prefix lists interfaces of ``package``."""
-        return bool(package) and (self._prefix / INDEX / package).is_file()
+        try:
+            return bool(package) and (self._prefix / INDEX / package).is_file()
+        except OSError:  # a name longer than the file system takes
+            return False
 
     def packages(self) -> frozenset[str]:
         """Return the packages that the index lists."""
@@ -150,11 +160,16 @@ class AmentSource:
 def read_definition(path: Path, kind: InterfaceType) -> Definition:
     """Read and parse one file; ``None`` if there is no such file."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_regular(path, _LONGEST_FILE).decode()
     except FileNotFoundError:
         return None
+    except UnicodeDecodeError as error:
+        return DefinitionProblem(
+            path.as_posix(), 1, f"cannot be read: byte {error.start} is not UTF-8"
+        )
     except (OSError, ValueError) as error:
-        return DefinitionProblem(path.as_posix(), 1, f"cannot be read: {error}")
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        return DefinitionProblem(path.as_posix(), 1, f"cannot be read: {reason}")
     found = parse_definition(kind, text)
     if isinstance(found, DefinitionError):
         return DefinitionProblem(path.as_posix(), found.line, found.message)
@@ -170,7 +185,7 @@ def _stems(folder: Path, kind: str) -> frozenset[str]:
 
 def _package_name(folder: Path) -> str:
     try:
-        text = (folder / "package.xml").read_text(encoding="utf-8", errors="replace")
+        text = read_regular(folder / "package.xml", _LONGEST_FILE).decode(errors="replace")
     except OSError:
         return folder.name
     match = _PACKAGE_XML_NAME.search(text)

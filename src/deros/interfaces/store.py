@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 
+from deros.interfaces.nesting import Extents
 from deros.interfaces.sources import (
     INDEX,
     AmentSource,
@@ -40,7 +41,9 @@ class InterfaceStore:
         self._paths = tuple(paths)
         self._prefixes = _environment_prefixes() if prefixes is None else tuple(prefixes)
         self._owners: dict[str, Source | None] = {}
+        self._read: dict[InterfaceType, Definition] = {}
         self._definitions: dict[InterfaceType, Definition] = {}
+        self._extents = Extents(self._nested)
 
     def message(self, kind: InterfaceType) -> MessageDefinition | None:
         """Return the definition of a message type, or ``None``."""
@@ -67,6 +70,11 @@ class InterfaceStore:
         """Say why a definition that is there cannot be read, or return ``None``."""
         found = self._definition(kind)
         return found if isinstance(found, DefinitionProblem) else None
+
+    def unknown_part(self, kind: InterfaceType) -> InterfaceType | None:
+        """Return a type nested in a message that has no definition, or ``None``."""
+        definition = self.message(kind)
+        return None if definition is None else self._extents.of(definition).unknown
 
     def has_package(self, package: str) -> bool:
         """Tell whether any interface of ``package`` is known."""
@@ -103,9 +111,23 @@ class InterfaceStore:
 
     def _definition(self, kind: InterfaceType) -> Definition:
         if kind not in self._definitions:
-            owner = self._owner(kind.package)
-            self._definitions[kind] = owner.definition(kind) if owner else None
+            found = self._as_read(kind)
+            self._definitions[kind] = found
+            for part in found if isinstance(found, tuple) else ():
+                problem = self._extents.of(part).problem
+                if problem:
+                    self._definitions[kind] = DefinitionProblem(str(kind), 1, problem)
         return self._definitions[kind]
+
+    def _as_read(self, kind: InterfaceType) -> Definition:
+        if kind not in self._read:
+            owner = self._owner(kind.package)
+            self._read[kind] = owner.definition(kind) if owner else None
+        return self._read[kind]
+
+    def _nested(self, kind: InterfaceType) -> MessageDefinition | None:
+        found = self._as_read(kind)
+        return found[0] if isinstance(found, tuple) else None
 
     def _parts(
         self, kind: InterfaceType, wanted: InterfaceKind

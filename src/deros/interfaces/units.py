@@ -37,6 +37,8 @@ _SUPERSCRIPT_RUN = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
 _MAX_EXPONENT = 99
 _MAX_DEPTH = 50
 _MAX_DIGITS = 400
+_LONGEST_UNIT = 200
+_LONGEST_WORD = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +95,8 @@ class UnitRegistry:
 
         A unit defined by itself, directly or through others, is unknown too.
         """
+        if len(text) > _LONGEST_UNIT:
+            return None
         if text not in self._parsed:
             self._parsed[text] = _Parser(text, self._word).unit()
         return self._parsed[text]
@@ -166,7 +170,8 @@ class UnitRegistry:
         prefix, rest = word[:1], word[1:]
         if prefix in table["prefixes"] and rest in table["prefixed"]:
             return self._multiple(word, _number(table["prefixes"][prefix]), rest)
-        return _ask_pint(word)
+        # The longest words of pint have 34 characters; it takes the square of the length to look.
+        return _ask_pint(word) if len(word) <= _LONGEST_WORD else None
 
     def _multiple(
         self, word: str, factor: Fraction, text: str, offset: Fraction = Fraction(0)

@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, SourceFile, Span, report
+from deros.interfaces.names import not_text
 from deros.interfaces.types import InterfaceKind, InterfaceType
 from deros.interfaces.units import UnitRegistry
 from deros.metamodels.common import Interval, Name, QosProfile, Scalar, Value
+from deros.metamodels.reading import forbidden_character
 
 if TYPE_CHECKING:
     from deros.metamodels.matching import Token
 
 _ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{4}|.)", re.DOTALL)
+_PAIR = re.compile("[\ud800-\udbff][\udc00-\udfff]")
 _ESCAPES = {'"': '"', "\\": "\\", "/": "/", "n": "\n", "t": "\t", "r": "\r"}
 _INTEGER = re.compile(r"[+-]?\d+\Z")
 _EXPONENT = re.compile(r"[eE]([+-]?\d+)\Z")
@@ -59,7 +62,12 @@ class Converter:
         inner = token[1:-1]
         if "\\" not in inner:
             return inner
-        return _ESCAPE.sub(lambda found: self._escape(found, token), inner)
+        said = _ESCAPE.sub(lambda found: self._escape(found, token), inner)
+        said = _PAIR.sub(_character, said)
+        if wrong := not_text(said):
+            self.diagnostics.append(forbidden_character(wrong[0], self.token_span(token)))
+            return ""
+        return said
 
     def _escape(self, found: re.Match[str], token: Token) -> str:
         what = found.group(1)
@@ -174,6 +182,11 @@ class Converter:
         if word == "keep_all":
             return [("keep_all", True)]
         return [(_QOS_FIELDS.get(word, "preset"), word)]
+
+
+def _character(pair: re.Match[str]) -> str:
+    """Return the character that two escapes stand for, as in JSON."""
+    return pair[0].encode("utf-16", "surrogatepass").decode("utf-16")
 
 
 _QOS_FIELDS = {

@@ -9,6 +9,7 @@ from pathlib import Path, PurePath
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.interfaces.names import did_you_mean, near
+from deros.metamodels.globbing import TooManyFolders, folder_levels, matching_files
 
 
 def find_files(
@@ -22,12 +23,14 @@ def find_files(
     path = os.path.normpath(Path(importer).parent / pattern)
     if glob.has_magic(pattern) and not _is_file(path):
         importing = os.path.realpath(importer)
-        wanted = os.path.normpath(Path(glob.escape(str(Path(importer).parent))) / pattern)
-        found = sorted(
-            each
-            for each in glob.iglob(wanted, recursive=True)  # noqa: PTH207 - Path.glob keeps no `..`
-            if each.endswith(suffixes) and os.path.realpath(each) != importing
-        )
+        try:
+            found = sorted(
+                os.path.normpath(each)
+                for each in matching_files(str(Path(importer).parent), pattern)
+                if each.endswith(suffixes) and os.path.realpath(each) != importing
+            )
+        except TooManyFolders as error:
+            return report(codes.UNKNOWN_IMPORT, f"'{pattern}' {error}", span, "name the folder")
         if found:
             return tuple(map(shown_path, found))
         return report(codes.UNKNOWN_IMPORT, f"no file matches '{pattern}'", span)
@@ -52,11 +55,12 @@ def listed_folders(importer: str, pattern: str) -> tuple[str, ...]:
     parts = Path(pattern).parts
     first = next(number for number, part in enumerate(parts) if glob.has_magic(part))
     found: dict[str, None] = {}
-    for length in range(first, len(parts)):
-        above = os.path.normpath(Path(glob.escape(str(parent)), *parts[:length]))
-        for each in sorted(glob.iglob(above, recursive=True)):  # noqa: PTH207 - as in find_files
-            if Path(each).is_dir():
-                found[shown_path(each)] = None
+    try:
+        levels = folder_levels(str(parent), parts[:-1])
+    except TooManyFolders:
+        return ()
+    for folders in levels[first:]:
+        found.update((shown_path(os.path.normpath(each)), None) for each in sorted(folders))
     return tuple(found)
 
 

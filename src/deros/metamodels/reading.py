@@ -4,22 +4,35 @@ from __future__ import annotations
 
 import errno
 import re
+import unicodedata
 from pathlib import Path
 
 from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
+from deros.interfaces.files import read_regular
+from deros.interfaces.names import not_text
 
 MAX_DEPTH = 100
 """How deep brackets and other nested constructs may go; hand-written models stay below ten."""
 
 _SPECIAL = re.compile(
-    r'(?P<text>"(?:\\.|[^"\\\n])*")'
+    r'(?P<text>"[^"\\\n]*(?:\\.[^"\\\n]*)*")'
     r"|(?P<comment>//[^\n]*|/\*.*?\*/)"
     r"|(?P<unclosed>/\*)"
     r"|(?P<open>[({\[])"
     r"|(?P<close>[)}\]])",
     re.DOTALL,
 )
+LARGEST_MODEL = 4 << 20
+"""How many bytes a model's file may hold: some thirty thousand lines, which take seconds."""
+
+LARGEST_STREAM = 256 << 20
+"""How many bytes anything else may hold that is read: traces of hours."""
+
+_LONGEST_WORD = 255
+_LONG_WORD = re.compile(rf"\w{{{_LONGEST_WORD + 1},}}")
+_MOST_DIGITS = 400
+_QUOTED = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"')
 _NOT_LINE_END = re.compile(r"[^\r\n]")
 
 
@@ -37,15 +50,18 @@ def read(path: Path, shown: str, *, streams: bool = True) -> SourceFile:
     Without ``streams``, a pipe or a device is refused: it may keep the reader waiting for ever.
 
     Raises:
-        Unreadable: the file cannot be opened, or does not hold text.
+        Unreadable: the file cannot be opened, is too large, or does not hold text.
     """
     nothing = SourceFile(shown, "")
     start = Span(nothing, 0, 0)
+    most = LARGEST_STREAM if streams else LARGEST_MODEL
     try:
-        if not streams and path.exists() and not (path.is_file() or path.is_dir()):
-            raise OSError(errno.EINVAL, "neither a file nor a folder")
-        data = path.read_bytes()
+        data = _read_stream(path, most) if streams else read_regular(path, most)
     except (OSError, ValueError) as error:
+        if isinstance(error, OSError) and error.errno == errno.EFBIG:
+            message = f"'{shown}' is larger than {most >> 20} MB"
+            hint = "split it into files that one imports" if not streams else "cut it into parts"
+            raise Unreadable(report(codes.FILE_TOO_LARGE, message, start, hint)) from error
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         message = f"cannot read '{shown}': {reason}"
         raise Unreadable(report(codes.UNREADABLE_FILE, message, start)) from error
@@ -62,13 +78,25 @@ def read(path: Path, shown: str, *, streams: bool = True) -> SourceFile:
     return SourceFile(shown, text)
 
 
+def _read_stream(path: Path, most: int) -> bytes:
+    """Read whatever the path leads to, but no more than fits."""
+    with path.open("rb") as stream:
+        data = stream.read(most + 1)
+    if len(data) > most:
+        raise OSError(errno.EFBIG, "too large")
+    return data
+
+
 def prepare(source: SourceFile) -> str:
     """Return the text with its comments blanked out, every other character at its place.
 
     Raises:
-        Unreadable: a comment is not closed, or brackets are nested too deeply to parse.
+        Unreadable: a comment is not closed, brackets are nested too deeply to parse, a word or
+            number is longer than any, or a character has no place in a text.
     """
     text = source.text
+    if found := not_text(text):
+        raise Unreadable(forbidden_character(found[0], Span(source, found.start(), found.end())))
     pieces: list[str] = []
     done = 0
     depth = 0
@@ -88,7 +116,34 @@ def prepare(source: SourceFile) -> str:
             message = "this comment is not closed"
             raise Unreadable(report(codes.SYNTAX_ERROR, message, span, "close it with '*/'"))
     pieces.append(text[done:])
-    return "".join(pieces)
+    prepared = "".join(pieces)
+    _check_words(source, prepared)
+    return prepared
+
+
+def _check_words(source: SourceFile, text: str) -> None:
+    """Refuse words outside quotes that are longer than any name, before anything is made of them.
+
+    Whole numbers would be, too, where Python converts them.
+    """
+    if _LONG_WORD.search(text) is None:
+        return
+    for found in _LONG_WORD.finditer(_QUOTED.sub(lambda quoted: " " * len(quoted[0]), text)):
+        span = Span(source, found.start(), found.end())
+        if not found[0][0].isdecimal():
+            message = f"a name of {len(found[0])} characters: {_LONGEST_WORD} is the most"
+            raise Unreadable(report(codes.NAME_TOO_LONG, message, span, "choose a shorter name"))
+        if len(found[0]) > _MOST_DIGITS:
+            raise Unreadable(report(codes.SYNTAX_ERROR, "number out of range", span))
+
+
+def forbidden_character(character: str, span: Span) -> Diagnostic:
+    """Make the diagnostic for a character, written as such or as an escape, at a place."""
+    name = unicodedata.name(character, "control character").lower()
+    if "\ud800" <= character <= "\udfff":
+        name = "half a character"
+    message = f"the character U+{ord(character):04X} ({name}) is not for texts"
+    return report(codes.FORBIDDEN_CHARACTER, message, span, "remove it")
 
 
 def too_deep(span: Span) -> Diagnostic:

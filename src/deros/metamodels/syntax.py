@@ -44,7 +44,7 @@ _WORDS = {
     "QosLivelinessKind": "'automatic' or 'manual_by_topic'",
     "LogLevelName": "debug, info, warn, error or fatal",
 }
-_FOUND = re.compile(r'"(?:\\.|[^"\\\n])*"|[\w/~]+|.', re.DOTALL)
+_FOUND = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"|[\w/~]+|.', re.DOTALL)
 _MOST_NAMED = 4
 
 

@@ -13,7 +13,6 @@ from deros.interfaces.types import FLOAT_TYPES, FieldType, MessageDefinition
 from deros.interfaces.units import Unit
 from deros.metamodels import rules
 from deros.metamodels.common import Name
-from deros.metamodels.flatten import resolve_name
 from deros.monitor import ir
 from deros.monitor.bounds import as_float32, rounded, type_bounds
 from deros.monitor.resolved import (
@@ -92,9 +91,9 @@ class Actions:
     # Bindings -----------------------------------------------------------------------------------
 
     def _bind(self, binding: rules.Binding) -> ir.Binding | None:
-        topic = resolve_name(binding.topic.text, "/")
+        topic = self._scope.topic_name(binding.topic)
         definition = self._scope.message_type(binding.type, binding.type_span)
-        if definition is None:
+        if definition is None or topic is None:
             return None
         known = self._scope.topics.get(topic)
         if known is not None and known.type is not None and known.type != binding.type:

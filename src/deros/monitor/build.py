@@ -14,6 +14,7 @@ from deros.diagnostics import Diagnostic, has_errors
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels import rules
+from deros.metamodels.common import Name
 from deros.monitor import ir
 from deros.monitor.actions import Actions
 from deros.monitor.comparisons import Comparisons
@@ -75,6 +76,7 @@ class _Builder:
 
     def build(self) -> ir.Program:
         """Build rules, then behaviours, in the order in which the monitor evaluates them."""
+        self.scope.check_names(_declared(self._program))
         built_rules = tuple(self._rules())
         self._name_behaviours()
         behaviours = tuple(
@@ -168,6 +170,20 @@ class _Builder:
         return ir.Behaviour(
             index, name, condition, tuple(body), parent, written.span, written.optional
         )
+
+
+def _declared(program: rules.Rules) -> Iterator[Name]:
+    """Yield every name that the rules declare, but those of units, which are in no code."""
+    yield from (each.name for each in program.constants)
+    yield from (each.name for each in program.inputs)
+    yield from (each.name for each in program.entities)
+    for entity in program.entities:
+        for rule in entity.rules:
+            yield rule.name
+    for action in program.actions:
+        yield from (action.name, *action.parameters)
+    for top in program.behaviours:
+        yield from (each.name for each in _with_nested(top) if each.name is not None)
 
 
 def _with_nested(behaviour: rules.Behaviour) -> Iterator[rules.Behaviour]:

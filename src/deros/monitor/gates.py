@@ -10,7 +10,6 @@ from fractions import Fraction
 from deros import codes
 from deros.diagnostics import Related, Span
 from deros.interfaces.fields import FieldPath, ResolvedField, format_path
-from deros.interfaces.names import check_topic_name
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import (
     INTEGER_RANGES,
@@ -82,12 +81,7 @@ class Gates:
             hint = "let the controller publish on a topic of its own, and name that one first"
             self._scope.fault(codes.GATE_LOOP, message, gate.target.span, hint)
         for name in (gate.source, gate.target):
-            refused = check_topic_name(name.text)
-            if name.text.startswith("~"):
-                refused = "is private; a gate stands between two nodes"
-            if refused:
-                message = f"the topic '{name}' {refused}"
-                self._scope.fault(codes.INVALID_RULES_NAME, message, name.span)
+            self._scope.topic_name(name)
         period_ns = self._period_ns(gate.rate)
         definition = self._scope.message_type(gate.type, gate.type_span)
         if definition is None:

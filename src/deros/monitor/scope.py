@@ -13,7 +13,7 @@ from fractions import Fraction
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, Span, report
 from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
-from deros.interfaces.names import did_you_mean, near
+from deros.interfaces.names import check_identifier, check_topic_name, did_you_mean, near
 from deros.interfaces.rep103 import unit_of
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
@@ -82,6 +82,14 @@ class Scope:
                     name.span,
                     related=(Related(earlier.span, "first declared here"),),
                 )
+
+    def check_names(self, names: Iterable[Name]) -> None:
+        """Report every name that is not one in all languages that code is generated in."""
+        for name in names:
+            fault = check_identifier(name.text)
+            if fault is not None:
+                message = f"the name '{name}' {fault}"
+                self.fault(codes.INVALID_RULES_NAME, message, name.span)
 
     # Units and durations ------------------------------------------------------------------------
 
@@ -179,7 +187,9 @@ class Scope:
     def _input(
         self, name: str, term: rules.TopicPath, timeout_ns: int | None, span: Span
     ) -> DeclaredInput | None:
-        topic = resolve_name(term.topic.text, "/")
+        topic = self.topic_name(term.topic)
+        if topic is None:
+            return None
         kind = self.topic_type(term.topic, topic)
         if (
             kind is None
@@ -187,6 +197,18 @@ class Scope:
         ):
             return None
         return DeclaredInput(name, topic, kind, term.path, timeout_ns, span)
+
+    def topic_name(self, name: Name) -> str | None:
+        """Return the full name of a topic that the rules name; report one that ROS 2 refuses."""
+        refused = check_topic_name(name.text)
+        hint = ""
+        if refused is None and name.text.startswith("~"):
+            refused = "is private: rules name the topics of other nodes"
+            hint = "write its full name, which begins with '/'"
+        if refused is None:
+            return resolve_name(name.text, "/")
+        self.fault(codes.INVALID_RULES_NAME, f"the topic '{name}' {refused}", name.span, hint)
+        return None
 
     def topic_type(self, name: Name, topic: str) -> InterfaceType | None:
         """Return the type of a topic of the used systems; report what they lack."""
@@ -218,10 +240,24 @@ class Scope:
                 tuple(Related(place, each.short) for each, place in known.types.items()),
             )
             return None
+        elif (problem := self.store.problem(kind)) is not None:
+            place = (Related(known.place, "the topic"),)
+            self.fault(codes.UNUSABLE_DEFINITION, problem.about(kind), name.span, related=place)
+            return None
         elif self.store.message(kind) is None:
             self.fault(
                 codes.RULE_TYPE_UNKNOWN,
                 f"'{topic}' is of type {kind.short}, whose definition is not found",
+                name.span,
+                "name the folder that has it with --interfaces PATH",
+                (Related(known.place, "the topic"),),
+            )
+            return None
+        elif (part := self.store.unknown_part(kind)) is not None:
+            self.fault(
+                codes.UNUSABLE_DEFINITION,
+                f"the definition of {kind.short} cannot be used: it contains {part.short}, which is"
+                " not known",
                 name.span,
                 "name the folder that has it with --interfaces PATH",
                 (Related(known.place, "the topic"),),
@@ -234,6 +270,10 @@ class Scope:
         definition = self.store.message(kind)
         if definition is not None:
             return definition
+        problem = self.store.problem(kind)
+        if problem is not None:
+            self.fault(codes.UNUSABLE_DEFINITION, problem.about(kind), span)
+            return None
         if self.store.has_package(kind.package):
             message = f"package '{kind.package}' has no message type '{kind.name}'"
             hint = did_you_mean(near(kind.name, self.store.names(kind.package, "msg")))

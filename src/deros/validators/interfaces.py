@@ -16,8 +16,11 @@ _WORD: dict[InterfaceKind, str] = {"msg": "message", "srv": "service", "action":
 
 
 def type_finding(store: InterfaceStore, wanted: InterfaceType, span: Span) -> Iterator[Diagnostic]:
-    """Yield one finding if ``store`` does not know ``wanted``, with the names that nearly match."""
+    """Yield one finding if ``store`` has no usable ``wanted``, with the names that nearly match."""
     if store.exists(wanted):
+        problem = store.problem(wanted)
+        if problem is not None:
+            yield report(codes.UNUSABLE_DEFINITION, problem.about(wanted), span)
         return
     if not store.has_package(wanted.package):
         yield report(

@@ -196,6 +196,9 @@ def _via(node: NodeType, port: Port) -> Iterator[Diagnostic]:
             hint="a topic's name is a string",
             related=(Related(parameter.span, "declared here"),),
         )
+    elif isinstance(parameter.default, str) and parameter.default:
+        place = parameter.default_span or parameter.span
+        yield from _refused(check_topic_name(parameter.default), parameter.default, place)
 
 
 def _field_unit(
@@ -228,4 +231,4 @@ def _field_unit(
 
 def _parts(path: str) -> tuple[str | int, ...]:
     """Split a field path as written, ``covariance[3]`` becoming ``("covariance", 3)``."""
-    return tuple(int(part) if part.isdigit() else part for part in re.findall(r"\w+", path))
+    return tuple(int(part) if part.isdecimal() else part for part in re.findall(r"\w+", path))

@@ -6,7 +6,12 @@ from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
-from deros.interfaces.names import check_namespace, check_node_name, check_topic_name
+from deros.interfaces.names import (
+    check_namespace,
+    check_node_name,
+    check_topic_name,
+    is_too_long,
+)
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.flatten import FlatNode, FlatSystem, FlatTopic
 from deros.metamodels.system import NodeInstance, Subsystem, System
@@ -21,6 +26,7 @@ def check_names(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]
     known = frozenset(topic.declaration.name for topic in flat.topics)
     yield from _members(system.members, known)
     yield from _topics(flat, store)
+    yield from _full_names(flat)
     yield from _unused_imports(system)
     yield from _one_full_name(flat)
 
@@ -66,9 +72,10 @@ def _topics(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
         declaration = topic.declaration
         if declaration.span.source is not flat.system.source:
             continue
-        yield from _refused(
-            check_topic_name(declaration.name), declaration.name, declaration.name_span
-        )
+        fault = check_topic_name(declaration.name)
+        if fault is None and declaration.name.startswith("~"):
+            fault = "is private, which only a node's own topic can be"
+        yield from _refused(fault, declaration.name, declaration.name_span)
         if declaration.type is not None and declaration.type_span is not None:
             yield from type_finding(store, declaration.type, declaration.type_span)
         first = seen.setdefault(topic.name, topic)
@@ -80,6 +87,27 @@ def _topics(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
                 hint="keep one of the two declarations",
                 related=(Related(first.declaration.name_span, "the first declaration"),),
             )
+
+
+def _full_names(flat: FlatSystem) -> Iterator[Diagnostic]:
+    """Find names that are too long only with the namespaces before them."""
+    own = flat.system.source
+    for topic in flat.topics:
+        if topic.declaration.span.source is own:
+            yield from _long(topic.declaration.name, topic.name, topic.declaration.name_span)
+    for node in flat.nodes:
+        if node.instance.span.source is not own:
+            continue
+        yield from _long(node.instance.name, node.full_name, node.instance.name_span)
+        for port in node.ports:
+            place = port.wiring.target_span if port.wiring else node.instance.name_span
+            yield from _long(port.wiring.target if port.wiring else "", port.topic, place)
+
+
+def _long(written: str, full: str, span: Span) -> Iterator[Diagnostic]:
+    if is_too_long(full) and not is_too_long(written):
+        message = f"'{full}' is longer than a full name can be in ROS 2"
+        yield report(codes.INVALID_SYSTEM_NAME, message, span, hint="shorten the namespaces")
 
 
 def _unused_imports(system: System) -> Iterator[Diagnostic]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
+from deros.interfaces.names import check_topic_name
 from deros.metamodels.common import Value
 from deros.metamodels.flatten import FlatNode, FlatSystem, is_topic_parameter, resolve_name
 from deros.metamodels.node import NodeType, Parameter, ParameterType, PortKind
@@ -49,6 +50,7 @@ def _settings(node: FlatNode) -> Iterator[Diagnostic]:
             )
         if node.type is not None:
             yield from _setting(node.type, setting)
+            yield from _topic_setting(node.type, setting)
     if node.type is not None and node.type.parameters:
         yield from _without_value(node, node.type)
 
@@ -74,6 +76,18 @@ def _setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[Diagnos
             )
         return
     yield from _value(parameter, setting)
+
+
+def _topic_setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[Diagnostic]:
+    """Check the value of a parameter that a port takes its name from."""
+    value = setting.value
+    if not isinstance(value, str) or not value:
+        return
+    if any(port.via == setting.name for port in node_type.ports):
+        fault = check_topic_name(value)
+        if fault is not None:
+            message = f"ROS 2 refuses the name '{value}': it {fault}"
+            yield report(codes.INVALID_SYSTEM_NAME, message, setting.value_span)
 
 
 def _value(parameter: Parameter, setting: ParameterSetting) -> Iterator[Diagnostic]:

@@ -1,0 +1,123 @@
+"""Files that a pattern with ``*``, ``?``, ``[…]`` and ``**`` matches, each folder visited once.
+
+The library's own ``glob`` follows symbolic links wherever they lead: two of them that lead back to
+where they are make it run for ever.
+"""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
+from pathlib import PurePath
+
+MOST_FOLDERS = 20_000
+"""How many folders a pattern may search."""
+
+
+class TooManyFolders(Exception):  # noqa: N818 - a finding of the model, and no fault of the program
+    """The pattern searches more folders than :data:`MOST_FOLDERS`."""
+
+
+def matching_files(parent: str, pattern: str) -> Iterator[str]:
+    """Yield the paths below ``parent`` that the pattern matches, folders apart, in no order.
+
+    Raises:
+        TooManyFolders: the pattern searches too much.
+    """
+    *folders, last = PurePath(pattern).parts
+    if last == "**":
+        folders.append(last)
+        last = "*"
+    for folder in folder_levels(parent, folders)[-1]:
+        if not glob.has_magic(last):
+            path = os.path.join(folder, last)  # noqa: PTH118 - millions of them
+            if os.path.lexists(path) and not os.path.isdir(path):  # noqa: PTH112
+                yield path
+            continue
+        for entry in _entries(folder):
+            if _matches(entry.name, last) and not _is_folder(entry):
+                yield entry.path
+
+
+def folder_levels(parent: str, parts: Sequence[str]) -> list[list[str]]:
+    """Return the folders that each beginning of a pattern's parts leads to, no folder twice.
+
+    Raises:
+        TooManyFolders: there are too many.
+    """
+    levels = [[parent]]
+    for number, part in enumerate(parts):
+        if part == "**" and number and parts[number - 1] == "**":
+            levels.append(levels[-1])
+            continue
+        found = _all_below(levels[-1]) if part == "**" else _within(levels[-1], part)
+        levels.append(list(_distinct(found)))
+    return levels
+
+
+def _within(folders: Iterable[str], part: str) -> Iterator[str]:
+    for folder in folders:
+        if not glob.has_magic(part):
+            path = os.path.join(folder, part)  # noqa: PTH118
+            if os.path.isdir(path):  # noqa: PTH112
+                yield path
+            continue
+        for entry in _entries(folder):
+            if _matches(entry.name, part) and _is_folder(entry):
+                yield entry.path
+
+
+def _all_below(folders: Iterable[str]) -> Iterator[str]:
+    """Yield the folders themselves and all below them but hidden ones, each real folder once."""
+    waiting = list(_distinct(folders))
+    seen = {_identity(each) for each in waiting}
+    for folder in waiting:  # grows meanwhile
+        yield folder
+        for entry in _entries(folder):
+            if not entry.name.startswith(".") and _is_folder(entry):
+                identity = _identity(entry.path)
+                if identity not in seen:
+                    seen.add(identity)
+                    waiting.append(entry.path)
+
+
+def _distinct(folders: Iterable[str]) -> Iterator[str]:
+    seen: set[object] = set()
+    for folder in folders:
+        identity = _identity(folder)
+        if identity not in seen:
+            seen.add(identity)
+            if len(seen) > MOST_FOLDERS:
+                raise TooManyFolders(f"searches more than {MOST_FOLDERS:,} folders")
+            yield folder
+
+
+def _identity(folder: str) -> object:
+    try:
+        status = os.stat(folder)  # noqa: PTH116
+    except OSError:
+        return folder
+    return status.st_dev, status.st_ino
+
+
+def _entries(folder: str) -> list[os.DirEntry[str]]:
+    """Return what is in a folder, sorted, so that always the same name of one folder counts."""
+    try:
+        with os.scandir(folder or ".") as entries:
+            return sorted(entries, key=lambda entry: entry.name)
+    except (OSError, ValueError):
+        return []
+
+
+def _is_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:
+        return False
+
+
+def _matches(name: str, pattern: str) -> bool:
+    """Tell whether a name matches; a hidden one only where the pattern begins with a dot."""
+    return fnmatchcase(name, pattern) and (not name.startswith(".") or pattern.startswith("."))

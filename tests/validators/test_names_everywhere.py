@@ -1,0 +1,189 @@
+"""Every place where a name of ROS 2 can be written refuses what ROS 2 refuses.
+
+The places come from the grammars, so that a new one has to be entered here before the tests pass.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.validators.check import check
+
+GRAMMARS = Path(__file__).resolve().parents[2] / "src" / "deros" / "metamodels"
+
+NODE_FILE = """\
+node base : base
+parameters
+  name odom_topic : string = "/odom"
+publishes
+  topic odom : nav_msgs.Odometry
+  topic more : nav_msgs.Odometry via odom_topic
+"""
+SYSTEM = """\
+system s
+imports import "base.rnd"
+topics topic /odom topic /more
+subsystem a namespace /n {
+  node base : base
+  parameters
+    HERE
+  wirings connect odom to /odom connect more to /more
+}
+"""
+RULES = """\
+use "s.system" import s
+action stop publishes true on /stop : std_msgs.Bool
+input odom = topic /odom.twist.twist.linear.x timeout 1 sec
+entity e { fast: odom > 1 m/s or odom.missing(); }
+if e.fast then { stop; };
+"""
+
+TOPICS = ("/1a", "/a-b", "/a/", "/é", "/a~b", "~x", "/" + "a" * 250)
+WORDS = ("aé", "a" * 256)
+
+PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
+    # Rule.attribute of the grammar: suffix of the file, a text with NAME, what is refused there.
+    "NodeType.name": (".rnd", "node NAME : base", WORDS),
+    "NodeType.package": (".rnd", "node base : NAME", ("Base", "a__b", "a_", "b", *WORDS)),
+    "Parameter.name": (".rnd", "node n : base parameters name NAME : int", ("a..b", "a.", "aé")),
+    "Timer.name": (".rnd", "node n : base timers timer NAME every 1 sec", WORDS),
+    "TopicPort.name": (".rnd", "node n : base publishes topic NAME : std_msgs.Bool", TOPICS),
+    "ServicePort.name": (".rnd", "node n : base services service NAME : std_srvs.Trigger", TOPICS),
+    "ClientPort.name": (".rnd", "node n : base clients client NAME : std_srvs.Trigger", TOPICS),
+    "ActionPort.name": (
+        ".rnd",
+        "node n : base actions action NAME : example_interfaces.Fibonacci",
+        TOPICS,
+    ),
+    "Via.parameter": (
+        ".rnd",
+        'node n : base parameters name p : string = "NAME" publishes topic a : std_msgs.Bool via p',
+        TOPICS,
+    ),
+    "System.name": (".system", "system NAME", WORDS),
+    "Topic.name": (".system", "system s topics topic NAME", (*TOPICS, "~/a", "~")),
+    "Subsystem.name": (".system", "system s subsystem NAME { }", WORDS),
+    "NodeInstance.name": (".system", "system s node NAME : base", WORDS),
+    "Namespace.namespace": (
+        ".system",
+        "system s subsystem a namespace NAME { }",
+        (*TOPICS, "~", "~/a"),
+    ),
+    "Setting.name": (".system", SYSTEM.replace("HERE", "param NAME = 1"), ("a..b", "aé")),
+    "Setting.value": (".system", SYSTEM.replace("HERE", 'param odom_topic = "NAME"'), TOPICS),
+    "Wiring.target": (
+        ".system",
+        SYSTEM.replace("connect odom to /odom", "connect odom to NAME").replace("HERE", ""),
+        TOPICS,
+    ),
+    "Wiring.port": (
+        ".system",
+        SYSTEM.replace("connect odom to /odom", "connect NAME to /odom").replace("HERE", ""),
+        TOPICS,
+    ),
+    "Constant.name": (".deros", RULES + "const NAME = 1", WORDS),
+    "Input.name": (".deros", RULES + "input NAME = topic /odom.pose", WORDS),
+    "Action.name": (".deros", RULES + "action NAME", WORDS),
+    "ParameterName.name": (".deros", RULES + "action a(NAME)", WORDS),
+    "Binding.topic": (
+        ".deros",
+        RULES + "action a publishes true on NAME : std_msgs.Bool",
+        (*TOPICS, "~", "~/a"),
+    ),
+    "Entity.name": (".deros", RULES + "entity NAME { }", WORDS),
+    "Rule.name": (".deros", RULES + "entity f { NAME: odom > 1 m/s; }", WORDS),
+    "Behaviour.name": (
+        ".deros",
+        RULES + "behaviour NAME: if e.fast then { stop; }",
+        WORDS,
+    ),
+    "Gate.source": (
+        ".deros",
+        RULES + "gate NAME -> /b : geometry_msgs.Twist rate 20 Hz { stop: zero; }",
+        (*TOPICS, "~", "~/a"),
+    ),
+    "Gate.target": (
+        ".deros",
+        RULES + "gate /b -> NAME : geometry_msgs.Twist rate 20 Hz { stop: zero; }",
+        (*TOPICS, "~", "~/a"),
+    ),
+    "TopicTerm.topic": (
+        ".deros",
+        RULES + "input x = topic NAME.twist",
+        (*TOPICS, "~", "~/a"),
+    ),
+}
+
+REFERENCES = {
+    "Subsystem.system": "names a system that an import defines",
+    "NodeInstance.type": "names a node type that an import defines",
+    "Use.system": "names a system that the file defines",
+    "UnitDefinition.name": "a unit is in no generated code",
+    "ResetBy.action": "names an action that is declared",
+    "ActionCall.action": "names an action that is declared",
+    "GateLine.action": "names an action that is declared",
+    "GateLimit.field": "names a field of the message",
+    "NameTerm.name": "names what the rules declare",
+    "Call.function": "names a function of the table",
+}
+"""Places where only what is declared elsewhere can be named: anything else is unknown."""
+
+_ATTRIBUTE = re.compile(
+    r"(\w+)[*+?]?=(?:GraphName\b|MarkedGraphName\b|Name\b|DottedName\b|TermName\b|\[\w+:Name\])"
+)
+
+
+def test_the_table_has_every_place() -> None:
+    """Each attribute of the grammars that holds a name is in one of the two tables."""
+    found: set[str] = set()
+    for path in GRAMMARS.glob("*.tx"):
+        for rule in re.finditer(r"^(\w+):(.*?);$", path.read_text(), re.DOTALL | re.MULTILINE):
+            found.update(f"{rule[1]}.{name}" for name in _ATTRIBUTE.findall(rule[2]))
+    assert found == (PLACES.keys() - {"Setting.value"}) | REFERENCES.keys()
+
+
+@pytest.mark.parametrize(
+    ("place", "name"),
+    [(place, name) for place, (_, _, names) in PLACES.items() for name in names],
+    ids=lambda value: value[:24],
+)
+def test_a_name_that_ros_refuses_is_an_error_where_it_stands(
+    tmp_path: Path, place: str, name: str
+) -> None:
+    """There is an error, and it points at the name."""
+    suffix, template, _ = PLACES[place]
+    (tmp_path / "base.rnd").write_text(NODE_FILE)
+    (tmp_path / "s.system").write_text(SYSTEM.replace("HERE", ""))
+    text = template.replace("NAME", name)
+    at = template.index("NAME")
+    repository = Repository()
+    loaded = repository.load_text(tmp_path / f"model{suffix}", text)
+    errors = [
+        each
+        for each in check([loaded], repository, InterfaceStore((), ()))
+        if each.is_error and each.span.file.endswith(f"model{suffix}")
+    ]
+    # A name that stands in quotes is pointed at with them.
+    places = range(at - 1, at + len(name))
+    assert any(each.span.start in places for each in errors), errors
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_a_sound_name_is_refused_nowhere(tmp_path: Path, place: str) -> None:
+    """What the tables refuse is refused for the name, not for the text around it."""
+    suffix, template, names = PLACES[place]
+    (tmp_path / "base.rnd").write_text(NODE_FILE)
+    (tmp_path / "s.system").write_text(SYSTEM.replace("HERE", ""))
+    sound = {"Wiring.port": "odom", "Setting.name": "odom_topic"}.get(place)
+    if sound is None:
+        sound = "/odom" if set(TOPICS) <= set(names) else "sound"
+    repository = Repository()
+    loaded = repository.load_text(tmp_path / f"model{suffix}", template.replace("NAME", sound))
+    found = check([loaded], repository, InterfaceStore((), ()))
+    refused = ("DRS003", "DRS007", "DRS105", "DRS223", "DRS332")
+    assert [each.message for each in found if each.code.name in refused] == []
