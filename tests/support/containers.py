@@ -93,5 +93,38 @@ def running_container(
         yield Container(process, env, peer)
 
 
+class Loader:
+    """Loads and unloads the components of a running container by its services, without a delay."""
+
+    def __init__(self, peer: Peer) -> None:
+        """Find the services of the container."""
+        from composition_interfaces.srv import (  # type: ignore[import-not-found]
+            LoadNode,
+            UnloadNode,
+        )
+
+        self._peer, self._load, self._unload = peer, LoadNode, UnloadNode
+        node = peer.node
+        self._loading = node.create_client(LoadNode, f"{_NAME}/_container/load_node")
+        self._unloading = node.create_client(UnloadNode, f"{_NAME}/_container/unload_node")
+
+    def load(self, package: str, plugin: str) -> int:
+        """Load a component and return its number.
+
+        Raises:
+            LoadError: if its constructor throws.
+        """
+        request = self._load.Request(package_name=package, plugin_name=plugin)
+        response = self._peer.call(self._loading, request)
+        if not response.success:
+            raise LoadError(response.error_message)
+        return int(response.unique_id)
+
+    def unload(self, number: int) -> None:
+        """Unload a component."""
+        response = self._peer.call(self._unloading, self._unload.Request(unique_id=number))
+        assert response.success, response.error_message
+
+
 def _serves(peer: Peer, name: str) -> bool:
     return any(service == name for service, _ in peer.node.get_service_names_and_types())

@@ -116,6 +116,36 @@ def overlay(install: Path, env: Mapping[str, str]) -> dict[str, str]:
     return merged
 
 
+def instrument(package: Path, node: str, sources: Iterable[str]) -> None:
+    """Have some sources of a node's component notice the use of freed memory.
+
+    All others stay as they are, so that what other tests have compiled of them is used again.
+
+    Args:
+        package: the generated package.
+        node: the name that its targets begin with.
+        sources: relative to the package.
+    """
+    option = "-fsanitize=address"
+    text = (
+        f"set_property(SOURCE {' '.join(sources)} APPEND PROPERTY COMPILE_OPTIONS {option})\n"
+        f"target_link_options({node}_component PUBLIC {option})\n"
+    )
+    with (package / "custom.cmake").open("a") as file:
+        file.write(text)
+
+
+def sanitized(env: Mapping[str, str]) -> dict[str, str]:
+    """Return ``env`` for a program that loads components changed by :func:`instrument`.
+
+    It ends with 99 if one of them uses freed memory; the report is in its output.
+    """
+    command = ["c++", "-print-file-name=libasan.so"]
+    library = subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    options = "detect_leaks=0:exitcode=99:new_delete_type_mismatch=0"  # ROS 2 is as it is
+    return {**env, "LD_PRELOAD": library, "ASAN_OPTIONS": options}
+
+
 def python_overlay(install: Path, env: Mapping[str, str]) -> dict[str, str]:
     """Return the same for Python that starts such programs.
 

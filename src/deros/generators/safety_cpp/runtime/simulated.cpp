@@ -58,6 +58,11 @@ std::unique_ptr<SimulatedTime> simulated_time(
   return std::make_unique<SimulatedTime>(node, agenda, std::move(changed));
 }
 
+Time start_time(const rclcpp::Node & node)
+{
+  return node.get_parameter("use_sim_time").as_bool() ? 0 : steady_now();
+}
+
 Clock clock_of(const std::unique_ptr<SimulatedTime> & simulated)
 {
   return simulated ? simulated->clock() : Clock();

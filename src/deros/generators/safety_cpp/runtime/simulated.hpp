@@ -51,6 +51,9 @@ private:
 std::unique_ptr<SimulatedTime> simulated_time(
   rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed);
 
+/// Return the time at which a node starts: 0 under use_sim_time, as SimulatedTime has it.
+Time start_time(const rclcpp::Node & node);
+
 /// Return the clock of simulated time, or the steady one if there is none.
 Clock clock_of(const std::unique_ptr<SimulatedTime> & simulated);
 
