@@ -61,7 +61,8 @@ def test_a_deadline_that_passes_in_a_hang_is_met_late_not_lost(robot: Robot) -> 
 
 def test_a_latched_stop_survives_a_kill(robot: Robot) -> None:
     """The node that is started again says from its first message on that the robot is stopped."""
-    with robot.safety_node() as node:
+    with robot.safety_node() as node, robot.sensors() as sensors:
+        sensors.drive()
         robot.violate()
         robot.until_alive()  # what it does after the stop, it has done now
         node.kill()
@@ -72,7 +73,7 @@ def test_a_latched_stop_survives_a_kill(robot: Robot) -> None:
             "the stop was undone by a restart"
         )
 
-        assert robot.reset()[0]
+        robot.until(lambda: robot.reset()[0])  # once it knows that the cause is over
         robot.until(lambda: not robot.is_active("/stop"))
         node.kill()
         node = robot.restart()
@@ -81,7 +82,8 @@ def test_a_latched_stop_survives_a_kill(robot: Robot) -> None:
 
 def test_no_kill_at_any_moment_makes_a_node_that_does_not_start(robot: Robot) -> None:
     """Wherever in its work it is killed, it can be started again, and watches."""
-    with robot.safety_node() as node:
+    with robot.safety_node() as node, robot.sensors() as sensors:
+        sensors.drive()
         for moment in range(3):
             robot.violate()
             time.sleep(moment * 0.001)  # the moment is what is varied

@@ -76,7 +76,11 @@ def test_a_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
     folder = tmp_path / "disk"
     folder.mkdir()
     disk = Disk(folder, tmp_path)
-    with robot.safety_node(f"state_file:={folder / 'state'}", **disk.env):
+    with (
+        robot.safety_node(f"state_file:={folder / 'state'}", **disk.env),
+        robot.sensors() as sensors,
+    ):
+        sensors.drive()
         robot.violate()
         disk.fill()
 

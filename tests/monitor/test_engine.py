@@ -152,8 +152,84 @@ def test_latched_actions_can_be_active_from_the_start(latched: Program) -> None:
     """Such an action makes no event until it is reset; names of others are ignored."""
     engine = Engine(latched, latched={"stop", "gone"})
     assert engine.events == []
-    assert engine.reset(1) is True
+    _speed(engine, 1, 0.1)
+    assert engine.reset(2) is True
     assert [(e.kind, e.action) for e in engine.events] == [("reset", "stop")]
+
+
+def test_reset_is_refused_before_the_first_event(latched: Program) -> None:
+    """Nothing is known at the start, so an action that outlived a restart stays active."""
+    engine = Engine(latched, latched={"stop", "low"})
+    assert engine.reset(1) is False
+    _speed(engine, 2, 0.1)
+    assert engine.reset(3) is False
+    assert [(e.kind, e.action, e.unknown) for e in engine.events] == [
+        ("refused", "stop", ("behaviour_1",)),
+        ("refused", "low", ("behaviour_2",)),
+        ("reset", "stop", ()),
+        ("refused", "low", ("behaviour_2",)),
+    ]
+
+
+def test_missing_is_unknown_before_the_first_event_too() -> None:
+    """The start is no event: until the first one no condition has been evaluated."""
+    rules = LATCHED.replace("/speed.data", "/speed.data timeout 5 ns")
+    engine = Engine(program(rules.replace("v > 0.5;", "v.missing();")), latched={"stop"})
+    assert engine.reset(1) is False
+    _flag(engine, 2, False)
+    assert engine.reset(3) is True
+
+
+@pytest.mark.parametrize("value", [math.nan, None])
+def test_reset_is_refused_while_the_cause_is_unknown(latched: Program, value: float) -> None:
+    """A value that says nothing does not say that the danger is over."""
+    engine = Engine(latched)
+    _speed(engine, 1, 0.6)
+    engine.message(2, "/speed", {0: value})
+    assert engine.reset(3) is False
+    assert (engine.events[-1].holding, engine.events[-1].unknown) == ((), ("behaviour_1",))
+    _speed(engine, 4, 0.1)
+    assert engine.reset(5) is True
+
+
+def test_reset_is_refused_after_a_step_of_the_clock(latched: Program) -> None:
+    """The step makes every input unknown, until its next message."""
+    engine = Engine(latched)
+    _speed(engine, 5, 0.6)
+    _speed(engine, 6, 0.1)
+    engine.advance(2)
+    assert engine.reset(3) is False
+    _speed(engine, 4, 0.1)
+    assert engine.reset(5) is True
+
+
+def test_refused_reset_names_what_holds_and_what_is_unknown() -> None:
+    """Both kinds of behaviours are named; one that is known to be false is not."""
+    rules = LATCHED + "if e.flag then { stop; };\nif e.fast for 1 sec then { stop; };\n"
+    engine = Engine(program(rules))
+    _speed(engine, 1, 0.6)
+    assert engine.reset(2) is False
+    assert engine.events[-1].holding == ("behaviour_1",)
+    assert engine.events[-1].unknown == ("behaviour_3",)
+
+
+def test_disabled_outer_behaviour_is_known_to_be_false() -> None:
+    """Whatever is nested in it refuses nothing, even while it is unknown."""
+    rules = LATCHED.replace(
+        "if e.fast then { stop; };",
+        "optional behaviour fast: if e.fast then { if e.flag then { stop; }; };",
+    )
+    engine = Engine(program(rules), latched={"stop"})
+    _speed(engine, 1, 0.6)
+    assert engine.reset(2) is False
+    engine.enable(3, "fast", False)
+    assert engine.reset(4) is True
+
+
+def test_action_that_nothing_triggers_can_be_reset() -> None:
+    """No condition refuses it."""
+    rules = LATCHED.replace("if e.fast then { stop; };", "")
+    assert Engine(program(rules), latched={"stop"}).reset(1) is True
 
 
 OPTIONAL = LATCHED.replace("if e.fast then", "optional behaviour fast: if e.fast for 5 ns then")

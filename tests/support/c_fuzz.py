@@ -167,11 +167,11 @@ def invariants(view: MonitorView) -> Iterator[str]:
 
 def _of_behaviour(view: MonitorView, behaviour: Behaviour) -> Iterator[str]:
     layout = view.layout
-    holds = layout.holds[behaviour.index]
+    condition, macro = f"m->{layout.conditions[behaviour.index]}", layout.macro
     if behaviour.parent is not None:
-        yield f"!m->{holds} || m->{layout.holds[behaviour.parent]}"
+        yield f"{condition} <= m->{layout.conditions[behaviour.parent]}"
     if behaviour.optional:
-        yield f"!m->{holds} || m->{layout.enabled[behaviour.index]}"
+        yield f"({condition} == {macro}_FALSE) || m->{layout.enabled[behaviour.index]}"
     for item in behaviour.body:
         if isinstance(item, Trigger) and item.action in layout.active:
-            yield f"!m->{holds} || m->{layout.active[item.action]}"
+            yield f"({condition} != {macro}_TRUE) || m->{layout.active[item.action]}"

@@ -70,6 +70,8 @@ def _driver(each: Unit) -> Iterator[str]:
     """Yield the lines of the callback, and of the function that takes one call."""
     view, prefix, macro = each.view, each.prefix, each.view.macro
     yield f"""\
+static const {prefix}_monitor *{prefix}_running;
+
 void {prefix}_emit(void *owner, int64_t t, {prefix}_kind kind, uint32_t site)
 {{
   answer *out = *(answer **)owner;
@@ -83,6 +85,10 @@ void {prefix}_emit(void *owner, int64_t t, {prefix}_kind kind, uint32_t site)
     put(out, (place->behaviour == {macro}_BEHAVIOUR_NONE) ? -1 : (int64_t)place->behaviour);
     put(out, (int64_t)place->line);"""
     yield from _arguments(prefix, macro) if view.has_arguments else ("    put(out, 0);",)
+    yield f"    if (kind == {macro}_REFUSED) {{"
+    for name in view.layout.conditions.values():
+        yield f"      put(out, {prefix}_running->{name});"
+    yield "    }"
     yield f"""\
   }}
 }}
@@ -90,6 +96,7 @@ void {prefix}_emit(void *owner, int64_t t, {prefix}_kind kind, uint32_t site)
 static void {prefix}_step({prefix}_monitor *m, answer **owner, words *in, answer *out)
 {{
   int64_t result = 0;
+  {prefix}_running = m;
   *owner = out;
   switch (word(in)) {{
     case 0: {{
@@ -141,7 +148,7 @@ def _state(view: MonitorView) -> Iterator[str]:
     for rule in program.rules:
         yield f"put(out, (int64_t)m->{layout.verdicts[rule.index]});"
         yield f"put(out, m->{layout.turned[rule.index]});"
-    for name in (*layout.holds.values(), *layout.active.values()):
+    for name in (*layout.conditions.values(), *layout.active.values()):
         yield f"put(out, m->{name});"
     for term in layout.terms.values():
         yield f"put(out, m->{term.known});"

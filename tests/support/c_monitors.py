@@ -6,7 +6,7 @@ import math
 import struct
 from array import array
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 from deros.generators.monitor_c.handlers import Parameter
@@ -28,13 +28,13 @@ class Known:
 
     Attributes:
         verdicts: of each rule, with the time when it last became true or ceased to be.
-        holds: of each behaviour.
+        conditions: of each behaviour, with all around it.
         active: of each action that can be reset.
         values: of each value that conditions compare, ``None`` for unknown.
     """
 
     verdicts: tuple[tuple[Verdict, int], ...]
-    holds: tuple[bool, ...]
+    conditions: tuple[Verdict, ...]
     active: tuple[bool, ...]
     values: tuple[Scalar | None, ...]
 
@@ -115,7 +115,21 @@ class CMonitor:
         arguments = tuple(_argument(answer) for _ in range(count))
         name = self._program.actions[action].name
         within = None if behaviour < 0 else self._view.behaviour_names[behaviour][0]
-        return Event(t_ns, kind, name, within, arguments), line
+        event = Event(t_ns, kind, name, within, arguments)
+        if kind == "refused":
+            event = self._refused(event, action, answer)
+        return event, line
+
+    def _refused(self, event: Event, action: int, answer: Iterator[int]) -> Event:
+        """Add what the conditions of the behaviours were when the reset was refused."""
+        conditions = [next(answer) for _ in self._view.layout.conditions]
+        names = [name for name, _ in self._view.behaviour_names]
+        callers = self._program.actions[action].triggered_by
+        unknown, holding = (
+            tuple(names[each] for each in callers if conditions[each] == verdict)
+            for verdict in (1, 2)
+        )
+        return replace(event, holding=holding, unknown=unknown)
 
     def _knowledge(self, answer: Iterator[int]) -> Known:
         layout = self._view.layout
@@ -123,7 +137,7 @@ class CMonitor:
         for _ in layout.verdicts:
             verdict = (False, None, True)[next(answer)]
             verdicts.append((verdict, next(answer)))
-        holds = tuple(bool(next(answer)) for _ in layout.holds)
+        conditions = tuple((False, None, True)[next(answer)] for _ in layout.conditions)
         active = tuple(bool(next(answer)) for _ in layout.active)
         values: list[Scalar | None] = []
         for term in layout.terms.values():
@@ -134,7 +148,7 @@ class CMonitor:
             elif term.texts:  # which of those that it is compared with, if any
                 value = ("", *term.texts)[word] if word else ""
             values.append(value if known else None)
-        return Known(tuple(verdicts), holds, active, tuple(values))
+        return Known(tuple(verdicts), conditions, active, tuple(values))
 
 
 def compare(

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
-from tests.support.played import button, command, imu, speed
+from tests.support.played import button, command, imu, scan, speed
 from tests.support.processes import freeze, thaw
 from tests.support.ros import LIMIT
 
@@ -111,6 +111,8 @@ class Sensors:
         }
         for topic in played.keys() & self._topics:
             self.play(topic, *played[topic])
+        if "/scan" in self._topics:
+            self.play("/scan", scan(5.0), rate=10.0)
         self.match(*{"/speed", "/imu", "/button"} & self._topics)
 
     def quiet(self, topic: str) -> int:

@@ -6,6 +6,7 @@ monitor is held to give the same events at the same nanosecond. In short:
 * The monitor is driven by messages and by deadlines. The start is no event.
 * An event is: the deadlines of one instant, or one message, or a backward step of the clock. At
   each, all rules are evaluated, then all behaviours, top to bottom; then resets are settled.
+* An action is reset only if every condition that triggers it is known to be false.
 * Deadlines that are due when a call comes are settled first, in time order, with the old values.
 * A call with an earlier time than the one before shows a backward step of the clock.
 * To enable or disable an optional behaviour is an event too, after which the inputs are as before.
@@ -22,11 +23,11 @@ from typing import Literal
 
 from deros.diagnostics import Span
 from deros.monitor import walk
-from deros.monitor.evaluate import evaluate_condition, evaluate_value, is_nan
+from deros.monitor.evaluate import conjunction, evaluate_condition, evaluate_value, is_nan
 from deros.monitor.explain import RuleState, explain_rule
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import Age, Apply, Behaviour, For, Input, Program, Scalar, Trigger
-from deros.monitor.state import LeafValue, RateState, State
+from deros.monitor.state import LeafValue, RateState, State, Verdict
 
 EventKind = Literal["trigger", "reset", "refused", "clock_step"]
 
@@ -42,6 +43,8 @@ class Event:
         behaviour: the name of the behaviour that triggered it; ``None`` for all but triggers.
         arguments: of the action.
         span: the call in the behaviour, or the action's declaration.
+        holding: the behaviours whose conditions hold, and so refused a reset.
+        unknown: the behaviours whose conditions are unknown, and so refused a reset.
     """
 
     t_ns: int
@@ -50,6 +53,8 @@ class Event:
     behaviour: str | None = None
     arguments: tuple[Scalar, ...] = ()
     span: Span | None = field(default=None, compare=False, repr=False)
+    holding: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
 
 
 class Engine:
@@ -85,6 +90,7 @@ class Engine:
         self._functions = [each for each in values if isinstance(each, Apply)]
         behaviours = tuple(walk.behaviours(program))
         self._state = State(program, start_ns, len(behaviours), grace_ns)
+        self._names = [each.name for each in behaviours]
         self._optional = {each.name: each.index for each in behaviours if each.optional}
         self._ran: set[int] = set()
         for action in program.actions:
@@ -128,7 +134,14 @@ class Engine:
         return self.events[before:]
 
     def reset(self, t_ns: int) -> bool:
-        """Reset every latched action that is active; tell whether none was refused."""
+        """Reset every latched action that is active, where nothing refuses it.
+
+        An action is reset if every condition that triggers it is known to be false. Before the
+        first event no condition is.
+
+        Returns:
+            Whether no reset was refused.
+        """
         self._catch_up(t_ns)
         results = [self._try_reset(each.index) for each in self._program.actions if each.latched]
         return all(results)
@@ -262,10 +275,10 @@ class Engine:
             if action.reset_by in self._ran:
                 self._try_reset(action.index)
 
-    def _behave(self, behaviour: Behaviour, enclosing: bool) -> None:
+    def _behave(self, behaviour: Behaviour, enclosing: Verdict) -> None:
         verdict = evaluate_condition(behaviour.condition, self._state, self._now_ns)
-        holds = enclosing and verdict is True and self._state.enabled[behaviour.index]
-        rises = holds and not self._state.holds[behaviour.index]
+        holds = conjunction((enclosing, self._state.enabled[behaviour.index], verdict))
+        rises = holds is True and self._state.holds[behaviour.index] is not True
         self._state.holds[behaviour.index] = holds
         for item in behaviour.body:
             if isinstance(item, Behaviour):
@@ -282,14 +295,24 @@ class Engine:
         )
 
     def _try_reset(self, index: int) -> bool:
-        """Reset an action if it is active; tell whether it is inactive now."""
+        """Reset an active action if every condition that triggers it is known to be false.
+
+        Returns:
+            Whether the action is inactive now.
+        """
         action = self._program.actions[index]
         if not self._state.active[index]:
             return True
-        refused = any(self._state.holds[each] for each in action.triggered_by)
+        holding, unknown = (
+            tuple(self._names[n] for n in action.triggered_by if self._state.holds[n] is verdict)
+            for verdict in (True, None)
+        )
+        refused = bool(holding or unknown)
         self._state.active[index] = refused
         kind: EventKind = "refused" if refused else "reset"
-        self.events.append(Event(self._now_ns, kind, action.name, span=action.span))
+        self.events.append(
+            Event(self._now_ns, kind, action.name, None, (), action.span, holding, unknown)
+        )
         return not refused
 
 

@@ -6,7 +6,7 @@ Source: Kleene's strong three-valued logic, with ``None`` for unknown.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
 from deros.monitor.functions import FUNCTIONS
@@ -97,7 +97,7 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             return None if verdict is None else not verdict
         case And():
             verdicts = [evaluate_condition(each, state, t_ns) for each in condition.operands]
-            return _all(verdicts)
+            return conjunction(verdicts)
         case Or():
             verdicts = [evaluate_condition(each, state, t_ns) for each in condition.operands]
             return _any(verdicts)
@@ -118,7 +118,8 @@ def _within(condition: Within, state: State) -> Verdict:
     return bool(above and below)
 
 
-def _all(verdicts: list[Verdict]) -> Verdict:
+def conjunction(verdicts: Collection[Verdict]) -> Verdict:
+    """Return Kleene's ``and`` of several verdicts."""
     if False in verdicts:
         return False
     return None if None in verdicts else True

@@ -54,6 +54,8 @@ def event_record(event: Event) -> dict[str, Any]:
         record["text"] = event.arguments[0]
     elif event.arguments:
         record["arguments"] = list(event.arguments)
+    if event.kind == "refused":
+        record |= {"holding": list(event.holding), "unknown": list(event.unknown)}
     if event.span is not None:
         record |= {"file": event.span.file, "line": event.span.line}
     return record

@@ -49,7 +49,8 @@ class State:
         verdicts: of each rule, as of the last event.
         turned_ns: of each rule, when it last became true or ceased to be; the start, or the last
             step of the clock, if it did not since.
-        holds: of each behaviour, whether it and all that enclose it held at the last event.
+        holds: of each behaviour, Kleene's ``and`` of its condition and all that enclose it, as of
+            the last event; unknown before the first.
         enabled: of each behaviour; those that are not optional always are.
         active: of each action, whether it was triggered and not reset since.
     """
@@ -58,7 +59,7 @@ class State:
         """Remember nothing yet; timeouts count from ``grace_ns`` after ``start_ns``."""
         self._program = program
         self.verdicts: list[Verdict] = [None] * len(program.rules)
-        self.holds = [False] * behaviours
+        self.holds: list[Verdict] = [None] * behaviours
         self.enabled = [True] * behaviours
         self.active = [False] * len(program.actions)
         self.forget(start_ns, grace_ns)

@@ -35,6 +35,20 @@ def behaviours(program: Program) -> Iterator[Behaviour]:
         yield from descend(each)
 
 
+def refusing(program: Program) -> frozenset[int]:
+    """Return the behaviours, by index, on whose falsehood a reset depends, with all around them."""
+    found = {
+        index
+        for action in program.actions
+        if action.latched or action.reset_by is not None
+        for index in action.triggered_by
+    }
+    for behaviour in reversed(tuple(behaviours(program))):
+        if behaviour.index in found and behaviour.parent is not None:
+            found.add(behaviour.parent)
+    return frozenset(found)
+
+
 def conditions(program: Program) -> Iterator[Condition]:
     """Yield every condition of the rules, then of the behaviours, operands before the whole."""
     for rule in program.rules:

@@ -51,7 +51,7 @@ def test_difference_is_shortened(tmp_path: Path) -> None:
     units = [each.unit for each in cases]
     for each in units:  # every action runs while its behaviour holds
         name = f"{each.prefix}_monitor.c"
-        each.texts[name] = each.texts[name].replace("rises = holds &&", "rises = holds ||")
+        each.texts[name] = each.texts[name].replace("&& (!held)", "|| held")
     found = [pair for pair, _ in c_pairs.differences(Loaded(units, tmp_path), cases)]
     assert found
     assert min(len(pair.steps) for pair in found) <= 3

@@ -21,7 +21,16 @@ SLIPS = {
     "a wrong comparison": ("lasting", "(now - *since) >= duration", "(now - *since) > duration"),
     "a wrong bound": ("observe_speed", "m->speed > 0.5", "m->speed > 0.6"),
     "a missed clear": ("lasting", "    *since = INTELLIGENT_ONE_UNSET;\n", "    ;\n"),
-    "a clear too many": ("settle_stop", "if (m->too_fast_holds || m->tilted_holds)", "if (false)"),
+    "a clear too many": (
+        "settle_stop",
+        "(m->too_fast_condition == INTELLIGENT_ONE_FALSE)",
+        "(true)",
+    ),
+    "a clear while the cause is unknown": (
+        "settle_stop",
+        "(m->tilted_condition == INTELLIGENT_ONE_FALSE)",
+        "(m->tilted_condition != INTELLIGENT_ONE_TRUE)",
+    ),
     "a wrong duration": (
         "judge_drive_system_max_speed_exceeded",
         "INT64_C(2000000000)",
@@ -40,8 +49,8 @@ SLIPS = {
     ),
     "a latch that clears itself": (
         "behave_too_fast",
-        "m->too_fast_holds = holds;",
-        "m->too_fast_holds = holds;\n  m->stop_active = holds;",
+        "m->too_fast_condition = condition;",
+        "m->too_fast_condition = condition;\n  m->stop_active = rises;",
     ),
     "a deadline that is forgotten": (
         "observe_speed",

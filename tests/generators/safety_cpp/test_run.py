@@ -44,7 +44,8 @@ def test_each_node_takes_over_what_the_other_has_latched(
             robot.peer.until(lambda: robot.beats and robot.stop)
             assert all(robot.stop)
             assert robot.event("latched")["action"] == "stop"
-            assert robot.reset().message == "stop is reset"
+            assert not robot.reset().success
+            robot.drive_until(0.1, lambda: robot.reset().message == "stop is reset")
             robot.peer.until(lambda: not robot.stop[-1])
             process.kill()
             process.wait(LIMIT)
@@ -87,9 +88,10 @@ def test_both_report_the_same_of_the_same_messages(
                 lambda: robot.status("drive.silent").values["speed.missing()"] == "true"
             )
             robot.peer.until(lambda: robot.status("drive.fast").message.startswith("unknown"))
-            assert robot.reset().success
-            robot.event("reset", action="stop")
-            robot.peer.until(lambda: robot.status("action stop").message == "inactive")
+            assert not robot.reset().success
+            refused = robot.event("refused", action="stop")
+            assert (refused["holding"], refused["unknown"]) == ("", "speeding")
+            assert robot.status("action stop").message == "active"
             statuses = {
                 name: (status.level, status.message, _timeless(status.values))
                 for name, status in robot.statuses.items()

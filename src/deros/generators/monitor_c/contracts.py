@@ -75,3 +75,8 @@ def iff(left: str, right: str) -> str:
 def all_of(parts: Iterable[str]) -> str:
     """Return the conjunction."""
     return f"({' && '.join(parts)})"
+
+
+def any_of(parts: Iterable[str]) -> str:
+    """Return the disjunction."""
+    return f"({' || '.join(parts)})"

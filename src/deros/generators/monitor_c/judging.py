@@ -88,22 +88,24 @@ def _intervals(conditions: Conditions, layout: Layout, condition: Condition) -> 
 def behave(program: Program, layout: Layout, behaviour: Behaviour, places: Sites) -> Function:
     """Return the function that runs a behaviour's body when its condition turns true."""
     conditions = Conditions(program, layout)
-    holds = layout.holds[behaviour.index]
+    field = f"m->{layout.conditions[behaviour.index]}"
     verdict = conditions.verdict(behaviour.condition)
-    tests = []
-    if behaviour.parent is not None:
-        tests.append(f"m->{layout.holds[behaviour.parent]}")
     if behaviour.optional:
-        tests.append(f"m->{layout.enabled[behaviour.index]}")
-    tests.append(f"(verdict == {layout.macro}_TRUE)")
+        enabled = Call("truth_of", ("true", f"m->{layout.enabled[behaviour.index]}"))
+        verdict = Call("both", (enabled, verdict))
+    if behaviour.parent is not None:
+        verdict = Call("both", (f"m->{layout.conditions[behaviour.parent]}", verdict))
     acts = any(isinstance(item, Trigger) for item in behaviour.body)
-    held = " && ".join(tests) if len(tests) > 1 else tests[0]
+    true = f"{layout.macro}_TRUE"
+    edge = [
+        f"  const bool held = ({field} == {true});",
+        f"  const bool rises = (condition == {true}) && (!held);",
+    ]
     body = [
         *_intervals(conditions, layout, behaviour.condition),
-        *lay_out(2, f"const {layout.prefix}_verdict verdict = ", verdict),
-        f"  const bool holds = {held};",
-        *([f"  const bool rises = holds && (!m->{holds});"] if acts else []),
-        f"  m->{holds} = holds;",
+        *lay_out(2, f"const {layout.prefix}_verdict condition = ", verdict),
+        *(edge if acts else []),
+        f"  {field} = condition;",
         *_body(layout, behaviour, places, program),
     ]
     nested = any(isinstance(item, Behaviour) for item in behaviour.body)
@@ -141,20 +143,21 @@ def _trigger(layout: Layout, item: Trigger, site: int, program: Program) -> Iter
 def settle(layout: Layout, action: Action, places: Sites) -> list[str]:
     """Return the lines that reset an action if it is active and its reset ran, if it needs one.
 
-    They refuse to while a behaviour calls for it.
+    They refuse to unless each condition that triggers it is known to be false.
     """
     site, active = places.declarations[action.index], layout.active[action.index]
     asked = [f"m->{active}"]
     if action.reset_by is not None:
         asked.insert(0, f"m->{layout.ran[action.reset_by]}")
     lines = [f"    m->{active} = false;", f"    {_emit(layout, 'RESET', site)}"]
-    holds = [f"m->{layout.holds[each]}" for each in action.triggered_by]
-    if holds:
+    conditions = [f"m->{layout.conditions[each]}" for each in action.triggered_by]
+    if conditions:
+        over = [f"{each} == {layout.macro}_FALSE" for each in conditions]
         lines = [
-            *lay_out_if(" || ", holds, 4),
-            f"      {_emit(layout, 'REFUSED', site)}",
-            "    } else {",
+            *lay_out_if(" && ", over if len(over) == 1 else [f"({each})" for each in over], 4),
             *(f"  {line}" for line in lines),
+            "    } else {",
+            f"      {_emit(layout, 'REFUSED', site)}",
             "    }",
         ]
     return [*lay_out_if(" && ", asked), *lines, "  }"]

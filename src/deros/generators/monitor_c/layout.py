@@ -102,7 +102,8 @@ class Layout:
         since: of each ``For`` with a duration, since when its operand has been true.
         verdicts, turned: of each rule, what it is worth, and when it last became true or ceased to.
         judges: of each rule, the function that judges it; ``behave`` the same of each behaviour.
-        holds: of each behaviour; ``enabled`` of each optional one.
+        conditions: of each behaviour, what its condition and all around it are worth together;
+            ``enabled`` of each optional one.
         active: of each action that can be reset; ``ran`` of each that resets another.
     """
 
@@ -119,7 +120,7 @@ class Layout:
     turned: dict[int, str] = field(default_factory=dict)
     judges: dict[int, str] = field(default_factory=dict)
     behave: dict[int, str] = field(default_factory=dict)
-    holds: dict[int, str] = field(default_factory=dict)
+    conditions: dict[int, str] = field(default_factory=dict)
     enabled: dict[int, str] = field(default_factory=dict)
     active: dict[int, str] = field(default_factory=dict)
     ran: dict[int, str] = field(default_factory=dict)
@@ -346,7 +347,7 @@ def _name_verdicts(program: Program, layout: Layout) -> None:
         layout.judges[rule.index] = new("judge", rule.entity, rule.name)
         _name_intervals(rule.condition, layout, rule.entity, rule.name)
     for behaviour in walk.behaviours(program):
-        layout.holds[behaviour.index] = new(behaviour.name, "holds")
+        layout.conditions[behaviour.index] = new(behaviour.name, "condition")
         layout.behave[behaviour.index] = new("behave", behaviour.name)
         if behaviour.optional:
             layout.enabled[behaviour.index] = new(behaviour.name, "enabled")

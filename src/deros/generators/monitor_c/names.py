@@ -17,8 +17,8 @@ public reinterpret_cast requires static_assert static_cast template this thread_
 throw true try typeid typename using virtual wchar_t xor xor_eq"""
 _STANDARD = """assert errno main NULL NAN INFINITY INT64_MAX INT64_C abs fabs hypot sqrt atan2 asin
 fmod fmin fmax index time signal"""
-_OURS = """m t now due owner started count verdict holds rises changed done grace enabled value
-both either negated truth_of lasting earlier ahead is_number bounded arrive catch_up earliest
+_OURS = """m t now due owner started count verdict condition held rises changed done grace enabled
+value both either negated truth_of lasting earlier ahead is_number bounded arrive catch_up earliest
 evaluate act restart move_to rate"""
 
 RESERVED = frozenset(f"{_C} {_CPP} {_STANDARD} {_OURS}".split())

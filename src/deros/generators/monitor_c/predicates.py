@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Collection, Iterable, Iterator
 
-from deros.generators.monitor_c.contracts import all_of, iff
+from deros.generators.monitor_c.contracts import all_of, any_of, iff
 from deros.generators.monitor_c.meaning import Meaning
 from deros.generators.monitor_c.source import MAX_LINE
 from deros.generators.monitor_c.view import MonitorView
@@ -71,12 +71,16 @@ class Predicates:
         yield "unexpired", "", self.unexpired(bases) or ["\\true"]
         yield "judged", "", [f"judged_{name}(m)" for name in self._layout.verdicts.values()]
         yield "acted", "", [f"acted_{name}(m)" for name in self._layout.behave.values()]
-        yield "sane", "", [*SOUND, "m->due > m->now", "(m->started != 0 ==> judged(m) && acted(m))"]
+        unknown = [
+            f"m->{name} == {self.macro('UNKNOWN')}" for name in self._layout.conditions.values()
+        ]
+        yield "unacted", "", unknown or ["\\true"]
+        yield "sane", "", [*SOUND, "m->due > m->now", *EVALUATED]
 
     def _changed_by_judging(self) -> list[str]:
         """Return the fields that are changed where all is judged."""
         layout = self._layout
-        tables = (layout.verdicts, layout.turned, layout.holds, layout.active, layout.ran)
+        tables = (layout.verdicts, layout.turned, layout.conditions, layout.active, layout.ran)
         names = [each for table in (*tables, layout.since) for each in table.values()]
         return [f"m->{name}" for name in ("started", *names, "due")]
 
@@ -151,14 +155,24 @@ class Predicates:
         return iff(f"m->{since} != {self.macro('UNSET')}", self.meaning.true(condition.operand))
 
     def _acted(self, behaviour: Behaviour) -> list[str]:
-        """Return that a behaviour holds if its condition does, within what encloses it."""
-        tests = [self.meaning.true(behaviour.condition)]
+        """Return what a behaviour's condition is worth, with all that encloses it."""
+        true, false = self.macro("TRUE"), self.macro("FALSE")
+        holds = [self.meaning.true(behaviour.condition)]
+        fails = [self.meaning.false(behaviour.condition)]
         if behaviour.parent is not None:
-            tests.append(f"m->{self._layout.holds[behaviour.parent]} != 0")
+            outer = f"m->{self._layout.conditions[behaviour.parent]}"
+            holds.append(f"{outer} == {true}")
+            fails.append(f"{outer} == {false}")
         if behaviour.optional:
-            tests.append(f"m->{self._layout.enabled[behaviour.index]} != 0")
-        runs = map(self._runs, self.fors(behaviour.condition))
-        return [*runs, iff(f"m->{self._layout.holds[behaviour.index]} != 0", all_of(tests))]
+            enabled = f"m->{self._layout.enabled[behaviour.index]}"
+            holds.append(f"{enabled} != 0")
+            fails.append(f"{enabled} == 0")
+        condition = f"m->{self._layout.conditions[behaviour.index]}"
+        return [
+            *map(self._runs, self.fors(behaviour.condition)),
+            iff(f"{condition} == {true}", all_of(holds)),
+            iff(f"{condition} == {false}", any_of(fails)),
+        ]
 
 
 def _macro(name: str, parameters: str, parts: list[str]) -> list[str]:
@@ -191,6 +205,12 @@ BY_JUDGING, BY_TIME = "changed_by_judging(m)", "changed_by_time(m)"
 
 IN_TIME = ("timeouts_in_time(m, m->due)", "ends_in_time(m, m->due)")
 """No deadline lies before the one that the owner was told."""
+
+EVALUATED = (
+    "(m->started != 0 ==> judged(m) && acted(m))",
+    "(m->started == 0 ==> unacted(m))",
+)
+"""All is judged since the first event; before it, no condition of a behaviour is known."""
 
 SOUND = ("ranged(m)", *IN_TIME, "unexpired(m)")
 """What holds of a monitor at all times, but for the verdicts."""

@@ -28,6 +28,7 @@ class RuleContracts:
         self._predicates = predicates
         self._behaviours = tuple(walk.behaviours(view.program))
         self._latched = [each for each in view.program.actions if each.latched]
+        self._true, self._false = predicates.macro("TRUE"), predicates.macro("FALSE")
 
     def judge(self, rule: Rule) -> Contract:
         """Return that a rule's verdict is what it means, and whether it has changed."""
@@ -57,11 +58,11 @@ class RuleContracts:
         return contract
 
     def settle(self, action: Action) -> Contract:
-        """Return that an action is reset if that is asked for and no behaviour calls for it."""
+        """Return that an action is reset if that is asked for and all its causes are over."""
         active = self._layout.active[action.index]
-        holds = [self._layout.holds[each] for each in action.triggered_by]
-        read = [active, *holds]
-        asked = [f"!({' || '.join(f'm->{each} != 0' for each in holds)})"] if holds else []
+        conditions = [self._layout.conditions[each] for each in action.triggered_by]
+        read = [active, *conditions]
+        asked = [f"m->{each} == {self._false}" for each in conditions]
         if action.reset_by is not None:
             ran = self._layout.ran[action.reset_by]
             read.append(ran)
@@ -75,7 +76,7 @@ class RuleContracts:
         """Return the contract of the function that runs a behaviour, and those within it."""
         group = self._closure(behaviour)
         fors = [each for one in group for each in self._predicates.fors(one.condition)]
-        changed = [self._layout.holds[each.index] for each in group] + self._touched(group)
+        changed = [self._layout.conditions[each.index] for each in group] + self._touched(group)
         contract = Contract(["\\valid(m)"], [f"m->{name}" for name in changed])
         for each in group:
             own = self._predicates.fors(each.condition)
@@ -89,7 +90,7 @@ class RuleContracts:
 
     def act(self) -> Contract:
         """Return that every behaviour holds if its condition does, and what becomes of actions."""
-        tables = (self._layout.holds, self._layout.ran, self._layout.active)
+        tables = (self._layout.conditions, self._layout.ran, self._layout.active)
         contract = self._run([each for table in tables for each in table.values()])
         contract.ensures += ["acted(m)", *self.kept_latched()]
         for action in self._program.actions:
@@ -116,11 +117,11 @@ class RuleContracts:
         return [f"{before.format(name)} != 0 ==> {name} != 0" for name in names]
 
     def kept_called(self, action: Action) -> Iterator[str]:
-        """Yield that an action stays active while a behaviour calls for it."""
+        """Yield that an action stays active unless what triggers it is known to be false."""
         active = self._layout.active[action.index]
         for index in action.triggered_by:
-            holds = self._layout.holds[index]
-            yield f"\\old(m->{active}) != 0 && m->{holds} != 0 ==> m->{active} != 0"
+            over = f"m->{self._layout.conditions[index]} == {self._false}"
+            yield f"\\old(m->{active}) != 0 && !({over}) ==> m->{active} != 0"
 
     def _ranges_read(self, condition: Condition, fors: Iterable[For]) -> str:
         """Return that all that a condition reads, and its intervals, are in range."""
@@ -159,7 +160,7 @@ class RuleContracts:
         """Yield the fields beside its condition by which a behaviour holds."""
         for each in group:
             if each.parent is not None:
-                yield self._layout.holds[each.parent]
+                yield self._layout.conditions[each.parent]
             if each.optional:
                 yield self._layout.enabled[each.index]
 
@@ -183,8 +184,8 @@ class RuleContracts:
             yield iff(f"m->{active} != 0", f"(\\old(m->{active}) != 0 || {rises})")
 
     def _rises(self, behaviour: Behaviour) -> str:
-        holds = self._layout.holds[behaviour.index]
-        return f"(m->{holds} != 0 && \\old(m->{holds}) == 0)"
+        condition, true = f"m->{self._layout.conditions[behaviour.index]}", self._true
+        return f"({condition} == {true} && \\old({condition}) != {true})"
 
     def _run(self, changed: Iterable[str]) -> Contract:
         """Return what is common to what runs rules or behaviours: all stays in range and time."""

@@ -1,10 +1,20 @@
-"""The method that acts: all behaviours from top to bottom, then the resets they ask for."""
+"""The method that acts: all behaviours from top to bottom, then the resets they ask for.
+
+A behaviour is True or False; one on whose falsehood a reset depends is None while it is unknown.
+"""
 
 from __future__ import annotations
 
 from deros.generators.monitor_python.conditions import Conditions
 from deros.generators.monitor_python.layout import Layout
-from deros.generators.monitor_python.logic import Atom, all_of, any_of, lay_out, lay_out_call
+from deros.generators.monitor_python.logic import (
+    Atom,
+    Logic,
+    all_of,
+    any_of,
+    lay_out,
+    lay_out_call,
+)
 from deros.generators.monitor_python.rules import interval_lines
 from deros.generators.monitor_python.source import comment, header
 from deros.monitor import walk
@@ -26,6 +36,7 @@ class _Writer:
         self._program = program
         self._layout = layout
         self._conditions = Conditions(program, layout)
+        self._names = [each.name for each in walk.behaviours(program)]
 
     def act(self) -> list[str]:
         lines = [f"        {name} = self._{name}" for name in self._verdicts()]
@@ -65,28 +76,42 @@ class _Writer:
         holds = f"self._{self._layout.holds[behaviour.index]}"
         rises = self._layout.names.new(behaviour.name, "rises") if late else ""
         text = header(behaviour.span.text) if nested else behaviour.span.text
-        condition = self._conditions.true(behaviour.condition)
-        if behaviour.optional:
-            condition = all_of([Atom(f"{behaviour.name!r} not in self._disabled"), condition])
         lines = [
             "",
             *comment(8, f"Behaviour {behaviour.name}", behaviour.span, text),
             *interval_lines(self._conditions, self._layout, behaviour.condition),
             *([f"        {rises} = False"] if late else []),
-            *lay_out(8, "if ", all_of([Atom(outer), condition]) if outer else condition, ":"),
+            *lay_out(8, "if ", self._true(behaviour, outer), ":"),
             f"            if not {holds}:",
             f"                {f'{rises} = ' if late else ''}{holds} = True",
         ]
         for trigger in behaviour.body[:first]:
             assert isinstance(trigger, Trigger)
             lines += self._trigger(16, trigger, behaviour)
-        lines += ["        else:", f"            {holds} = False"]
+        if behaviour.index in self._layout.refusing:
+            false = self._false(behaviour, outer)
+            lines += [*lay_out(8, "elif ", false, ":"), f"            {holds} = False"]
+            lines += ["        else:", f"            {holds} = None"]
+        else:
+            lines += ["        else:", f"            {holds} = False"]
         for item in behaviour.body[first:]:
             if isinstance(item, Behaviour):
                 lines += self._behaviour(item, holds)
             else:
                 lines += [f"        if {rises}:", *self._trigger(12, item, behaviour)]
         return lines
+
+    def _true(self, behaviour: Behaviour, outer: str | None) -> Logic:
+        parts = [Atom(outer)] if outer else []
+        if behaviour.optional:
+            parts.append(Atom(f"{behaviour.name!r} not in self._disabled"))
+        return all_of([*parts, self._conditions.true(behaviour.condition)])
+
+    def _false(self, behaviour: Behaviour, outer: str | None) -> Logic:
+        parts = [Atom(f"{outer} is False")] if outer else []
+        if behaviour.optional:
+            parts.append(Atom(f"{behaviour.name!r} in self._disabled"))
+        return any_of([*parts, self._conditions.false(behaviour.condition)])
 
     def _trigger(self, indent: int, trigger: Trigger, behaviour: Behaviour) -> list[str]:
         blank = " " * indent
@@ -118,19 +143,26 @@ class _Writer:
         return comment(8, f"Action {action.name} {what}", action.span, "")
 
     def _settle(self, action: Action) -> list[str]:
-        """Return the statements that reset an action, or refuse to while it is called for."""
+        """Return the statements that reset an action, if nothing that triggers it refuses it."""
         assert action.span is not None
-        active = self._layout.active[action.index]
-        name, rest = repr(action.name), ["''", "()", str(action.span.line)]
-        reset = [f"self._{active} = False", *_emit(0, ["t", "'reset'", name], rest)]
-        holds = [Atom(f"self._{self._layout.holds[each]}") for each in action.triggered_by]
+        name, line = repr(action.name), str(action.span.line)
+        holds = [f"self._{self._layout.holds[each]}" for each in action.triggered_by]
+        indent = 16 if holds else 12
+        reset = [
+            f"{' ' * indent}self._{self._layout.active[action.index]} = False",
+            *_emit(indent, ["t", "'reset'", name], ["''", "()", line]),
+        ]
         if not holds:
-            return [f"            {line}" for line in reset]
+            return reset
+        calls = [
+            f"({self._names[index]!r}, {held})"
+            for index, held in zip(action.triggered_by, holds, strict=True)
+        ]
         return [
-            *lay_out(12, "if ", any_of(holds), ":"),
-            *_emit(16, ["t", "'refused'", name], rest),
+            *lay_out(12, "if ", all_of(Atom(f"{held} is False") for held in holds), ":"),
+            *reset,
             "            else:",
-            *(f"                {line}" for line in reset),
+            *lay_out_call(16, "self._refuse(", ["t", name, line, *calls]),
         ]
 
 

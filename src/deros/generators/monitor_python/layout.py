@@ -51,6 +51,7 @@ class Layout:
         verdicts: of each rule.
         since: of each rule, when it last became true or ceased to be.
         three_valued: the rules whose falsehood matters, not only their truth.
+        refusing: the behaviours whose falsehood matters, because a reset depends on it.
         holds: of each behaviour.
         active: of each action that can be reset.
         ran: of each action that resets another, whether it ran in the present event.
@@ -68,6 +69,7 @@ class Layout:
     verdicts: dict[int, str] = field(default_factory=dict)
     since: dict[int, str] = field(default_factory=dict)
     three_valued: frozenset[int] = frozenset()
+    refusing: frozenset[int] = frozenset()
     holds: dict[int, str] = field(default_factory=dict)
     active: dict[int, str] = field(default_factory=dict)
     ran: dict[int, str] = field(default_factory=dict)
@@ -76,7 +78,9 @@ class Layout:
 
 def lay_out_memory(program: Program) -> Layout:
     """Name all that the monitor of a program remembers, in the program's order."""
-    layout = Layout(Names(), three_valued=frozenset(_three_valued(program)))
+    layout = Layout(
+        Names(), three_valued=frozenset(_three_valued(program)), refusing=walk.refusing(program)
+    )
     conditions = tuple(walk.conditions(program))
     for value in walk.values(conditions):
         if isinstance(value, Apply):
@@ -163,8 +167,9 @@ def _slot(program: Program, value: ValueExpression, names: Names) -> Slot:
 
 
 def _three_valued(program: Program) -> set[int]:
-    """Return the rules of which some behaviour asks whether they are false."""
+    """Return the rules of which some behaviour, or a reset, asks whether they are false."""
     found: set[int] = set()
+    refusing = walk.refusing(program)
 
     def ask(condition: Condition, for_truth: bool, for_falsehood: bool) -> None:
         match condition:
@@ -179,5 +184,5 @@ def _three_valued(program: Program) -> set[int]:
                     ask(operand, for_truth, for_falsehood)
 
     for behaviour in walk.behaviours(program):
-        ask(behaviour.condition, True, False)
+        ask(behaviour.condition, True, behaviour.index in refusing)
     return found

@@ -17,8 +17,8 @@ MODULE_NAMES = frozenset(
 )
 METHOD_NAMES = frozenset(
     {
-        *("act", "advance", "catch_up", "earliest", "enable", "evaluate", "explain", "reset"),
-        *("disabled", "restart", "rules_of", "waiting"),
+        *("act", "advance", "catch_up", "earliest", "enable", "evaluate", "explain", "refuse"),
+        *("disabled", "reset", "restart", "rules_of", "waiting"),
     }
 )
 LOCAL_NAMES = frozenset(

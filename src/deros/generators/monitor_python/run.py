@@ -89,7 +89,16 @@ class GeneratedMonitor:
         span = self._spans.get((event.action, event.behaviour, event.line))
         behaviour = event.behaviour or None
         self.events.append(
-            Event(event.t, event.kind, event.action, behaviour, event.arguments, span)
+            Event(
+                event.t,
+                event.kind,
+                event.action,
+                behaviour,
+                event.arguments,
+                span,
+                event.holding,
+                event.unknown,
+            )
         )
 
 

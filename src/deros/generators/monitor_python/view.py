@@ -17,6 +17,8 @@ from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import Age, Apply, Program
 from deros.monitor.state import State
 
+_LONGEST_TITLE = 31
+
 
 @dataclass(frozen=True, slots=True)
 class Forget:
@@ -48,7 +50,7 @@ class MonitorView:
     """All that the template prints.
 
     Attributes:
-        name: of the program.
+        name: of the program, as the first line of the module has room for it.
         functions: definitions of the functions that the rules use.
         uses_sequences: whether an array comes into a handler or a function.
         uses_numpy: whether its numbers are looked at.
@@ -60,6 +62,7 @@ class MonitorView:
         handlers: one per topic.
         judges: the methods that evaluate rules, and by topic which of them a message calls.
         behaviours: the name of each, and the attribute that tells whether its condition holds.
+        refusing: the same of those that can refuse a reset.
         rules_of: the name of each, and the rules that its condition names.
         optional: the names of those that can be disabled.
         explained: the lines of what ``explain()`` says of each rule.
@@ -84,6 +87,7 @@ class MonitorView:
     handlers: tuple[Handler, ...]
     judges: tuple[Judge, ...]
     behaviours: tuple[tuple[str, str], ...]
+    refusing: tuple[tuple[str, str], ...]
     rules_of: tuple[tuple[str, tuple[str, ...]], ...]
     optional: tuple[str, ...]
     explained: tuple[str, ...]
@@ -119,7 +123,7 @@ def monitor_view(program: Program) -> MonitorView:
         *(name for name, _ in restarted),
     ]
     return MonitorView(
-        name=re.sub(r"[^\w .-]", "_", program.name),
+        name=_title(program.name),
         functions=functions,
         uses_sequences=any("Sequence" in each for each in (*functions, *annotations)),
         uses_numpy=any("np." in each for each in arrays),
@@ -134,6 +138,11 @@ def monitor_view(program: Program) -> MonitorView:
         behaviours=tuple(
             (each.name, layout.holds[each.index]) for each in walk.behaviours(program)
         ),
+        refusing=tuple(
+            (each.name, layout.holds[each.index])
+            for each in walk.behaviours(program)
+            if each.index in layout.refusing
+        ),
         act=tuple(act_lines(program, layout)),
         ends=_ends(program, layout),
         known_at_start=known_at_start,
@@ -143,6 +152,11 @@ def monitor_view(program: Program) -> MonitorView:
         explained=tuple(explained_lines(program, layout)),
         waiting=tuple(waiting_lines(layout)),
     )
+
+
+def _title(name: str) -> str:
+    title = re.sub(r"[^\w .-]", "_", name)
+    return title if len(title) <= _LONGEST_TITLE else f"{title[: _LONGEST_TITLE - 3]}..."
 
 
 def _function_texts(layout: Layout) -> tuple[str, ...]:
@@ -161,7 +175,10 @@ def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tu
         (name, "None" if rule in layout.three_valued else "False")
         for rule, name in layout.verdicts.items()
     ]
-    pairs += [(name, "False") for name in layout.holds.values()]
+    pairs += [
+        (name, "None" if index in layout.refusing else "False")
+        for index, name in layout.holds.items()
+    ]
     for index, name in layout.active.items():
         action = program.actions[index]
         pairs.append((name, f"{action.name!r} in latched" if action.latched else "False"))

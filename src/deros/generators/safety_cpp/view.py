@@ -154,9 +154,9 @@ class SafetyView:
         return f"{self.stem}_actions"
 
     @property
-    def holding(self) -> list[tuple[str, str]]:
-        """The enumerator of each behaviour, with the monitor's field that tells if it holds."""
-        fields = self.monitor.layout.holds
+    def conditions(self) -> list[tuple[str, str]]:
+        """The enumerator of each behaviour, with the monitor's field of its condition."""
+        fields = self.monitor.layout.conditions
         return [(name, fields[i]) for i, (_, name) in enumerate(self.monitor.behaviour_names)]
 
     @property

@@ -29,7 +29,6 @@ from deros.generators.safety_view import (
     lasts,
     needs_code,
     origin_file,
-    refusing_behaviours,
     states_by_path,
 )
 from deros.interfaces.fields import format_path
@@ -100,7 +99,7 @@ class SafetyView:
         lasting: of each action, whether it has a state.
         latched: the latched actions, with the arguments that the rules call each with first.
         optional: the behaviours that can be disabled, with the field of their parameter.
-        callers: of each action that can be refused a reset, the behaviours that call for it.
+        callers: of each latched action, the behaviours that trigger it.
         trigger: the service class of ``~/reset`` as the module names it; empty without latches.
     """
 
@@ -230,7 +229,7 @@ def _imports(
         f"{package}.diagnostics": {"Diagnostics"},
         f"{package}.events": {"Events", "OK", "WARN", "ERROR"},
         f"{package}.instance": {"claim"},
-        f"{package}.origins": {"ACTIONS", "BEHAVIOURS", "CALLERS", "RULES"},
+        f"{package}.origins": {"ACTIONS", "BEHAVIOURS", "RULES"},
         f"{package}.reports": {"Reports"},
         f"{package}.siblings": {"Siblings"},
         f"{package}.watch": {"Watch"},
@@ -244,7 +243,7 @@ def _imports(
     if any(action.latched for action in program.actions):
         imports[f"{package}.instance"].add("file_stem")
         imports[f"{package}.latches"] = {"LatchFile", "Latches", "default_path"}
-        imports[f"{package}.origins"].add("LATCHED")
+        imports[f"{package}.origins"] |= {"CALLERS", "LATCHED"}
     if any(each.optional for each in walk.behaviours(program)):
         imports[f"{package}.{base.base_module}"].add("Parameters")
     if has_actions:
@@ -342,5 +341,5 @@ def _optional(program: Program) -> Iterator[tuple[str, str]]:
 def _callers(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
     names = {each.index: each.name for each in walk.behaviours(program)}
     for action in program.actions:
-        if refusing := refusing_behaviours(action):
-            yield action.name, tuple(names[index] for index in refusing)
+        if action.latched:
+            yield action.name, tuple(names[index] for index in action.triggered_by)

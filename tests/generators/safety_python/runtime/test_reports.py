@@ -25,13 +25,11 @@ class Telling(Clockwork):
         monkeypatch.setattr(module, "time", Mock(monotonic_ns=self.read))
         self.diagnostics = Mock()
         events: Any = Mock(ordered=self.note)
-        self.reports = Reports(
-            self.node, self.clock, events, self.diagnostics, {"stop": ("a", "b")}, self.pause, int
-        )
+        self.reports = Reports(self.node, self.clock, events, self.diagnostics, self.pause, int)
 
-    def note(self, event: Any, done: int, states: Any, callers: list[str]) -> None:
+    def note(self, event: Any, done: int, states: Any) -> None:
         """Note what is told, with all that belongs to it."""
-        assert (done, states, callers) == (7, "states", ["b"])
+        assert (done, states) == (7, "states")
         self.told.append(event.number)
 
     def pause(self) -> None:
@@ -41,7 +39,7 @@ class Telling(Clockwork):
     def add(self, *numbers: int) -> None:
         """Add reports."""
         for number in numbers:
-            self.reports.add([Mock(action="stop", number=number)], [7], "states", ["b", "c"])
+            self.reports.add([Mock(action="stop", number=number)], [7], "states")
 
     def pass_time(self, time: int) -> None:
         """Let time pass, and have the executor call the timer."""

@@ -90,7 +90,18 @@ void Events::ordered(const Event & event, Time done, const Explanation & after)
     set(values, "condition", behaviour.condition);
     add_causes(values, behaviour, after);
   }
-  const auto [message, level] = described(event, after.holding);
+  if (event.kind == Kind::Refused) {
+    const std::vector<std::size_t> holding = callers(*site.action, after.holding);
+    const std::vector<std::size_t> unknown = callers(*site.action, after.unknown);
+    set(values, "holding", names(holding));
+    set(values, "unknown", names(unknown));
+    for (const auto & refusing : {holding, unknown}) {
+      for (const std::size_t behaviour : refusing) {
+        add_causes(values, origins_.behaviours[behaviour], after);
+      }
+    }
+  }
+  const auto [message, level] = described(event, after);
   tell(KINDS[static_cast<std::size_t>(event.kind)], level, message, std::move(values));
 }
 
@@ -108,19 +119,69 @@ std::string Events::origin(std::size_t behaviour) const
   return found.name + " (" + found.origin + ": if " + found.condition + ')';
 }
 
-std::string Events::callers(std::size_t action, const std::vector<std::size_t> & holding) const
+std::string Events::refusal(std::size_t action, const Explanation & present) const
+{
+  std::vector<std::string> holding;
+  for (const std::size_t caller : callers(action, present.holding)) {
+    holding.push_back(origin(caller));
+  }
+  std::vector<std::string> unknown;
+  for (const std::size_t caller : callers(action, present.unknown)) {
+    unknown.push_back(origin_unknown(caller, present));
+  }
+  std::vector<std::string> reasons;
+  if (!holding.empty()) {
+    reasons.push_back("called for by " + joined(holding, ", "));
+  }
+  if (!unknown.empty()) {
+    reasons.push_back("not known to be false: " + joined(unknown, ", "));
+  }
+  return joined(reasons, "; ");
+}
+
+/// Return a behaviour as origin() does, with the terms without a value.
+std::string Events::origin_unknown(std::size_t behaviour, const Explanation & present) const
+{
+  const std::vector<std::string> & rules = origins_.behaviours[behaviour].rules;
+  std::vector<std::string> terms;
+  for (const RuleState & rule : present.rules) {
+    if (rule.value || std::find(rules.begin(), rules.end(), rule.name) == rules.end()) {
+      continue;
+    }
+    for (const Reading & each : rule.reads) {
+      if (!each.value && std::find(terms.begin(), terms.end(), each.term) == terms.end()) {
+        terms.push_back(each.term);
+      }
+    }
+  }
+  return terms.empty() ? origin(behaviour) :
+         origin(behaviour) + ", unknown: " + joined(terms, ", ");
+}
+
+/// Return the behaviours among some that call for an action.
+std::vector<std::size_t> Events::callers(
+  std::size_t action, const std::vector<std::size_t> & among) const
+{
+  std::vector<std::size_t> found;
+  for (const std::size_t caller : origins_.actions[action].callers) {
+    if (std::find(among.begin(), among.end(), caller) != among.end()) {
+      found.push_back(caller);
+    }
+  }
+  return found;
+}
+
+std::string Events::names(const std::vector<std::size_t> & behaviours) const
 {
   std::vector<std::string> found;
-  for (const std::size_t caller : origins_.actions[action].callers) {
-    if (std::find(holding.begin(), holding.end(), caller) != holding.end()) {
-      found.push_back(origin(caller));
-    }
+  for (const std::size_t behaviour : behaviours) {
+    found.push_back(origins_.behaviours[behaviour].name);
   }
   return joined(found, ", ");
 }
 
 std::pair<std::string, Level> Events::described(
-  const Event & event, const std::vector<std::size_t> & holding) const
+  const Event & event, const Explanation & after) const
 {
   if (event.kind == Kind::ClockStep) {
     return {"the clock stepped back: all inputs are unknown until their next message", ERROR};
@@ -131,7 +192,7 @@ std::pair<std::string, Level> Events::described(
     return {action + " is reset", OK};
   }
   if (event.kind == Kind::Refused) {
-    return {action + " stays active, called for by " + callers(*site.action, holding), WARN};
+    return {action + " stays active, " + refusal(*site.action, after), WARN};
   }
   const std::string & what = site.text.empty() ? action : site.text;
   return {what + ", by " + origin(*site.behaviour), WARN};

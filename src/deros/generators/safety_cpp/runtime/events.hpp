@@ -59,12 +59,15 @@ public:
   /// Return a behaviour with its place in the rules and its condition.
   std::string origin(std::size_t behaviour) const;
 
-  /// Return the behaviours among some that call for an action, with their places.
-  std::string callers(std::size_t action, const std::vector<std::size_t> & holding) const;
+  /// Return why a reset of an action is refused; nothing if it is not.
+  std::string refusal(std::size_t action, const Explanation & present) const;
 
 private:
-  std::pair<std::string, Level> described(
-    const Event & event, const std::vector<std::size_t> & holding) const;
+  std::string origin_unknown(std::size_t behaviour, const Explanation & present) const;
+  std::vector<std::size_t> callers(
+    std::size_t action, const std::vector<std::size_t> & among) const;
+  std::string names(const std::vector<std::size_t> & behaviours) const;
+  std::pair<std::string, Level> described(const Event & event, const Explanation & after) const;
 
   const Origins & origins_;
   Outside outside_;

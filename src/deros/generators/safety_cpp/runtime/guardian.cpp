@@ -369,13 +369,13 @@ std::string Guardian::reset(bool & success)
 {
   success = false;
   const Time now = watch_.advance();
-  const std::vector<std::size_t> holding = robot_.explain(std::nullopt).holding;
-  std::vector<std::pair<std::string, std::string>> active;  // and by whom it is called for
+  const Explanation present = robot_.explain(std::nullopt);
+  std::vector<std::pair<std::string, std::string>> active;  // and why it stays so
   LatchFile::Names remaining;
   for (std::size_t i = 0; i < origins_.actions.size(); ++i) {
     const Action & action = origins_.actions[i];
     if (action.latch && latches_->is_active(*action.latch)) {
-      active.emplace_back(action.name, events_.callers(i, holding));
+      active.emplace_back(action.name, events_.refusal(i, present));
       if (!active.back().second.empty()) {
         remaining.insert(action.name);
       }
@@ -389,9 +389,8 @@ std::string Guardian::reset(bool & success)
   watch_.settle();
   std::sort(active.begin(), active.end());
   std::vector<std::string> told;
-  for (const auto & [name, callers] : active) {
-    told.push_back(
-      callers.empty() ? name + " is reset" : name + " stays active, called for by " + callers);
+  for (const auto & [name, why] : active) {
+    told.push_back(why.empty() ? name + " is reset" : name + " stays active, " + why);
   }
   return told.empty() ? "no latched action was active" : joined(told, "; ");
 }

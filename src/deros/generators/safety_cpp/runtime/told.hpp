@@ -129,6 +129,7 @@ struct Explanation
 {
   std::vector<RuleState> rules;
   std::vector<std::size_t> holding;  // the behaviours whose conditions hold
+  std::vector<std::size_t> unknown;  // the behaviours whose conditions are unknown
 };
 
 }  // namespace deros_runtime

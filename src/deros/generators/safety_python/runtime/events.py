@@ -35,16 +35,14 @@ class Events:
         self._behaviours = behaviours
         self._publish = publish
 
-    def ordered(
-        self, event: Any, done: int, states: Sequence[Any], holding: Sequence[str]
-    ) -> None:
+    def ordered(self, event: Any, done: int, states: Sequence[Any]) -> None:
         """
         Tell of an event of the monitor.
 
-        done is when it was acted upon, in the monitor's time; states and holding are what the
-        monitor explains after it.
+        done is when it was acted upon, in the monitor's time; states are what the monitor explains
+        after it.
         """
-        message, level = self._described(event, holding)
+        message, level = self._described(event, states)
         told = {
             'action': event.action,
             'origin': f'{self._rules}:{event.line}' if event.line else '',
@@ -60,10 +58,11 @@ class Events:
                 'origin': behaviour.origin,
                 'condition': behaviour.condition,
             }
-            for state in states:
-                if state.name in behaviour.rules:
-                    told[f'rule {state.name}'] = shown(state.value)
-                    told |= {f'value {term}': shown(value) for term, value in state.reads}
+            told |= self._causes(event.behaviour, states)
+        if event.kind == 'refused':
+            told |= {'holding': ', '.join(event.holding), 'unknown': ', '.join(event.unknown)}
+            for name in (*event.holding, *event.unknown):
+                told |= self._causes(name, states)
         self.tell(event.kind, level, message, **told)
 
     def tell(self, kind: str, level: bytes, message: str, **values: object) -> None:
@@ -84,6 +83,46 @@ class Events:
         found = self._behaviours[behaviour]
         return f'{behaviour} ({found.origin}: if {found.condition})'
 
+    def refusal(
+        self, holding: Sequence[str], unknown: Sequence[str], states: Sequence[Any]
+    ) -> str:
+        """
+        Return why a reset is refused; nothing if it is not.
+
+        holding and unknown are the behaviours whose conditions are so, of those that trigger the
+        action.
+        """
+        reasons = []
+        if holding:
+            reasons.append(f'called for by {", ".join(map(self.origin, holding))}')
+        if unknown:
+            told = (self._origin_unknown(name, states) for name in unknown)
+            reasons.append(f'not known to be false: {", ".join(told)}')
+        return '; '.join(reasons)
+
+    def _origin_unknown(self, behaviour: str, states: Sequence[Any]) -> str:
+        """Return a behaviour as origin() does, with the terms without a value."""
+        rules = self._behaviours[behaviour].rules
+        terms = [
+            term
+            for state in states
+            if state.name in rules and state.value is None
+            for term, value in state.reads
+            if value is None
+        ]
+        if not terms:
+            return self.origin(behaviour)
+        return f'{self.origin(behaviour)}, unknown: {", ".join(dict.fromkeys(terms))}'
+
+    def _causes(self, behaviour: str, states: Sequence[Any]) -> dict[str, str]:
+        """Return what the rules are worth that a behaviour depends on, and what they read."""
+        told = {}
+        for state in states:
+            if state.name in self._behaviours[behaviour].rules:
+                told[f'rule {state.name}'] = shown(state.value)
+                told |= {f'value {term}': shown(value) for term, value in state.reads}
+        return told
+
     def _log(self, level: bytes, message: str) -> None:
         log = self._node.get_logger()
         if level == OK:  # a line of its own for each severity, as rclpy demands
@@ -93,14 +132,14 @@ class Events:
         else:
             log.error(message)
 
-    def _described(self, event: Any, holding: Sequence[str]) -> tuple[str, bytes]:
+    def _described(self, event: Any, states: Sequence[Any]) -> tuple[str, bytes]:
         if event.kind == 'clock_step':
             return 'the clock stepped back: all inputs are unknown until their next message', ERROR
         if event.kind == 'reset':
             return f'{event.action} is reset', OK
         if event.kind == 'refused':
-            callers = ', '.join(map(self.origin, holding))
-            return f'{event.action} stays active, called for by {callers}', WARN
+            why = self.refusal(event.holding, event.unknown, states)
+            return f'{event.action} stays active, {why}', WARN
         what = event.arguments[0] if event.action == 'log_state' else event.action
         return f'{what}, by {self.origin(event.behaviour)}', WARN
 

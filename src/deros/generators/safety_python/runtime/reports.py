@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 import time
 from typing import Any
 
@@ -34,33 +34,28 @@ class Reports:
         steady: Clock,
         events: Events,
         diagnostics: Diagnostics,
-        callers: Mapping[str, Sequence[str]],
         prepare: Callable[[], None],
         put_off: Callable[[], int],
     ) -> None:
         """
-        Prepare; callers names the behaviours that call for an action.
+        Prepare.
 
         prepare is called after some have been told, for what can come next; put_off is that of an
         alarm.
         """
         self._events = events
         self._diagnostics = diagnostics
-        self._callers = callers
         self._prepare = prepare
         self._waiting: deque[tuple[Any, ...]] = deque()
         self._alarm = Alarm(node, steady, time.monotonic_ns, self._ring, put_off)
 
-    def add(
-        self, events: Sequence[Any], done: Sequence[int], states: Any, holding: Sequence[str]
-    ) -> None:
+    def add(self, events: Sequence[Any], done: Sequence[int], states: Any) -> None:
         """
         Tell soon of events of the monitor.
 
-        done is when each was acted upon; states and holding are what the monitor explains after
-        them.
+        done is when each was acted upon; states are what the monitor explains after them.
         """
-        self._waiting.append((events, done, states, holding))
+        self._waiting.append((events, done, states))
         if len(self._waiting) > ROOM:
             self._tell_of(1)
         if not self._alarm.is_set:
@@ -81,10 +76,7 @@ class Reports:
         self._prepare()
         self._diagnostics.changed()
 
-    def _tell(
-        self, events: Sequence[Any], done: Sequence[int], states: Any, holding: Sequence[str]
-    ) -> None:
+    def _tell(self, events: Sequence[Any], done: Sequence[int], states: Any) -> None:
         for event, done_at in zip(events, done, strict=False):
-            callers = [name for name in self._callers.get(event.action, ()) if name in holding]
-            self._events.ordered(event, done_at, states, callers)
+            self._events.ordered(event, done_at, states)
             self._diagnostics.ordered(event)

@@ -1,0 +1,83 @@
+"""A latched stop is not reset while nobody knows whether its cause is over."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from tests.faults.test_gate import assert_zeros_only
+from tests.support.faults import Robot
+from tests.support.played import scan, speed
+
+pytestmark = pytest.mark.ros
+
+UNKNOWN = "stop stays active, not known to be false: racing (faulty.deros:"
+CLEAR, BLOCKED = 5.0, 0.1
+"""Distances ahead, in m, with which the robot may drive and may not."""
+
+
+def refused(robot: Robot, unknown: str) -> bool:
+    """Ask for a reset, which must be refused; tell whether it is because of what is unknown."""
+    success, message = robot.reset()
+    assert not success, message
+    return message.startswith(UNKNOWN) and message.endswith(f", unknown: {unknown}")
+
+
+def assert_refused(robot: Robot, unknown: str) -> None:
+    """See that a reset is refused because of what is unknown, and that no command passes."""
+    stopped = len(robot.commands)
+    robot.until(lambda: refused(robot, unknown))
+    assert robot.is_active("/stop")
+    assert_zeros_only(robot, stopped)
+
+
+def assert_reset(robot: Robot) -> None:
+    """See that the reset is granted once all is known to be well, and that commands pass."""
+    robot.until(lambda: robot.reset()[0])
+    robot.until_driving()
+
+
+NEAREST = "scan.nearest(-0.523599, 0.523599)"
+
+
+def test_no_reset_while_the_lidar_measures_nothing(robot: Robot) -> None:
+    """A scan of NaN alone says nothing of the obstacle that has stopped the robot."""
+    with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_driving()
+        sensors.play("/scan", scan(BLOCKED))
+        robot.until_stopped()
+        robot.until(lambda: robot.commands[-1].value == 0.0)
+        sensors.play("/scan", scan(math.nan))
+        assert_refused(robot, NEAREST)
+        sensors.play("/scan", scan(CLEAR))
+        assert_reset(robot)
+
+
+def test_no_reset_before_the_first_scan(robot: Robot) -> None:
+    """After a restart nothing is known of the obstacle until the lidar has said something."""
+    with robot.safety_node() as node, robot.gate(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_driving()
+        sensors.play("/scan", scan(BLOCKED))
+        robot.until_stopped()
+        node.kill()
+        sensors.quiet("/scan")
+        robot.restart()
+        assert_refused(robot, NEAREST)
+        sensors.play("/scan", scan(CLEAR))
+        assert_reset(robot)
+
+
+def test_no_reset_while_a_sensor_is_dead(robot: Robot) -> None:
+    """A speed that has gone missing is not known to be slow enough."""
+    with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_driving()
+        sensors.play("/speed", speed(2.0))
+        robot.until_stopped()
+        sensors.quiet("/speed")
+        assert_refused(robot, "speed")
+        sensors.drive()
+        assert_reset(robot)
