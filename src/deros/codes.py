@@ -124,6 +124,8 @@ GATE_LIMIT_OVERRIDES_ZERO = _declare(342, "limit that goes before the zero of an
 GATE_WITHOUT_HEARTBEAT = _declare(343, "gate that does not watch the heartbeat", _W)
 GATE_WITHOUT_INPUT = _declare(344, "gate that does not watch its input", _W)
 GATE_HEARTBEAT_TOO_SHORT = _declare(345, "heartbeat given up sooner than it can be trusted", _W)
+STATE_PUBLISHED_TWICE = _declare(346, "state of an action that two nodes publish")
+HEARTBEAT_PUBLISHED_TWICE = _declare(347, "heartbeat that two nodes publish")
 
 # Generation
 NAME_COLLISION = _declare(401, "two generated names collide")

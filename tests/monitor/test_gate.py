@@ -200,11 +200,78 @@ def test_states_of_floats_are_told_as_the_field_holds_them() -> None:
 
 
 def test_heartbeat_is_lost_from_the_start() -> None:
-    """Before the first heartbeat the line applies."""
+    """Before the second heartbeat the line applies: the first has nothing to advance from."""
     gate = Driver(HEARTBEAT)
     assert gate.wait(60) == [(0, "zero", 0.0), (50, "zero", 0.0)]
     assert gate.beat(70) == []
+    assert gate.drive(72, 0.5) == []
+    assert gate.beat(75) == []
     assert gate.drive(80, 0.5) == [(80, "pass", 0.5)]
+
+
+@pytest.mark.parametrize("counter", [2, 1, 0])
+def test_a_heartbeat_that_does_not_advance_is_lost_at_once(counter: int) -> None:
+    """It is no sign of life, and the next one has to advance from it."""
+    gate = Driver(STOP, HEARTBEAT).open()
+    gate.drive(10, 0.5)
+    assert gate.beat(20, counter) == [(20, "zero", 0.0)]
+    assert gate.beat(30, counter) == []
+    assert gate.drive(31, 0.5) == []
+    assert gate.beat(40, counter + 1) == []
+    assert gate.drive(41, 0.5) == []  # the stop counts as active since the loss
+    gate.state(42, "stop", False)
+    assert gate.drive(43, 0.5) == [(43, "pass", 0.5)]
+
+
+def test_a_constant_heartbeat_never_opens() -> None:
+    """However often it comes."""
+    gate = Driver(HEARTBEAT)
+    for t_ms in range(10, 500, 10):
+        gate.beat(t_ms, 1)
+        assert [each for each in gate.drive(t_ms, 0.5) if each[1] != "zero"] == []
+
+
+def test_a_heartbeat_may_skip_counts() -> None:
+    """A lost message is not a lost node; nor is the greatest counter that there is."""
+    gate = Driver(HEARTBEAT)
+    gate.beat(10, 2**64 - 5)
+    gate.beat(20, 2**64 - 1)
+    assert gate.drive(21, 0.5) == [(21, "pass", 0.5)]
+
+
+def test_without_a_safety_node_nothing_is_known() -> None:
+    """Zero at once; then as at the start: two heartbeats, and every state."""
+    gate = Driver(STOP, HEARTBEAT).open()
+    gate.drive(10, 0.5)
+    assert gate.lose(20) == [(20, "zero", 0.0)]
+    assert gate.beat(30) == []
+    gate.state(31, "stop", False)
+    assert gate.drive(32, 0.5) == []
+    assert gate.beat(40) == []
+    assert gate.drive(41, 0.5) == [(41, "pass", 0.5)]
+
+
+def test_without_a_safety_node_every_action_is_active() -> None:
+    """A gate without a line about the heartbeat forgets the states as well."""
+    gate = Driver(STOP).open()
+    gate.drive(10, 0.5)
+    assert gate.lose(20) == [(20, "zero", 0.0)]
+    gate.state(30, "stop", False)
+    assert gate.drive(31, 0.5) == [(31, "pass", 0.5)]
+
+
+def test_a_state_that_is_not_trusted_stops_and_never_frees() -> None:
+    """Active counts, whoever says so; inactive only from the safety node."""
+    gate = Driver(STOP)
+    gate.wait(0)
+    gate.state(1, "stop", False, is_trusted=False)
+    assert gate.drive(2, 0.5) == []
+    gate.state(3, "stop", False)
+    assert gate.drive(4, 0.5) == [(4, "pass", 0.5)]
+    assert gate.state(5, "stop", True, is_trusted=False) == [(5, "zero", 0.0)]
+    assert gate.state(6, "stop", False, is_trusted=False) == []
+    gate.state(7, "stop", False)
+    assert gate.drive(8, 0.5) == [(8, "pass", 0.5)]
 
 
 def test_heartbeat_is_lost_at_last_plus_time() -> None:
@@ -332,6 +399,7 @@ def test_backward_step_makes_everything_unknown() -> None:
     gate = Driver(STOP, HEARTBEAT, INPUT).open()
     gate.drive(100, 0.5)
     assert gate.beat(40) == [(40, "zero", 0.0)]
+    assert gate.beat(40) == []
     gate.state(41, "stop", False)
     assert gate.drive(42, 0.5) == [(42, "pass", 0.5)]
 

@@ -29,7 +29,9 @@ speeds = st.sampled_from((-0.5, -0.1, -0.05, 0.0, 0.05, 0.1, 0.5, math.nan, math
 calls = st.one_of(
     st.tuples(st.just("command"), st.builds(twist, speeds, speeds) | st.none()),
     st.tuples(st.sampled_from(("/stop", "/low_speed")), st.sampled_from((True, False, False))),
-    st.tuples(st.sampled_from(("beat", "beat", "wait")), st.none()),
+    st.tuples(st.just("beat"), st.sampled_from((1, 1, 1, 2, 0, -1))),
+    st.tuples(st.sampled_from(("wait", "wait", "no_safety_node")), st.none()),
+    st.tuples(st.just("stranger"), st.booleans()),
 )
 
 
@@ -78,6 +80,7 @@ class Run:
         self.now = 0
         self.call = ""
         self.value: Any = None
+        self.counter: int | None = None
         self.beat: int | None = None
         self.good: int | None = None
         self.said: dict[str, bool] = {}
@@ -88,7 +91,7 @@ class Run:
         """Let things happen; before each, deadlines are settled one by one, as a timer does."""
         for wait, call, value in history:
             if wait < 0:
-                self.beat = self.good = None
+                self.counter = self.beat = self.good = None
                 self.said.clear()
             self.call, self.value = "wait", None
             while (due := self.engine.next_deadline) is not None and due < self.now + wait:
@@ -107,8 +110,19 @@ class Run:
             if value is not None and is_finite(value):
                 self.good = self.now
         elif call == "beat":
-            published = published + self.engine.heartbeat(self.now)
-            self.beat = self.now
+            counter = (self.counter or 5) + value
+            published = published + self.engine.heartbeat(self.now, counter)
+            self.beat = self.now if self.counter is not None and value > 0 else None
+            self.counter = counter
+        elif call == "no_safety_node":
+            published = published + self.engine.no_safety_node(self.now)
+            self.counter = self.beat = None
+            self.said.clear()
+        elif call == "stranger":
+            message = {"data": value}
+            published = published + self.engine.state(self.now, "/stop", message, is_trusted=False)
+            if value:
+                self.said["/stop"] = True
         elif call != "wait":
             published = published + self.engine.state(self.now, call, {"data": value})
             self.said[call] = value
@@ -147,7 +161,11 @@ def test_nothing_but_finite_commands(gate: tuple[Gate, Program], history: list[H
 def test_silence_commands_nothing_but_zeros(
     gate: tuple[Gate, Program], history: list[Happening]
 ) -> None:
-    """From the instant that heartbeat or input have been silent for their time, all is zero."""
+    """From the instant that heartbeat or input have been silent for their time, all is zero.
+
+    A heartbeat whose counter does not advance is silence, and so is one that nobody, or more than
+    one, may have sent.
+    """
     run = Run(gate)
 
     def check(published: list[Output]) -> None:
@@ -192,9 +210,10 @@ def test_limits_are_met(gate: tuple[Gate, Program], history: list[Happening]) ->
 def test_gate_can_always_be_opened(
     gate: tuple[Gate, Program], history: list[Happening], command: Message
 ) -> None:
-    """After a heartbeat, and word that nothing is active, the very command passes at once."""
+    """After two heartbeats, and word that nothing is active, the very command passes at once."""
     run = Run(gate)
-    run.live([*history, (0, "beat", None), (0, "/stop", False), (0, "/low_speed", False)])
+    beats = [(0, "beat", 1), (0, "beat", 1)]
+    run.live([*history, *beats, (0, "/stop", False), (0, "/low_speed", False)])
     published = run.engine.command(run.now, command)
     assert [(each.t_ns, each.kind) for each in published] == [(run.now, "pass")]
     assert published[0].message is command

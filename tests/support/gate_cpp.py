@@ -36,7 +36,7 @@ SANITIZED = ("-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover
 needs_clang = pytest.mark.skipif(shutil.which("clang++") is None, reason="no clang++")
 
 _KINDS: tuple[OutputKind, ...] = ("pass", "limited", "zero")
-_CALLS = ("command", "state", "heartbeat", "advance")
+_CALLS = ("command", "state", "heartbeat", "advance", "no_safety_node")
 _NEVER = 2**63 - 1
 
 
@@ -94,13 +94,17 @@ public:
     std::int64_t t = 0;
     std::uint8_t topic = 0;
     bool is_given = false;
+    bool is_trusted = false;
+    std::uint64_t counter = 0;
     wire::get(from, call);
     wire::get(from, t);
     wire::get(from, topic);
     wire::get(from, is_given);
+    wire::get(from, is_trusted);
+    wire::get(from, counter);
     out_ = wire::Bytes{{}};
     count_ = 0;
-    take(call, t, topic, is_given, from);
+    take(call, t, topic, is_given, is_trusted, counter, from);
     wire::put(to, count_);
     to.data += out_.data;
     wire::put(to, gate_->next_deadline());
@@ -113,7 +117,8 @@ private:
   using Command = {logic}::Command;
 
   void take(
-    std::uint8_t call, std::int64_t t, std::uint8_t topic, bool is_given, wire::Bytes & from)
+    std::uint8_t call, std::int64_t t, std::uint8_t topic, bool is_given, bool is_trusted,
+    std::uint64_t counter, wire::Bytes & from)
   {{
     if (call == 0) {{
       Command command;
@@ -127,7 +132,10 @@ private:
     }}
 {states}
 {heartbeat}
+{lost}
     (void)topic;
+    (void)is_trusted;
+    (void)counter;
     gate_->advance(t);
   }}
 
@@ -150,7 +158,7 @@ private:
 _STATE = """    if (call == 1 && topic == {topic}) {{
       {type} message;
       if (is_given) {{wire::get(from, message);}}
-      gate_->on_state_{identifier}(t, is_given ? &message : nullptr);
+      gate_->on_state_{identifier}(t, is_given ? &message : nullptr, is_trusted);
       return;
     }}"""
 
@@ -236,12 +244,14 @@ def _adapter(view: GateView) -> str:
         _STATE.format(topic=topics.index(state.topic), type=state.type, identifier=state.identifier)
         for state in view.states
     )
-    heartbeat = "    if (call == 2) {gate_->on_heartbeat(t); return;}"
+    heartbeat = "    if (call == 2) {gate_->on_heartbeat(t, counter); return;}"
+    lost = "    if (call == 4) {gate_->on_no_safety_node(t); return;}"
     return _ADAPTER.format(
         package=view.package,
         logic=view.logic_class,
         states=states,
         heartbeat=heartbeat if view.heartbeat_port else "",
+        lost=lost if view.heeds_safety_node else "",
         stamp=_STAMP if view.stamped else "",
     )
 
@@ -363,7 +373,9 @@ class Players:
 
 def _happening(gate: Gate, t_ns: int, each: Happening) -> bytes:
     topic = TOPICS.index(each.topic) if each.topic else 0
-    head = struct.pack("<BqB?", _CALLS.index(each.call), t_ns, topic, each.message is not None)
+    given, trusted = each.message is not None, each.is_trusted
+    call = _CALLS.index(each.call)
+    head = struct.pack("<BqB??Q", call, t_ns, topic, given, trusted, each.counter)
     if each.message is None:
         return head
     kind = gate.type if each.call == "command" else _STATE_TYPES[each.topic]

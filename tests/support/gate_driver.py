@@ -29,18 +29,25 @@ class Driver:
         text = f"{ACTIONS}gate /nav -> /cmd_vel : {kind} rate 20 Hz {{ {' '.join(lines)} }}"
         built = program(text)
         self.engine = GateEngine(built.gates[0], built.actions, embedded_store())
+        self.beats = 0
 
     def drive(self, t_ms: float, speed: float, turn: float = 0.0) -> Shown:
         """Command a speed."""
         return shown(self.engine.command(at(t_ms), twist(speed, turn)))
 
-    def state(self, t_ms: float, action: str, active: bool) -> Shown:
+    def state(self, t_ms: float, action: str, active: bool, *, is_trusted: bool = True) -> Shown:
         """Say what an action is."""
-        return shown(self.engine.state(at(t_ms), f"/{action}", {"data": active}))
+        message = {"data": active}
+        return shown(self.engine.state(at(t_ms), f"/{action}", message, is_trusted=is_trusted))
 
-    def beat(self, t_ms: float) -> Shown:
-        """Let the safety node's heart beat."""
-        return shown(self.engine.heartbeat(at(t_ms)))
+    def beat(self, t_ms: float, counter: int | None = None) -> Shown:
+        """Publish a heartbeat, with the next counter unless another one is given."""
+        self.beats = self.beats + 1 if counter is None else counter
+        return shown(self.engine.heartbeat(at(t_ms), self.beats))
+
+    def lose(self, t_ms: float) -> Shown:
+        """Have no node, or more than one, that can be the safety node."""
+        return shown(self.engine.no_safety_node(at(t_ms)))
 
     def wait(self, t_ms: float) -> Shown:
         """Let time pass, deadline by deadline, as an idle node does."""
@@ -51,6 +58,7 @@ class Driver:
 
     def open(self) -> Driver:
         """Let everything be known and well at 0."""
+        self.beat(0)
         self.beat(0)
         self.state(0, "stop", False)
         self.state(0, "low_speed", False)

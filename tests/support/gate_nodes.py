@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from subprocess import Popen
@@ -88,6 +88,8 @@ class World:
         heard: what the gate published, serialized, with the time at which it was heard.
         status: its last status on /diagnostics: name, level, message, and all values.
         reports: how many of these there have been.
+        beats: how many heartbeats it has published.
+        stop_publisher: that of the stop's state.
     """
 
     def __init__(self, peer: Peer) -> None:
@@ -102,13 +104,13 @@ class World:
         self.peer = peer
         self.heard: list[tuple[float, bytes]] = []
         self.status: dict[str, str] = {}
-        self.reports = 0
+        self.reports = self.beats = 0
         self._types = Twist, Bool, UInt8, UInt64
         self._said: dict[Any, Any] = {}
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node = peer.node
         self._wish = node.create_publisher(Twist, "/cmd_vel_nav", 10)
-        self._stop = node.create_publisher(Bool, "/stop", kept)
+        self.stop_publisher = node.create_publisher(Bool, "/stop", kept)
         self._mode = node.create_publisher(UInt8, "/mode", kept)
         self._heartbeat = node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
         node.create_subscription(Twist, "/cmd_vel", self._take, 10, raw=True)
@@ -128,7 +130,7 @@ class World:
 
     def meet(self) -> None:
         """Wait until all ends know each other."""
-        ends = (self._wish, self._stop, self._mode, self._heartbeat)
+        ends = (self._wish, self.stop_publisher, self._mode, self._heartbeat)
         self.peer.until(lambda: all(each.get_subscription_count() for each in ends))
         self.peer.until(lambda: self.heard)
 
@@ -138,7 +140,8 @@ class World:
 
     def beat(self) -> None:
         """Be the safety node's heartbeat, once."""
-        self._heartbeat.publish(self._types[3]())
+        self.beats += 1
+        self._heartbeat.publish(self._types[3](data=self.beats))
 
     def live(self) -> None:
         """Be the safety node, once: its heartbeat, and what is active, which it says steadily.
@@ -153,7 +156,7 @@ class World:
     def stop(self, active: bool) -> float:
         """Publish whether the stop is active, and return when that was."""
         before = time.monotonic()
-        self._say(self._stop, self._types[1](data=active))
+        self._say(self.stop_publisher, self._types[1](data=active))
         return before
 
     def mode(self, value: int) -> None:
@@ -198,6 +201,20 @@ class World:
         last = self.wish(0.3, y=0.001)
         self.peer.until(lambda: self.heard[-1][1] == last)
 
+    def wish_for(self, seconds: float) -> list[tuple[float, float, float]]:
+        """Command a speed for a time, and return what the drive was told meanwhile."""
+        before, end = len(self.heard), time.monotonic() + seconds
+        self.wish_until(0.3, lambda: time.monotonic() > end)
+        return [self.speeds(data) for _, data in self.heard[before:]]
+
+    def until_driving(self) -> None:
+        """Command a speed until commands pass, for good."""
+        self.wish_until(0.3, lambda: self.last == (0.3, 0.0, 0.0))
+
+    def until_fault(self, text: str) -> None:
+        """Command a speed until the gate reports a fault that contains a text."""
+        self.wish_until(0.3, lambda: text in self.status["message"] and self.status["level"] == "2")
+
     def silence(self, seconds: float) -> int:
         """Return how many messages the gate publishes while nobody commands anything."""
         before, end = len(self.heard), time.monotonic() + seconds
@@ -212,6 +229,56 @@ class World:
             return condition()
 
         self.peer.until(once)
+
+
+class Stranger:
+    """A node that publishes what only the safety node should; it is gone when the block ends.
+
+    It is a participant of its own, so the middleware discovers and forgets it as a process.
+    """
+
+    def __init__(self, env: Mapping[str, str], name: str = "stranger") -> None:
+        """Start the node in the domain of ``env``."""
+        import rclpy
+        from rclpy.context import Context
+        from rclpy.node import Node
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+
+        self._context = Context()
+        rclpy.init(context=self._context, domain_id=int(env["ROS_DOMAIN_ID"]))
+        self.node: Any = Node(
+            name, context=self._context, enable_rosout=False, start_parameter_services=False
+        )
+        self._kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._stop: Any = None
+        self._heartbeat: Any = None
+
+    def __enter__(self) -> Stranger:
+        """Be there."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Go, and say so to everybody."""
+        self.node.destroy_node()
+        self._context.try_shutdown()
+
+    def stop(self, active: bool) -> Any:
+        """Publish, latched, whether the stop is active; return the publisher."""
+        from std_msgs.msg import Bool
+
+        if self._stop is None:
+            self._stop = self.node.create_publisher(Bool, "/stop", self._kept)
+        self._stop.publish(Bool(data=active))
+        return self._stop
+
+    def heartbeat(self, counter: int) -> Any:
+        """Publish a heartbeat; return the publisher."""
+        from std_msgs.msg import UInt64
+
+        if self._heartbeat is None:
+            self._heartbeat = self.node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
+        self._heartbeat.publish(UInt64(data=counter))
+        return self._heartbeat
 
 
 class Drive:

@@ -11,10 +11,10 @@ from typing import Any, Literal
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
 from deros.monitor.commands import LAYOUT, QUATERNION, TIME
-from deros.monitor.gate import GateEngine
 from deros.monitor.ir import Gate, GateLine, Limit
 from tests.support.gates import (
     ACTIONS,
+    CALLS,
     COMMANDS,
     QUIET,
     STORE,
@@ -111,7 +111,7 @@ def random_trace(rng: random.Random, gate: Gate, start_ns: int) -> Trace:
 
 def _happening(rng: random.Random, kind: InterfaceType) -> Happening:
     wait_ns = rng.randint(100, 3000) if rng.choice(_LATER) else rng.choice(_WAITS)
-    call = rng.choice(("command", "command", "state", "heartbeat", "advance"))
+    call = rng.choice(CALLS)
     if call == "command":
         fate = rng.random()
         message = None if fate < 0.1 else random_message(rng, kind, wild=fate < 0.25)
@@ -119,8 +119,9 @@ def _happening(rng: random.Random, kind: InterfaceType) -> Happening:
     if call == "state":
         topic = rng.choice(("/stop", "/go", "/mode", "/mode"))
         value = rng.randint(0, 3) if topic == "/mode" else rng.random() < 0.5
-        return Happening(wait_ns, call, None if rng.random() < 0.2 else {"data": value}, topic)
-    return Happening(wait_ns, call)
+        message = None if rng.random() < 0.2 else {"data": value}
+        return Happening(wait_ns, call, message, topic, is_trusted=rng.random() < 0.75)
+    return Happening(wait_ns, call, counter=rng.randint(1, 4) if call == "heartbeat" else 0)
 
 
 def random_message(rng: random.Random, kind: InterfaceType, *, wild: bool) -> dict[str, Any]:
@@ -179,15 +180,3 @@ def _floats(kind: InterfaceType, message: dict[str, Any]) -> Iterator[tuple[Any,
                 yield from _floats(field.base, holder[key])
             elif field.base in FLOAT_TYPES:
                 yield holder, key, field.base
-
-
-def play(engine: GateEngine, t_ns: int, each: Happening) -> None:
-    """Let something happen to the reference gate."""
-    if each.call == "command":
-        engine.command(t_ns, each.message)
-    elif each.call == "state":
-        engine.state(t_ns, each.topic, each.message)
-    elif each.call == "heartbeat":
-        engine.heartbeat(t_ns)
-    else:
-        engine.advance(t_ns)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, Protocol
 
 from hypothesis import strategies as st
 
@@ -111,22 +111,38 @@ def _limits(draw: st.DrawFn, name: str) -> tuple[Limit, ...]:
 
 @dataclass(frozen=True)
 class Happening:
-    """Something that happens ``wait_ns`` after the one before; ``topic`` of a state."""
+    """Something that happens ``wait_ns`` after the one before.
+
+    Attributes:
+        topic: of a state.
+        counter: of a heartbeat.
+        is_trusted: whether a state is known to come from the safety node.
+    """
 
     wait_ns: int
     call: str
     message: Any = None
     topic: str = ""
+    counter: int = 0
+    is_trusted: bool = True
 
 
 QUIET = (
     Happening(0, "state", {"data": False}, "/stop"),
     Happening(0, "state", {"data": True}, "/go"),
     Happening(0, "state", {"data": 0}, "/mode"),
-    Happening(0, "heartbeat"),
+    Happening(0, "heartbeat", counter=1),
+    Happening(0, "heartbeat", counter=2),
 )
 """What a gate hears of a safety node that has nothing to object to."""
 
+CALLS = (
+    *("command", "command", "command", "state", "state"),
+    *("heartbeat", "heartbeat", "advance", "no_safety_node"),
+)
+"""What may happen, some of it more often."""
+
+_mostly = st.sampled_from((True, True, True, False))
 _waits = st.sampled_from((0, 0, 0, 1, 1, 2, 3, 4, 5, 7, 10, 12, 25, 60, -1, -5))
 _tame_floats = st.sampled_from((-3.0, -1.0, -0.5, -0.0, 0.0, 0.25, 0.5, 1.0, 3.0))
 _wild_floats = st.sampled_from((math.nan, math.inf)) | st.floats()
@@ -142,7 +158,7 @@ def happenings(draw: st.DrawFn, gate: Gate) -> list[Happening]:
 @st.composite
 def _happening(draw: st.DrawFn, kind: InterfaceType) -> Happening:
     wait_ns = draw(_waits)
-    call = draw(st.sampled_from(("command", "command", "state", "heartbeat", "advance")))
+    call = draw(st.sampled_from(CALLS))
     if call == "command":
         good, any_at_all = messages(kind, _tame_floats), messages(kind, _wild_floats)
         return Happening(wait_ns, call, draw(st.one_of(good, good, good, any_at_all, st.none())))
@@ -151,8 +167,9 @@ def _happening(draw: st.DrawFn, kind: InterfaceType) -> Happening:
         values = st.integers(0, 3) if topic == "/mode" else st.booleans()
         known = st.builds(lambda value: {"data": value}, values)
         data = draw(st.one_of(known, known, known, st.none()))
-        return Happening(wait_ns, call, data, topic)
-    return Happening(wait_ns, call)
+        return Happening(wait_ns, call, data, topic, is_trusted=draw(_mostly))
+    counter = draw(st.integers(1, 4)) if call == "heartbeat" else 0
+    return Happening(wait_ns, call, counter=counter)
 
 
 def messages(
@@ -237,20 +254,29 @@ class GeneratedGate:
         fields = self._functions["limited_fields"](_object(message)) if self._view.fields else ()
         self._gate.on_command(t_ns, *fields)
 
-    def state(self, t_ns: int, topic: str, message: Message | None) -> None:
+    def state(
+        self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
+    ) -> None:
         """Take a message about the state of actions (``None``: one that could not be decoded)."""
         for state in self._view.states:
             if state.topic == topic:
                 values = {"msg": _object(message)}
                 active = [message is None or eval(a.test, values) for a in state.actions]
-                getattr(self._gate, f"on_state_{state.identifier}")(t_ns, *active)
+                getattr(self._gate, f"on_state_{state.identifier}")(t_ns, *active, is_trusted)
                 return
         self._gate.advance(t_ns)
 
-    def heartbeat(self, t_ns: int) -> None:
+    def heartbeat(self, t_ns: int, counter: int) -> None:
         """Take a heartbeat of the safety node."""
         if self._view.heartbeat:
-            self._gate.on_heartbeat(t_ns)
+            self._gate.on_heartbeat(t_ns, counter)
+        else:
+            self._gate.advance(t_ns)
+
+    def no_safety_node(self, t_ns: int) -> None:
+        """Take note that no node can be the safety node."""
+        if self._view.heeds_safety_node:
+            self._gate.on_no_safety_node(t_ns)
         else:
             self._gate.advance(t_ns)
 
@@ -301,3 +327,38 @@ def _data(value: Any) -> Any:
     if isinstance(value, SimpleNamespace):
         return {name: _data(each) for name, each in vars(value).items()}
     return [_data(each) for each in value] if isinstance(value, list) else value
+
+
+class Player(Protocol):
+    """The reference gate, or a generated one: something that can be played."""
+
+    def command(self, t_ns: int, message: Message | None) -> object:
+        """Take a command."""
+
+    def state(
+        self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
+    ) -> object:
+        """Take a message about the state of actions."""
+
+    def heartbeat(self, t_ns: int, counter: int) -> object:
+        """Take a heartbeat."""
+
+    def no_safety_node(self, t_ns: int) -> object:
+        """Take note that no node can be the safety node."""
+
+    def advance(self, t_ns: int) -> object:
+        """Settle all that is due."""
+
+
+def play(gate: Player, t_ns: int, each: Happening) -> None:
+    """Let something happen to a gate."""
+    if each.call == "command":
+        gate.command(t_ns, each.message)
+    elif each.call == "state":
+        gate.state(t_ns, each.topic, each.message, is_trusted=each.is_trusted)
+    elif each.call == "heartbeat":
+        gate.heartbeat(t_ns, each.counter)
+    elif each.call == "no_safety_node":
+        gate.no_safety_node(t_ns)
+    else:
+        gate.advance(t_ns)

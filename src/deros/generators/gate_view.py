@@ -82,6 +82,11 @@ class GateBase:
         return bool(self.types and self.types[-1].stamped)
 
     @property
+    def heeds_safety_node(self) -> bool:
+        """Whether a line is about an action, or about the heartbeat."""
+        return bool(self.actions) or "heartbeat" in self.lost
+
+    @property
     def losses(self) -> tuple[LineView, ...]:
         """The lines about a loss."""
         return tuple(line for line in self.lines if line.lost)

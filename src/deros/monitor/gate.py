@@ -9,6 +9,11 @@ same nanosecond. In short:
 * The heartbeat, or the input, is lost from the start until it first comes, and again at the instant
   when it has been silent for the line's time (inclusive). A command that is refused makes the input
   lost at once, until the next good one.
+* A heartbeat is a sign of life if its counter is greater than that of the one before. One whose
+  counter is not makes the heartbeat lost at once and is, as the first one is, what the next one is
+  compared with. Where more than one node publishes the heartbeat, nothing is known.
+* A state that may come from another node than the safety node makes an action active, never
+  inactive.
 * For each number of the command, the first line that applies and speaks of it decides; ``zero``
   speaks of all. The limits of an action say nothing while the heartbeat or the input is lost.
 * A good command is published at once, with the limits kept. While a zero line decides, it is not
@@ -81,6 +86,7 @@ class GateEngine:
         self._store = store
         self._now_ns = self._called_ns = start_ns
         self._active: dict[int, bool]
+        self._counter: int | None
         self._heartbeat_ns: int | None
         self._command_ns: int | None
         self._last_good: Message | None = None
@@ -109,10 +115,13 @@ class GateEngine:
             self._settle(message)
         return self.outputs[before:]
 
-    def state(self, t_ns: int, topic: str, message: Message | None) -> list[Output]:
+    def state(
+        self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
+    ) -> list[Output]:
         """Take a message about the state of actions. Return what is published.
 
-        After one that could not be decoded (``None``), nothing is known.
+        After one that could not be decoded (``None``), nothing is known. One that is not trusted,
+        because it may come from another node than the safety node, makes no action inactive.
         """
         before = len(self.outputs)
         self._catch_up(t_ns)
@@ -123,15 +132,31 @@ class GateEngine:
                 self._active.pop(each.index, None)
             else:
                 active = value_at(message, each.binding.path) == each.binding.value
-                self._active[each.index] = active
+                if active or is_trusted:
+                    self._active[each.index] = active
         self._settle()
         return self.outputs[before:]
 
-    def heartbeat(self, t_ns: int) -> list[Output]:
+    def heartbeat(self, t_ns: int, counter: int) -> list[Output]:
         """Take a heartbeat of the safety node. Return what is published."""
         before = len(self.outputs)
         self._catch_up(t_ns)
-        self._heartbeat_ns = t_ns
+        is_alive = self._counter is not None and counter > self._counter
+        self._counter = counter
+        self._heartbeat_ns = t_ns if is_alive else None
+        self._settle()
+        return self.outputs[before:]
+
+    def no_safety_node(self, t_ns: int) -> list[Output]:
+        """Take note that no node, or more than one, can be the safety node.
+
+        Return what is published. Nothing is known of the actions, the heartbeat is lost, and the
+        next one is the first again.
+        """
+        before = len(self.outputs)
+        self._catch_up(t_ns)
+        self._active.clear()
+        self._counter = self._heartbeat_ns = None
         self._settle()
         return self.outputs[before:]
 
@@ -173,6 +198,7 @@ class GateEngine:
     def _forget(self) -> None:
         """Know nothing of the actions, the heartbeat and the input; all that can be lost is."""
         self._active = {}
+        self._counter = None
         self._heartbeat_ns = None
         self._command_ns = None
         self._refused = False

@@ -58,6 +58,11 @@ def is_gate_node(name: str, target: str) -> bool:
     return name.removesuffix(CPP_SUFFIX) == gate_node_name(target)
 
 
+def is_gate(name: str) -> bool:
+    """Tell whether a node type, in whatever language, has the name of a gate."""
+    return name.removesuffix(CPP_SUFFIX).endswith("_gate")
+
+
 class Gates:
     """Builds the gates of one program; faults go to the scope."""
 

@@ -18,6 +18,7 @@ from deros.validators.graph import wiring_graph
 from deros.validators.rules_ends import ends_of
 from deros.validators.system_names import check_names
 from deros.validators.system_nodes import check_instances
+from deros.validators.system_safety import check_safety_publishers
 from deros.validators.system_topics import check_topics
 
 
@@ -31,7 +32,9 @@ def check_system(
     flat = flatten(system)
     yield from check_names(flat, store)
     yield from check_instances(flat)
-    yield from check_topics(flat, wiring_graph(flat), ends_of(watchers))
+    programs = tuple(watchers)
+    yield from check_topics(flat, wiring_graph(flat), ends_of(programs))
+    yield from check_safety_publishers(flat, programs)
 
 
 def check_written(system: System, store: InterfaceStore) -> Iterator[Diagnostic]:

@@ -20,11 +20,10 @@ from tests.support.gate_traces import (
     MORE_COMMANDS,
     Trace,
     limitable,
-    play,
     random_gate,
     random_trace,
 )
-from tests.support.gates import ACTIONS, QUIET, STORE, Happening, message_type, span
+from tests.support.gates import ACTIONS, QUIET, STORE, Happening, message_type, play, span
 from tests.support.messages import message_types
 
 pytestmark = needs_compiler

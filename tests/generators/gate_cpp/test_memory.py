@@ -60,11 +60,11 @@ int main()
   std::size_t before = 0;
   for (std::int64_t i = 1; i < 10000; ++i) {{
     const std::int64_t t = i * 7000000;
-    gate.on_heartbeat(t);
+    gate.on_heartbeat(t, static_cast<std::uint64_t>(i));
     stop.data = i % 11 == 0;
     mode.data = static_cast<std::uint8_t>(i / 20 % 3);
-    gate.on_state_stop(t + 1, &stop);
-    gate.on_state_mode(t + 2, &mode);
+    gate.on_state_stop(t + 1, &stop, true);
+    gate.on_state_mode(t + 2, &mode, true);
     gate.on_command(t + 3, command);
     if (i % 50 == 0) {{
       gate.advance(t + 600000000);

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
 from deros.monitor.gate import GateEngine
-from tests.support.gates import ACTIONS, STORE, GeneratedGate, gates, happenings
+from tests.support.gates import ACTIONS, STORE, GeneratedGate, gates, happenings, play
 
 EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "500"))
 """Examples; set, they are drawn anew in every run, else they are always the same."""
@@ -32,15 +32,8 @@ def test_same_commands(data: st.DataObject) -> None:
     t_ns = START_NS
     for each in data.draw(happenings(gate)):
         t_ns = max(0, t_ns + each.wait_ns)
-        note(f"{each.call} at {t_ns} {each.topic} {each.message}")
+        note(f"{each.call} at {t_ns} {each.topic} {each.message} {each.counter} {each.is_trusted}")
         for one in (engine, generated):
-            if each.call == "command":
-                one.command(t_ns, each.message)
-            elif each.call == "state":
-                one.state(t_ns, each.topic, each.message)
-            elif each.call == "heartbeat":
-                one.heartbeat(t_ns)
-            else:
-                one.advance(t_ns)
+            play(one, t_ns, each)
         assert generated.outputs == engine.outputs
         assert generated.next_deadline is None or generated.next_deadline > t_ns

@@ -20,7 +20,10 @@ pytestmark = pytest.mark.ros
 
 GATE = "cmd_vel_gate"
 PERIOD = 0.05
+PROMPT = 1.0
+"""What a busy machine may add, in s, where the question is whether something happens at all."""
 STILL = (0.0, 0.0, 0.0)
+ON_CLOCK = ("use_sim_time:=true", "losses_in_simulated_time:=true")
 
 
 @pytest.fixture(params=LANGUAGES)
@@ -229,7 +232,7 @@ def test_a_second_one_does_not_run(
 def test_simulated_time_pauses_and_steps_back(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """Deadlines follow /clock; after a step back everything has to be heard anew."""
+    """Asked for, deadlines follow /clock; after a step back everything has to be heard anew."""
     from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
 
     clock = world.peer.node.create_publisher(Clock, "/clock", 10)
@@ -258,7 +261,7 @@ def test_simulated_time_pauses_and_steps_back(
 
         world.peer.until(once)
 
-    with run_gate(GATE, ros_env, "use_sim_time:=true"):
+    with run_gate(GATE, ros_env, *ON_CLOCK):
         world.peer.until(clock.get_subscription_count)
         ticking(0.01, lambda: world.heard)
         world.stop(False)
@@ -279,6 +282,39 @@ def test_simulated_time_pauses_and_steps_back(
         ticking(0.01, lambda: world.last == (0.3, 0.0, 0.0))
         tick(0.6)
         world.peer.until(lambda: world.last == STILL)
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.05])
+def test_losses_are_counted_on_the_steady_clock(
+    run_gate: RunGate, ros_env: dict[str, str], world: World, rate: float
+) -> None:
+    """With a simulated clock that stands or creeps, silence is a loss, in time, and zeros come."""
+    from rosgraph_msgs.msg import Clock
+
+    clock = world.peer.node.create_publisher(Clock, "/clock", 10)
+    with run_gate(GATE, ros_env, "use_sim_time:=true"):
+        world.peer.until(clock.get_subscription_count)
+        started = time.monotonic()
+        ticking = Clock()
+
+        def tick() -> None:
+            passed = 1000.0 + rate * (time.monotonic() - started)
+            ticking.clock.sec, ticking.clock.nanosec = int(passed), int(passed % 1 * 1e9)
+            clock.publish(ticking)
+
+        world.peer.node.create_timer(0.02, tick)
+        world.meet()
+        world.release()
+        world.beating.cancel()
+        world.beat()
+        beaten = time.monotonic()
+        world.wish_until(0.3, lambda: world.last == STILL)
+        assert 0.25 < world.heard[-1][0] - beaten < 0.3 + PROMPT
+        before = len(world.heard)
+        world.peer.until(lambda: len(world.heard) > before + 5)
+        times = [heard for heard, _ in world.heard[before:]]
+        gaps = [after - before for before, after in itertools.pairwise(times)]
+        assert statistics.median(gaps) == pytest.approx(PERIOD, abs=0.02)
 
 
 @pytest.mark.parametrize("chosen", [False, True])
@@ -346,9 +382,10 @@ def test_a_zero_keeps_the_form_of_the_command(
     mode = node.create_publisher(UInt8, "/mode", kept)
     heartbeat = node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
     said = {stop: Bool(data=False), mode: UInt8(data=0)}
+    beats = itertools.count(1)
 
     def live() -> None:
-        heartbeat.publish(UInt64())
+        heartbeat.publish(UInt64(data=next(beats)))
         for publisher, state in said.items():
             publisher.publish(state)
 

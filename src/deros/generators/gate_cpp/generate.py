@@ -24,7 +24,7 @@ _SHARED = (
 )
 """The sources that gates have in common with the safety node."""
 
-_OWN = ("gate_report", "gatekeeper")
+_OWN = ("gate_report", "gatekeeper", "safety_source", "target_publishers")
 """Those that are the same for all gates."""
 
 _NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils", "rosgraph_msgs")
@@ -100,7 +100,9 @@ def _provided(view: GateView, node: NodeType) -> Provided:
 def render(template: str, view: GateView) -> str:
     """Return the text of one file of a gate: ``node``, ``logic`` or ``main``, with its ending."""
     loaded = environment("deros.generators.gate_cpp").get_template(f"{template}.j2")
-    own = (f"{view.name}_base", f"{view.name}_logic", "runtime/gatekeeper")
+    own = [f"{view.name}_base", f"{view.name}_logic", "runtime/gatekeeper"]
+    if view.heeds_safety_node:
+        own.append("runtime/safety_source")
     headers = [f"{view.package}/{name}.hpp" for name in own]
     heard = [view.heartbeat_port.header] if view.heartbeat_port else []
     text = loaded.render(
@@ -113,6 +115,7 @@ def render(template: str, view: GateView) -> str:
         nanoseconds=nanoseconds,
         origin_comment=origin_comment,
         string_lines=string_lines,
+        taken=("const rclcpp::SerializedMessage & data", "const rclcpp::MessageInfo & info"),
     )
     return mark_long_lines(text)
 

@@ -135,6 +135,11 @@ class GateView(GateBase):
         return " || ".join(line.name for line in self.losses if line.lost == what)
 
     @property
+    def silence_ns(self) -> int:
+        """After what silence of the heartbeat every line about it applies; 0 without any."""
+        return max((line.lost_ns for line in self.losses if line.lost == "heartbeat"), default=0)
+
+    @property
     def unless_lost(self) -> str:
         """What the limits of an action also depend on."""
         return "".join(f" && !is_{what}_lost" for what in self.lost)

@@ -28,6 +28,8 @@ RUNTIME = (
     "machine",
     "process",
     "publishers",
+    "safety_source",
+    "target_publishers",
     "waker",
 )
 """The modules that are the same for all gates, most of which the safety node has as well."""

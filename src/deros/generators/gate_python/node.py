@@ -16,7 +16,7 @@ from deros.generators.safety_python.node import (
     stated_qos,
 )
 from deros.metamodels.common import QosProfile
-from deros.metamodels.node import NodeType, Port, PortKind
+from deros.metamodels.node import NodeType, Parameter, ParameterType, Port, PortKind
 from deros.monitor.gates import gate_node_name
 from deros.monitor.ir import Gate, Program
 from deros.monitor.topics import SystemTopics
@@ -64,8 +64,27 @@ def _node(gate: Gate, program: Program, topics: SystemTopics, safety_node: NodeT
         gate.span,
         gate.span,
         description=gate.description or described,
-        parameters=tuple(p for p in safety_node.parameters if p.name in PROCESS_PARAMETERS),
+        parameters=(
+            *(p for p in safety_node.parameters if p.name in PROCESS_PARAMETERS),
+            _losses_in_simulated_time(gate),
+        ),
         ports=tuple(_ports(gate, program, topics, safety_node)),
+    )
+
+
+def _losses_in_simulated_time(gate: Gate) -> Parameter:
+    description = (
+        "Under use_sim_time, count losses and the period of zeros on /clock, for tests: where it"
+        " stands, nothing is lost"
+    )
+    return Parameter(
+        "losses_in_simulated_time",
+        ParameterType.BOOL,
+        False,
+        gate.span,
+        gate.span,
+        read_only=True,
+        description=description,
     )
 
 

@@ -28,6 +28,7 @@ from deros.generators.rosnode_python.view import (
     node_view,
 )
 from deros.generators.safety_python.messages import literal
+from deros.generators.safety_python.node import HEARTBEAT_TYPE
 from deros.interfaces.fields import format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
@@ -54,22 +55,33 @@ _TAKEN = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class StateView:
-    """A topic with the states of actions; ``identifier`` is that of the port."""
+    """A topic with the states of actions; ``identifier`` is that of the port.
+
+    Attributes:
+        literal: the topic as an expression.
+    """
 
     identifier: str
     topic: str
+    literal: str
     type: str
     actions: tuple[ActionView, ...]
 
     @property
     def parameters(self) -> tuple[str, ...]:
         """The parameters of the method that takes the states."""
-        return ("self", "t: int", *(f"{action.state}: bool" for action in self.actions))
+        states = (f"{action.state}: bool" for action in self.actions)
+        return ("self", "t: int", *states, "is_trusted: bool")
 
     @property
-    def arguments(self) -> tuple[str, ...]:
-        """The arguments for it, of a message ``msg`` that may be ``None``."""
-        return ("self._watch.now()", *(f"msg is None or {action.test}" for action in self.actions))
+    def is_believed(self) -> str:
+        """The condition that the states are as a message says."""
+        return " and ".join(f"self._{each.state} == {each.state}" for each in self.actions)
+
+    @property
+    def active(self) -> tuple[str, ...]:
+        """What a message ``msg``, which may be ``None``, says of each action."""
+        return tuple(f"msg is None or {action.test}" for action in self.actions)
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,6 +209,8 @@ def gate_view(
     actions = tuple(action for state in states for action in state.actions)
     lines = line_views(gate, program, actions, names)
     heard = {binding.type for bound in heeded.values() for _, binding in bound}
+    if node.port(heartbeat):
+        heard.add(HEARTBEAT_TYPE)
     return GateView(
         node=base,
         rules=origin(gate.span).rpartition(":")[0],
@@ -206,7 +220,7 @@ def gate_view(
         source=_port(base.subscriptions, gate.source),
         target=_port(base.publishers, gate.target),
         heartbeat=_port(base.subscriptions, heartbeat) if node.port(heartbeat) else None,
-        imports=tuple(_imports(base, node, {gate.type, *heard})),
+        imports=tuple(_imports(base, node, {gate.type, *heard}, is_heeding=bool(heard))),
         period_ns=gate.period_ns,
         types=type_views(store, gate.type),
         fields=tuple(_fields(gate, lines, store, names)),
@@ -225,7 +239,9 @@ def _port(ports: Iterable[PortView], name: str) -> PortView:
     return next(port for port in ports if port.name == name)
 
 
-def _imports(base: NodeView, node: NodeType, used: Iterable[InterfaceType]) -> list[str]:
+def _imports(
+    base: NodeView, node: NodeType, used: Iterable[InterfaceType], *, is_heeding: bool
+) -> list[str]:
     imports = interface_imports(dict(base.interfaces), used)
     own = {f"{base.module}_{module} as {module}" for module in ("logic", "message")}
     imports |= {
@@ -237,6 +253,8 @@ def _imports(base: NodeView, node: NodeType, used: Iterable[InterfaceType]) -> l
         f"{node.package}.instance": {"claim"},
         f"{node.package}.process": {"run"},
     }
+    if is_heeding:
+        imports[f"{node.package}.safety_source"] = {"SafetySource"}
     return import_lines(imports)
 
 
@@ -247,7 +265,7 @@ def _state(
     port: PortView, bound: Iterable[tuple[Action, Binding]], store: InterfaceStore, names: Names
 ) -> StateView:
     actions = tuple(_action(action, binding, store, names) for action, binding in bound)
-    return StateView(port.identifier, port.name, port.type, actions)
+    return StateView(port.identifier, port.name, port.topic, port.type, actions)
 
 
 def _action(action: Action, binding: Binding, store: InterfaceStore, names: Names) -> ActionView:

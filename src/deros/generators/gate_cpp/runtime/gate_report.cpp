@@ -37,7 +37,8 @@ std::string ago(Time time)
 
 GateReport::GateReport(
   Agenda & agenda, rclcpp::Node & node, const Applying & gate, std::vector<std::string> lines,
-  std::function<Time()> now, std::function<void(const Message &)> publish)
+  std::function<Time()> now, std::function<void(const Message &)> publish,
+  const std::string & target)
 : node_(node),
   gate_(gate),
   lines_(std::move(lines)),
@@ -45,6 +46,9 @@ GateReport::GateReport(
   publish_(std::move(publish)),
   publishers_(
     node,
+    [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
+  target_(
+    node, target,
     [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
   alarm_(agenda, Clock(), [this] {ring();})
 {
@@ -88,10 +92,9 @@ void GateReport::fault(const std::string & subject, const std::string & text)
   hurry();
 }
 
-void GateReport::watch_over(
-  const rclcpp::SubscriptionBase & subscription, const std::string & type)
+void GateReport::watch_over(SubscribedTopic topic)
 {
-  publishers_.add(subscription, type);
+  publishers_.add(std::move(topic));
 }
 
 void GateReport::hurry()
@@ -115,6 +118,7 @@ void GateReport::ring()
   message.status.push_back(status());
   publish_(message);
   publishers_.look();
+  target_.look();
 }
 
 void GateReport::log() const

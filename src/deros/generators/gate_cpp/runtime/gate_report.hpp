@@ -12,6 +12,7 @@
 
 #include "deros_runtime/runtime/agenda.hpp"
 #include "deros_runtime/runtime/publishers.hpp"
+#include "deros_runtime/runtime/target_publishers.hpp"
 #include "diagnostic_msgs/msg/diagnostic_array.hpp"
 #include "diagnostic_msgs/msg/diagnostic_status.hpp"
 #include "rclcpp/rclcpp.hpp"
@@ -41,10 +42,12 @@ public:
   /**
    * \param lines those of the gate, in order
    * \param now the gate's time
+   * \param target the topic that the gate publishes commands on
    */
   GateReport(
     Agenda & agenda, rclcpp::Node & node, const Applying & gate, std::vector<std::string> lines,
-    std::function<Time()> now, std::function<void(const Message &)> publish);
+    std::function<Time()> now, std::function<void(const Message &)> publish,
+    const std::string & target);
 
   /// Publish for the first time, at once.
   void begin();
@@ -58,8 +61,8 @@ public:
   /// Note or, with an empty text, forget what is wrong with something.
   void fault(const std::string & subject, const std::string & text);
 
-  /// Report of publishers on a topic that cannot be heard.
-  void watch_over(const rclcpp::SubscriptionBase & subscription, const std::string & type);
+  /// Report of publishers on a topic that cannot be heard, and of a second one.
+  void watch_over(SubscribedTopic topic);
 
 private:
   void hurry();
@@ -78,6 +81,7 @@ private:
   std::string cause_;
   std::vector<std::pair<std::string, std::string>> faults_;  // each with what it is about
   Publishers publishers_;
+  TargetPublishers target_;
   Alarm alarm_;
 };
 

@@ -14,19 +14,30 @@
 namespace deros_runtime
 {
 
+namespace
+{
+
+constexpr Time CHECK_PERIOD = 1'000'000'000;  // ns
+
+}  // namespace
+
 Gatekeeper::Gatekeeper(
-  rclcpp::Node & node, Kept & gate, std::vector<std::string> lines, Settings settings)
+  rclcpp::Node & node, Kept & gate, std::vector<std::string> lines, const std::string & target,
+  Settings settings)
 : node_(node),
   gate_(gate),
   refused_(prepare(settings.realtime_priority, settings.lock_memory)),
   clock_choice_(refuse_clock_change(node)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
-  simulated_(simulated_time(node, agenda_, [this](bool) {advance();})),
+  simulated_(
+    settings.losses_in_simulated_time ?
+    simulated_time(node, agenda_, [this](bool) {advance();}) : nullptr),
   clock_(clock_of(simulated_)),
   report_(
     agenda_, node, gate, std::move(lines), [this] {return now();},
-    [this](const GateReport::Message & message) {gate_.report(message);}),
+    [this](const GateReport::Message & message) {gate_.report(message);}, target),
   deadline_(agenda_, clock_, [this] {advance();}),
+  check_(agenda_, Clock(), [this] {check_publishers();}),
   worker_(
     agenda_,
     [this](const char * why) {
@@ -35,6 +46,9 @@ Gatekeeper::Gatekeeper(
       }
     })
 {
+  if (node.get_parameter("use_sim_time").as_bool()) {
+    report_.watch_over({"/clock", "rosgraph_msgs/msg/Clock", rclcpp::ClockQoS()});
+  }
   const std::size_t domain = node.get_node_base_interface()->get_context()->get_domain_id();
   try {
     lock_ = claim(node.get_fully_qualified_name(), domain);
@@ -58,6 +72,7 @@ void Gatekeeper::start()
     report_.fault("process", refusal);
   }
   report_.begin();
+  check_.ring_at(0);
   advance();
   worker_.start();
 }
@@ -101,7 +116,14 @@ void Gatekeeper::serve(
   subscription->set_on_new_message_callback(
     [this, source](std::size_t count) {agenda_.notify(source, count);});
   subscriptions_.push_back(subscription);
-  report_.watch_over(*subscription, type);
+  report_.watch_over({subscription->get_topic_name(), type, subscription->get_actual_qos()});
+}
+
+/// Look once a second who publishes what.
+void Gatekeeper::check_publishers()
+{
+  check_.ring_at(steady_now() + CHECK_PERIOD);
+  gate_.check_publishers();
 }
 
 /// Do what is due.

@@ -36,6 +36,9 @@ public:
   virtual Time next_deadline() const = 0;
 
   virtual void report(const GateReport::Message & message) = 0;
+
+  /// Look who publishes what the gate obeys; it is asked to once a second.
+  virtual void check_publishers() = 0;
 };
 
 /// Read a message; return false if it is none of this type.
@@ -53,37 +56,45 @@ bool read(const rclcpp::SerializedMessage & data, MessageT & message)
 
 /// A gate in time: it is told what comes and what time it is, all in one thread of its own.
 /**
- * It runs on steady time, which never steps, or on ROS time under use_sim_time.
+ * It runs on steady time, which never steps, whatever the robot's time is; for tests, it can run
+ * on /clock, if the node does.
  */
 class Gatekeeper
 {
 public:
   /// Takes a message as it came.
-  using Take = std::function<void (const rclcpp::SerializedMessage &)>;
+  using Take =
+    std::function<void (const rclcpp::SerializedMessage &, const rclcpp::MessageInfo &)>;
 
   /// Parameters of the node.
   struct Settings
   {
     std::int64_t realtime_priority;
     bool lock_memory;
+    bool losses_in_simulated_time;
   };
 
   /// Refuse to be a second one of the node's name, and prepare the process.
   /** \throw Refusal if there is one */
-  Gatekeeper(rclcpp::Node & node, Kept & gate, std::vector<std::string> lines, Settings settings);
+  Gatekeeper(
+    rclcpp::Node & node, Kept & gate, std::vector<std::string> lines, const std::string & target,
+    Settings settings);
   ~Gatekeeper();
   Gatekeeper(const Gatekeeper &) = delete;
   Gatekeeper & operator=(const Gatekeeper &) = delete;
 
   /// Hear a topic, whose messages are handed over as they came; to be called before start().
   template<typename MessageT>
-  void subscribe(const std::string & topic, const rclcpp::QoS & qos, Take take)
+  SubscribedTopic subscribe(
+    const std::string & topic, const rclcpp::QoS & qos, Take take)
   {
     rclcpp::SubscriptionOptions options;
     options.callback_group = group_;
     options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
     const auto subscription = node_.create_subscription<MessageT>(topic, qos, take, options);
-    serve(subscription, rosidl_generator_traits::name<MessageT>());
+    const std::string type = rosidl_generator_traits::name<MessageT>();
+    serve(subscription, type);
+    return {subscription->get_topic_name(), type, subscription->get_actual_qos()};
   }
 
   /// Start the gate: with the zeros that are due, and then with what comes.
@@ -106,6 +117,12 @@ public:
     report_.refuse(cause);
   }
 
+  /// Note or, with an empty text, forget what is wrong with something.
+  void fault(const std::string & subject, const std::string & text)
+  {
+    report_.fault(subject, text);
+  }
+
   // What others do
 
   /// End the thread; see Worker.
@@ -116,6 +133,7 @@ public:
 private:
   void serve(const rclcpp::SubscriptionBase::SharedPtr & subscription, const std::string & type);
   void advance();
+  void check_publishers();
 
   rclcpp::Node & node_;
   Kept & gate_;
@@ -128,6 +146,7 @@ private:
   const Clock clock_;
   GateReport report_;
   Alarm deadline_;
+  Alarm check_;
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
   Worker worker_;
 };

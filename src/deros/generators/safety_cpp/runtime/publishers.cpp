@@ -27,13 +27,12 @@ std::string bare(std::string reason)
 }
 
 /// Return why a subscription does not hear a publisher; empty if it does.
-std::string unheard(
-  const rclcpp::TopicEndpointInfo & info, const std::string & type, const rclcpp::QoS & qos)
+std::string unheard(const rclcpp::TopicEndpointInfo & info, const SubscribedTopic & topic)
 {
-  if (info.topic_type() != type) {
+  if (info.topic_type() != topic.type) {
     return "publishes " + info.topic_type() + " on it, which is not heard";
   }
-  const auto fit = rclcpp::qos_check_compatible(info.qos_profile(), qos);
+  const auto fit = rclcpp::qos_check_compatible(info.qos_profile(), topic.qos);
   if (fit.compatibility == rclcpp::QoSCompatibility::Error) {
     return "offers a QoS on it that is not heard: " + bare(fit.reason);
   }
@@ -52,16 +51,26 @@ std::string node_of(const rclcpp::TopicEndpointInfo & info)
   return (space == "/" ? "" : space) + '/' + info.node_name();
 }
 
+std::vector<rclcpp::TopicEndpointInfo> heard_publishers(
+  const rclcpp::Node & node, const SubscribedTopic & topic)
+{
+  std::vector<rclcpp::TopicEndpointInfo> infos = node.get_publishers_info_by_topic(topic.name);
+  infos.erase(
+    std::remove_if(
+      infos.begin(), infos.end(),
+      [&topic](const auto & each) {return !unheard(each, topic).empty();}),
+    infos.end());
+  return infos;
+}
+
 Publishers::Publishers(rclcpp::Node & node, Report report)
 : node_(node), report_(std::move(report))
 {
 }
 
-void Publishers::add(
-  const rclcpp::SubscriptionBase & subscription, const std::string & type, bool is_shared)
+void Publishers::add(SubscribedTopic topic, bool is_shared)
 {
-  topics_.push_back(
-    {subscription.get_topic_name(), type, subscription.get_actual_qos(), is_shared});
+  topics_.push_back({std::move(topic), is_shared});
 }
 
 void Publishers::look()
@@ -71,16 +80,17 @@ void Publishers::look()
   }
   const Topic & topic = topics_[next_];
   next_ = (next_ + 1) % topics_.size();
-  report_(topic.name, faults(topic));
+  report_(topic.subscribed.name, faults(topic));
 }
 
 std::string Publishers::faults(const Topic & topic) const
 {
   std::vector<std::string> found;
   std::vector<std::string> heard;
-  for (const rclcpp::TopicEndpointInfo & info : node_.get_publishers_info_by_topic(topic.name)) {
+  const std::string & on = topic.subscribed.name;
+  for (const rclcpp::TopicEndpointInfo & info : node_.get_publishers_info_by_topic(on)) {
     const std::string name = node_of(info);
-    const std::string reason = unheard(info, topic.type, topic.qos);
+    const std::string reason = unheard(info, topic.subscribed);
     if (reason.empty()) {
       heard.push_back(name.empty() ? "a node that is not known yet" : name);
       continue;

@@ -14,6 +14,18 @@ namespace deros_runtime
 /// Return the fully qualified name of the node of a publisher; empty if it is not known yet.
 std::string node_of(const rclcpp::TopicEndpointInfo & info);
 
+/// What a subscription hears.
+struct SubscribedTopic
+{
+  std::string name;  // fully qualified
+  std::string type;
+  rclcpp::QoS qos;
+};
+
+/// Return the publishers whose messages a subscription gets, as far as the graph knows.
+std::vector<rclcpp::TopicEndpointInfo> heard_publishers(
+  const rclcpp::Node & node, const SubscribedTopic & topic);
+
 /// Looks, one topic at a time, at the publishers on the topics that a node subscribes to.
 /**
  * Those of another type or of an unfit quality of service cannot be heard: the middleware keeps
@@ -29,9 +41,13 @@ public:
   Publishers(rclcpp::Node & node, Report report);
 
   /// Watch over a topic, on which there may be any number of publishers if it is shared.
+  void add(SubscribedTopic topic, bool is_shared = false);
   void add(
     const rclcpp::SubscriptionBase & subscription, const std::string & type,
-    bool is_shared = false);
+    bool is_shared = false)
+  {
+    add({subscription.get_topic_name(), type, subscription.get_actual_qos()}, is_shared);
+  }
 
   /// Look at the next topic.
   void look();
@@ -39,9 +55,7 @@ public:
 private:
   struct Topic
   {
-    std::string name;
-    std::string type;
-    rclcpp::QoS qos;
+    SubscribedTopic subscribed;
     bool is_shared;
   };
 

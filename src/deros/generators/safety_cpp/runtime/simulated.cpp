@@ -58,9 +58,9 @@ std::unique_ptr<SimulatedTime> simulated_time(
   return std::make_unique<SimulatedTime>(node, agenda, std::move(changed));
 }
 
-Time start_time(const rclcpp::Node & node)
+Time start_time(const rclcpp::Node & node, bool may_be_simulated)
 {
-  return node.get_parameter("use_sim_time").as_bool() ? 0 : steady_now();
+  return may_be_simulated && node.get_parameter("use_sim_time").as_bool() ? 0 : steady_now();
 }
 
 Clock clock_of(const std::unique_ptr<SimulatedTime> & simulated)

@@ -52,7 +52,8 @@ std::unique_ptr<SimulatedTime> simulated_time(
   rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed);
 
 /// Return the time at which a node starts: 0 under use_sim_time, as SimulatedTime has it.
-Time start_time(const rclcpp::Node & node);
+/** \param may_be_simulated whether use_sim_time decides on the time that is meant */
+Time start_time(const rclcpp::Node & node, bool may_be_simulated);
 
 /// Return the clock of simulated time, or the steady one if there is none.
 Clock clock_of(const std::unique_ptr<SimulatedTime> & simulated);

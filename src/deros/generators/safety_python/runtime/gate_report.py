@@ -14,6 +14,7 @@ from rclpy.serialization import deserialize_message
 
 from .alarm import Alarm
 from .publishers import Publishers
+from .target_publishers import TargetPublishers
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 PERIOD = 1_000_000_000  # ns
@@ -45,8 +46,9 @@ class Report:
         lines: Sequence[str],
         now: Callable[[], int],
         publish: Callable[[DiagnosticArray], None],
+        target: str,
     ) -> None:
-        """Start; lines are those of the gate, in order, and now its time."""
+        """Start; lines are those of the gate, in order, and now its time; target is a topic."""
         self.refused = 0
         self.faults: dict[str, str] = {}  # by what they are about
         self._node = node
@@ -57,6 +59,7 @@ class Report:
         self._told: tuple[bool, ...] = ()
         self._cause = ''
         self._publishers = Publishers(node, self.fault)
+        self._target = TargetPublishers(node, target, self.fault)
         self._alarm = Alarm(
             node, Clock(clock_type=ClockType.STEADY_TIME), time.monotonic_ns, self._ring
         )
@@ -97,6 +100,7 @@ class Report:
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publish(message)
         self._publishers.look()
+        self._target.look()
 
     def _log(self) -> None:
         applying = '; '.join(self._applying())

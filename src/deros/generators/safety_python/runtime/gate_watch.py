@@ -12,7 +12,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from .alarm import Alarm
-from .clock_choice import refuse_clock_change
+from .clock_choice import refuse_clock_change, USE_SIM_TIME
 
 NEVER = 1 << 62  # or later, in nanoseconds; timers cannot wait for that
 
@@ -30,16 +30,16 @@ class Gate(Protocol):
 
 class GateWatch:
     """
-    Runs a gate on steady time, which never steps, or on ROS time under use_sim_time.
+    Runs a gate on steady time, which never steps, whatever the robot's time is.
 
     The owner hands to the gate what comes, with the time of now(), and calls settle() then.
     """
 
-    def __init__(self, node: Node) -> None:
-        """Prepare; start() comes next."""
+    def __init__(self, node: Node, in_simulated_time: bool) -> None:
+        """Prepare; start() comes next. For tests, the gate can run on /clock, if the node does."""
         self._node = node
         refuse_clock_change(node)
-        self.now, clock = self._choose_clock()
+        self.now, clock = self._choose_clock(in_simulated_time)
         self._deadline = Alarm(node, clock, self.now, self.advance)
 
     def start(self, gate: Gate, settled: Callable[[], None]) -> None:
@@ -60,9 +60,9 @@ class GateWatch:
             self._deadline.ring_at(due)
         self._settled()
 
-    def _choose_clock(self) -> tuple[Callable[[], int], Clock]:
+    def _choose_clock(self, in_simulated_time: bool) -> tuple[Callable[[], int], Clock]:
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        if not self._node.get_parameter('use_sim_time').value:
+        if not (in_simulated_time and self._node.get_parameter(USE_SIM_TIME).value):
             return time.monotonic_ns, steady  # what that clock shows, in a thirtieth of the time
         # The callback of a jump may not do much, so it leaves the rest to an alarm due at once.
         self._step = Alarm(self._node, steady, time.monotonic_ns, self.advance)

@@ -1,0 +1,172 @@
+"""The safety node as the source of heartbeats and states: a gate obeys it, and nobody else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from rclpy.event_handler import EventHandler, QoSSubscriptionEventType
+from rclpy.node import Node
+from rclpy.subscription import Subscription
+
+from .publishers import heard_publishers, listed, node_of
+
+TURNS = 3  # of the executor's queue, which deals with an event in two
+State = Callable[..., bool]  # takes the time, what is active, and whether that is trusted
+
+
+class Gate(Protocol):
+    """What the logic of a gate does about the safety node."""
+
+    def on_no_safety_node(self, t: int) -> None:
+        """Take note that no node, or more than one, can be the safety node."""
+
+
+class Living(Gate, Protocol):
+    """The same of a gate with a line about the heartbeat."""
+
+    def on_heartbeat(self, t: int, counter: int) -> None:
+        """Take a heartbeat of the safety node."""
+
+
+class SafetySource:
+    """
+    Hands heartbeats and states to the logic of a gate if they can be of the safety node alone.
+
+    The safety node is the node of the heartbeat's only publisher; a gate without a line about the
+    heartbeat takes the node of the states' only publishers for it. rclpy does not say who sent a
+    message, so the graph and the middleware's events about publishers have to:
+
+    * With each publisher that comes or goes, what the topic has said is forgotten.
+    * What would free the robot waits until the graph shows the safety node as the only publisher
+      of the topic, and until all events that came before it have been dealt with. A publisher is
+      in the graph before its first message can come, and the event of its coming goes before that
+      of its going: whoever came, spoke and went meanwhile is found out by the one or the other.
+
+    What stops the robot waits for nothing.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        now: Callable[[], int],
+        settled: Callable[[], None],
+        report: Callable[[str, str], None],
+    ) -> None:
+        """Prepare; settled is called when the logic of the gate has been told of something."""
+        self._node = node
+        self._now = now
+        self._settled = settled
+        self._report = report
+        self._heartbeat: Subscription | None = None
+        self._states: dict[str, tuple[Subscription, State, int]] = {}
+        self._is_sure = False  # that the heartbeat has one publisher
+        self._changes = 0  # of the publishers of the heartbeat
+        self._waiting: dict[str, Sequence[bool]] = {}  # states that are not trusted yet
+        self._handlers: list[EventHandler] = []
+
+    # Before anything comes
+
+    def add_heartbeat(self, topic: str, gate: Living) -> None:
+        """Watch over the publishers of the heartbeat."""
+        self._living = gate
+        self._heartbeat = self._subscription(topic)
+        self._watch(self._heartbeat, lambda: self._on_heartbeat_change(gate))
+
+    def add_state(self, topic: str, take: State, actions: int) -> None:
+        """Watch over the publishers of a topic with the states of so many actions."""
+        subscription = self._subscription(topic)
+        self._states[topic] = subscription, take, actions
+        self._watch(subscription, lambda: self._on_state_change(topic))
+
+    # What comes
+
+    def take_heartbeat(self, counter: int | None) -> None:
+        """Take a heartbeat; None is one that could not be read."""
+        if counter is None:
+            self._living.on_no_safety_node(self._now())
+        elif self._is_sure:
+            self._living.on_heartbeat(self._now(), counter)
+        elif self._safety_node():
+            changes = self._changes
+            self._after_events(lambda: self._on_sure(changes))
+        self._settled()
+
+    def take_state(self, topic: str, *active: bool) -> None:
+        """Take what is active of the actions of a topic: at once, or what is not when trusted."""
+        _, take, _ = self._states[topic]
+        if take(self._now(), *active, False):
+            self._waiting.pop(topic, None)
+        elif self._waiting.get(topic) != active and self._is_of_safety_node(topic):
+            self._waiting[topic] = active
+            self._after_events(lambda: self._on_trusted(topic, active))
+        self._settled()
+
+    # What follows
+
+    def _after_events(self, callback: Callable[[], None], turns: int = TURNS) -> None:
+        """Call back once all that the executor has been told of up to now is dealt with."""
+        executor = self._node.executor
+        assert executor is not None
+        if turns > 1:
+            executor.create_task(lambda: self._after_events(callback, turns - 1))
+        else:
+            executor.create_task(callback)
+
+    def _on_sure(self, changes: int) -> None:
+        self._is_sure = changes == self._changes
+
+    def _on_trusted(self, topic: str, active: Sequence[bool]) -> None:
+        if self._waiting.get(topic) is active:
+            del self._waiting[topic]
+            _, take, _ = self._states[topic]
+            take(self._now(), *active, True)
+            self._settled()
+
+    def _on_heartbeat_change(self, gate: Gate) -> None:
+        """Know nothing when a publisher of the heartbeat has come or gone."""
+        self._changes += 1
+        self._is_sure = False
+        self._waiting.clear()
+        gate.on_no_safety_node(self._now())
+        self._settled()
+
+    def _on_state_change(self, topic: str) -> None:
+        """Take all actions of a topic for active when a publisher of it has come or gone."""
+        self._waiting.pop(topic, None)
+        _, take, actions = self._states[topic]
+        take(self._now(), *[True] * actions, False)
+        self._settled()
+
+    # The graph
+
+    def _safety_node(self) -> str:
+        """Return the name of the safety node; empty if it is not known, or there are several."""
+        heard = [self._heartbeat] if self._heartbeat else [s for s, _, _ in self._states.values()]
+        publishers = [heard_publishers(self._node, each) for each in heard]
+        nodes = {node_of(info) for infos in publishers for info in infos}
+        return nodes.pop() if len(nodes) == 1 and max(map(len, publishers)) == 1 else ''
+
+    def _is_of_safety_node(self, topic: str) -> bool:
+        subscription, _, _ = self._states[topic]
+        safety_node = self._safety_node()
+        found = heard_publishers(self._node, subscription)
+        nodes = [node_of(info) for info in found]
+        is_stranger = safety_node and len(nodes) == 1 and nodes[0] not in ('', safety_node)
+        text = f'{listed(found)} publishes it, not the safety node {safety_node}'
+        self._report(f'state on {subscription.topic_name}', text if is_stranger else '')
+        return bool(safety_node) and nodes == [safety_node]
+
+    def _subscription(self, topic: str) -> Subscription:
+        name = self._node.resolve_topic_name(topic)
+        return next(each for each in self._node.subscriptions if each.topic_name == name)
+
+    def _watch(self, subscription: Subscription, changed: Callable[[], None]) -> None:
+        handler = EventHandler(
+            callback_group=subscription.callback_group,
+            callback=lambda _: changed(),
+            event_type=QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED,
+            parent_impl=subscription.handle,
+        )
+        self._handlers.append(handler)
+        self._node.add_waitable(handler)
