@@ -138,6 +138,33 @@ def test_nodes_end_with_the_command_even_when_it_is_killed(up: Up) -> None:
     assert await_end(run.started()["a"])
 
 
+LOST = """\
+import os, signal, sys
+from deros.cli.main import main
+from deros.validators import check
+class Interrupted:
+    def __del__(self):  # where Python prints an exception, and goes on
+        os.kill(os.getpid(), signal.SIGINT)
+real = check.check
+def interrupted(*arguments):
+    Interrupted()
+    return real(*arguments)
+check.check = interrupted
+main()
+"""
+
+
+def test_no_interrupt_is_lost_before_the_nodes_are_started(tmp_path: Path) -> None:
+    """It ends the command wherever it is: at once, and nothing is started."""
+    prefix = make_prefix(tmp_path / "install" / "demo")
+    load_system(tmp_path, "node a : short")
+    command = [sys.executable, "-c", LOST, "up", tmp_path / "robot.system"]
+    done = subprocess.run(
+        [*command, "--install", prefix.parent], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (-signal.SIGINT, ""), done.stderr
+
+
 # On the real middleware ---------------------------------------------------------------------------
 
 TALKER = """

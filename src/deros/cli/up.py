@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +13,7 @@ import click
 from deros.cli.options import FINDINGS, exit_code, interfaces_option
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from deros.diagnostics import Diagnostic
     from deros.metamodels.system import System
@@ -71,6 +73,34 @@ def up(
     The model is checked first, and nothing is started if an error is found. What then happens is
     what the script of 'deros generate --target script' does; ARGUMENTS after -- are its own.
     """
+    given = ["--stop-timeout", stop_timeout]
+    given += [word for folder in install for word in ("--package-path", folder)]
+    given += [word for name in only for word in ("--only", name)]
+    given += [word for name in excluded for word in ("--except", name)]
+    given += ["--dry-run"] * dry_run + ["--keep-going"] * keep_going
+    with _interrupts_at_once():
+        ctx.exit(_run(ctx, file, interfaces, [*given, *arguments]))
+
+
+@contextlib.contextmanager
+def _interrupts_at_once() -> Iterator[None]:
+    """Let SIGINT end the process as long as there is nothing to stop in order.
+
+    Python's own handler raises an exception wherever the program is, and in the middle of some
+    imports that is lost: the system would be started all the same.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if before is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _run(
+    ctx: click.Context, file: str, interfaces: tuple[Path, ...], arguments: Sequence[str]
+) -> int:
     from deros.generators.protocol import GenerationError
     from deros.generators.rossystem.view import system_view
     from deros.generators.rossystem_script.generate import table
@@ -80,13 +110,8 @@ def up(
         view = system_view(_checked_system(ctx, file, interfaces))
     except GenerationError as error:
         _show(error.diagnostics)
-        ctx.exit(FINDINGS)
-    given = ["--stop-timeout", stop_timeout]
-    given += [word for folder in install for word in ("--package-path", folder)]
-    given += [word for name in only for word in ("--only", name)]
-    given += [word for name in excluded for word in ("--except", name)]
-    given += ["--dry-run"] * dry_run + ["--keep-going"] * keep_going
-    ctx.exit(main(view.name, table(view), [*given, *arguments], f"deros up {file}"))
+        return FINDINGS
+    return main(view.name, table(view), arguments, f"deros up {file}")
 
 
 def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:
