@@ -37,6 +37,10 @@ property: $(READY)  ## Compare generated monitors with the reference on 120,000 
 repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (nightly)
 	@$(ALONE) $(BIN)/python tools/repeat.py --jobs $(JOBS)
 
+.PHONY: chaos
+chaos: $(READY)  ## Break the driving feeding robot, two faults at a time, 200 times (nightly)
+	@$(ALONE) $(BIN)/python tools/chaos.py --rounds 200
+
 .PHONY: sanitize
 sanitize: $(READY)  ## Compare monitors in C with the reference, watched by gcc's sanitizers
 	@$(ALONE) $(BIN)/python tools/sanitize.py

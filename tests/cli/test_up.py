@@ -158,9 +158,9 @@ def test_no_interrupt_is_lost_before_the_nodes_are_started(tmp_path: Path) -> No
     """It ends the command wherever it is: at once, and nothing is started."""
     prefix = make_prefix(tmp_path / "install" / "demo")
     load_system(tmp_path, "node a : short")
-    command = [sys.executable, "-c", LOST, "up", tmp_path / "robot.system"]
+    command = [sys.executable, "-c", LOST, "up", str(tmp_path / "robot.system")]
     done = subprocess.run(
-        [*command, "--install", prefix.parent], capture_output=True, text=True, check=False
+        [*command, "--install", str(prefix.parent)], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout) == (-signal.SIGINT, ""), done.stderr
 

@@ -30,7 +30,22 @@ LIMIT = 30.0
 _PIPE_BYTES = 1 << 20
 """What a process may print before anybody reads it; most that Linux lets a user have."""
 
-_DOMAINS = range(1, 102)  # the ports of higher ones may be taken by outgoing connections
+_PORTS_FROM, _PORTS_EACH = 7400, 250
+"""Where the ports of Fast DDS begin, and how many there are for each domain."""
+
+
+def _domains() -> range:
+    """Return the domains whose ports this machine does not give to outgoing connections."""
+    try:
+        text = Path("/proc/sys/net/ipv4/ip_local_port_range").read_text(encoding="ascii")
+        first = int(text.split()[0])
+    except (OSError, ValueError):
+        first = 32_768
+    last = min((first - _PORTS_FROM) // _PORTS_EACH, 102)
+    return range(1, last if last > 10 else 102)  # with too few of them, luck has to do
+
+
+_DOMAINS = _domains()
 _NEXT = itertools.count(os.getpid())
 
 _CONFINED = {
@@ -68,9 +83,10 @@ def own_domain() -> Iterator[int]:
 def _clear_shared_memory(domain: int) -> None:
     """Remove the ports of a domain that killed processes have left in shared memory.
 
-    They hold locks, for which Fast DDS may wait. Its ports begin at 7400, 250 for each domain.
+    They hold locks, for which Fast DDS may wait.
     """
-    ports = range(7400 + 250 * domain, 7400 + 250 * (domain + 1))
+    first = _PORTS_FROM + _PORTS_EACH * domain
+    ports = range(first, first + _PORTS_EACH)
     for path in _SHARED_MEMORY.glob("*fastrtps_port*"):
         match = _PORT.fullmatch(path.name)
         if match and int(match["number"]) in ports:

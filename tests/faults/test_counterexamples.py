@@ -1,0 +1,43 @@
+"""Rounds of the campaign that once showed a violation: each is played again, and has to hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.support.chaos.bench import Bench, running
+from tests.support.chaos.round import play
+from tests.support.chaos.schedule import Schedule
+from tests.support.examples import EXAMPLES
+from tests.support.ros import environment
+
+pytestmark = pytest.mark.ros
+
+EXAMPLE = EXAMPLES / "feeding_robot"
+SCHEDULES = sorted((Path(__file__).parent / "schedules").glob("*.json"))
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bench]:
+    """Give the robot, running."""
+    patch = pytest.MonkeyPatch()
+    for name, value in environment(0).items():
+        patch.setenv(name, value)
+    patch.syspath_prepend(str(EXAMPLE))
+    from demonstration.build import build  # type: ignore[import-not-found]
+
+    folder = tmp_path_factory.mktemp("chaos")
+    build(EXAMPLE, folder / "packages")
+    with running(EXAMPLE / "feeding_robot.system", [folder / "packages"], folder, 0) as robot:
+        yield robot
+    patch.undo()
+
+
+@pytest.mark.parametrize("path", SCHEDULES, ids=lambda path: path.stem)
+def test_what_once_let_the_robot_drive_on_does_not(bench: Bench, path: Path) -> None:
+    """The referee finds nothing any more."""
+    verdict = play(bench, Schedule.load(path))
+    assert verdict.moved
+    assert verdict.violations == []

@@ -1,0 +1,152 @@
+"""The robot under test, the proxy, and everything that can be broken."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import subprocess
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tests.support.chaos.links import (
+    BY_NAME,
+    CONTROLLER_OK,
+    DOMAINS,
+    GATE,
+    HEARTBEAT,
+    LET_THROUGH,
+    LOW_SPEED,
+    MOTOR_STOP,
+    PLANT,
+    SAFETY,
+    STOP,
+    message_type,
+)
+from tests.support.chaos.proxy import Proxy
+from tests.support.chaos.record import Record
+from tests.support.chaos.robot import Part
+from tests.support.preload import Disk, WallClock
+from tests.support.ros import environment, own_domain
+
+OUTPUTS = {
+    "safety": (HEARTBEAT, STOP, LOW_SPEED, MOTOR_STOP, CONTROLLER_OK),
+    "gate": (LET_THROUGH,),
+}
+"""What each restarted node publishes through the proxy."""
+
+
+class NotReadyError(Exception):
+    """The robot could not be brought to drive: the round shows nothing."""
+
+
+@dataclass
+class Bench:
+    """The robot, the proxy, and everything that can be broken."""
+
+    folder: Path
+    domains: dict[str, int]
+    record: Record
+    proxy: Proxy
+    parts: dict[str, Part]
+    clocks: Mapping[str, WallClock]
+    disk: Disk
+    intruders: list[subprocess.Popen[str]] = field(default_factory=list)
+    _levers: dict[str, Any] = field(default_factory=dict)
+    _reset: Any = None
+
+    def process_of(self, node: str) -> int:
+        """Return the process of a node, once it runs."""
+        part = self.parts[node if node in (SAFETY, GATE) else PLANT]
+        return part.process_of(node)
+
+    # The levers of the world ----------------------------------------------------------------
+
+    def pull(self, topic: str, kind: str, value: Any) -> None:
+        """Say something to the world, once and for all who come later."""
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+
+        if topic not in self._levers:
+            latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+            node = self.proxy.nodes[PLANT]
+            self._levers[topic] = node.create_publisher(message_type(kind), topic, latched)
+        message = message_type(kind)()
+        if kind == "geometry_msgs/Vector3":
+            message.x = value
+        else:
+            message.data = value
+        self._levers[topic].publish(message)
+
+    def reset(self, limit: float = 5.0) -> bool:
+        """Call the safety node's reset service; return whether it was granted."""
+        from std_srvs.srv import Trigger
+
+        if self._reset is None:
+            self._reset = self.proxy.nodes[SAFETY].create_client(Trigger, "/safety/reset")
+        if not self._reset.service_is_ready():
+            return False
+        answered = threading.Event()
+        future = self._reset.call_async(Trigger.Request())
+        future.add_done_callback(lambda _: answered.set())
+        return answered.wait(limit) and bool(future.result().success)
+
+    def value(self, place: Any, domain: str, topic: str) -> Any:
+        """Return the last number of a topic at a place, ``None`` before the first."""
+        from rclpy.serialization import deserialize_message
+
+        message = self.record.latest(place, domain, topic)
+        if message is None:
+            return None
+        return deserialize_message(message.data, BY_NAME[topic].message_type()).data
+
+    def until(self, what: str, condition: Callable[[], Any], limit: float = 20.0) -> None:
+        """Wait until something is so.
+
+        Raises:
+            NotReadyError: if it is not in time.
+        """
+        if not self.record.until(condition, limit):
+            raise NotReadyError(f"waited {limit:g} s for {what}")
+
+    def fresh(self, place: Any, domain: str, topic: str, since: float) -> bool:
+        """Return whether a topic was heard after a time."""
+        message = self.record.latest(place, domain, topic)
+        return message is not None and message.time > since
+
+
+@contextlib.contextmanager
+def running(system: Path, packages: list[Path], folder: Path, seed: int) -> Iterator[Bench]:
+    """Run the robot, with everything that it takes to break it."""
+    with contextlib.ExitStack() as stack:
+        domains = {name: stack.enter_context(own_domain()) for name in DOMAINS}
+        folder.mkdir(parents=True, exist_ok=True)
+        home = folder / "ros_home"
+        shutil.rmtree(home, ignore_errors=True)
+        home.mkdir()
+        record = Record()
+        stack.callback(record.close)
+        proxy = Proxy(domains, record, seed)
+        stack.callback(proxy.close)
+        disk = Disk(home, folder)
+        clocks: dict[str, WallClock] = {}
+        parts: dict[str, Part] = {}
+        for name in DOMAINS:
+            env = environment(domains[name]) | {"ROS_HOME": str(home)}
+            if name != PLANT:
+                (folder / name).mkdir(exist_ok=True)
+                clocks[name] = WallClock(folder / name)
+                preload = f"{disk.env['LD_PRELOAD']}:{clocks[name].env['LD_PRELOAD']}"
+                env |= {**disk.env, **clocks[name].env, "LD_PRELOAD": preload}
+            parts[name] = Part(
+                name,
+                system,
+                packages,
+                env,
+                folder / f"{name}.log",
+                lambda node: proxy.revive(OUTPUTS.get(node, ())),
+                lambda node: proxy.silence(OUTPUTS.get(node, ())),
+            )
+            stack.callback(parts[name].close)
+        yield Bench(folder, domains, record, proxy, parts, clocks, disk)
