@@ -1,7 +1,10 @@
-"""Faults of what the safety node keeps on disk: damaged, unreadable, no space left."""
+"""Faults of what the safety node keeps on disk: damaged, unreadable, replaced, no space left."""
 
 from __future__ import annotations
 
+import os
+import socket
+import stat
 from collections.abc import Callable
 from pathlib import Path
 
@@ -53,6 +56,119 @@ def test_a_damaged_state_file_means_stopped(
         node = robot.restart()
         assert robot.is_active("/stop")
         assert str(file) in node.output()
+
+
+def link(file: Path) -> None:
+    """Make it a link to a file that says that nothing is active."""
+    other = file.with_name("other")
+    file.rename(other)
+    file.symlink_to(other)
+
+
+def dangle(file: Path) -> None:
+    """Make it a link to nothing."""
+    file.unlink()
+    file.symlink_to(file.with_name("nowhere"))
+
+
+def pipe(file: Path) -> None:
+    """Make it a pipe that nobody writes to."""
+    file.unlink()
+    os.mkfifo(file)
+
+
+def bind(file: Path) -> None:
+    """Make it a socket."""
+    file.unlink()
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(file))
+
+
+def device(file: Path) -> None:
+    """Make it a device, as only root can; this one is the null device under another name."""
+    file.unlink()
+    try:
+        os.mknod(file, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
+    except PermissionError:
+        pytest.skip("only root can make a device")
+
+
+def described(folder: Path) -> list[tuple[str, int, bytes]]:
+    """Return what is in a folder: names, types, and what the regular files hold."""
+    return [
+        (path.name, stat.S_IFMT(path.lstat().st_mode), path.read_bytes() if is_file else b"")
+        for path in sorted(folder.iterdir())
+        for is_file in [stat.S_ISREG(path.lstat().st_mode)]
+    ]
+
+
+@pytest.mark.parametrize("put", [link, dangle, pipe, bind, device, block])
+def test_what_is_no_regular_file_means_stopped_and_is_left_alone(
+    robot: Robot, tmp_path: Path, put: Callable[[Path], object]
+) -> None:
+    """It is neither followed, nor waited for, nor replaced, not even by root, start after start."""
+    folder = tmp_path / "state"
+    file = folder / "file"
+    with robot.safety_node(f"state_file:={file}") as node:
+        node.end()
+        put(file)
+        before = described(folder)
+        node = robot.restart()
+        assert robot.is_active("/stop")
+        assert f"{file} cannot be" in node.output()
+        assert "not a regular file" in node.output()
+        success, message = robot.reset()
+        assert not success
+        assert "not a regular file" in message
+        assert robot.is_active("/stop")
+        assert described(folder) == before
+
+
+def test_a_state_file_that_is_removed_while_the_node_runs_comes_back(
+    robot: Robot, tmp_path: Path
+) -> None:
+    """A hand that tidies up undoes no stop."""
+    file = tmp_path / "state"
+    with robot.safety_node(f"state_file:={file}") as node:
+        robot.violate()
+        robot.until_alive()
+        file.unlink()
+        robot.until_alive()
+        node.kill()
+        robot.restart()
+        assert robot.is_active("/stop"), "the stop was undone by a restart"
+
+
+def test_a_link_that_is_put_there_while_the_node_runs_is_reported(
+    robot: Robot, tmp_path: Path
+) -> None:
+    """The node can keep nothing from then on, and says so."""
+    file = tmp_path / "state"
+    with robot.safety_node(f"state_file:={file}") as node:
+        link(file)
+        robot.until(lambda: "it is a symbolic link, not a regular file" in node.output())
+        assert file.is_symlink()
+
+
+def test_a_folder_that_is_missing_is_made(robot: Robot, tmp_path: Path) -> None:
+    """It belongs to the user alone, and the latch is in it."""
+    folder = tmp_path / "made" / "for"
+    with robot.safety_node(f"state_file:={folder / 'state'}") as node:
+        assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+        assert not robot.is_active("/stop")
+        robot.violate()
+        robot.until_alive()
+        node.kill()
+        robot.restart()
+        assert robot.is_active("/stop")
+
+
+def test_a_folder_that_cannot_be_made_means_stopped(robot: Robot, tmp_path: Path) -> None:
+    """Where nothing can be kept, nothing may be forgotten."""
+    (tmp_path / "file").write_text("")
+    with robot.safety_node(f"state_file:={tmp_path / 'file' / 'folder' / 'state'}") as node:
+        robot.until_stopped()
+        assert "cannot be" in node.output()
 
 
 def test_a_full_disk_costs_no_stop(robot: Robot, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import re
+import shutil
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -41,6 +42,10 @@ question is whether a fault can lose, block or starve a stop.
 VIOLATION = 9.0
 """The speed, in m/s, by which a test's end sees whether the robot is still protected."""
 
+RUNAWAY = 60.0
+"""The speed, in m/s, at which the action ``interfere`` is called, and after it the stop."""
+
+_INTERFERE = re.compile(r'    def interfere\(self\).*?"""\n.*?"""\n', re.DOTALL)
 _UNFILLED = re.compile(r"^    @not_filled_in\n", re.MULTILINE)
 
 
@@ -52,7 +57,9 @@ def _generate(target: Callable[..., Files], rules: Path, folder: Path) -> None:
 
 
 class PythonRobot:
-    """The generated nodes in Python; the actions that are robot code are filled in with nothing.
+    """The generated nodes in Python; the actions that are robot code are filled in.
+
+    All but one with nothing: ``interfere`` does what a test puts into a file.
 
     Attributes:
         sees_what_it_cannot_read: whether the safety node is handed messages that are none.
@@ -67,8 +74,14 @@ class PythonRobot:
         _generate(safety_python.generate, rules, folder)
         actions = folder / PACKAGE / PACKAGE / f"{NODE}_actions.py"
         filled, count = _UNFILLED.subn("", actions.read_text(encoding="utf-8"))
-        assert count == 2
-        actions.write_text(filled.replace("    not_filled_in,\n", ""), encoding="utf-8")
+        assert count == 3
+        filled = filled.replace("    not_filled_in,\n", "")
+        shutil.copy(rules.with_name("interference.py"), actions.parent)
+        end = "        interference.interfere(self.node)\n"
+        call = f"        from {PACKAGE} import interference\n\n{end}"
+        filled, count = _INTERFERE.subn(lambda found: found[0] + call, filled)
+        assert count == 1
+        actions.write_text(filled, encoding="utf-8")
         self._path = folder / PACKAGE
 
     def command(self, module: str, env: Mapping[str, str]) -> tuple[list[str], dict[str, str]]:
@@ -94,7 +107,11 @@ class CppRobot:
         header = folder / package / "include" / package / f"{NODE}_actions.hpp"
         text = header.read_text(encoding="utf-8")
         filled, count = re.subn(r"// (void \w+\(\)) override;", r"\1 override {}", text)
-        assert count == 2
+        assert count == 3
+        shutil.copy(rules.with_name("interference.hpp"), header.parent)
+        filled = filled.replace(
+            "void interfere() override {}", "void interfere() override {interfere_with(node());}"
+        ).replace("\nnamespace", f'#include "{package}/interference.hpp"\n\nnamespace', 1)
         header.write_text(filled, encoding="utf-8")
         self._install = colcon_build(folder)
 
@@ -145,6 +162,7 @@ class Robot:
             **env,
             "ROS_HOME": str(folder),
             "ROS_LOG_DIR": str(folder / "log"),
+            "INTERFERENCE": str(folder / "interference"),
         }
         self.states: dict[str, list[Heard]] = {"/stop": [], "/halt": [], "/slow": []}
         self.beats: list[Heard] = []
@@ -282,6 +300,19 @@ class Robot:
         self._prober = Sensors({"/speed": SENSES["/speed"]}, self.env)
         self._prober.match("/speed")
         self.until_alive()
+
+    def interfere(self, how: str) -> None:
+        """Break a rule whose actions are ``interfere`` and, written after it, the latched stop.
+
+        Args:
+            how: what ``interfere`` does, as tests/faults/models/interference knows it.
+        """
+        assert self._prober is not None
+        (self.folder / "interference").write_text(how, encoding="ascii")
+        self._speeds.clear()
+        self._prober.play("/speed", speed(RUNAWAY))
+        self.until(lambda: RUNAWAY in [each.value for each in self._speeds])
+        self._prober.play("/speed", speed(0.1))
 
     def violate(self) -> None:
         """Break the rule of the latched stop for a moment, and see the stop come.

@@ -10,7 +10,10 @@ from deros.generators.safety_cpp.verbatim import runtime_text
 from tests.support.cpp import compile_cpp, message_flags
 
 HEADERS = ("descriptor", "refusal")
-PURE = ("agenda", "instance", "latches", "machine", "sha256", "text", "told", "watch", "worker")
+PURE = (
+    *("agenda", "instance", "latches", "machine", "regular_file", "sha256", "text", "told"),
+    *("watch", "worker"),
+)
 """The runtime that needs nothing but the system."""
 WITH_MESSAGES = ("diagnostics", "events")
 """The runtime that needs the headers of messages, too."""

@@ -88,7 +88,7 @@ public:
     return event.site % 2 == 0;  // the others as if they were robot code
   }
 
-  void act(const runtime::Event & /*event*/) override
+  void run_code(const runtime::Event & /*event*/) override
   {
     ++acted_;
   }

@@ -19,8 +19,8 @@ from deros.metamodels.node import NodeType
 from deros.monitor.ir import Program
 
 _SHARED = (
-    *("agenda", "clock_choice", "instance", "machine", "process", "publishers", "sha256"),
-    *("simulated", "text", "worker"),
+    *("agenda", "clock_choice", "instance", "machine", "process", "publishers", "regular_file"),
+    *("sha256", "simulated", "text", "worker"),
 )
 """The sources that gates have in common with the safety node."""
 

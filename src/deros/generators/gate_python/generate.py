@@ -28,6 +28,7 @@ RUNTIME = (
     "machine",
     "process",
     "publishers",
+    "regular_file",
     "safety_source",
     "target_publishers",
     "waker",

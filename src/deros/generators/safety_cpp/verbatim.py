@@ -11,8 +11,8 @@ from deros.generators.rosnode_cpp.generate import licensed
 _HEADERS_ONLY = ("descriptor", "refusal")
 _SOURCES = (
     *("agenda", "clock_choice", "diagnostics", "events", "guardian", "instance", "latches"),
-    *("machine", "ports", "process", "publishers", "sha256", "siblings", "simulated", "text"),
-    *("told", "watch", "worker"),
+    *("machine", "ports", "process", "publishers", "regular_file", "sha256", "siblings"),
+    *("simulated", "text", "told", "watch", "worker"),
 )
 
 

@@ -47,6 +47,7 @@ RUNTIME = (
     "instance",
     "machine",
     "process",
+    "regular_file",
     "reports",
     "siblings",
     "waker",

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <iostream>
 #include <sstream>
 #include <string>
@@ -12,7 +13,6 @@
 #include "tested/runtime/descriptor.hpp"
 #include "tested/runtime/instance.hpp"
 #include "tested/runtime/latches.hpp"
-#include "tested/runtime/refusal.hpp"
 #include "tested/runtime/sha256.hpp"
 #include "tested/runtime/text.hpp"
 
@@ -55,8 +55,8 @@ std::string claimed(const std::string & folder, const std::string & domain, cons
   static std::vector<tested::runtime::Descriptor> locks;
   try {
     locks.push_back(tested::runtime::claim(name, std::stoul(domain), folder));
-  } catch (const tested::runtime::Refusal & refusal) {
-    return refusal.what();
+  } catch (const std::exception & error) {
+    return error.what();
   }
   return "held";
 }
@@ -85,6 +85,10 @@ std::string answer(const std::vector<std::string> & words)
     const LatchFile::Loaded loaded = file.load(names);
     return text_of(loaded.active) + '|' + loaded.problem;
   }
+  if (what == "leftovers") {
+    file.remove_leftovers();
+    return "done";
+  }
   try {
     file.save(names);
     if (what == "doubt") {
@@ -93,7 +97,7 @@ std::string answer(const std::vector<std::string> & words)
       file.spoil();
     }
   } catch (const std::system_error & error) {
-    return error.code().message();
+    return error.what();
   }
   return "done";
 }

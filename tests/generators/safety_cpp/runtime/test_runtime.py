@@ -151,7 +151,9 @@ def test_a_file_that_cannot_be_written_says_why(harness: Harness, tmp_path: Path
 def test_no_half_written_file_is_left(harness: Harness, tmp_path: Path) -> None:
     """Where the new file cannot take the old one's place, it goes."""
     (tmp_path / "robot.latches").mkdir()
-    assert harness.ask("save", tmp_path / "robot.latches", OWNER, "stop") == "Is a directory"
+    assert harness.ask("save", tmp_path / "robot.latches", OWNER, "stop") == (
+        "it is a directory, not a regular file"
+    )
     assert [path.name for path in tmp_path.iterdir()] == ["robot.latches"]
 
 

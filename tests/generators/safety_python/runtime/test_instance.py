@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import stat
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import IO
 
 import pytest
 
@@ -60,6 +63,57 @@ def test_the_usual_folder_is_the_users_own(tmp_path: Path, monkeypatch: pytest.M
     (tmp_path / f"deros-{os.getuid()}").mkdir()
     with pytest.raises(PermissionError, match="belongs to another user"):
         claim(NAME, 7)
+
+
+def put_link(path: Path) -> None:
+    """Put a link to another file."""
+    path.symlink_to(path.with_name("other"))
+
+
+def put_pipe(path: Path) -> None:
+    """Put a pipe."""
+    os.mkfifo(path)
+
+
+@pytest.mark.parametrize("put", [put_link, put_pipe, Path.mkdir])
+def test_a_lock_is_a_regular_file(tmp_path: Path, put: Callable[[Path], object]) -> None:
+    """Nothing else is opened, waited for or written to."""
+    put(tmp_path / f"{file_stem(NAME, 7)}.lock")
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(OSError, match="not a regular file"):
+        claim(NAME, 7, tmp_path)
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_the_folder_of_the_locks_is_the_users_alone(tmp_path: Path) -> None:
+    """Neither a link nor a folder in which others may write will do."""
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path)
+    with pytest.raises(OSError, match="is not a folder"):
+        claim(NAME, 7, link)
+    tmp_path.chmod(0o777)
+    with pytest.raises(OSError, match="others may write"):
+        claim(NAME, 7, tmp_path)
+
+
+def test_a_lock_that_is_removed_is_not_taken_for_the_lock(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two processes that open it around the removal do not both hold one."""
+    path = tmp_path / f"{file_stem(NAME, 7)}.lock"
+    real, taken = fcntl.flock, 0
+
+    def removing(file: IO[str], how: int) -> None:
+        nonlocal taken
+        taken += 1
+        if taken == 1:
+            path.unlink()
+        real(file, how)
+
+    monkeypatch.setattr(fcntl, "flock", removing)
+    with claim(NAME, 7, tmp_path) as lock:
+        assert os.path.samestat(path.stat(), os.fstat(lock.fileno()))
+    assert taken == 2
 
 
 def test_a_long_name_makes_a_file_name_all_the_same() -> None:

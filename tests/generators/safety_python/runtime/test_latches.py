@@ -180,6 +180,31 @@ def test_no_half_written_file_is_left(tmp_path: Path, monkeypatch: pytest.Monkey
     assert [path.name for path in (tmp_path / "deros").iterdir()] == ["robot.latches"]
 
 
+def test_what_a_killed_process_left_half_written_is_removed(tmp_path: Path) -> None:
+    """Only that: other files in the folder are not the node's."""
+    latches_in(tmp_path)
+    folder = tmp_path / "deros"
+    kept = {"robot.latches", "robot.latches.new", "other.latches.0123456789abcdef.new"}
+    for name in (*kept, "robot.latches.0123456789abcdef.new"):
+        (folder / name).touch()
+    (folder / "robot.latches.fedcba9876543210.new").symlink_to(folder / "robot.latches")
+    latches_in(tmp_path)
+    assert {path.name for path in folder.iterdir()} == {
+        *kept,
+        "robot.latches.fedcba9876543210.new",
+    }
+
+
+def test_a_file_without_end_is_not_read_to_the_end(tmp_path: Path) -> None:
+    """It cannot fill the memory of a node that starts."""
+    file_in(tmp_path).save(frozenset())
+    with file_in(tmp_path).path.open("r+b") as file:
+        file.truncate(1 << 40)
+    latches, told = latches_in(tmp_path)
+    assert latches.active == set(KNOWN)
+    assert "it is longer than" in told.texts[0]
+
+
 def test_what_is_saved_is_not_written_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

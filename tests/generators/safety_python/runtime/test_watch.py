@@ -11,13 +11,21 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from deros.generators.safety_python.runtime.watch import AFTER, NEAR, Watch
+from deros.generators.safety_python.runtime.watch import AFTER, NEAR, ActionError, Watch
 
 
 class Event(NamedTuple):
     """What the monitor orders."""
 
     action: str
+
+
+BAD: dict[str, BaseException] = {
+    "throws": OSError("no horn"),
+    "exits": SystemExit(0),
+    "interrupts": KeyboardInterrupt(),
+    "closes": GeneratorExit(),
+}
 
 
 class Monitor:
@@ -53,7 +61,7 @@ class Owner:
             self.steady,
             lambda _start, emit: Monitor(list(actions), emit, failing),
             self.show,
-            self.do,
+            self.run,
             self.after,
             lambda: self.calls.append("tell"),
             lambda: self.calls.append("stepped"),
@@ -61,52 +69,90 @@ class Owner:
         self.watch.start()
 
     def show(self, event: Event) -> bool:
-        """Show a stop at once; whatever else is ordered is code, to be done later."""
-        if event.action == "unshowable":
+        """Show a stop at once; what cannot be shown fails once, and the rest is code."""
+        if event.action == "unshowable" and "no unshowable" not in self.calls:
+            self.calls.append("no unshowable")
             raise OSError("no publisher")
-        if event.action == "stop":
-            self.calls.append("show stop")
-        return event.action == "stop"
+        if event.action in ("stop", "unshowable"):
+            self.calls.append(f"show {event.action}")
+            return True
+        return False
 
-    def do(self, event: Event) -> None:
-        """Do what is ordered, unless it is bad."""
-        self.calls.append(f"do {event.action}")
-        if event.action == "bad":
-            raise OSError("no horn")
+    def run(self, event: Event) -> None:
+        """Run code, unless it is bad."""
+        self.calls.append(f"run {event.action}")
+        if event.action in BAD:
+            raise BAD[event.action]
 
     def after(self, events: list[Any], done: list[int]) -> None:
         """Take what has been done."""
         assert len(events) == len(done)
-        self.calls.append(f"after {len(events)}")
+        assert all(done)
+        self.calls.append(f"after {' '.join(event.action for event in events)}")
 
 
 def test_all_is_done_before_anything_is_told() -> None:
-    """The actions come first, in their order."""
+    """The actions come first."""
     owner = Owner("stop", "beep")
     owner.watch.advance()
-    assert owner.calls == ["show stop", "do beep", "after 2"]
+    assert owner.calls == ["show stop", "run beep", "after stop beep"]
 
 
-def test_nothing_overtakes_what_was_ordered_before() -> None:
-    """What could be shown at once waits for code that is to run before it."""
+def test_what_is_published_waits_for_no_code() -> None:
+    """A stop that is ordered after code is out before that; it is told of in its place."""
     owner = Owner("beep", "stop")
     owner.watch.advance()
-    assert owner.calls == ["do beep", "do stop", "after 2"]
+    assert owner.calls == ["show stop", "run beep", "after beep stop"]
 
 
-def test_what_cannot_be_shown_is_done_later_and_stops_nothing() -> None:
+def test_what_could_not_be_published_is_tried_again_before_code_runs() -> None:
     """A failure in the middle of an evaluation is no failure of the monitor."""
-    owner = Owner("unshowable", "stop")
+    owner = Owner("beep", "unshowable", "stop")
     owner.watch.advance()
-    assert owner.calls == ["do unshowable", "do stop", "after 2"]
+    assert owner.calls == [
+        "no unshowable",
+        "show stop",
+        "show unshowable",
+        "run beep",
+        "after beep unshowable stop",
+    ]
 
 
-def test_a_failing_action_keeps_no_other_from_being_done() -> None:
-    """The rest is done and told, and then the failure ends the node."""
-    owner = Owner("bad", "stop")
-    with pytest.raises(OSError, match="no horn"):
+@pytest.mark.parametrize("bad", BAD)
+def test_failing_code_keeps_nothing_else_from_being_done(bad: str) -> None:
+    """Whatever it raises, the rest is done and told, and then an ordinary error ends the node."""
+    owner = Owner(bad, "beep", "stop")
+    with pytest.raises(ActionError) as raised:
         owner.watch.advance()
-    assert owner.calls == ["do bad", "do stop", "after 2", "tell"]
+    assert raised.value.__cause__ is BAD[bad]
+    assert owner.calls == [
+        "show stop",
+        f"run {bad}",
+        "run beep",
+        f"after {bad} beep stop",
+        "tell",
+    ]
+
+
+def test_code_of_before_the_start_is_run_whatever_fails() -> None:
+    """One that fails keeps no other from being run again."""
+    owner = Owner()
+    with pytest.raises(ActionError):
+        owner.watch.run_again([Event("throws"), Event("beep")])
+    assert owner.calls == ["run throws", "run beep", "tell"]
+
+
+def test_code_that_comes_back_finds_nothing_to_be_done() -> None:
+    """An action that spins its node does not run itself again."""
+    owner = Owner("beep", "stop")
+
+    def come_back(event: Event) -> None:
+        owner.run(event)
+        owner.watch.settle()
+
+    owner.watch._run = come_back
+    owner.watch.advance()
+    assert owner.calls == ["show stop", "run beep", "after beep stop"]
 
 
 def test_what_a_failing_monitor_has_ordered_is_done() -> None:
@@ -114,7 +160,7 @@ def test_what_a_failing_monitor_has_ordered_is_done() -> None:
     owner = Owner("stop", "beep", failing=True)
     with pytest.raises(ArithmeticError):
         owner.watch.advance()
-    assert owner.calls == ["show stop", "do beep", "after 2"]
+    assert owner.calls == ["show stop", "run beep", "after stop beep"]
 
 
 def test_what_is_done_is_done_once() -> None:
@@ -122,7 +168,7 @@ def test_what_is_done_is_done_once() -> None:
     owner = Owner("stop", "beep")
     owner.watch.advance()
     owner.watch.settle()
-    assert owner.calls == ["show stop", "do beep", "after 2"]
+    assert owner.calls == ["show stop", "run beep", "after stop beep"]
 
 
 def test_what_can_wait_waits_while_a_deadline_is_near() -> None:

@@ -106,6 +106,7 @@ void Guardian::start(const std::vector<Topic> & topics)
       });
   }
   watch_.start();
+  run_latched();
   chores_.ring_at(0);
   diagnostics_.begin();
   ports_.serve(*group_);
@@ -172,7 +173,7 @@ void Guardian::open_latches()
   latch_again();
 }
 
-/// Show and do what was active when the last process of this node ended.
+/// Show what was active when the last process of this node ended.
 void Guardian::latch_again()
 {
   for (std::size_t i = 0; i < origins_.actions.size(); ++i) {
@@ -183,10 +184,19 @@ void Guardian::latch_again()
     const std::string text = action.name + " is active, as it was before the start";
     events_.tell("latched", WARN, text, {{"action", action.name}});
     diagnostics_.latched(i);
-    if (action.is_code && action.first_call) {
-      act({0, Kind::Trigger, *action.first_call});
+  }
+}
+
+/// Run the robot code of what was active then; the states are out.
+void Guardian::run_latched()
+{
+  std::vector<Event> calls;
+  for (const Action & action : origins_.actions) {
+    if (action.is_code && action.first_call && action.latch && latches_->is_active(*action.latch)) {
+      calls.push_back({0, Kind::Trigger, *action.first_call});
     }
   }
+  watch_.run_again(calls);
 }
 
 // What the monitor orders
@@ -213,33 +223,27 @@ bool Guardian::show(const Event & event)
     return true;
   }
   const Action & action = origins_.actions[*number];
+  if (action.latch && event.kind == Kind::Trigger) {
+    latches_->foresee(*action.latch);
+  }
   if (action.is_bound) {
-    if (action.latch && event.kind == Kind::Trigger) {
-      latches_->foresee(*action.latch);
-    }
     active_[*number] = event.kind == Kind::Trigger;
     robot_.show_state(*number, active_);
     return true;
   }
-  return !action.is_code;
+  return !action.is_code || event.kind != Kind::Trigger;
 }
 
-void Guardian::act(const Event & event)
+void Guardian::run_code(const Event & event)
 {
-  if (show(event) || event.kind != Kind::Trigger) {
-    return;
-  }
   const std::size_t number = *action_of(event);
-  const Action & action = origins_.actions[number];
-  if (action.latch) {
-    latches_->foresee(*action.latch);
-  }
   if (robot_.is_filled_in(number)) {
     robot_.run(event.site);
   } else {
     log(
-      ERROR, "action " + action.name + '(' + origins_.sites[event.site].arguments +
-      ") should have been carried out now: write its code in " + origins_.actions_file);
+      ERROR, "action " + origins_.actions[number].name + '(' +
+      origins_.sites[event.site].arguments + ") should have been carried out now: write its code in " +
+      origins_.actions_file);
   }
 }
 

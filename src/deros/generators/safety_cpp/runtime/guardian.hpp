@@ -163,7 +163,7 @@ private:
   void advance(Time now) override;
   Time due() const override;
   bool show(const Event & event) override;
-  void act(const Event & event) override;
+  void run_code(const Event & event) override;
   void after(const std::vector<Event> & events, const std::vector<Time> & done) override;
   void tell() override;
   void tell_failure(const Event & event, const char * why) override;
@@ -172,6 +172,7 @@ private:
   std::optional<std::size_t> action_of(const Event & event) const;
   void open_latches();
   void latch_again();
+  void run_latched();
   void tell_start();
   void tell_fault(const std::string & subject, const std::string & text);
   void refuse(const std::string & topic, const std::string & why);

@@ -17,6 +17,7 @@
 
 #include "deros_runtime/runtime/descriptor.hpp"
 #include "deros_runtime/runtime/refusal.hpp"
+#include "deros_runtime/runtime/regular_file.hpp"
 #include "deros_runtime/runtime/sha256.hpp"
 
 namespace deros_runtime
@@ -46,6 +47,24 @@ std::string holder_of(int lock)
   std::string text(buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
   text.erase(text.find_last_not_of(" \n") + 1);
   return text.empty() ? "unknown" : text;
+}
+
+/// Check that a folder is the user's own, so that nobody else can hold its locks.
+void check_own(const std::filesystem::path & folder)
+{
+  struct stat found{};
+  if (::lstat(folder.c_str(), &found) != 0) {
+    throw failure(folder);
+  }
+  if (!S_ISDIR(found.st_mode)) {
+    throw FileError(folder.string() + " is not a folder");
+  }
+  if (found.st_uid != ::getuid()) {
+    throw FileError(folder.string() + " belongs to another user");
+  }
+  if ((found.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
+    throw FileError("others may write in " + folder.string());
+  }
 }
 
 std::string without_slashes(const std::string & name)
@@ -79,27 +98,23 @@ Descriptor claim(
   if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
     throw failure(folder);
   }
-  struct stat found{};
-  if (::lstat(folder.c_str(), &found) != 0) {
-    throw failure(folder);
-  }
-  if (found.st_uid != ::getuid()) {
-    throw std::system_error(
-            EACCES, std::generic_category(), folder.string() + " belongs to another user");
-  }
+  check_own(folder);
   const std::filesystem::path path = folder / (file_stem(name, domain) + ".lock");
-  Descriptor lock(::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
-  if (!lock) {
-    throw failure(path);
-  }
-  if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK) {
+  Descriptor lock;
+  do {  // again, if it was removed in between, and another process may hold a new one
+    lock = open_regular(path, O_RDWR | O_CREAT);
+    if (!lock) {
       throw failure(path);
     }
-    throw Refusal(
-            name + " runs already in domain " + std::to_string(domain) + ", as process " +
-            holder_of(lock.get()) + ": this second one ends now");
-  }
+    if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
+      if (errno != EWOULDBLOCK) {
+        throw failure(path);
+      }
+      throw Refusal(
+              name + " runs already in domain " + std::to_string(domain) + ", as process " +
+              holder_of(lock.get()) + ": this second one ends now");
+    }
+  } while (!is_same(path, lock));
   const std::string holder = std::to_string(::getpid()) + '\n';
   if (::ftruncate(lock.get(), 0) != 0 ||
     ::write(lock.get(), holder.data(), holder.size()) != static_cast<ssize_t>(holder.size()))

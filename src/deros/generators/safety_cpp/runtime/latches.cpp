@@ -2,17 +2,22 @@
 
 #include <fcntl.h>
 #include <pwd.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
+#include <iomanip>
+#include <random>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "deros_runtime/runtime/regular_file.hpp"
 #include "deros_runtime/runtime/sha256.hpp"
 #include "deros_runtime/runtime/text.hpp"
 
@@ -23,6 +28,8 @@ namespace
 {
 
 constexpr const char * HEAD = "deros latches 1";
+constexpr std::size_t LONGEST = 1 << 20;  // bytes; what is longer is no state file
+constexpr int UNIQUE = 2;  // random words in the name of a new file
 constexpr std::size_t FRAME = 2;  // lines before the names; digest and end of text after them
 
 std::system_error failure()
@@ -51,6 +58,9 @@ std::string read(const Descriptor & file)
   ssize_t count = 0;
   while ((count = ::read(file.get(), buffer.data(), buffer.size())) > 0) {
     text.append(buffer.data(), static_cast<std::size_t>(count));
+    if (text.size() > LONGEST) {
+      throw FileError("it is longer than " + std::to_string(LONGEST) + " bytes");
+    }
   }
   if (count < 0) {
     throw failure();
@@ -74,6 +84,19 @@ void write(const Descriptor & file, const std::string & text)
 void sync(const Descriptor & file)
 {
   if (!file || ::fsync(file.get()) != 0) {
+    throw failure();
+  }
+}
+
+/// Make a folder that is the user's own, if it is missing. \throw std::system_error
+void make_folder(const std::filesystem::path & folder)
+{
+  std::error_code error;
+  std::filesystem::create_directories(folder.parent_path(), error);
+  if (error) {
+    throw std::system_error(error);
+  }
+  if (::mkdir(folder.c_str(), 0700) != 0 && !std::filesystem::is_directory(folder)) {
     throw failure();
   }
 }
@@ -105,18 +128,15 @@ LatchFile::LatchFile(std::filesystem::path path, std::string owner)
 
 LatchFile::Loaded LatchFile::load(const Names & known) const
 {
-  const Descriptor file(::open(path_.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file && errno == ENOENT) {
-    return {{}, ""};
-  }
   std::string text;
   try {
+    const Descriptor file = open_regular(path_, O_RDONLY);
     if (!file) {
-      throw failure();
+      return {{}, ""};
     }
     text = read(file);
   } catch (const std::system_error & error) {
-    return {known, path_.string() + " cannot be read: " + error.code().message()};
+    return {known, path_.string() + " cannot be read: " + error.what()};
   }
   std::vector<std::string> names = lines_of(text);
   if (names.size() >= 2 * FRAME) {
@@ -147,26 +167,59 @@ void LatchFile::save(const Names & active)
     return;
   }
   saved_.reset();
-  const std::filesystem::path folder = path_.parent_path();
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw std::system_error(error);
-  }
-  write_new(path_.string() + ".new", active);
-  sync(Descriptor(::open(folder.c_str(), O_RDONLY | O_CLOEXEC)));
+  make_folder(path_.parent_path());
+  check_replaceable(path_);
+  write_new(new_path(), active);
+  sync(Descriptor(::open(path_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)));
   saved_ = active;
+}
+
+bool LatchFile::is_in_place() const
+{
+  return opened_ && is_same(path_, opened_);
+}
+
+void LatchFile::remove_leftovers() const
+{
+  const std::string pattern = new_path().filename().string();
+  const std::string stem = path_.filename().string() + '.';
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(path_.parent_path(), error), end;
+    !error && entry != end; entry.increment(error))
+  {
+    const std::string name = entry->path().filename().string();
+    const bool is_new = name.size() == pattern.size() && name.compare(0, stem.size(), stem) == 0 &&
+      entry->path().extension() == ".new";
+    std::error_code ignored;
+    if (is_new && entry->symlink_status(ignored).type() == std::filesystem::file_type::regular) {
+      std::filesystem::remove(entry->path(), ignored);
+    }
+  }
+}
+
+/// Return a name that nobody else can have prepared.
+std::filesystem::path LatchFile::new_path() const
+{
+  std::random_device random;
+  std::ostringstream name;
+  name << path_.string() << '.' << std::hex << std::setfill('0');
+  for (int i = 0; i < UNIQUE; ++i) {
+    name << std::setw(8) << random();
+  }
+  name << ".new";
+  return name.str();
 }
 
 void LatchFile::write_new(const std::filesystem::path & path, const Names & active)
 {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!file) {
     throw failure();
   }
   try {
     write(file, text_of({active.begin(), active.end()}));
     sync(file);
+    check_replaceable(path_);
     if (::rename(path.c_str(), path_.c_str()) != 0) {
       throw failure();
     }
@@ -188,7 +241,11 @@ void LatchFile::doubt() noexcept
 
 void LatchFile::spoil()
 {
-  sync(Descriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)));
+  const Descriptor file = open_regular(path_, O_WRONLY | O_CREAT);
+  if (!file || ::ftruncate(file.get(), 0) != 0) {
+    throw failure();
+  }
+  sync(file);
 }
 
 std::string LatchFile::text_of(const std::vector<std::string> & names) const
@@ -203,12 +260,13 @@ std::string LatchFile::text_of(const std::vector<std::string> & names) const
 Latches::Latches(LatchFile file, std::vector<std::string> known, Tell tell)
 : file_(std::move(file)), known_(std::move(known)), active_(known_.size()), tell_(std::move(tell))
 {
+  file_.remove_leftovers();
   auto [active, problem] = file_.load({known_.begin(), known_.end()});
   try {
     file_.save(active);
   } catch (const std::system_error & error) {
     active = {known_.begin(), known_.end()};
-    problem = file_.path().string() + " cannot be written: " + error.code().message();
+    problem = file_.path().string() + " cannot be written: " + error.what();
   }
   for (std::size_t i = 0; i < known_.size(); ++i) {
     active_[i] = active.count(known_[i]) != 0;
@@ -233,17 +291,20 @@ std::string Latches::keep()
 {
   const LatchFile::Names now = active();
   if (file_.says(now)) {
-    return "";
+    if (file_.is_in_place()) {
+      return "";
+    }
+    file_.forget();  // somebody has removed it, or put something else there
   }
   try {
     file_.save(now);
   } catch (const std::system_error & error) {
-    std::string text = file_.path().string() + " cannot be written: " + error.code().message();
+    std::string text = file_.path().string() + " cannot be written: " + error.what();
     try {
       file_.spoil();
       text += "; after a restart all latched actions are active";
     } catch (const std::system_error & second) {
-      text += "; nor emptied: " + second.code().message();
+      text += std::string("; nor emptied: ") + second.what();
     }
     tell_("latches", text);
     return text;
@@ -259,7 +320,7 @@ std::string Latches::allow_reset(const LatchFile::Names & remaining)
   } catch (const std::system_error & error) {
     keep();
     return "nothing is reset, because " + file_.path().string() + " cannot be written: " +
-           error.code().message();
+           error.what();
   }
   tell_("latches", "");
   return "";

@@ -20,8 +20,9 @@ std::filesystem::path default_path(const std::string & stem);
 /// A file with the names of the active actions, and a digest over them.
 /**
  * It is replaced as a whole, so it is never half written. Whatever cannot be read counts as 'all
- * active': only a file that says so, or no file at all, lets an action begin inactive. Nodes in
- * Python and in C++ read each other's files.
+ * active': only a file that says so, or no file at all, lets an action begin inactive. What stands
+ * in its place but is not a regular file (a link, a device, a pipe) counts as a file that cannot be
+ * read, and is left as it is. Nodes in Python and in C++ read each other's files.
  */
 class LatchFile
 {
@@ -58,6 +59,18 @@ public:
    */
   void save(const Names & active);
 
+  /// Tell whether the name still stands for the file that was saved.
+  bool is_in_place() const;
+
+  /// Take it that nothing is known of the file any more, so that it is saved again.
+  void forget()
+  {
+    saved_.reset();
+  }
+
+  /// Remove new files that processes have left that were killed while they saved.
+  void remove_leftovers() const;
+
   /// Have the file count as 'all active' until it is saved again.
   /**
    * This takes microseconds, because it does not wait for the disk: it outlives the process,
@@ -73,6 +86,7 @@ public:
 
 private:
   std::string text_of(const std::vector<std::string> & names) const;
+  std::filesystem::path new_path() const;
   void write_new(const std::filesystem::path & path, const Names & active);
 
   std::filesystem::path path_;

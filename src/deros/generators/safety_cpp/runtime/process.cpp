@@ -3,16 +3,21 @@
 #include <pthread.h>
 #include <semaphore.h>
 #include <signal.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <future>
+#include <string_view>
 #include <thread>
 
 #include "deros_runtime/runtime/machine.hpp"
+#include "deros_runtime/runtime/refusal.hpp"
 
 namespace deros_runtime
 {
@@ -24,10 +29,30 @@ namespace
 constexpr std::chrono::milliseconds AGAIN{20};
 
 sem_t asked_to_end;  // posted by the handler, which may do little else
+std::atomic<bool> has_been_told{false};  // by a signal
+std::atomic<bool> is_running{false};
+
+/// Let no code within a node end the process as if it had been told to end.
+void fail_at_exit()
+{
+  if (is_running) {
+    constexpr std::string_view why = "the node was ended by exit() within it\n";
+    [[maybe_unused]] const ssize_t count = ::write(STDERR_FILENO, why.data(), why.size());
+    ::_exit(1);
+  }
+}
+
+/// Have exit() call it before all that has been registered up to now.
+void watch_over_exit()
+{
+  std::atexit(fail_at_exit);
+  std::at_quick_exit(fail_at_exit);
+}
 
 void take_signal([[maybe_unused]] int number)
 {
   const int kept = errno;
+  has_been_told = true;
   sem_post(&asked_to_end);
   errno = kept;
 }
@@ -95,6 +120,12 @@ void spin(const Living & living, const StopSignals & signals)
   if (failure) {
     std::rethrow_exception(failure);
   }
+  if (const std::exception_ptr thrown = living.failure()) {
+    std::rethrow_exception(thrown);
+  }
+  if (!has_been_told) {
+    throw Refusal("the context of ROS 2 was shut down within the node, which ends now");
+  }
 }
 
 }  // namespace
@@ -104,19 +135,22 @@ int run(int argc, char ** argv, const std::function<Living()> & make)
   never_wait_for_readers();
   sharpen_timers();  // before any thread of the middleware starts, so that it inherits them
   const StopSignals signals;
-  int code = 0;
+  int code = 1;
+  is_running = true;
+  watch_over_exit();
   try {
     rclcpp::init(argc, argv, rclcpp::InitOptions(), rclcpp::SignalHandlerOptions::None);
     const Living living = make();
+    watch_over_exit();  // before what libraries have registered meanwhile
     spin(living, signals);
-    if (const std::exception_ptr failure = living.failure()) {
-      std::rethrow_exception(failure);
-    }
+    code = 0;
   } catch (const std::exception & error) {
     std::fprintf(stderr, "%s\n", error.what());
-    code = 1;
+  } catch (...) {
+    std::fprintf(stderr, "what was thrown in the node says nothing of itself\n");
   }
   rclcpp::shutdown();
+  is_running = false;
   return code;
 }
 

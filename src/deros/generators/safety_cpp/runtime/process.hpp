@@ -25,7 +25,8 @@ struct Living
 /// Run a node until SIGINT or SIGTERM, or until it ends by itself; return the exit code.
 /**
  * What is thrown ends the program with its text and exit code 1: a node that does not watch any
- * more must not go on saying that it does. No signal breaks what the node is at.
+ * more must not go on saying that it does. So do exit() and a shutdown of the context within the
+ * node, which would else look as if it had been told to end. No signal breaks what the node is at.
  */
 int run(int argc, char ** argv, const std::function<Living()> & make);
 

@@ -24,9 +24,10 @@ Watch::Watch(Agenda & agenda, Clock clock, Watched & watched)
   watched_(watched),
   deadline_(agenda, clock_, [this] {advance();}, {}, LEAD)
 {
-  ordered_.reserve(EVENTS);
-  dealt_with_.reserve(EVENTS);
+  events_.reserve(EVENTS);
   done_.reserve(EVENTS);
+  unpublished_.reserve(EVENTS);
+  code_.reserve(EVENTS);
 }
 
 void Watch::start()
@@ -40,26 +41,33 @@ void Watch::start()
 
 void Watch::take(const Event & event) noexcept
 {
-  bool is_shown = false;
+  Indices * left = nullptr;
   try {
-    is_shown = ordered_.empty() && watched_.show(event);
-  } catch (const std::exception &) {
-    is_shown = false;  // it is tried again, and reported, when the monitor is through
+    left = watched_.show(event) ? nullptr : &code_;
+  } catch (...) {
+    left = &unpublished_;  // it is tried again, and reported, when the monitor is through
   }
-  if (is_shown) {
-    done_.push_back(now());
-    dealt_with_.push_back(event);
-  } else {
-    ordered_.push_back(event);
+  if (left != nullptr) {
+    left->push_back(events_.size());
   }
+  done_.push_back(now());
+  events_.push_back(event);
 }
 
 void Watch::settle()
 {
-  if (!ordered_.empty() || !done_.empty()) {
+  if (!events_.empty()) {
     carry_out();
   }
   arm();
+}
+
+void Watch::run_again(const std::vector<Event> & events)
+{
+  for (const Event & event : events) {
+    attempt([this](const Event & each) {watched_.run_code(each);}, event);
+  }
+  fail_if_something_failed();
 }
 
 Time Watch::advance()
@@ -95,27 +103,42 @@ void Watch::clock_changed(bool back)
 /// Do all that is left of what was ordered, and only then fail if something failed.
 void Watch::carry_out()
 {
-  std::exception_ptr failure;
-  for (const Event & event : ordered_) {
-    try {
-      watched_.act(event);
-    } catch (const std::exception & error) {
-      watched_.tell_failure(event, error.what());
-      failure = failure ? failure : std::current_exception();
-    } catch (...) {
-      watched_.tell_failure(event, "what it threw says nothing of itself");
-      failure = failure ? failure : std::current_exception();
-    }
-    done_.push_back(now());
-    dealt_with_.push_back(event);
+  for (const std::size_t i : unpublished_) {
+    attempt([this](const Event & event) {watched_.show(event);}, events_[i]);
+    done_[i] = now();
   }
-  ordered_.clear();
-  watched_.after(dealt_with_, done_);
-  dealt_with_.clear();
+  for (const std::size_t i : code_) {
+    attempt([this](const Event & event) {watched_.run_code(event);}, events_[i]);
+    done_[i] = now();
+  }
+  unpublished_.clear();
+  code_.clear();
+  watched_.after(events_, done_);
+  events_.clear();
   done_.clear();
-  if (failure) {
+  fail_if_something_failed();
+}
+
+/// Do something; tell and note what it throws.
+void Watch::attempt(const Act & act, const Event & event)
+{
+  try {
+    act(event);
+  } catch (const std::exception & error) {
+    failure_ = failure_ ? failure_ : std::current_exception();
+    watched_.tell_failure(event, error.what());
+  } catch (...) {
+    failure_ = failure_ ? failure_ : std::current_exception();
+    watched_.tell_failure(event, "what it threw says nothing of itself");
+  }
+}
+
+/// End the node, and its heartbeat with it, if something was thrown.
+void Watch::fail_if_something_failed()
+{
+  if (failure_) {
     watched_.tell();
-    std::rethrow_exception(failure);  // the heartbeat stops with the node
+    std::rethrow_exception(failure_);
   }
 }
 

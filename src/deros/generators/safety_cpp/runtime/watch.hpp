@@ -2,6 +2,8 @@
 #define DEROS_RUNTIME__RUNTIME__WATCH_HPP_
 
 #include <cstddef>
+#include <exception>
+#include <functional>
 #include <vector>
 
 #include "deros_runtime/runtime/agenda.hpp"
@@ -25,12 +27,12 @@ public:
   /// Return when advance() has to be called at the latest; greatest of all times for never.
   virtual Time due() const = 0;
 
-  /// Do what an event asks for if that takes no time, in the middle of an evaluation.
-  /** \return whether nothing else is to be done */
+  /// Publish and mark as pending what an event asks for, in the middle of an evaluation.
+  /** \return whether no robot code is left to be run */
   virtual bool show(const Event & event) = 0;
 
-  /// Do what an event asks for.
-  virtual void act(const Event & event) = 0;
+  /// Run the robot code that an event asks for.
+  virtual void run_code(const Event & event) = 0;
 
   /// Take the events that have been dealt with, and when each of them was done.
   virtual void after(const std::vector<Event> & events, const std::vector<Time> & done) = 0;
@@ -71,11 +73,14 @@ public:
   void start();
 
   /// Take an event while the monitor evaluates: show at once what it asks for.
-  /** Others before it that are still to be done go first. */
+  /** Robot code waits until all events are shown, whatever their order. */
   void take(const Event & event) noexcept;
 
-  /// Do what the monitor ordered, in order, and wake up for its next deadline.
+  /// Do the rest of what the monitor ordered, and wake up for its next deadline.
   void settle();
+
+  /// Run the robot code of actions that were active before the start, of each of them.
+  void run_again(const std::vector<Event> & events);
 
   /// Settle all that is due, and return the time that it is now.
   Time advance();
@@ -87,16 +92,23 @@ public:
   void clock_changed(bool back);
 
 private:
+  using Indices = std::vector<std::size_t>;
+  using Act = std::function<void (const Event &)>;
+
   void carry_out();
+  void attempt(const Act & act, const Event & event);
+  void fail_if_something_failed();
   void arm();
 
   Clock clock_;
   Watched & watched_;
   Time began_at_ = 0;
   bool has_started_ = false;
-  std::vector<Event> ordered_;  // and not done yet
-  std::vector<Event> dealt_with_;
+  std::vector<Event> events_;  // of this evaluation, in the monitor's order
   std::vector<Time> done_;  // when each of these was done
+  Indices unpublished_;  // the indices of those that could not be shown
+  Indices code_;  // the indices of those whose code is still to be run
+  std::exception_ptr failure_;  // the first one
   Alarm deadline_;
 };
 

@@ -7,9 +7,14 @@ import contextlib
 import hashlib
 import os
 from pathlib import Path
+import stat
 from typing import IO
 
+from .regular_file import check_replaceable, is_same, open_regular
+
 HEAD = 'deros latches 1'
+LONGEST = 1 << 20  # bytes; what is longer is no state file
+UNIQUE = 8  # random bytes in the name of a new file
 
 
 def default_path(stem: str) -> Path:
@@ -23,7 +28,9 @@ class LatchFile:
     A file with the names of the active actions, and a digest over them.
 
     It is replaced as a whole, so it is never half written. Whatever cannot be read counts as
-    'all active': only a file that says so, or no file at all, lets an action begin inactive.
+    'all active': only a file that says so, or no file at all, lets an action begin inactive. What
+    stands in its place but is not a regular file (a link, a device, a pipe) counts as a file that
+    cannot be read, and is left as it is.
     """
 
     def __init__(self, path: Path, owner: str) -> None:
@@ -36,7 +43,7 @@ class LatchFile:
     def load(self, known: Collection[str]) -> tuple[frozenset[str], str]:
         """Return which of the known actions are active, and why it is all if it should not be."""
         try:
-            text = self.path.read_text(encoding='utf-8')
+            text = self._read().decode()
         except FileNotFoundError:
             return frozenset(), ''
         except (OSError, UnicodeDecodeError) as error:
@@ -59,27 +66,32 @@ class LatchFile:
             return
         self.saved = None
         folder = self.path.parent
-        folder.mkdir(parents=True, exist_ok=True)
-        new = self.path.with_name(f'{self.path.name}.new')
-        file = new.open('wb')
-        try:
-            file.write(self._text(sorted(active)).encode())
-            file.flush()
-            os.fsync(file.fileno())
-            new.replace(self.path)
-        except OSError:
-            with contextlib.suppress(OSError):
-                file.close()
-            with contextlib.suppress(OSError):
-                new.unlink()
-            raise
-        self._opened = file
-        entry = os.open(folder, os.O_RDONLY)
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, exist_ok=True)
+        check_replaceable(self.path)
+        self._write(self._text(sorted(active)).encode())
+        entry = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
         try:
             os.fsync(entry)
         finally:
             os.close(entry)
         self.saved = frozenset(active)
+
+    @property
+    def is_in_place(self) -> bool:
+        """Whether the name still stands for the file that was saved."""
+        return self._opened is not None and is_same(self.path, self._opened.fileno())
+
+    def remove_leftovers(self) -> None:
+        """Remove new files that processes have left that were killed while they saved."""
+        first, last = f'{self.path.name}.', '.new'
+        length = len(self._new_name())
+        with contextlib.suppress(OSError):
+            for path in list(self.path.parent.iterdir()):
+                name = path.name
+                is_new = name.startswith(first) and name.endswith(last) and len(name) == length
+                if is_new and stat.S_ISREG(path.lstat().st_mode):
+                    path.unlink()
 
     def doubt(self) -> None:
         """
@@ -99,11 +111,40 @@ class LatchFile:
 
         Raises OSError if that is impossible, too.
         """
-        descriptor = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+        descriptor = open_regular(self.path, os.O_WRONLY | os.O_CREAT)
         try:
+            os.ftruncate(descriptor, 0)
             os.fsync(descriptor)
         finally:
             os.close(descriptor)
+
+    def _read(self) -> bytes:
+        with os.fdopen(open_regular(self.path, os.O_RDONLY), 'rb') as file:
+            data = file.read(LONGEST + 1)
+        if len(data) > LONGEST:
+            raise OSError(f'it is longer than {LONGEST} bytes')
+        return data
+
+    def _new_name(self) -> str:
+        return f'{self.path.name}.{os.urandom(UNIQUE).hex()}.new'
+
+    def _write(self, data: bytes) -> None:
+        """Replace the file by a new one, which nobody else can have prepared."""
+        new = self.path.with_name(self._new_name())
+        file = new.open('xb')
+        try:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+            check_replaceable(self.path)
+            new.replace(self.path)
+        except OSError:
+            with contextlib.suppress(OSError):
+                file.close()
+            with contextlib.suppress(OSError):
+                new.unlink()
+            raise
+        self._opened = file
 
     def _text(self, names: Collection[str]) -> str:
         body = ''.join(f'{line}\n' for line in (HEAD, self.owner, *names))
@@ -123,6 +164,7 @@ class Latches:
         """
         self._file = file
         self._tell = tell
+        file.remove_leftovers()
         active, problem = file.load(known)
         self.active: frozenset[str] = active
         self._known = frozenset(known)
@@ -147,7 +189,9 @@ class Latches:
     def keep(self) -> str:
         """Have the file say what is active; return why it does not. To be tried again then."""
         if self._file.saved == self.active:
-            return ''
+            if self._file.is_in_place:
+                return ''
+            self._file.saved = None  # somebody has removed it, or put something else there
         try:
             self._file.save(self.active)
         except OSError as error:

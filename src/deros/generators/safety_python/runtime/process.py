@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+import contextlib
 import gc
+import os
 import sys
-from typing import Any
+import traceback
+from typing import Any, NoReturn
 
 import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -28,33 +32,60 @@ def run(
     """
     Run the node until SIGINT or SIGTERM, call end with it, and end without an error.
 
-    All callbacks run in the calling thread. An exception of one of them ends the program: a node
-    that does not watch any more must not go on saying that it does. A Refusal ends it with its
-    text and exit code 1.
+    All callbacks run in the calling thread. Whatever one of them raises, SystemExit included, ends
+    the program with exit code 1: a node that does not watch any more must not go on saying that it
+    does, nor look as if it had been told to end. So does a shutdown of the context from within. A
+    Refusal ends it with its text.
     """
     never_wait_for_readers()
     sharpen_timers()  # before any thread of the middleware starts, so that it inherits them
     signals = StopSignals()
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     try:
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         _spin(node_class, signals, end)
     except Refusal as refusal:
-        sys.exit(str(refusal))
-    finally:
-        try_shutdown()
+        _fail(str(refusal))
+    except SystemExit as request:
+        _fail(f'{traceback.format_exc()}the node was ended by exit({request.code!r}) within it')
+    except BaseException:
+        _fail(traceback.format_exc())
+    try_shutdown()
 
 
 def _spin(
     node_class: Callable[[], Node], signals: StopSignals, end: Callable[[Any], None]
 ) -> None:
     node = node_class()
+    try:
+        _serve(node, signals)
+        if ok():
+            end(node)
+    except BaseException:
+        with contextlib.suppress(Exception):  # what ends the node is what is to be reported
+            node.destroy_node()  # so that the others need not wait until they miss it
+        raise
+
+
+def _serve(node: Node, signals: StopSignals) -> None:
+    """Run the callbacks of a node until a signal comes."""
     executor = EventsExecutor()
     executor.add_node(node)
     with Waker(node):
         # What is there now stays for good: no later collection has to look through it.
         gc.collect()
         gc.freeze()
-        while ok() and not signals.came:
-            executor.spin_once(timeout_sec=WAIT)
-        if ok():
-            end(node)
+        with contextlib.suppress(ExternalShutdownException):
+            while ok() and not signals.came:
+                executor.spin_once(timeout_sec=WAIT)
+    if not signals.came:
+        raise Refusal('the context of ROS 2 was shut down within the node, which ends now')
+
+
+def _fail(reason: str) -> NoReturn:
+    """End the process now, with a reason and exit code 1, whatever other threads are at."""
+    try_shutdown()
+    with contextlib.suppress(OSError, ValueError):  # nobody reads it
+        print(reason.rstrip(), file=sys.stderr, flush=True)
+    with contextlib.suppress(OSError, ValueError):
+        sys.stdout.flush()
+    os._exit(1)  # a thread of the user's may never end

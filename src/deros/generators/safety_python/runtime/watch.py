@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 import time
 import traceback
 from typing import Any
@@ -15,6 +15,10 @@ from .alarm import Alarm
 
 NEAR = 2_000_000  # ns before a deadline in which nothing is begun that can wait
 AFTER = 1_000_000  # ns after it in which what it orders is done
+
+
+class ActionError(Exception):
+    """The code of an action has failed; the text names it."""
 
 
 class Watch:
@@ -30,7 +34,7 @@ class Watch:
         steady: Clock,
         begin: Callable[[int, Callable[[Any], None]], Any],
         show: Callable[[Any], bool],
-        do: Callable[[Any], None],
+        run: Callable[[Any], None],
         after: Callable[[list[Any], list[int]], None],
         tell: Callable[[], None],
         stepped: Callable[[], None],
@@ -39,11 +43,11 @@ class Watch:
         Prepare; start() comes next.
 
         begin makes a monitor that starts at a time and hands its events to a function; it is
-        called again when simulated time begins. show does what an event asks for if that takes no
-        time, in the middle of an evaluation, and tells whether it has; do does whatever it is.
-        after is called with the events that have been dealt with, and when each of them was done;
-        tell before an action's failure ends the node. stepped is called when simulated time has
-        begun or stepped back.
+        called again when simulated time begins. show publishes and marks as pending what an event
+        asks for, in the middle of an evaluation, and returns whether nothing is left to be done;
+        run runs the robot code that is left. after is called with the events that have been dealt
+        with, and when each of them was done; tell before an action's failure ends the node.
+        stepped is called when simulated time has begun or stepped back.
         """
         self.began_at = 0
         self.monitor: Any = None
@@ -51,13 +55,14 @@ class Watch:
         self._steady = steady
         self._begin = begin
         self._show = show
-        self._do = do
+        self._run = run
         self._after = after
         self._tell = tell
         self._stepped = stepped
-        self._ordered: list[Any] = []  # and not done yet
-        self._dealt_with: list[Any] = []
-        self._done: list[int] = []  # when each of these was done
+        self._events: list[Any] = []  # of this evaluation, in the monitor's order
+        self._done: list[int] = []  # when each of these was done; 0 for not yet
+        self._unpublished: list[int] = []  # the indices of those that could not be shown
+        self._code: list[int] = []  # the indices of those whose code is still to be run
         self.now, self.clock = self._choose_clock(steady)
         self._deadline = Alarm(node, self.clock, self.now, self._on_deadline)
 
@@ -68,8 +73,8 @@ class Watch:
         self._arm()
 
     def settle(self) -> None:
-        """Do what the monitor ordered, in order, and wake up for its next deadline."""
-        if self._ordered or self._done:
+        """Do the rest of what the monitor ordered, and wake up for its next deadline."""
+        if self._events:
             self._carry_out()
         self._arm()
 
@@ -81,6 +86,10 @@ class Watch:
         finally:
             self.settle()
         return now
+
+    def run_again(self, events: Iterable[Any]) -> None:
+        """Run the code of actions that were active before the start, of each of them."""
+        self._fail_with([error for event in events for error in self._attempt(self._run, event)])
 
     def put_off(self) -> int:
         """Return for how long what can wait has to, in nanoseconds, as a deadline is near."""
@@ -126,33 +135,47 @@ class Watch:
             alarm.ring_at(deadline)
 
     def _take(self, event: Any) -> None:
-        """Show at once what an event asks for, unless others before it are still to be done."""
+        """Show at once what an event asks for; robot code waits until all of them are shown."""
         try:
-            is_shown = not self._ordered and self._show(event)
+            left = None if self._show(event) else self._code
         except Exception:
-            is_shown = False  # it is tried again, and reported, when the monitor is through
-        if is_shown:
+            left = self._unpublished  # it is tried again when the monitor is through
+        if left is None:
             self._done.append(self.now())
-            self._dealt_with.append(event)
         else:
-            self._ordered.append(event)
+            left.append(len(self._events))
+            self._done.append(0)
+        self._events.append(event)
 
     def _carry_out(self) -> None:
         """Do all that is left of what was ordered, and only then fail if something failed."""
-        ordered, self._ordered = self._ordered, []
-        failures: list[Exception] = []
-        for event in ordered:
-            try:
-                self._do(event)
-            except Exception as error:
-                self._node.get_logger().fatal(
-                    f'action {event.action} failed:\n{traceback.format_exc()}'
-                )
-                failures.append(error)
-            self._done.append(self.now())
-        events, done = self._dealt_with + ordered, self._done
-        self._dealt_with, self._done = [], []
-        self._after(events, done)
+        events, done = self._events, self._done
+        attempts = [(self._show, self._unpublished), (self._run, self._code)]
+        # Code may spin the node, and so come back here: it must find nothing to be done.
+        self._events, self._done, self._unpublished, self._code = [], [], [], []
+        failures: list[BaseException] = []
+        try:
+            for act, indices in attempts:
+                for i in indices:
+                    failures += self._attempt(act, events[i])
+                    done[i] = self.now()
+        finally:
+            self._after(events, done)
+        self._fail_with(failures)
+
+    def _fail_with(self, failures: list[BaseException]) -> None:
+        """End the node, and its heartbeat with it, if anything was raised; sys.exit() counts."""
         if failures:
             self._tell()
-            raise failures[0]  # the heartbeat stops with the node
+            raise ActionError('an action failed, so the node ends') from failures[0]
+
+    def _attempt(self, act: Callable[[Any], object], event: Any) -> list[BaseException]:
+        """Do something; log and return what it raised, even what is meant to end the process."""
+        try:
+            act(event)
+        except BaseException as error:
+            self._node.get_logger().fatal(
+                f'action {event.action} failed:\n{traceback.format_exc()}'
+            )
+            return [error]
+        return []

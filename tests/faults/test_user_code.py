@@ -1,0 +1,58 @@
+"""Faults in the code that users write into actions: the stop comes first, and stays."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from tests.support.faults import PROMPT, Robot
+from tests.support.ros import LIMIT
+
+pytestmark = pytest.mark.ros
+
+FAILURES = {
+    "throw": "action interfere failed",
+    "throw something else": "action interfere failed",
+    "exit": "exit",
+    "shutdown": "shut down",
+    "start a thread and throw": "action interfere failed",
+}
+"""What the code does, and a part of the reason that the node prints."""
+
+
+@pytest.mark.parametrize("how", FAILURES)
+def test_code_that_ends_the_node_costs_neither_stop_nor_latch(robot: Robot, how: str) -> None:
+    """The stop written after the code is out, the node ends with 1, and a restart finds it."""
+    with robot.safety_node() as node:
+        robot.interfere(how)
+        robot.until_stopped(limit=PROMPT)
+        assert node.popen.wait(LIMIT) == 1
+        assert f"interference: {how}" in node.output()
+        assert FAILURES[how] in node.output()
+        seen = len(robot.states["/stop"])
+        robot.restart()
+        assert all(each.value for each in robot.states["/stop"][seen:]), "a restart undid the stop"
+
+
+@pytest.mark.parametrize("how", ["exit at once", "kill"])
+def test_code_that_ends_the_process_costs_neither_stop_nor_latch(robot: Robot, how: str) -> None:
+    """No node can survive it, but the stop was published and stored as pending before."""
+    with robot.safety_node() as node:
+        robot.interfere(how)
+        robot.until_stopped(limit=PROMPT)
+        node.popen.wait(LIMIT)
+        seen = len(robot.states["/stop"])
+        robot.restart()
+        assert all(each.value for each in robot.states["/stop"][seen:]), "a restart undid the stop"
+
+
+def test_slow_code_delays_no_stop(robot: Robot) -> None:
+    """A stop that is written after code of six seconds does not wait for it."""
+    with robot.safety_node() as node:
+        begun = time.monotonic()
+        robot.interfere("wait")
+        robot.until_stopped(limit=PROMPT)
+        assert time.monotonic() - begun < 5.0
+        robot.until(lambda: "interference: wait" in node.output())
+        robot.until_alive()
