@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 import pytest
 
-from tests.support.faults import PROMPT, Robot
+from tests.support.faults import NODE, PROMPT, Robot
 from tests.support.ros import LIMIT
 
 pytestmark = pytest.mark.ros
@@ -56,3 +57,20 @@ def test_slow_code_delays_no_stop(robot: Robot) -> None:
         assert time.monotonic() - begun < 5.0
         robot.until(lambda: "interference: wait" in node.output())
         robot.until_alive()
+
+
+def test_code_that_is_run_again_at_the_start_comes_after_the_states(
+    robot: Robot, tmp_path: Path
+) -> None:
+    """A latched action that is code and ends the node cannot keep the latched stop back."""
+    file = tmp_path / "state"
+    with robot.safety_node(f"state_file:={file}") as node:
+        node.end()
+        file.write_bytes(b"")  # damaged: all that is latched is active
+        (robot.folder / "interference").write_text("exit", encoding="ascii")
+        node = robot.start(NODE, [f"state_file:={file}"])
+        robot.until_stopped()
+        assert robot.until(node.popen.poll) == 1
+        assert "interference: exit" in node.output()
+        robot.restart()
+        assert robot.is_active("/stop")

@@ -144,6 +144,8 @@ class Robot:
     Attributes:
         states: what each action's topic has said.
         beats: the heartbeats.
+        faults: what the safety node's diagnostics say is wrong, by what it is about.
+        fault_events: what its events have said of that.
         commands: the speeds that have reached the drive.
     """
 
@@ -166,6 +168,8 @@ class Robot:
         }
         self.states: dict[str, list[Heard]] = {"/stop": [], "/halt": [], "/slow": []}
         self.beats: list[Heard] = []
+        self.faults: dict[str, str] = {}
+        self.fault_events: dict[str, list[str]] = {}
         self.commands: list[Heard] = []
         self._speeds: list[Heard] = []
         self._prober: Sensors | None = None
@@ -175,6 +179,7 @@ class Robot:
         for topic, seen in self.states.items():
             self._listen(Bool, topic, seen, kept=True)
         self._listen(UInt64, f"/{NODE}/heartbeat", self.beats)
+        self._listen_to_reports()
         self._listen(Float64, "/speed", self._speeds)
         self._listen(Twist, "/cmd_vel", self.commands)
 
@@ -189,6 +194,24 @@ class Robot:
         durability = DurabilityPolicy.TRANSIENT_LOCAL if kept else DurabilityPolicy.VOLATILE
         profile = QoSProfile(depth=100, durability=durability)
         self.peer.node.create_subscription(message, topic, receive, profile)
+
+    def _listen_to_reports(self) -> None:
+        from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+        def diagnosed(msg: DiagnosticArray) -> None:
+            for status in msg.status:
+                if status.name == f"/{NODE}":
+                    values = {pair.key: pair.value for pair in status.values}
+                    self.faults = {k: v for k, v in values.items() if k != "state"}
+                    assert (status.level == DiagnosticStatus.ERROR) == bool(self.faults)
+
+        def happened(msg: DiagnosticStatus) -> None:
+            values = {pair.key: pair.value for pair in msg.values}
+            if values["kind"] == "fault":
+                self.fault_events.setdefault(values["subject"], []).append(msg.message)
+
+        self.peer.node.create_subscription(DiagnosticArray, "/diagnostics", diagnosed, 100)
+        self.peer.node.create_subscription(DiagnosticStatus, f"/{NODE}/events", happened, 100)
 
     # What the test may ask
 

@@ -13,9 +13,13 @@ from deros.metamodels.rules import Rules
 from deros.monitor import walk
 from deros.monitor.actions import LOG_STATE
 from deros.monitor.ir import Action, Binding, Program, RuleRef, Trigger
+from deros.monitor.topics import SystemTopics
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _CONDITION = re.compile(r"\bif\b(.*?)\bthen\b", re.DOTALL)
+_SHARED_BY_CONVENTION = frozenset(
+    {"/diagnostics", "/parameter_events", "/rosout", "/tf", "/tf_static"}
+)
 
 
 def origin_file(model: Rules) -> str:
@@ -64,6 +68,19 @@ def states_by_path(
 
 
 # Actions ------------------------------------------------------------------------------------------
+
+
+def shared_topics(program: Program, topics: SystemTopics) -> frozenset[str]:
+    """Return the watched topics on which more than one publisher is no fault.
+
+    Several nodes publish some topics by convention, and others because the used systems say so.
+    """
+    return frozenset(
+        each.topic
+        for each in program.inputs
+        if each.topic in _SHARED_BY_CONVENTION
+        or ((known := topics.get(each.topic)) is not None and len(known.publishers) > 1)
+    )
 
 
 def needs_code(action: Action) -> bool:

@@ -24,6 +24,7 @@ from deros.generators.safety_cpp.verbatim import runtime_files, runtime_sources
 from deros.generators.safety_cpp.view import SafetyView, safety_view
 from deros.generators.safety_python.description import node_description
 from deros.generators.safety_python.node import safety_node
+from deros.generators.safety_view import shared_topics
 from deros.generators.templates import environment
 from deros.metamodels.rules import Rules
 from deros.monitor.build import build
@@ -53,7 +54,8 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
         raise GenerationError(built.diagnostics)
     python = safety_node(built.program, built.topics, twin_options(options), model.source)
     node = cpp_twin(python)
-    view = safety_view(model, built.program, python, node, context.store)
+    shared = shared_topics(built.program, built.topics)
+    view = safety_view(model, built.program, python, node, context.store, shared)
     holder = options.get("copyright", "")
     gates = gate_files(
         built.program,

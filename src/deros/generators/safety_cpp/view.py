@@ -101,6 +101,7 @@ class SafetyView:
         headers: of the messages and services that the node's class speaks of;
             ``message_headers`` without the services.
         monitor: the view of the monitor in C.
+        shared: the watched topics that may have several publishers.
         explained: the expressions of the rules' states.
         origins: the tables of behaviours, actions and sites.
         latched: name and enumerator of each latched action.
@@ -119,6 +120,7 @@ class SafetyView:
     message_headers: tuple[str, ...]
     monitor: MonitorView
     handlers: tuple[HandlerView, ...]
+    shared: frozenset[str]
     channels: tuple[ChannelView, ...]
     actions: tuple[ActionView, ...]
     explained: tuple[Expression, ...]
@@ -166,7 +168,12 @@ class SafetyView:
 
 
 def safety_view(
-    model: Rules, program: Program, python: NodeType, node: NodeType, store: InterfaceStore
+    model: Rules,
+    program: Program,
+    python: NodeType,
+    node: NodeType,
+    store: InterfaceStore,
+    shared: frozenset[str],
 ) -> SafetyView:
     """Return the view of the safety node ``node`` that runs ``program``.
 
@@ -176,6 +183,7 @@ def safety_view(
         python: the Python twin, by whose name the node goes at run time.
         node: the node type in C++.
         store: for the fields of the messages.
+        shared: the watched topics that may have several publishers.
 
     Raises:
         GenerationError: if the rules cannot be told in C++.
@@ -200,6 +208,7 @@ def safety_view(
         message_headers=_headers(taken, bound),
         monitor=monitor,
         handlers=tuple(_handlers(program, monitor, store)),
+        shared=shared,
         channels=tuple(_channels(program, node, monitor, store)),
         actions=actions,
         explained=tuple(explained_rules(program, monitor.layout)),

@@ -12,6 +12,7 @@ from deros.generators.safety_python.description import node_description
 from deros.generators.safety_python.node import safety_node
 from deros.generators.safety_python.verbatim import runtime_files
 from deros.generators.safety_python.view import SafetyView, safety_view
+from deros.generators.safety_view import shared_topics
 from deros.generators.templates import environment
 from deros.metamodels.rules import Rules
 from deros.monitor.build import build
@@ -32,7 +33,8 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     if built.program is None:
         raise GenerationError(built.diagnostics)
     node = safety_node(built.program, built.topics, options, model.source)
-    view = safety_view(model, built.program, node, context.store)
+    shared = shared_topics(built.program, built.topics)
+    view = safety_view(model, built.program, node, context.store, shared)
     copyright_line = options.get("copyright", "")
     gates = gate_nodes(built.program, built.topics, node)
     nodes = [node, *gates]

@@ -42,11 +42,13 @@ from deros.monitor.ir import Action, Binding, Program, Scalar
 
 RUNTIME = (
     "alarm",
+    "clock_choice",
     "diagnostics",
     "events",
     "instance",
     "machine",
     "process",
+    "publishers",
     "regular_file",
     "reports",
     "siblings",
@@ -96,6 +98,7 @@ class SafetyView:
     Attributes:
         rules: the file name of the rules.
         imports: the statements that import the interfaces.
+        shared: the watched topics that may have several publishers.
         channels_of: of each bound action, the channel that carries its state.
         lasting: of each action, whether it has a state.
         latched: the latched actions, with the arguments that the rules call each with first.
@@ -110,6 +113,7 @@ class SafetyView:
     name: str
     imports: tuple[str, ...]
     handlers: tuple[HandlerView, ...]
+    shared: tuple[str, ...]
     channels: tuple[ChannelView, ...]
     channels_of: tuple[tuple[str, str], ...]
     actions: tuple[ActionView, ...]
@@ -127,7 +131,6 @@ class SafetyView:
         """The modules that are the same for every program that needs them."""
         needed = {
             "latches": bool(self.latched),
-            "publishers": bool(self.handlers),
             "states": bool(self.channels),
         }
         return (*RUNTIME, *(module for module, is_needed in needed.items() if is_needed))
@@ -155,9 +158,20 @@ class SafetyView:
 
 
 def safety_view(
-    model: Rules, program: Program, node: NodeType, store: InterfaceStore
+    model: Rules,
+    program: Program,
+    node: NodeType,
+    store: InterfaceStore,
+    shared: frozenset[str],
 ) -> SafetyView:
     """Return the view of the safety node ``node`` that runs ``program``.
+
+    Args:
+        model: the rules as written.
+        program: the same with all names resolved.
+        node: the node type.
+        store: for the fields of the messages.
+        shared: the watched topics that may have several publishers.
 
     Raises:
         GenerationError: if two topics, actions or modules would get one name.
@@ -178,6 +192,7 @@ def safety_view(
         name=one_line(program.name),
         imports=tuple(_imports(program, base, node, channels, bool(actions))),
         handlers=handlers,
+        shared=tuple(sorted(shared)),
         channels=channels,
         channels_of=tuple((name, c.identifier) for c in channels for name in c.actions),
         actions=actions,
@@ -231,6 +246,7 @@ def _imports(
         f"{package}.events": {"Events", "OK", "WARN", "ERROR"},
         f"{package}.instance": {"claim"},
         f"{package}.origins": {"ACTIONS", "BEHAVIOURS", "RULES"},
+        f"{package}.publishers": {"Publishers"},
         f"{package}.reports": {"Reports"},
         f"{package}.siblings": {"Siblings"},
         f"{package}.watch": {"Watch"},
@@ -238,7 +254,6 @@ def _imports(
     }
     if base.subscriptions:
         imports[package].add("decoding")
-        imports[f"{package}.publishers"] = {"Publishers"}
     if channels:
         imports[f"{package}.states"] = {"StateTopic"}
     if any(action.latched for action in program.actions):

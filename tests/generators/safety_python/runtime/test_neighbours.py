@@ -73,7 +73,7 @@ def test_a_young_node_gives_way_and_an_old_one_reports() -> None:
     """Who has been there first goes on."""
     node, found = Mock(), Mock()
     node.count_publishers.return_value = 2
-    siblings = Siblings(node, "/safety/heartbeat", found)
+    siblings = Siblings(node, "/safety/heartbeat", [], found)
     with pytest.raises(Refusal, match="this one started last"):
         siblings.look()
     found.assert_not_called()
@@ -83,3 +83,19 @@ def test_a_young_node_gives_way_and_an_old_one_reports() -> None:
     node.count_publishers.return_value = 1
     siblings.look()
     assert found.call_args.args == ("/safety/heartbeat", "")
+
+
+def test_another_publisher_of_a_state_is_named() -> None:
+    """One topic at a time; the node itself is none of the others."""
+    node, found = Mock(), Mock()
+    counts = {"/safety/heartbeat": 1, "/stop": 2, "/slow": 1}
+    node.count_publishers = counts.__getitem__
+    node.get_fully_qualified_name.return_value = "/safety"
+    own = SimpleNamespace(node_name="safety", node_namespace="/")
+    node.get_publishers_info_by_topic.return_value = [own, publisher()]
+    siblings = Siblings(node, "/safety/heartbeat", ["/stop", "/slow"], found)
+    for _ in range(3):
+        siblings.look()
+    reported = [call.args for call in found.call_args_list if call.args[0] != "/safety/heartbeat"]
+    text = "published by /arm/driver, too: whoever obeys it cannot tell them apart"
+    assert reported == [("/stop", text), ("/slow", ""), ("/stop", text)]

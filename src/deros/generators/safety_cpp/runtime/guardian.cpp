@@ -46,6 +46,7 @@ Guardian::Guardian(
   grace_(std::llrint(settings_.startup_grace * 1e9)),
   period_(std::llrint(1e9 / settings_.publish_freq)),
   refused_(prepare(settings_.realtime_priority, settings_.lock_memory)),
+  clock_choice_(refuse_clock_change(node)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
   simulated_(simulated_time(node, agenda_, [this](bool back) {watch_.clock_changed(back);})),
   watch_(agenda_, clock_of(simulated_), *this),
@@ -90,17 +91,23 @@ Guardian::~Guardian()
 
 // Start
 
-void Guardian::start(const std::vector<Topic> & topics)
+void Guardian::start(const std::vector<Topic> & topics, const std::vector<std::string> & states)
 {
   tell_start();
   open_latches();
+  for (const std::string & topic : states) {
+    siblings_.add(node_.get_node_topics_interface()->resolve_topic_name(topic));
+  }
+  if (simulated_) {
+    publishers_.add(simulated_->subscription(), "rosgraph_msgs/msg/Clock");
+  }
   for (const Topic & topic : topics) {
     const std::string name = node_.get_node_topics_interface()->resolve_topic_name(topic.name);
     group_->find_subscription_ptrs_if(
       [&](const rclcpp::SubscriptionBase::SharedPtr & each) {
         const bool found = each->get_topic_name() == name;
         if (found) {
-          publishers_.add(*each, topic.type);
+          publishers_.add(*each, topic.type, topic.is_shared);
         }
         return found;
       });

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/clock_choice.hpp"
 #include "deros_runtime/runtime/descriptor.hpp"
 #include "deros_runtime/runtime/diagnostics.hpp"
 #include "deros_runtime/runtime/events.hpp"
@@ -96,11 +97,12 @@ public:
     bool lock_memory = false;
   };
 
-  /// A topic of the rules, and its type.
+  /// A topic of the rules, its type, and whether it may have any number of publishers.
   struct Topic
   {
     std::string name;
     std::string type;
+    bool is_shared;
   };
 
   /// Refuse to be a second one of the node's name, and prepare the process.
@@ -114,8 +116,8 @@ public:
     return group_;
   }
 
-  /// Start watching, with the ports that the group has now.
-  void start(const std::vector<Topic> & topics);
+  /// Start watching, with the ports that the group has now; states are the topics with states.
+  void start(const std::vector<Topic> & topics, const std::vector<std::string> & states);
 
   /// Note that parameters have changed; from any thread.
   void parameters_changed();
@@ -194,6 +196,7 @@ private:
   const Time period_;
   std::vector<std::string> refused_;  // by the machine
   Descriptor lock_;
+  const ClockChoice clock_choice_;
   rclcpp::CallbackGroup::SharedPtr group_;
   Agenda agenda_;
   std::unique_ptr<SimulatedTime> simulated_;

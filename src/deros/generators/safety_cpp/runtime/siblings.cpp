@@ -1,9 +1,13 @@
 #include "deros_runtime/runtime/siblings.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "deros_runtime/runtime/publishers.hpp"
 #include "deros_runtime/runtime/refusal.hpp"
+#include "deros_runtime/runtime/text.hpp"
 
 namespace deros_runtime
 {
@@ -26,6 +30,20 @@ Siblings::Siblings(rclcpp::Node & node, std::string heartbeat, Report report)
 
 void Siblings::look()
 {
+  look_at_heartbeat();
+  if (states_.empty()) {
+    return;
+  }
+  const std::string & topic = states_[next_];
+  next_ = (next_ + 1) % states_.size();
+  const std::string found = others(topic);
+  report_(
+    topic, found.empty() ? "" :
+    "published by " + found + ", too: whoever obeys it cannot tell them apart");
+}
+
+void Siblings::look_at_heartbeat()
+{
   if (node_.count_publishers(heartbeat_) <= 1) {
     report_(heartbeat_, "");
     return;
@@ -36,6 +54,23 @@ void Siblings::look()
     throw Refusal(heartbeat_ + ": " + text + "; this one started last and ends now");
   }
   report_(heartbeat_, text);
+}
+
+/// Return the names of the nodes that publish on a topic besides this one.
+std::string Siblings::others(const std::string & topic) const
+{
+  if (node_.count_publishers(topic) <= 1) {
+    return "";
+  }
+  std::vector<std::string> names;
+  for (const rclcpp::TopicEndpointInfo & info : node_.get_publishers_info_by_topic(topic)) {
+    const std::string name = node_of(info);
+    if (name != node_.get_fully_qualified_name()) {
+      names.push_back(name.empty() ? "a node that is not known yet" : name);
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return joined(names, ", ");
 }
 
 }  // namespace deros_runtime

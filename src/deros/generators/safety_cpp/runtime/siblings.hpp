@@ -1,8 +1,11 @@
 #ifndef DEROS_RUNTIME__RUNTIME__SIBLINGS_HPP_
 #define DEROS_RUNTIME__RUNTIME__SIBLINGS_HPP_
 
+#include <cstddef>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "deros_runtime/runtime/agenda.hpp"
 #include "rclcpp/rclcpp.hpp"
@@ -10,7 +13,11 @@
 namespace deros_runtime
 {
 
-/// Looks whether somebody else publishes the heartbeat of a node: one on another machine.
+/// Looks whether somebody else publishes the heartbeat of a node, or the states of its actions.
+/**
+ * The first is a second node of its name, on another machine or without a common folder for
+ * temporary files; the second contradicts it.
+ */
 class Siblings
 {
 public:
@@ -19,12 +26,23 @@ public:
 
   Siblings(rclcpp::Node & node, std::string heartbeat, Report report);
 
-  /// Look now. \throw Refusal if there is one and this node has just started
+  /// Watch over a topic with states.
+  void add(std::string topic)
+  {
+    states_.push_back(std::move(topic));
+  }
+
+  /// Look now. \throw Refusal if there is a second node and this one has just started
   void look();
 
 private:
+  void look_at_heartbeat();
+  std::string others(const std::string & topic) const;
+
   rclcpp::Node & node_;
   std::string heartbeat_;
+  std::vector<std::string> states_;
+  std::size_t next_ = 0;
   Report report_;
   Time give_way_until_;
 };

@@ -35,6 +35,12 @@ public:
     return {[this] {return now_;}, false};
   }
 
+  /// Return the subscription to /clock.
+  const rclcpp::SubscriptionBase & subscription() const
+  {
+    return *subscription_;
+  }
+
 private:
   using Message = rosgraph_msgs::msg::Clock;
 

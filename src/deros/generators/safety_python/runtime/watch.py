@@ -12,6 +12,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from .alarm import Alarm
+from .clock_choice import refuse_clock_change
 
 NEAR = 2_000_000  # ns before a deadline in which nothing is begun that can wait
 AFTER = 1_000_000  # ns after it in which what it orders is done
@@ -63,6 +64,7 @@ class Watch:
         self._done: list[int] = []  # when each of these was done; 0 for not yet
         self._unpublished: list[int] = []  # the indices of those that could not be shown
         self._code: list[int] = []  # the indices of those whose code is still to be run
+        refuse_clock_change(node)
         self.now, self.clock = self._choose_clock(steady)
         self._deadline = Alarm(node, self.clock, self.now, self._on_deadline)
 

@@ -1,0 +1,130 @@
+"""Faults of others: two that publish one topic, a second safety node, a clock that is switched."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.faults import NODE, PROMPT, Robot
+from tests.support.played import SENSES, TOPICS, imu, speed, ticks
+
+pytestmark = pytest.mark.ros
+
+HEARTBEAT = f"/{NODE}/heartbeat"
+EARLY = 5.0
+"""Seconds from its start in which a node that finds another one of its name gives way."""
+
+
+def until_fault(robot: Robot, topic: str, *texts: str) -> None:
+    """Wait until the diagnostics and an event tell of a fault of a topic in such words."""
+
+    def is_told() -> bool:
+        told = [robot.faults.get(topic, ""), *robot.fault_events.get(topic, [])]
+        return len(told) > 1 and all(text in each for text in texts for each in told[-2:])
+
+    robot.until(is_told)
+
+
+def until_no_fault(robot: Robot, topic: str) -> None:
+    """Wait until the diagnostics tell of no fault of a topic any more."""
+    robot.until(lambda: topic not in robot.faults)
+
+
+def test_a_second_publisher_does_not_hide_that_a_sensor_is_dead(robot: Robot) -> None:
+    """Two that publish one input are a fault, whichever of them lives; one alone is none."""
+    with robot.safety_node(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_free()
+        until_no_fault(robot, "/imu")
+        with robot.sensors({"/imu": SENSES["/imu"]}) as second:
+            second.play("/imu", imu())
+            until_fault(robot, "/imu", "2 publishers where one is expected")
+            sensors.quiet("/imu")
+            robot.spin(1.0)  # longer than the timeout, in which the second one is heard
+            assert "2 publishers" in robot.faults["/imu"]
+        robot.until_stopped("/halt")
+
+
+def test_every_publisher_of_an_input_is_heard(robot: Robot) -> None:
+    """What either of two publishers says may break a rule: the one that is well hides nothing."""
+    with robot.safety_node(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_free()
+        with robot.sensors({"/speed": SENSES["/speed"]}) as second:
+            second.match("/speed")
+            second.play("/speed", speed(2.0))
+            robot.until_stopped(limit=PROMPT)
+
+
+def test_a_second_publisher_of_a_state_is_a_fault(robot: Robot) -> None:
+    """Whoever obeys the topic cannot tell the two apart, so the safety node says who it is."""
+    with robot.safety_node():
+        with robot.sensors({"/stop": "std_msgs/msg/Bool"}):
+            until_fault(robot, "/stop", "published by /", ", too")
+        until_no_fault(robot, "/stop")
+
+
+def test_a_second_publisher_of_the_heartbeat_is_a_fault(robot: Robot) -> None:
+    """It could make a dead node look alive."""
+    with robot.safety_node():
+        begun = time.monotonic()
+        robot.until(lambda: time.monotonic() > begun + EARLY)
+        with robot.sensors({HEARTBEAT: "std_msgs/msg/UInt64"}):
+            until_fault(robot, HEARTBEAT, "another node publishes this heartbeat")
+        until_no_fault(robot, HEARTBEAT)
+
+
+def test_a_second_node_is_found_without_a_common_folder(robot: Robot, tmp_path: Path) -> None:
+    """As on another machine, or in another container: the second ends, the first goes on."""
+    with robot.safety_node():
+        begun = time.monotonic()
+        robot.until(lambda: time.monotonic() > begun + EARLY)
+        folder = tmp_path / "elsewhere"
+        folder.mkdir()
+        second = robot.start(
+            NODE, [f"state_file:={folder / 'state'}"], TMPDIR=str(folder), TEMP="", TMP=""
+        )
+        assert robot.until(second.popen.poll) == 1
+        assert "another node publishes this heartbeat" in second.output()
+        assert "Traceback" not in second.output()
+        until_no_fault(robot, HEARTBEAT)
+
+
+def test_a_second_clock_is_a_fault(robot: Robot) -> None:
+    """Time that two set goes back and forth."""
+    with_clock = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}
+    with robot.sensors(with_clock) as sensors:
+        sensors.play("/clock", *ticks())
+        with robot.safety_node("use_sim_time:=true"):
+            until_no_fault(robot, "/clock")
+            with robot.sensors({"/clock": with_clock["/clock"]}):
+                until_fault(robot, "/clock", "2 publishers where one is expected")
+            until_no_fault(robot, "/clock")
+
+
+@pytest.mark.parametrize("chosen", [True, False])
+def test_the_clock_cannot_be_changed(robot: Robot, chosen: bool) -> None:
+    """A change of use_sim_time is refused with a reason, and the node watches on."""
+    with_clock = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}
+    with robot.sensors(with_clock) as sensors:
+        sensors.play("/clock", *ticks())
+        with robot.safety_node(f"use_sim_time:={str(chosen).lower()}"):
+            for value in (not chosen, chosen):
+                result = set_use_sim_time(robot, value)
+                assert result.successful == (value == chosen)
+                assert value == chosen or "cannot change while the node runs" in result.reason
+            robot.until_alive()
+
+
+def set_use_sim_time(robot: Robot, value: bool) -> Any:
+    """Set the parameter of the safety node, and return the result."""
+    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+    from rcl_interfaces.srv import SetParameters
+
+    client = robot.peer.node.create_client(SetParameters, f"/{NODE}/set_parameters")
+    value_set = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=value)
+    request = SetParameters.Request(parameters=[Parameter(name="use_sim_time", value=value_set)])
+    return robot.peer.call(client, request).results[0]
