@@ -47,7 +47,9 @@ inline void interfere_with(rclcpp::Node & node)
     ::kill(::getpid(), SIGKILL);
   }
   if (how == "wait") {
-    std::this_thread::sleep_for(std::chrono::seconds(6));
+    while (!std::ifstream(std::string(path) + ".over")) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
   }
   if (how == "start a thread and throw") {
     std::thread([] {std::this_thread::sleep_for(std::chrono::hours(1));}).detach();

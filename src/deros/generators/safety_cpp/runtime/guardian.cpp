@@ -247,9 +247,10 @@ void Guardian::run_code(const Event & event)
   if (robot_.is_filled_in(number)) {
     robot_.run(event.site);
   } else {
+    const std::string call =
+      origins_.actions[number].name + '(' + origins_.sites[event.site].arguments + ')';
     log(
-      ERROR, "action " + origins_.actions[number].name + '(' +
-      origins_.sites[event.site].arguments + ") should have been carried out now: write its code in " +
+      ERROR, "action " + call + " should have been carried out now: write its code in " +
       origins_.actions_file);
   }
 }
