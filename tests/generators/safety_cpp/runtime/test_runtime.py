@@ -5,8 +5,10 @@ from __future__ import annotations
 import hashlib
 import os
 import random
+import stat
 import struct
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -155,6 +157,52 @@ def test_no_half_written_file_is_left(harness: Harness, tmp_path: Path) -> None:
         "it is a directory, not a regular file"
     )
     assert [path.name for path in tmp_path.iterdir()] == ["robot.latches"]
+
+
+def put_link(path: Path) -> None:
+    """Put a link to another file."""
+    path.symlink_to(path.with_name("other"))
+
+
+def put_pipe(path: Path) -> None:
+    """Put a pipe, which would block whoever opens it."""
+    os.mkfifo(path)
+
+
+@pytest.mark.parametrize("put", [put_link, put_pipe, Path.mkdir])
+def test_what_is_no_regular_file_is_left_alone(
+    harness: Harness, tmp_path: Path, put: Callable[[Path], object]
+) -> None:
+    """Nothing else is read, emptied or replaced, nor locked."""
+    path = tmp_path / f"{file_stem('/robot', 7)}.lock"
+    put(path)
+    before = path.lstat()
+    answer = harness.ask("load", path, OWNER, "halt,stop")
+    assert answer.startswith("halt,stop|")
+    for words in (("save", path, OWNER, "stop"), ("claim", tmp_path, 7, "/robot")):
+        assert "not a regular file" in harness.ask(*words)
+    assert "not a regular file" in answer
+    assert list(tmp_path.iterdir()) == [path]
+    assert (path.lstat().st_ino, path.lstat().st_mode) == (before.st_ino, before.st_mode)
+
+
+def test_what_a_killed_process_left_half_written_is_removed(
+    harness: Harness, tmp_path: Path
+) -> None:
+    """Only that: other files in the folder are not the node's."""
+    path = tmp_path / "robot.latches"
+    kept = {"robot.latches.new", "other.latches.0123456789abcdef.new"}
+    for name in (*kept, "robot.latches.0123456789abcdef.new"):
+        (tmp_path / name).touch()
+    assert harness.ask("leftovers", path, OWNER) == "done"
+    assert {each.name for each in tmp_path.iterdir()} == kept
+
+
+def test_a_missing_folder_is_made_for_the_user_alone(harness: Harness, tmp_path: Path) -> None:
+    """As the Python node does it."""
+    path = tmp_path / "made" / "for" / "robot.latches"
+    assert harness.ask("save", path, OWNER, "stop") == "done"
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
 
 
 # One instance ---------------------------------------------------------------------------------

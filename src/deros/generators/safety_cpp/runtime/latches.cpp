@@ -96,7 +96,7 @@ void make_folder(const std::filesystem::path & folder)
   if (error) {
     throw std::system_error(error);
   }
-  if (::mkdir(folder.c_str(), 0700) != 0 && !std::filesystem::is_directory(folder)) {
+  if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
     throw failure();
   }
 }
