@@ -29,6 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--round", type=int, help="play this round of the seed alone")
     parser.add_argument("--replay", type=Path, metavar="FILE", help="play a schedule that was kept")
     parser.add_argument("--per-start", type=int, default=10, help="rounds for each robot start")
+    parser.add_argument("--cpp", action="store_true", help="safety node and gate in C++")
     parser.add_argument("--output", type=Path, default=REPOSITORY / ".tmp" / "chaos")
     options = parser.parse_args(arguments)
     # Fast DDS reads its profile once in a process, and ROS has not been imported yet.
@@ -42,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         seed = secrets.randbelow(10**6) if options.seed is None else options.seed
         numbers = range(options.rounds) if options.round is None else [options.round]
         rounds = [schedule.draw(seed, number) for number in numbers]
-    return campaign.run(rounds, options.output, options.per_start, ROUND_S)
+    return campaign.run(rounds, options.output, options.per_start, ROUND_S, options.cpp)
 
 
 if __name__ == "__main__":

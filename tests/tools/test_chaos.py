@@ -23,7 +23,7 @@ def play(
     rounds = [draw(3, number) for number in range(len(verdicts))]
 
     def played(
-        batch: Sequence[Schedule], _packages: list[Path], place: Path
+        batch: Sequence[Schedule], _robot: object, place: Path
     ) -> Iterator[campaign.Outcome]:
         place.mkdir(parents=True)
         for schedule in batch:
@@ -31,7 +31,7 @@ def play(
             yield campaign.Outcome(schedule, verdict, "" if verdict else "waited 8 s")
 
     monkeypatch.setattr(campaign, "_play", played)
-    monkeypatch.setattr(campaign, "generate_packages", lambda _: None)
+    monkeypatch.setattr(campaign, "generate_packages", lambda *_: None)
     return campaign.run(rounds, folder, 2, 10.0), rounds
 
 

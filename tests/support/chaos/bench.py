@@ -6,7 +6,7 @@ import contextlib
 import shutil
 import subprocess
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -117,7 +117,7 @@ class Bench:
 
 
 @contextlib.contextmanager
-def running(system: Path, packages: list[Path], folder: Path, seed: int) -> Iterator[Bench]:
+def running(system: Path, packages: Sequence[Path], folder: Path, seed: int) -> Iterator[Bench]:
     """Run the robot, with everything that it takes to break it."""
     with contextlib.ExitStack() as stack:
         domains = {name: stack.enter_context(own_domain()) for name in DOMAINS}

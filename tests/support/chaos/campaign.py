@@ -43,11 +43,24 @@ class Outcome:
         return "held" if self.verdict.moved else "did not move"
 
 
-def run(schedules: Sequence[Schedule], output: Path, per_start: int, round_s: float) -> int:
-    """Play the rounds, print how each went, and return the exit code."""
+def run(
+    schedules: Sequence[Schedule],
+    output: Path,
+    per_start: int,
+    round_s: float,
+    in_cpp: bool = False,
+) -> int:
+    """Play the rounds, print how each went, and return the exit code.
+
+    Args:
+        schedules: the rounds.
+        output: the folder for packages, logs and what violations leave.
+        per_start: how many rounds are played on one start of the robot.
+        round_s: about how many seconds each takes.
+        in_cpp: whether safety node and gate are those in C++.
+    """
     console = Console(soft_wrap=True, highlight=False)
-    packages = output / "packages"
-    generate_packages(packages)
+    robot = generate_packages(output, in_cpp)
     count, seed = len(schedules), schedules[0].seed
     minutes = count * round_s / 60
     console.print(f"seed {seed}: {count} rounds, about {minutes:.0f} minutes; logs in {output}")
@@ -55,7 +68,7 @@ def run(schedules: Sequence[Schedule], output: Path, per_start: int, round_s: fl
     outcomes: list[Outcome] = []
     for number, batch in enumerate(_batches(schedules, per_start)):
         folder = output / f"{seed}.{number}"
-        for outcome in _play(batch, [packages], folder):
+        for outcome in _play(batch, robot, folder):
             outcomes.append(outcome)
             _report(console, outcome, len(outcomes), count, time.monotonic() - began)
             if outcome.result == "violation":
@@ -64,11 +77,25 @@ def run(schedules: Sequence[Schedule], output: Path, per_start: int, round_s: fl
     return _conclude(console, outcomes, time.monotonic() - began)
 
 
-def generate_packages(folder: Path) -> None:
-    """Generate the feeding robot's packages into a folder."""
-    from demonstration.build import build  # type: ignore[import-not-found]
+@dataclass(frozen=True)
+class Software:
+    """The system's model, and the folders with its packages."""
 
-    build(EXAMPLE, folder)
+    system: Path
+    packages: tuple[Path, ...]
+
+
+def generate_packages(output: Path, in_cpp: bool) -> Software:
+    """Generate the feeding robot's packages into a folder, and build what is to be built."""
+    from demonstration import build  # type: ignore[import-not-found]
+
+    system = EXAMPLE / "feeding_robot.system"
+    packages = output / "packages"
+    build.build(EXAMPLE, packages)
+    if not in_cpp:
+        return Software(system, (packages,))
+    install = build.build_cpp(EXAMPLE, output / "cpp")
+    return Software(build.in_cpp(system, output), (install, packages))
 
 
 def _keep(console: Console, outcome: Outcome, folder: Path) -> None:
@@ -85,14 +112,15 @@ def _batches(schedules: Sequence[Schedule], size: int) -> list[list[Schedule]]:
     return list(iter(lambda: list(itertools.islice(remaining, size)), []))
 
 
-def _play(batch: Sequence[Schedule], packages: list[Path], folder: Path) -> Iterator[Outcome]:
+def _play(batch: Sequence[Schedule], robot: Software, folder: Path) -> Iterator[Outcome]:
     """Play some rounds on one robot, and on a new one after a round that it did not begin."""
     remaining = list(batch)
     attempt = 0
     while remaining:
         attempt += 1
-        system = EXAMPLE / "feeding_robot.system"
-        with running(system, packages, folder / str(attempt), remaining[0].seed) as bench:
+        with running(
+            robot.system, robot.packages, folder / str(attempt), remaining[0].seed
+        ) as bench:
             while remaining:
                 schedule = remaining.pop(0)
                 try:
