@@ -49,6 +49,10 @@ sanitize: $(READY)  ## Compare monitors in C with the reference, watched by gcc'
 fuzz: $(READY)  ## Fuzz the monitors in C of the examples, 30 seconds each; needs clang
 	@$(ALONE) $(BIN)/python tools/fuzz.py
 
+.PHONY: fuzz-models
+fuzz-models: $(READY)  ## Fuzz models, definitions, traces and messages for a minute; FUZZ="--seconds 36000" at night
+	@$(ALONE) $(BIN)/python tools/fuzz_models.py --jobs $(JOBS) $(FUZZ)
+
 .PHONY: misra
 misra: $(READY)  ## Hold the emitted C against MISRA C:2012; needs cppcheck
 	@$(ALONE) $(BIN)/python tools/misra.py

@@ -104,3 +104,15 @@ def test_a_place_that_cannot_be_written_stays_as_it_was() -> None:
     after = _tree(Path("out"))
     assert after == {path: content for path, content in before.items() if path in after}
     assert set(before) - set(after) == {str(generated.relative_to("out"))}
+
+
+def test_a_node_of_the_same_package_is_checked_too(tmp_path: Path) -> None:
+    """Its code is generated with that of the model, so its errors count, of whatever kind."""
+    (tmp_path / "talker.rnd").write_text("node talker : chat")
+    (tmp_path / "listener.rnd").write_text("node listener : chat publishes topic a : no_msgs.No")
+    outcome = deros(
+        "generate", tmp_path / "talker.rnd", "--target", "python", "-o", tmp_path / "out"
+    )
+    assert outcome.code == 1
+    assert "DRS101" in outcome.err
+    assert not (tmp_path / "out").exists()

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from deros.generators.writer import WriteError
+from deros.interfaces.files import read_regular
 
 if TYPE_CHECKING:
     from deros.generators.protocol import Context
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 _SPECIAL = re.compile(r"[ \t#]")
 _ESCAPED = re.compile(r"\\([ \t#])|\$(\$)")
 _END = re.compile(r" \\$")
+_LARGEST = 64 << 20
 _STAMP = "# The last run of deros made these files:\n"
 
 
@@ -78,7 +80,7 @@ def is_current(stamp: Path, depfile: Path) -> bool:
     """Tell whether nothing has changed since the run that wrote both files."""
     try:
         made = stamp.stat().st_mtime_ns
-        found = prerequisites(depfile.read_text(encoding="utf-8"))
+        found = prerequisites(read_regular(depfile, _LARGEST).decode())
         return all(Path(each).stat().st_mtime_ns <= made for each in found)
     except (OSError, UnicodeDecodeError):
         return False
@@ -92,7 +94,7 @@ def write_if_changed(path: Path, text: str) -> None:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not path.is_file() or path.read_bytes() != text.encode():
+        if not path.exists() or read_regular(path, _LARGEST) != text.encode():
             path.write_bytes(text.encode())
     except OSError as error:
         raise WriteError(f"cannot write {path}: {error.strerror or error}") from error
@@ -107,7 +109,10 @@ def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
         WriteError: if it cannot be written, or another file is in its place.
     """
     try:
-        if path.exists() and path.read_bytes()[: len(_STAMP)] not in (_STAMP.encode(), b""):
+        if path.exists() and read_regular(path, _LARGEST)[: len(_STAMP)] not in (
+            _STAMP.encode(),
+            b"",
+        ):
             raise WriteError(f"refused to write {path}: it is no stamp of deros")
         write_if_changed(path, _STAMP + "".join(f"{each}\n" for each in made))
         os.utime(path, ns=(started_ns, started_ns))
@@ -118,7 +123,7 @@ def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
 def stamped(path: Path) -> list[str]:
     """Return what the run before made, as its stamp says; nothing if there was none."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_regular(path, _LARGEST).decode()
     except (OSError, UnicodeDecodeError):
         return []
     return text.removeprefix(_STAMP).splitlines() if text.startswith(_STAMP) else []

@@ -73,8 +73,9 @@ def make(request: Request) -> Made:
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
     from deros.validators.check import check as check_loaded
+    from deros.validators.check import check_file
 
-    context = Context(InterfaceStore(request.interfaces), Repository())
+    context = Context(InterfaceStore(request.interfaces), Repository(), check_file)
     loaded = context.repository.load(request.file)
     findings = check_loaded([loaded], context.repository, context.store)
     code = exit_code(in_the_way_of_generating(findings, request.file))

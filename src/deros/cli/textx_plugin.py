@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from deros.diagnostics import Diagnostic
     from deros.generators.protocol import Context
+    from deros.interfaces.store import InterfaceStore
     from deros.metamodels.languages import Language
     from deros.metamodels.load import LoadedFile
 
@@ -43,7 +44,7 @@ def _checked_metamodel(language: Language) -> Any:
         return parse(file_name, *args, **kwargs)
 
     result.model_from_file = model_from_file
-    use_front_end(_errors, _render)
+    use_front_end(_errors, _render, _findings_of)
     return result
 
 
@@ -75,6 +76,13 @@ def _errors(loaded: LoadedFile, context: Context) -> list[Diagnostic]:
 
     findings = check([loaded], context.repository, context.store)
     return [d for d in in_the_way_of_generating(findings, loaded.path) if d.is_error]
+
+
+def _findings_of(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
+    """Check a file that a generator loads besides its model."""
+    from deros.validators.check import check_file
+
+    return check_file(loaded, store)
 
 
 def _render(diagnostics: Sequence[Diagnostic]) -> str:

@@ -53,8 +53,10 @@ def nodes_beside(model: NodeType, context: Context) -> list[NodeType]:
         if path.name == own.name:
             continue
         loaded = context.repository.load(path)
-        if _belongs(loaded, model.package) and has_errors(loaded.diagnostics):
-            raise GenerationError(loaded.diagnostics)
+        if _belongs(loaded, model.package):
+            findings = context.check(loaded, context.store)
+            if has_errors(findings):
+                raise GenerationError(findings)
         other = loaded.model
         if (
             isinstance(other, NodeType)

@@ -8,14 +8,14 @@ by :func:`deros.generators.registry.generator`; it is then known to ``textx gene
 from __future__ import annotations
 
 import enum
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from deros.diagnostics import Diagnostic
     from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.load import Repository
+    from deros.metamodels.load import LoadedFile, Repository
 
 
 class Owner(enum.Enum):
@@ -45,6 +45,10 @@ class Option:
     description: str
 
 
+def _as_loaded(loaded: LoadedFile, store: InterfaceStore) -> Sequence[Diagnostic]:  # noqa: ARG001
+    return loaded.diagnostics
+
+
 @dataclass(frozen=True, slots=True)
 class Context:
     """What a generator may look at besides its model.
@@ -52,10 +56,13 @@ class Context:
     Attributes:
         store: the message, service and action definitions.
         repository: the files loaded in this run, and the way to load more.
+        check: what is wrong with a file that a generator loads besides its model. By default only
+            what the loader finds; the checks, which the front end hands in, know more.
     """
 
     store: InterfaceStore
     repository: Repository
+    check: Callable[[LoadedFile, InterfaceStore], Sequence[Diagnostic]] = _as_loaded
 
 
 Files = Mapping[str, File]

@@ -23,6 +23,7 @@ from deros.generators.protocol import Context, Files, GenerateFunction, Generati
 from deros.metamodels.textx_registration import GeneratorDesc, GeneratorParam, TextXError
 
 if TYPE_CHECKING:
+    from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import LoadedFile
 
 GROUP = "textx_generators"
@@ -244,6 +245,7 @@ class _Hooks:
 
     check: Callable[[LoadedFile, Context], Sequence[Diagnostic]] = _check_reading
     render: Callable[[Sequence[Diagnostic]], str] = _render_plainly
+    check_file: Callable[[LoadedFile, InterfaceStore], Sequence[Diagnostic]] | None = None
 
 
 _hooks = _Hooks()
@@ -252,6 +254,7 @@ _hooks = _Hooks()
 def use_front_end(
     check: Callable[[LoadedFile, Context], Sequence[Diagnostic]],
     render: Callable[[Sequence[Diagnostic]], str],
+    check_file: Callable[[LoadedFile, InterfaceStore], Sequence[Diagnostic]] | None = None,
 ) -> None:
     """Set how ``textx generate`` checks a loaded file, and how it shows diagnostics.
 
@@ -260,6 +263,7 @@ def use_front_end(
     """
     _hooks.check = check
     _hooks.render = render
+    _hooks.check_file = check_file
 
 
 def _argument(option: str) -> str:
@@ -271,7 +275,10 @@ def _context(interfaces: Sequence[Path]) -> Context:
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
 
-    return Context(InterfaceStore(interfaces), Repository())
+    store, repository = InterfaceStore(interfaces), Repository()
+    if _hooks.check_file is None:
+        return Context(store, repository)
+    return Context(store, repository, _hooks.check_file)
 
 
 def _as_named(filename: str) -> str:

@@ -204,7 +204,7 @@ def _hand_written(source: Path, output: Path, folders: list[Path]) -> Iterator[s
             if _belongs(here / each) and not build_tree.is_relative_to((here / each).resolve())
         )
         for name in sorted(names):
-            if not name.startswith("."):
+            if not name.startswith(".") and (here / name).is_file():
                 yield (here / name).relative_to(source).as_posix()
 
 

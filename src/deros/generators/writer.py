@@ -20,6 +20,10 @@ from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.generators.banner import is_untouched, with_banner
 from deros.generators.protocol import Files, Owner
+from deros.interfaces.files import read_regular
+
+_LARGEST = 256 << 20
+"""How many bytes a file may have that stands where one is to be written."""
 
 
 class WriteError(Exception):
@@ -116,9 +120,10 @@ def _write(
 def _outcome(target: Path, change: _Change, owner: Owner, overwrite: bool) -> Outcome:
     if target.is_dir():
         raise WriteError(f"cannot write {target}: it is a directory")
+    # What is neither is never opened: a pipe would block, and a device is not to be replaced.
+    present = read_regular(target, _LARGEST) if target.exists() else b""
     if owner is Owner.USER:
         return Outcome.USER
-    present = target.read_bytes() if target.exists() else b""
     if present == change.content and os.access(target, os.X_OK) >= change.executable:
         return Outcome.UNCHANGED
     if present == change.content or overwrite or _untouched(present):

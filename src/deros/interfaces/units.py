@@ -37,6 +37,7 @@ _SUPERSCRIPT_RUN = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
 _MAX_EXPONENT = 99
 _MAX_DEPTH = 50
 _MAX_DIGITS = 400
+_MOST_BITS = 20_000
 _LONGEST_UNIT = 200
 _LONGEST_WORD = 40
 
@@ -177,7 +178,9 @@ class UnitRegistry:
         self, word: str, factor: Fraction, text: str, offset: Fraction = Fraction(0)
     ) -> Unit | None:
         unit = self.parse(text)
-        return unit and Unit(word, unit.exponents, factor * unit.factor, offset)
+        if unit is None or _bits(unit.factor) + _bits(factor) > _MOST_BITS:
+            return None
+        return Unit(word, unit.exponents, factor * unit.factor, offset)
 
 
 class _Parser:
@@ -236,13 +239,23 @@ class _Parser:
 _ONE = Unit("1", (), Fraction(1))
 
 
-def _combine(left: Unit, right: Unit, exponent: int) -> Unit:
-    """Return ``left * right ** exponent``; without offset, as a product is one of differences."""
+def _combine(left: Unit, right: Unit, exponent: int) -> Unit | None:
+    """Return ``left * right ** exponent``; without offset, as a product is one of differences.
+
+    ``None`` stands for a product that no quantity has: its factor would fill the memory.
+    """
+    if _bits(left.factor) + _bits(right.factor) * abs(exponent) > _MOST_BITS:
+        return None
     exponents = dict(left.exponents)
     for base, power in right.exponents:
         exponents[base] = exponents.get(base, Fraction(0)) + power * exponent
     kept = tuple(sorted((base, power) for base, power in exponents.items() if power))
     return Unit("", kept, left.factor * right.factor**exponent)
+
+
+def _bits(factor: Fraction) -> int:
+    """Return how much memory a factor takes, in bits."""
+    return factor.numerator.bit_length() + factor.denominator.bit_length()
 
 
 def _exact_factor(source: Unit, target: Unit) -> tuple[Fraction, Fraction]:

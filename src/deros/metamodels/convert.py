@@ -24,6 +24,7 @@ _ESCAPES = {'"': '"', "\\": "\\", "/": "/", "n": "\n", "t": "\t", "r": "\r"}
 _INTEGER = re.compile(r"[+-]?\d+\Z")
 _EXPONENT = re.compile(r"[eE]([+-]?\d+)\Z")
 _MOST_DIGITS = 400
+_GREATEST_COUNT = 2**31 - 1
 _TIME_UNITS = UnitRegistry()
 _KINDS: dict[str, InterfaceKind] = {"msg": "msg", "srv": "srv", "action": "action"}
 
@@ -93,8 +94,9 @@ class Converter:
         return Decimal(0)
 
     def integer(self, token: Token) -> int:
-        """Return a whole number."""
-        return int(self.decimal(token))
+        """Return a count of something; one that no machine counts to is reported and reads as 0."""
+        value = int(self.decimal(token))
+        return value if value <= _GREATEST_COUNT else int(self._out_of_range(token))
 
     def scalar(self, token: Token) -> Scalar:
         """Return a value as its text says: bool, int, float or str."""

@@ -26,6 +26,7 @@ from deros.monitor.resolved import DeclaredInput
 from deros.monitor.topics import SystemTopics
 
 _GAP = r"(?:\s|//[^\n]*|/\*.*?\*/)*"
+_WORD = re.compile(r"\w+")
 _PATH_PART = re.compile(rf"{_GAP}(?:\.{_GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])", re.DOTALL)
 
 
@@ -98,13 +99,14 @@ class Scope:
         registry = UnitRegistry(
             {each.name.text: (each.factor.value, each.factor.unit or "1") for each in definitions}
         )
+        defined = {each.name.text for each in definitions}
         for each in definitions:
             if registry.parse(each.name.text) is not None:
                 continue
             unit = each.factor.unit
             if each.factor.value <= 0:
                 message = f"unit '{each.name}' must be a positive multiple"
-            elif unit and registry.parse(unit) is None and not _defines(definitions, unit):
+            elif unit and registry.parse(unit) is None and defined.isdisjoint(_WORD.findall(unit)):
                 self._unknown_unit(registry, unit, each.factor.unit_span or each.factor.span)
                 continue
             else:
@@ -354,7 +356,3 @@ def part_span(before: Span, whole: Span, position: int) -> Span:
             return whole
         offset = match.end()
     return Span(whole.source, match.start(1), match.end(1)) if match else whole
-
-
-def _defines(definitions: tuple[rules.UnitDefinition, ...], unit: str) -> bool:
-    return any(re.search(rf"\b{re.escape(each.name.text)}\b", unit) for each in definitions)

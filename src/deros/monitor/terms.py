@@ -13,6 +13,7 @@ from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.interfaces.units import Unit
 from deros.metamodels import rules
+from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.monitor import ir, shapes
 from deros.monitor.bounds import rounded, type_bounds
 from deros.monitor.functions import FUNCTIONS, Argument, Function, Result, UnitRule
@@ -43,6 +44,7 @@ class Terms:
         self._entities = frozenset(entities)
         self._constants: dict[str, Resolved | None] = {}
         self._open_constants: set[str] = set()
+        self._constant_depth = 0
         self._states = 0
 
     def resolve(
@@ -130,7 +132,13 @@ class Terms:
                 self._scope.fault(codes.UNKNOWN_NAME, message, declared.value.span)
                 return None
             self._open_constants.add(name)
+            if self._constant_depth > MAX_DEPTH:
+                self._scope.diagnostics.append(too_deep(declared.value.span))
+                self._constants[name] = None
+                return None
+            self._constant_depth += 1
             found = self.resolve(declared.value)
+            self._constant_depth -= 1
             if found is not None and not isinstance(found, (Quantity, Plain)):
                 message = f"constant '{name}' is no number, boolean or text"
                 hint = f"'input {name} = ...' names a value read from a topic"

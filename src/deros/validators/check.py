@@ -32,6 +32,11 @@ def check(
     return in_file_order(findings)
 
 
+def check_file(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
+    """Return the findings of one file by itself, in file order, without those of its imports."""
+    return in_file_order([*loaded.diagnostics, *_check_model(loaded.model, False, [], store)])
+
+
 def _watching_rules(loaded: Iterable[LoadedFile]) -> dict[int, list[Rules]]:
     """Return the rules that use each system, by the system's identity."""
     watching: dict[int, list[Rules]] = {}

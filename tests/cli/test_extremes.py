@@ -1,0 +1,261 @@
+"""Whatever a file holds, deros answers within 5 seconds of processor time and 500 MB."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.support.measured import Measured, run
+
+MOST_SECONDS = 5.0
+MOST_MB = 500.0
+
+NODE = "node n : demo\n"
+MB = 1 << 20
+
+
+def check(folder: Path, name: str, *options: object) -> Measured:
+    """Check a model and hold the limits."""
+    done = run("check", *options, name, folder=folder)
+    assert "bug in deros" not in done.out, done.out[-2000:]
+    assert done.code in (0, 1, 2), done.out[-2000:]
+    assert done.seconds < MOST_SECONDS
+    assert done.peak_mb < MOST_MB
+    return done
+
+
+def _million_parameters() -> str:
+    return NODE + "parameters\n" + "".join(f"  name p{i} : double = 1\n" for i in range(1_000_000))
+
+
+MODELS: dict[str, tuple[str, Callable[[], str], str]] = {
+    # A name: suffix, the text, and the code of what is found.
+    "a million parameters": (".rnd", _million_parameters, "DRS008"),
+    "a text of 20 MB": (".rnd", lambda: f'{NODE[:-1]} "{"a" * 20 * MB}"', "DRS008"),
+    "a text of 3 MB": (".rnd", lambda: f'{NODE[:-1]} "{"a" * 3 * MB}"', ""),
+    "escapes of 3 MB": (".rnd", lambda: NODE[:-1] + ' "' + r"\n" * (3 * MB // 2) + '"', ""),
+    "a comment of 3 MB": (".rnd", lambda: f"/*{'*' * 3 * MB}*/ {NODE}", ""),
+    "blanks of 3 MB": (".rnd", lambda: " " * 3 * MB + NODE, ""),
+    "a word of 80 KB as a unit": (".deros", lambda: "const a = 1 " + "x" * 80_000, "DRS007"),
+    "words of 80 KB as a unit": (".deros", lambda: "const a = 1 " + "x*" * 40_000 + "x", "DRS006"),
+    "a unit of 80 KB in brackets": (
+        ".rnd",
+        lambda: f"{NODE}parameters name p : double = 1 [{'x*' * 40_000}x]",
+        "DRS006",
+    ),
+    "units that explode": (
+        ".deros",
+        lambda: (
+            "unit a = 1e300 m\n"
+            + "".join(f"unit a{i} = 1e300 a{i - 1 if i else ''}^99\n" for i in range(6))
+            + "const x = 1 a5"
+        ),
+        "DRS006",
+    ),
+    "units that name each other": (
+        ".deros",
+        lambda: "".join(f"unit u{i} = 2 u{i + 1}\n" for i in range(5_000)) + "unit u5000 = 1 m",
+        "DRS006",
+    ),
+    "constants that name each other": (
+        ".deros",
+        lambda: "".join(f"const u{i} = u{i + 1}\n" for i in range(3_000)) + "const u3000 = 1",
+        "DRS004",
+    ),
+    "a name of 300 letters": (".rnd", lambda: f"node {'n' * 300} : demo", "DRS007"),
+    "a name of 3 MB": (".rnd", lambda: f"node {'n' * 3 * MB} : demo", "DRS007"),
+    "a topic of 1 MB": (".rnd", lambda: f"{NODE}publishes topic {'/a' * MB} : a.B", "DRS105"),
+    "an index of 5,000 digits": (
+        ".deros",
+        lambda: f"input x = topic /a.b[{'9' * 5000}]",
+        "DRS003",
+    ),
+    "an exponent of 5,000 digits": (".deros", lambda: f"const a = 1e{'9' * 5000}", "DRS003"),
+    "a power of 5,000 digits": (".deros", lambda: f"const a = 1 m^{'9' * 5000}", "DRS003"),
+    "a fraction of 1 MB": (".deros", lambda: f"const a = 0.{'0' * MB}1", "DRS003"),
+    "200,000 signs": (".deros", lambda: f"const a = {'-' * 200_000}1", "DRS003"),
+    "functions in functions": (".deros", lambda: f"const a = {'f(' * 99}1{')' * 98}", "DRS003"),
+    "not of for of not": (
+        ".deros",
+        lambda: f"entity e {{ r: {'(not ' * 98}x{' or x for 1 sec)' * 98}; }}",
+        "DRS310",
+    ),
+    "20,000 imports": (".system", lambda: "system s imports " + 'import "x" ' * 20_000, "DRS005"),
+}
+
+
+@pytest.mark.parametrize("what", MODELS)
+def test_extreme_models(tmp_path: Path, what: str) -> None:
+    """A finding at its place, or none where nothing is wrong, and no more than the limits."""
+    suffix, text, code = MODELS[what]
+    (tmp_path / f"model{suffix}").write_text(text())
+    done = check(tmp_path, f"model{suffix}")
+    assert code in done.out[:5000]
+    assert (f"model{suffix}:" in done.out) == bool(code)
+    assert done.code == (2 if code in ("DRS008", "DRS005") else bool(code))
+
+
+def test_a_file_of_100_mb(tmp_path: Path) -> None:
+    """A file that can be no model is not read."""
+    for name in ("a.rnd", "a.system", "a.deros"):
+        with (tmp_path / name).open("wb") as file:
+            file.truncate(100 * MB)
+        done = check(tmp_path, name)
+        assert "DRS008" in done.out
+        assert done.peak_mb < 150
+
+
+NUMBERS = {
+    "default": "node n : demo parameters name p : int = @",
+    "element": "node n : demo parameters name p : int[] = [@]",
+    "lower end": "node n : demo parameters name p : int = 1 in [@, 2]",
+    "upper end": "node n : demo parameters name p : double = 1 in [0, @]",
+    "choice": "node n : demo parameters name p : int = 1 one_of [@]",
+    "size": "node n : demo parameters name p : int[] size @",
+    "power": "node n : demo parameters name p : double = 1 [m^@]",
+    "depth": "node n : demo publishes topic a : std_msgs.Bool qos depth @",
+    "deadline": "node n : demo publishes topic a : std_msgs.Bool qos deadline @ ms",
+    "lease": "node n : demo publishes topic a : std_msgs.Bool qos liveliness automatic lease @ s",
+    "field": "node n : demo publishes topic a : std_msgs.Bool { data[@] [m] }",
+    "period": "node n : demo timers timer t every @ sec",
+}
+
+
+@pytest.mark.parametrize("place", NUMBERS)
+@pytest.mark.parametrize("number", ["9" * 5000, "1e400", "1" * 300, "18446744073709551616"])
+def test_extreme_numbers(tmp_path: Path, place: str, number: str) -> None:
+    """Wherever a number can stand, one that no type holds is a finding where it stands."""
+    from deros.interfaces.store import InterfaceStore
+    from deros.metamodels.load import Repository
+    from deros.validators.check import check as check_loaded
+
+    text = NUMBERS[place].replace("@", number)
+    repository = Repository()
+    loaded = repository.load_text(tmp_path / "model.rnd", text)
+    found = check_loaded([loaded], repository, InterfaceStore((), ()))
+    errors = [each for each in found if each.is_error]
+    fits = place in ("lower end", "upper end") and number in ("1" * 300, "18446744073709551616")
+    assert errors or fits, (place, number[:30])
+
+
+# Files that are none ------------------------------------------------------------------------------
+
+
+def test_pipes_and_devices_as_models_imports_and_definitions(tmp_path: Path) -> None:
+    """Whatever leads to a pipe or a device is a finding, and nothing waits."""
+    os.mkfifo(tmp_path / "pipe.rnd")
+    (tmp_path / "zero.rnd").symlink_to("/dev/zero")
+    (tmp_path / "folder.rnd").mkdir()
+    (tmp_path / "one.system").write_text('system s imports import "pipe.rnd"')
+    (tmp_path / "all.system").write_text('system s imports import "*.rnd"')
+    for name in ("pipe.rnd", "zero.rnd"):
+        assert "not a regular file" in check(tmp_path, name).out
+    assert "DRS201" in check(tmp_path, "one.system").out
+    assert check(tmp_path, "all.system").out.count("DRS001") == 2
+    definitions = tmp_path / "own_msgs" / "msg"
+    definitions.mkdir(parents=True)
+    os.mkfifo(definitions / "Pipe.msg")
+    (definitions / "Zero.msg").symlink_to("/dev/zero")
+    (tmp_path / "model.rnd").write_text(
+        f"{NODE}publishes topic a : own_msgs.Pipe topic b : own_msgs.Zero"
+    )
+    found = check(tmp_path, "model.rnd", "--interfaces", ".").out
+    assert found.count("DRS112") == 2
+    assert found.count("not a regular file") == 2
+
+
+@pytest.mark.parametrize("place", ["demo/demo/n.py", "demo/package.xml", "demo/demo/__init__.py"])
+def test_a_pipe_in_place_of_an_output_stays(tmp_path: Path, place: str) -> None:
+    """It is neither opened nor replaced, and nothing else is written either."""
+    (tmp_path / "n.rnd").write_text(NODE)
+    assert run("generate", "n.rnd", "--target", "python", "-o", "out", folder=tmp_path).code == 0
+    made = sorted(path for path in (tmp_path / "out").rglob("*") if path.is_file())
+    target = next(path for path in made if path.as_posix().endswith(place.partition("/")[2]))
+    target.unlink()
+    os.mkfifo(target)
+    changed = [path for path in made if path != target]
+    for path in changed:
+        path.unlink()
+    done = run("generate", "n.rnd", "--target", "python", "-o", "out", folder=tmp_path)
+    assert done.code == 2, done.out
+    assert "not a regular file" in done.out
+    assert target.is_fifo()
+    assert not any(path.exists() for path in changed)
+
+
+def test_a_trace_without_end(tmp_path: Path) -> None:
+    """A device that goes on for ever is given up where no trace goes on."""
+    (tmp_path / "r.deros").write_text("action stop")
+    done = run("simulate", "r.deros", "--trace", "/dev/zero", folder=tmp_path)
+    assert done.code == 2, done.out[-300:]
+    assert "DRS008" in done.out
+
+
+def test_patterns_over_loops_of_links(tmp_path: Path) -> None:
+    """Each folder is searched once, however many links lead to it."""
+    folder = tmp_path / "nodes" / "inner"
+    folder.mkdir(parents=True)
+    (folder / "n.rnd").write_text(NODE)
+    for name in ("a", "b", "c"):
+        (folder / name).symlink_to("..")
+        (tmp_path / "nodes" / name).symlink_to(".")
+    for pattern in ("nodes/**/*.rnd", "**/**/**/**/n.rnd", "*/*/*/*/*/*/*/*/*/*/*/*.rnd"):
+        text = f'system s imports import "{pattern}" node n : n'
+        (tmp_path / "s.system").write_text(text)
+        assert check(tmp_path, "s.system").code == 0, pattern
+
+
+def test_definitions_that_contain_themselves_or_explode(tmp_path: Path) -> None:
+    """They are refused as soon as they are named, not when somebody has walked through them."""
+    definitions = tmp_path / "own_msgs" / "msg"
+    definitions.mkdir(parents=True)
+    (definitions / "A.msg").write_text("B[] b\n")
+    (definitions / "B.msg").write_text("A a\n")
+    for level in range(30):
+        (definitions / f"L{level}.msg").write_text(f"L{level + 1} a\nL{level + 1} b\n")
+    (definitions / "L30.msg").write_text("float64 x\n")
+    (definitions / "C0.msg").write_text("float64 x\n")
+    for level in range(1, 200):
+        (definitions / f"C{level}.msg").write_text(f"C{level - 1} inner\n")
+    (tmp_path / "s.system").write_text(
+        "system s topics external topic /a : own_msgs.A external topic /l : own_msgs.L0"
+        " external topic /c : own_msgs.C199"
+    )
+    (tmp_path / "r.deros").write_text(
+        'use "s.system" import s\ninput a = topic /a.b\ninput l = topic /l.a\ninput c = topic /c'
+    )
+    for name, count in (("s.system", 3), ("r.deros", 6)):
+        done = check(tmp_path, name, "--interfaces", ".")
+        assert done.out.count("DRS112") == count, done.out
+        assert "contains itself: own_msgs/msg/A → own_msgs/msg/B → own_msgs/msg/A" in done.out
+        assert "more than 10,000 fields" in done.out
+        assert "more than 50 levels deep" in done.out
+
+
+def test_file_names_that_no_text_holds(tmp_path: Path) -> None:
+    """A file whose name is no UTF-8 is reported in every format."""
+    name = os.fsdecode(b"\xff.rnd")
+    (tmp_path / name).write_text("node")
+    for output in ("text", "json", "sarif", "github"):
+        done = subprocess.run(
+            [Path(sys.executable).with_name("deros"), "check", "--format", output, name],
+            cwd=tmp_path,
+            capture_output=True,
+            check=False,
+        )
+        assert done.returncode == 1, done.stderr
+        assert b"bug in deros" not in done.stderr
+
+
+def test_half_a_character_in_a_trace(tmp_path: Path) -> None:
+    """JSON may write what no stream takes; it is reported all the same."""
+    (tmp_path / "r.deros").write_text("action stop")
+    (tmp_path / "t").write_text('{"t": 1, "topic": "\\ud800", "data": {}}\n')
+    done = run("simulate", "r.deros", "--trace", "t", folder=tmp_path)
+    assert done.code == 0, done.out
+    assert "DRS505" in done.out

@@ -1,0 +1,38 @@
+"""What once failed, made small, fails no more."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tools.fuzzing.findings import CORPUS, Finding, keep, kept, signature
+from tools.fuzzing.limits import Limits, limited
+from tools.fuzzing.mutants import Mutant
+from tools.fuzzing.running import Runner, Wrong
+
+KEPT = sorted(each for each in CORPUS.iterdir() if each.is_dir())
+
+
+@pytest.mark.parametrize("folder", KEPT, ids=lambda folder: folder.name)
+def test_it_runs_the_whole_way(tmp_path: Path, folder: Path) -> None:
+    """Load, check, generate, simulate or decode: nothing raises, hangs, grows or is wrong."""
+    runner = Runner(tmp_path)
+    with limited(Limits()):
+        runner.run(kept(folder))
+    assert runner.ends
+
+
+def test_a_mutant_is_kept_as_it_is(tmp_path: Path) -> None:
+    """Its files, its kind and where it is entered come back from the folder."""
+    mutant = Mutant("trace", "p", {"a/b.rnd": b"\xff\0", "trace.jsonl": b"{}"}, "a/b.rnd")
+    keep(tmp_path / "one", mutant)
+    again = kept(tmp_path / "one")
+    assert (again.kind, again.files, again.entry) == (mutant.kind, mutant.files, mutant.entry)
+
+
+def test_findings_are_told_apart_by_place_and_kind() -> None:
+    """Two exceptions from one place are one finding, whatever they name."""
+    assert signature(Wrong("'a' is not Python")) == signature(Wrong("'b' is not Python"))
+    assert signature(Wrong("one")) != signature(Wrong("another"))
+    assert Finding("Wrong: a/b 'c'", "", 0).file_name == "Wrong_a_b_c"

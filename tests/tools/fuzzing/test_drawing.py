@@ -1,0 +1,53 @@
+"""Mutants are drawn from a seed and a number, and are of the size of the examples."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+
+import pytest
+
+from tools.fuzzing.mutants import KINDS, Drawing
+from tools.fuzzing.mutations import LONGEST, mutate_bytes, mutate_text
+from tools.fuzzing.projects import projects
+
+PROJECTS = projects()
+
+
+def test_the_same_seed_and_number_give_the_same_mutant() -> None:
+    """So a finding can be had again from what a run prints."""
+    first, second = Drawing(PROJECTS, 7), Drawing(PROJECTS, 7)
+    assert all(first.draw(number) == second.draw(number) for number in range(200))
+    assert Drawing(PROJECTS, 8).draw(1) != first.draw(1)
+
+
+def test_every_kind_is_drawn_and_changes_something() -> None:
+    """Models and definitions differ from their project; traces and messages are drawn later."""
+    drawing = Drawing(PROJECTS, 1)
+    sources = {each.name: each.files for each in PROJECTS}
+    kinds: Counter[str] = Counter()
+    changed = 0
+    for number in range(400):
+        mutant = drawing.draw(number)
+        kinds[mutant.kind] += 1
+        changed += mutant.files != sources[mutant.project]
+        assert mutant.entry in mutant.files
+    assert kinds.keys() == set(KINDS)
+    assert changed > 0.4 * (kinds["model"] + kinds["definition"])
+
+
+def test_only_the_kinds_asked_for_are_drawn() -> None:
+    """A run may be after one kind alone."""
+    drawing = Drawing(PROJECTS, 1)
+    assert {drawing.draw(number, ("definition",)).kind for number in range(30)} == {"definition"}
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_mutations_end_and_stay_small(seed: int) -> None:
+    """However often a mutation follows another, the text stays within its length."""
+    chance = random.Random(seed)
+    text, data = PROJECTS[0].files[PROJECTS[0].models[0]].decode(), b"\0\1\0\0abc"
+    for _ in range(30):
+        text, data = mutate_text(text, [text], chance), mutate_bytes(data, chance)
+        assert len(text) <= LONGEST
+        assert len(data) <= LONGEST
