@@ -227,3 +227,36 @@ def test_a_second_gate_that_stays_is_a_fault(world: World, ros_env: dict[str, st
     with Stranger(ros_env, GATE) as second:
         second.node.create_publisher(Twist, "/cmd_vel", 10)
         world.until_fault(f"a second gate of the name /{GATE} publishes on it")
+
+
+def test_a_gate_without_a_heartbeat_obeys_a_sole_publisher_only(
+    run_gate: RunGate, ros_env: dict[str, str], world: World
+) -> None:
+    """It cannot know which of two is the safety node, so it believes neither."""
+    from std_msgs.msg import Int32
+
+    heard: list[int] = []
+    wish = world.peer.node.create_publisher(Int32, "/lamp/goal", 10)
+    world.peer.node.create_subscription(
+        Int32, "/lamp/command", lambda message: heard.append(message.data), 10
+    )
+
+    def wish_until(condition: Callable[[], object]) -> None:
+        def once() -> object:
+            wish.publish(Int32(data=7))
+            return condition()
+
+        world.peer.until(once)
+
+    with run_gate("lamp_command_gate", ros_env):
+        world.stop(True)
+        world.peer.until(lambda: heard and wish.get_subscription_count())
+        with Stranger(ros_env) as stranger:
+            publisher = stranger.stop(False)
+            wish_until(publisher.get_subscription_count)
+            world.beating.callback = in_turn(world.live, lambda: stranger.stop(False))
+            wish_until(lambda: len(heard) > 4)
+        world.beating.callback = world.live
+        assert set(heard) == {0}
+        world.stop(False)
+        wish_until(lambda: heard[-1] == 7)

@@ -348,9 +348,9 @@ def test_a_gate_of_numbers_alone(
     with run_gate("lamp_command_gate", ros_env) as process:
         ros_peer.until(lambda: wish.get_subscription_count() and stop.get_subscription_count())
         ros_peer.until(lambda: heard)
-        stop.publish(Bool(data=False))
 
         def wished() -> bool:
+            stop.publish(Bool(data=False))  # a safety node repeats it, too
             wish.publish(Int32(data=7))
             return heard[-1] == 7
 
