@@ -101,11 +101,16 @@ def prepare(stage: Stage, driving: bool) -> None:
     stage.switch_mode(AUTOMATIC)
     stage.wait("automatic mode", lambda s: s.mode == AUTOMATIC)
     if driving:
-        stage.wait("the mission to drive", lambda s: s.speed is not None and s.speed > DRIVING)
+        # After a crash of the safety node, the gate waits until its publishers are forgotten: 20 s.
+        stage.wait("the mission to drive", _drives, 60.0)
 
 
 def _knows_its_inputs(state: RobotState) -> bool:
     return state.heartbeat is not None and state.heartbeat >= BEATS
+
+
+def _drives(state: RobotState) -> bool:
+    return state.speed is not None and state.speed > DRIVING
 
 
 def _stands_free(state: RobotState) -> bool:
