@@ -60,9 +60,9 @@ def main() -> int:
     try:
         _fuzz(job, numbers, arguments.jobs, until, tally)
     except KeyboardInterrupt:
-        print("stopped by hand")
+        print("stopped by hand", flush=True)
     for line in tally.summary(time.monotonic() - started):
-        print(line)
+        print(line, flush=True)
     folder = ROOT / ".tmp" / "fuzz-models"
     for finding in tally.findings.values():
         _store(finding, job, folder / finding.file_name)
@@ -133,7 +133,7 @@ def _store(finding: Finding, job: Job, folder: Path) -> None:
     mutant = minimised(job, finding, _MINIMISING_S)
     if mutant is not None:
         keep(folder / "mutant", mutant)
-        print(f"kept in {folder.relative_to(ROOT)}")
+        print(f"kept in {folder.relative_to(ROOT)}", flush=True)
 
 
 if __name__ == "__main__":
