@@ -331,6 +331,34 @@ def test_no_signal_is_lost_while_the_script_prepares_for_them(
         run.close()
 
 
+CHILD_SIGNALLED = """\
+import os, runpy, signal, sys
+real, script = os.write, os.getpid()
+def write(*arguments):
+    if os.getpid() != script:
+        os.kill(os.getpid(), signal.SIGINT)
+    return real(*arguments)
+os.write = write
+sys.argv = sys.argv[1:]
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
+
+
+def test_a_signal_to_a_child_that_begins_is_not_the_scripts(tmp_path: Path) -> None:
+    """A terminal's Ctrl-C reaches it, too: counted twice, SIGTERM would follow at once."""
+    prefix = make_prefix(tmp_path / "prefix")
+    (tmp_path / "models").mkdir()
+    script = make_script(tmp_path / "models", "node a : steady")
+    env = {"PATH": os.environ["PATH"], "AMENT_PREFIX_PATH": str(prefix)}
+    run = Run([sys.executable, "-IS", "-c", CHILD_SIGNALLED, script], env)
+    try:
+        assert run.end() == 1
+        assert "[Robot] a was killed by SIGINT" in run.lines
+        assert "[Robot] stopping: received SIGINT" not in run.lines
+    finally:
+        run.close()
+
+
 def test_a_second_signal_hurries(start: Start) -> None:
     """Each further Ctrl-C goes on to the next signal at once, whatever the patience."""
     run = start("node a : stubborn", "--stop-timeout", "1000")
