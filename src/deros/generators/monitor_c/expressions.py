@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import functools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from deros.generators.monitor_c.layout import Layout, compared, type_of
@@ -105,10 +105,13 @@ class Conditions:
             case RuleRef():
                 return f"m->{self._layout.verdicts[condition.rule]}"
 
-    def _nested(self, function: str, operands: tuple[Condition, ...]) -> Expression:
-        return functools.reduce(
-            lambda first, second: Call(function, (first, second)), map(self.verdict, operands)
-        )
+    def _nested(self, function: str, operands: Sequence[Condition]) -> Expression:
+        """Return a call of two halves: compilers do not take calls nested too deeply."""
+        if len(operands) == 1:
+            return self.verdict(operands[0])
+        half = (len(operands) + 1) // 2
+        first, second = operands[:half], operands[half:]
+        return Call(function, (self._nested(function, first), self._nested(function, second)))
 
     def _known(self, condition: Truth | Compare | Within) -> Expression:
         flags = dict.fromkeys(

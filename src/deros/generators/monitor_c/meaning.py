@@ -60,8 +60,9 @@ class Meaning:
             case Or():
                 return _joined(" || ", [self.true(each) for each in condition.operands])
             case For():
-                operand = self.true(condition.operand)
-                return f"({operand} && {self.lasted(condition)})"
+                if condition.index not in self._layout.since:
+                    return self.true(condition.operand)
+                return f"({self.runs(condition)} && {self.lasted(condition)})"
             case RuleRef():
                 verdict = self._layout.verdicts[condition.rule]
                 return f"m->{verdict} == {self._layout.macro}_TRUE"
@@ -84,16 +85,24 @@ class Meaning:
             case Or():
                 return _joined(" && ", [self.false(each) for each in condition.operands])
             case For():
-                true, false = self.true(condition.operand), self.false(condition.operand)
-                return f"({false} || ({true} && !{self.lasted(condition)}))"
+                false = self.false(condition.operand)
+                if condition.index not in self._layout.since:
+                    return false
+                return f"({false} || ({self.runs(condition)} && !{self.lasted(condition)}))"
             case RuleRef():
                 verdict = self._layout.verdicts[condition.rule]
                 return f"m->{verdict} == {self._layout.macro}_FALSE"
 
+    def runs(self, condition: For) -> str:
+        """Return when an interval is running, which it must exactly while its operand is true.
+
+        What an interval means is said by this name, not by what its operand means: that would be
+        repeated for each interval around it, and be twice as long with each level.
+        """
+        return f"m->{self._layout.since[condition.index]} != {self._layout.macro}_UNSET"
+
     def lasted(self, condition: For) -> str:
-        """Return when an interval whose operand is true has lasted for long enough."""
-        if condition.index not in self._layout.since:
-            return "\\true"
+        """Return when a running interval has lasted for long enough."""
         since = self._layout.since[condition.index]
         return f"(m->now >= m->{since} + {condition.duration_ns})"
 

@@ -66,15 +66,15 @@ class Predicates:
         yield "ranged_but_for_restart", "", self.ranges(kept)
         bases = {each.base for each in self._view.timeouts}
         bases |= {each.base for each in self._view.ends}
-        yield "timeouts_in_time", ", due", self.timeouts_in_time("due", bases) or ["\\true"]
-        yield "ends_in_time", ", due", self.ends_in_time("due", bases) or ["\\true"]
-        yield "unexpired", "", self.unexpired(bases) or ["\\true"]
+        yield "timeouts_in_time", ", due", self.timeouts_in_time("due", bases)
+        yield "ends_in_time", ", due", self.ends_in_time("due", bases)
+        yield "unexpired", "", self.unexpired(bases)
         yield "judged", "", [f"judged_{name}(m)" for name in self._layout.verdicts.values()]
         yield "acted", "", [f"acted_{name}(m)" for name in self._layout.behave.values()]
         unknown = [
             f"m->{name} == {self.macro('UNKNOWN')}" for name in self._layout.conditions.values()
         ]
-        yield "unacted", "", unknown or ["\\true"]
+        yield "unacted", "", unknown
         yield "sane", "", [*SOUND, "m->due > m->now", *EVALUATED]
 
     def _changed_by_judging(self) -> list[str]:
@@ -151,8 +151,7 @@ class Predicates:
         ]
 
     def _runs(self, condition: For) -> str:
-        since = self._layout.since[condition.index]
-        return iff(f"m->{since} != {self.macro('UNSET')}", self.meaning.true(condition.operand))
+        return iff(self.meaning.runs(condition), self.meaning.true(condition.operand))
 
     def _acted(self, behaviour: Behaviour) -> list[str]:
         """Return what a behaviour's condition is worth, with all that encloses it."""
@@ -176,7 +175,8 @@ class Predicates:
 
 
 def _macro(name: str, parameters: str, parts: list[str]) -> list[str]:
-    """Return the lines of a macro that stands for a conjunction."""
+    """Return the lines of a macro that stands for a conjunction; of nothing, that is true."""
+    parts = parts or ["\\true"]
     joined = [f"{part} &&" for part in parts[:-1]]
     return _lines(f"{name}({parameters}) (", [*joined, f"{parts[-1]})"])
 
