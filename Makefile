@@ -37,10 +37,6 @@ property: $(READY)  ## Compare generated monitors with the reference on 120,000 
 repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (nightly)
 	@$(ALONE) $(BIN)/python tools/repeat.py --jobs $(JOBS)
 
-.PHONY: chaos
-chaos: $(READY)  ## Break the driving feeding robot, two faults at a time, 200 times (nightly)
-	@$(ALONE) $(BIN)/python tools/chaos.py --rounds 200
-
 .PHONY: sanitize
 sanitize: $(READY)  ## Compare monitors in C with the reference, watched by gcc's sanitizers
 	@$(ALONE) $(BIN)/python tools/sanitize.py
@@ -60,6 +56,10 @@ misra: $(READY)  ## Hold the emitted C against MISRA C:2012; needs cppcheck
 .PHONY: prove
 prove: $(READY)  ## Prove that the monitors in C of the examples do what the rules mean; needs Frama-C
 	@$(ALONE) $(BIN)/python tools/prove.py --jobs $(JOBS)
+
+.PHONY: slips
+slips: $(READY)  ## Put every single slip into the C that is proved, and see the proof find each; takes hours
+	@$(ALONE) $(BIN)/python tools/mutate_proof.py --jobs $(JOBS)
 
 .PHONY: lint
 lint: $(READY)  ## Check format, style, types and the layering of the packages

@@ -55,14 +55,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 results.append(_prove(path.resolve(), path.stem, options))
             else:
                 folder = (options.output or Path(temporary)) / path.stem
-                source = c_proof.write(_program(path), folder)
+                source = c_proof.write(program_of(path), folder)
                 results.append(_prove(source, path.stem, options))
                 if not options.functions:
                     results.append(_analyse(source, path.stem))
     return 0 if all(results) else 1
 
 
-def _program(path: Path) -> Program:
+def program_of(path: Path) -> Program:
+    """Return the program of a file of rules."""
     model = Repository().load(path).model
     assert isinstance(model, Rules), f"{path} holds no rules"
     built = build(model, InterfaceStore(()))

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from deros.generators.monitor_c.expressions import integer, number
 from deros.generators.monitor_c.handlers import Handler, Parameter
 from deros.generators.monitor_c.view import MonitorView
+
+TABLES_CHECK = "tables_stand"
+"""The function that looks at the constant tables."""
 
 _MOST = 64
 """How many elements the arrays have that are handed in; their loops do not tell more apart."""
@@ -39,8 +43,10 @@ def eva_program(view: MonitorView) -> str:
             "volatile double any_number;",
             *_arrays(view),
             f"static {prefix}_monitor m;",
+            *_sites(view),
             "int main(void)",
             "{",
+            f"  {TABLES_CHECK}();",
             "  int64_t next = 0;",
             "  bool waits = false;",
             f"  {prefix}_start(&m, (void *)0, any_time, any_time);",
@@ -57,6 +63,47 @@ def eva_program(view: MonitorView) -> str:
             "",
         ]
     )
+
+
+def _sites(view: MonitorView) -> Iterator[str]:
+    """Yield a function that divides by zero unless the table of sites is what the rules say."""
+    yield "static int wrong(int is_wrong) { return is_wrong ? 1 / (is_wrong - is_wrong) : 0; }"
+    yield f"int {TABLES_CHECK}(void)"
+    yield "{"
+    yield "  int all = 0;"
+    for index, site in enumerate(view.sites.rows):
+        row = f"{view.prefix}_sites[{index}]"
+        none = f"{view.macro}_BEHAVIOUR_NONE"
+        behaviour = none if site.behaviour is None else view.behaviour_names[site.behaviour][1]
+        expected = {
+            "action": view.actions[site.action].enumerator,
+            "behaviour": behaviour,
+            "line": f"{site.line}U",
+        }
+        if view.has_arguments:
+            expected["count"] = f"{len(site.arguments)}U"
+            if not site.arguments:
+                expected["arguments"] = "(void *)0"
+        for place, argument in enumerate(site.arguments):
+            for member, value in _argument(argument, view.macro).items():
+                expected[f"arguments[{place}].{member}"] = value
+        yield from (f"  all += wrong({row}.{name} != {each});" for name, each in expected.items())
+    yield "  return all;"
+    yield "}"
+
+
+def _argument(value: bool | int | float | str, macro: str) -> dict[str, str]:
+    """Return what the members of an argument are."""
+    members = {"truth": "0", "integer": "0", "number": "0.0", "text": "(void *)0"}
+    if isinstance(value, bool):
+        return {**members, "type": f"{macro}_TRUTH", "truth": str(int(value))}
+    if isinstance(value, int):
+        return {**members, "type": f"{macro}_INTEGER", "integer": integer(value)}
+    if isinstance(value, float):
+        return {**members, "type": f"{macro}_NUMBER", "number": number(value)}
+    characters = {f"text[{i}]": f"(char){c}" for i, c in enumerate(value.encode() + b"\0")}
+    del members["text"]
+    return {**members, "type": f"{macro}_TEXT", **characters}
 
 
 def _elements(view: MonitorView) -> list[str]:

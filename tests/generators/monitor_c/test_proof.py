@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.support import c_proof
+from tests.support.c_eva import TABLES_CHECK
 from tests.support.c_everything import everything, examples
 from tests.support.c_harness import Unit, unit
 from tools import prove
@@ -52,6 +53,13 @@ SLIPS = {
         "m->too_fast_condition = condition;",
         "m->too_fast_condition = condition;\n  m->stop_active = rises;",
     ),
+    "swapped inputs": (
+        "judge_drive_system_max_speed_exceeded",
+        "truth_of(true, m->speed_missing)",
+        "truth_of(true, m->orientation_missing)",
+    ),
+    "a timeout that is one late": ("expire_speed", "<= m->now", "< m->now"),
+    "a forgotten behaviour": ("act", "    behave_tilted(m);\n", ""),
     "a deadline that is forgotten": (
         "observe_speed",
         "m->due = earlier(m->due, m->now + INT64_C(500000000));",
@@ -102,6 +110,21 @@ def test_slip_is_found(
     path = written(example, tmp_path, source)
     assert prove.main([str(path), "--functions", function, "--timeout", "3"]) == 1
     assert f"not proved: typed_{function}_" in re.sub(r"\s+", " ", capsys.readouterr().out)
+
+
+@needs_frama_c
+@pytest.mark.parametrize(
+    ("right", "wrong"), [("22U, arguments_1", "23U, arguments_1"), ("arguments_3, 1U", "NULL, 0U")]
+)
+def test_wrong_table_is_found(right: str, wrong: str, tmp_path: Path) -> None:
+    """The table that says what the emitted sites stand for is compared with the rules."""
+    (program,) = (each for each in examples() if each.name == "intelligent_one")
+    source = c_proof.write(program, tmp_path)
+    text = source.read_text(encoding="utf-8")
+    assert c_proof.analyse(source, TABLES_CHECK).is_clean
+    assert right in text
+    source.write_text(text.replace(right, wrong), encoding="utf-8")
+    assert not c_proof.analyse(source, TABLES_CHECK).is_clean
 
 
 def test_every_function_has_a_contract() -> None:

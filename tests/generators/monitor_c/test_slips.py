@@ -1,0 +1,53 @@
+"""The slips that the proof must find: made one at a time, in code, of every kind."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+import pytest
+
+from tests.support.c_everything import examples
+from tests.support.c_harness import Unit, unit
+from tests.support.c_mutants import KINDS, Mutant, mutants
+from tools.mutate_proof import equivalent
+
+_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def example() -> Unit:
+    """Return the monitor of the smallest example."""
+    (found,) = (each for each in examples() if each.name == "intelligent_one")
+    return unit(found)
+
+
+@pytest.fixture(scope="module")
+def slips(example: Unit) -> list[Mutant]:
+    """Return all slips in it."""
+    return list(mutants(example.source, example.texts[f"{example.prefix}_monitor.h"]))
+
+
+def test_every_kind_is_made(slips: list[Mutant]) -> None:
+    """There are some of every kind, hundreds in all, and no two are equal."""
+    kinds = Counter(each.kind for each in slips)
+    assert set(kinds) == set(KINDS)
+    assert all(count >= 50 for count in kinds.values())
+    assert len({each.source for each in slips}) == len(slips)
+
+
+def test_slips_are_in_code(example: Unit, slips: list[Mutant]) -> None:
+    """No contract and no comment is changed, but where a whole loop goes with its own."""
+    comments = _COMMENT.findall(example.source)
+    for each in slips:
+        assert each.source != example.source
+        rest = iter(comments)
+        assert all(text in rest for text in _COMMENT.findall(each.source)), each.name
+
+
+def test_listed_slips_are_made(slips: list[Mutant]) -> None:
+    """What is listed as equivalent names a slip, and says why."""
+    names = {each.name for each in slips}
+    for slip, reason in equivalent()["intelligent_one"].items():
+        assert re.sub(r" \(\d+\)$", "", slip) in names
+        assert len(reason) > 20

@@ -1,0 +1,185 @@
+"""Whether the proof of a C monitor finds a slip in it: Frama-C is asked for one function alone."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import signal
+import subprocess
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.support import c_proof
+from tests.support.c_eva import TABLES_CHECK
+from tests.support.c_mutants import TABLES, Mutant
+
+MARGIN = 10
+"""How many times the steps of the slowest goal of a function a goal is given once it has a slip."""
+LEAST_STEPS = 200_000
+"""The steps that it is given at least; a goal that needs the prover at all takes about 15,000."""
+SECONDS = 300
+"""The time that it is given, however many steps: what a busy machine needs for them, and more."""
+
+_GOAL = re.compile(r"\[wp\] \[[^\]]+\] Goal (?P<name>\w+) : Valid(?:.*\((?P<steps>\d+)\))?")
+_LEFT = re.compile(r"\[wp\] \[(?P<how>[^\]]+)\] Goal (?P<name>\w+)(?P<after> : \w+)?")
+_BLOCK = re.compile(r"/\*@.*?\*/\n.*?\b(?P<name>\w+)\([^;{}]*\);", re.DOTALL)
+_MACRO = re.compile(r"#define (?P<name>\w+)\((?:.*\\\n)*.*\n")
+
+
+@dataclass(frozen=True)
+class Found:
+    """What became of a slip: the first goal that was not proved; none if it survives.
+
+    ``refused`` says that it is not C: no compiler takes it, or Frama-C does not.
+    """
+
+    goal: str = ""
+    refused: bool = False
+
+
+class Original:
+    """A monitor without slips: what its functions need to be proved, and what that rests on."""
+
+    def __init__(self, source: Path, environment: dict[str, str]) -> None:
+        """Read the texts beside a source; proofs run in ``environment``."""
+        self.source = source
+        self.text = source.read_text(encoding="utf-8")
+        prefix = source.name.removesuffix("_monitor.c")
+        folder = source.parent
+        self.header = (folder / f"{prefix}_monitor.h").read_text(encoding="utf-8")
+        self.contracts = (folder / f"{prefix}_contracts.h").read_text(encoding="utf-8")
+        self._environment = environment
+        self._blocks = {e["name"]: e.group() for e in _BLOCK.finditer(self.contracts)}
+        self._macros = {e["name"]: e.group() for e in _MACRO.finditer(self.contracts)}
+
+    def key(self, mutant: Mutant) -> str:
+        """Return what tells whether a result still stands: all that the proof of a slip reads."""
+        body = mutant.before + mutant.after
+        function = re.search(
+            rf"^[^\n]*\b{mutant.function}\([^;{{]*\)\n\{{.*?^\}}", mutant.source, re.M | re.S
+        )
+        text = function.group() if function else mutant.source
+        todo = {mutant.function, *re.findall(r"\b(\w+)\(", text)}
+        seen: set[str] = set()
+        parts = [body, text, self.header]
+        while todo - seen:
+            name = min(todo - seen)
+            seen.add(name)
+            part = self._blocks.get(name, "") + self._macros.get(name, "")
+            parts.append(part)
+            todo |= {each for each in re.findall(r"\b(\w+)\(", part) if each in self._macros}
+        parts += [each for each in self.contracts.split("\n\n") if "axiomatic" in each]
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:20]
+
+    def steps(self, function: str) -> int:
+        """Prove a function as it is; return the steps of its slowest goal.
+
+        Raises:
+            ValueError: it is not proved by the one prover that slips are tried with.
+        """
+        log = "".join(_lines([*_options(0), "-wp-fct", function], self.source, self._environment))
+        proved = re.search(r"Proved goals: +(\d+) / (\d+)", log)
+        if proved is None or proved[1] != proved[2]:
+            raise ValueError(f"{function} is not proved without a slip:\n{log}")
+        return max([int(each["steps"] or 0) for each in _GOAL.finditer(log)], default=0)
+
+    def find(self, mutant: Mutant, folder: Path, steps: int) -> Found:
+        """Return what becomes of a slip; ``folder`` is where its text is written."""
+        source = folder / self.source.name
+        for path in [*self.source.parent.glob("*.h"), self.source.parent / "eva.c"]:
+            (folder / path.name).write_text(path.read_text(encoding="utf-8"), encoding="utf-8")
+        source.write_text(mutant.source, encoding="utf-8")
+        if not _compiles(source):
+            return Found(refused=True)
+        if mutant.function == TABLES:
+            analysis = c_proof.analyse(source, TABLES_CHECK)
+            return Found("" if analysis.is_clean else TABLES_CHECK)
+        limit = max(LEAST_STEPS, MARGIN * steps)
+        for goals in (["-wp-prop", "@ensures"], []):  # most are found by what is ensured
+            found = self._try([*_options(limit), *goals], mutant, source)
+            if found.goal or found.refused:
+                break
+        return found
+
+    def _try(self, options: Sequence[str], mutant: Mutant, source: Path) -> Found:
+        arguments = [*options, "-wp-fct", mutant.function]
+        done = ""
+        for line in _lines(arguments, source, self._environment):
+            if "guaranteed RTE" in line:  # what is sure to fail is no goal
+                return Found("a run-time error")
+            left = _LEFT.match(line)
+            if left and not _GOAL.match(line):
+                return Found(left["name"])
+            done += line
+        proved = re.search(r"Proved goals: +(\d+) / (\d+)", done)
+        if proved is None and ("User Error" in done or "syntax error" in done):
+            return Found(refused=True)
+        if "No goal generated" in done or "No proof obligations" in done:
+            return Found()
+        if proved is None or proved[1] != proved[2]:
+            raise RuntimeError(f"Frama-C has not come to its end: {mutant.name}\n{done}")
+        return Found()
+
+
+def _options(steps: int) -> list[str]:
+    return [
+        *("-no-autoload-plugins", "-load-module", "wp,rtegen"),
+        *c_proof.OPTIONS,
+        *("-wp-prover", "cvc4-reals", "-wp-par", "2", "-wp-timeout", str(SECONDS)),
+        *(("-wp-steps", str(steps)) if steps else ()),
+    ]
+
+
+def _lines(arguments: Sequence[str], source: Path, environment: dict[str, str]) -> Iterator[str]:
+    """Yield what Frama-C prints; end it, and its provers, when nobody asks for more."""
+    command = c_proof.command([*arguments, source.name])
+    with subprocess.Popen(
+        command,
+        cwd=source.parent,
+        env={**environment, "PWD": str(source.parent)},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        assert process.stdout is not None
+        try:
+            yield from process.stdout
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+
+
+def _compiles(source: Path) -> bool:
+    command = ["gcc", "-std=c99", "-pedantic-errors", "-fsyntax-only", "-w", source.name]
+    return (
+        subprocess.run(command, cwd=source.parent, capture_output=True, check=False).returncode == 0
+    )
+
+
+class Results:
+    """What became of slips, kept in a file, so that a run can be interrupted and go on."""
+
+    def __init__(self, path: Path) -> None:
+        """Read what is known."""
+        self._path = path
+        self._known: dict[str, Found] = {}
+        if path.exists():
+            for line in path.read_text(encoding="utf-8").splitlines():
+                row = json.loads(line)
+                self._known[row["key"]] = Found(row["goal"], row["refused"])
+
+    def get(self, key: str) -> Found | None:
+        """Return what is known of a slip."""
+        return self._known.get(key)
+
+    def add(self, key: str, name: str, found: Found) -> None:
+        """Write what has become of a slip."""
+        self._known[key] = found
+        row = {"key": key, "name": name, "goal": found.goal, "refused": found.refused}
+        with self._path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(row) + "\n")
