@@ -33,7 +33,8 @@ def _modules() -> list[Path]:
 
 def _is_text(path: Path) -> bool:
     """Whether a module is never imported: its text goes out into generated packages."""
-    return path.parent == SOURCE / "generators/safety_python/runtime"
+    folders = ("rosnode_python/runtime", "safety_python/runtime")
+    return path.parent in [SOURCE / "generators" / folder for folder in folders]
 
 
 def _imported(path: Path) -> Iterator[str]:

@@ -347,6 +347,14 @@ def tidied(text: str) -> str:
     return re.sub(r"\n+(\n(?: +\}|\};))", r"\1", text)
 
 
+def runtime_in_package(text: str, package: str) -> str:
+    """Return a file of a generator's runtime in the namespace ``runtime`` of a package."""
+    text = text.replace("DEROS_RUNTIME", package.upper())
+    return text.replace("deros_runtime/", f"{package}/").replace(
+        "deros_runtime", f"{package}::runtime"
+    )
+
+
 def mark_long_lines(text: str) -> str:
     """Have the linters pass over lines that no wrapping could keep to the line length.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from importlib import resources
 
 from deros import codes
 from deros.diagnostics import report
@@ -16,6 +17,7 @@ from deros.generators.cpp_source import (
     include_lines,
     is_reserved,
     mark_long_lines,
+    runtime_in_package,
     standard_headers,
     statement,
     tidied,
@@ -26,6 +28,9 @@ from deros.generators.rosnode_cpp.includes import base_header, base_source, user
 from deros.generators.rosnode_cpp.view import NodeView, PackageView, Provided, package_view
 from deros.generators.templates import environment
 from deros.metamodels.node import NodeType
+
+_MAX_GOALS = 8
+"""How many goals a node executes at the same time, unless its class says otherwise."""
 
 __all__ = ["Provided", "generate", "licensed", "package_files"]
 
@@ -73,12 +78,28 @@ def package_files(
     }
     for node in package.nodes:
         files |= _node_files(package, node)
+    if any(node.actions for node in package.nodes):
+        files |= _goal_files(root, holder)
     return files
+
+
+def _goal_files(package: str, holder: str) -> dict[str, File]:
+    """Return what every package has whose nodes have actions."""
+    folder = resources.files("deros.generators.rosnode_cpp.runtime")
+    paths = {
+        f"{package}/include/{package}/runtime/goal_threads.hpp": "goal_threads.hpp",
+        f"{package}/src/runtime/goal_threads.cpp": "goal_threads.cpp",
+    }
+    texts = {path: (folder / name).read_text(encoding="utf-8") for path, name in paths.items()}
+    return {
+        path: File(licensed(runtime_in_package(text, package), holder))
+        for path, text in texts.items()
+    }
 
 
 def _node_files(package: PackageView, node: NodeView) -> dict[str, File]:
     root, include = package.name, f"{package.name}/include/{package.name}"
-    header = _cpp("base.hpp", package, node, base_header(node))
+    header = _cpp("base.hpp", package, node, base_header(package.name, node))
     source = _cpp("base.cpp", package, node, base_source(node))
     files = {
         f"{include}/{node.stem}_base.hpp": File(header),
@@ -127,8 +148,18 @@ def _render(template: str, **names: object) -> str:
         call=call,
         comment=comment,
         expression=expression,
+        max_goals=_MAX_GOALS,
+        pursue=_pursue,
         statement=statement,
         string=cpp_string,
+    )
+
+
+def _pursue(action: str) -> str:
+    """Return what the function that executes the goals of an action has to do."""
+    return (
+        f"Execute a goal of {action}, in a thread of its own: succeed, abort or cancel it. Return "
+        "soon when is_executing() is false: a cancel was accepted, or the node ends."
     )
 
 

@@ -8,7 +8,7 @@ _DESCRIPTOR = "rcl_interfaces/msg/parameter_descriptor.hpp"
 _RESULT = "rcl_interfaces/msg/set_parameters_result.hpp"
 
 
-def base_header(node: NodeView) -> list[str]:
+def base_header(package: str, node: NodeView) -> list[str]:
     """Return the headers that the base class's header includes, those of ROS 2 and the caller's."""
     headers = ["rclcpp/rclcpp.hpp", *(port.header for port in node.ports)]
     if node.lifecycle:
@@ -19,6 +19,8 @@ def base_header(node: NodeView) -> list[str]:
         headers.append("rclcpp_lifecycle/managed_entity.hpp")
     if node.actions or node.action_clients:
         headers.append("rclcpp_action/rclcpp_action.hpp")
+    if node.actions:
+        headers.append(f"{package}/runtime/goal_threads.hpp")
     return headers
 
 

@@ -154,7 +154,8 @@ class NodeView(NodeBase[PortView, TimerView]):
     def library(self) -> tuple[str, ...]:
         """The sources of the node's library."""
         own = self.provided.sources if self.provided else (f"src/{self.stem}.cpp",)
-        return tuple(sorted({f"src/{self.stem}_base.cpp", *own}))
+        goals = ("src/runtime/goal_threads.cpp",) if self.actions else ()
+        return tuple(sorted({f"src/{self.stem}_base.cpp", *own, *goals}))
 
     @property
     def program(self) -> tuple[str, ...]:

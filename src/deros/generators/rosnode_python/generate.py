@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from importlib import resources
 
 from deros import codes
 from deros.diagnostics import report
 from deros.generators.names import python_identifier
 from deros.generators.node_package import maintainer, nodes_beside, refuse_legacy, unsupported
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
-from deros.generators.python_source import call, expression, mark_long_lines
+from deros.generators.python_source import call, expression, mark_long_lines, wrapped
 from deros.generators.rosnode_python.imports import base_imports, user_imports
-from deros.generators.rosnode_python.view import PackageView, package_view
+from deros.generators.rosnode_python.view import GOAL_THREADS, PackageView, package_view
 from deros.generators.templates import environment
 from deros.metamodels.node import NodeType
+
+_MAX_GOALS = 8
+"""How many goals a node executes at the same time, unless its class says otherwise."""
+
+_EXECUTION = (
+    "It runs in a thread of its own. Return soon when goal_handle.is_active is false, because the "
+    "node ends, or goal_handle.is_cancel_requested is true."
+)
+"""What holds for every function that executes goals."""
 
 
 def generate(model: NodeType, context: Context, options: Options) -> Files:
@@ -54,9 +64,11 @@ def package_files(
     copyright_line = options.get("copyright", "")
     package = package_view(ordered, maintainer(options), copyright_line, raw, needs)
     files = _package_level(package)
+    root = f"{package.name}/{package.name}"
     for node in package.nodes:
-        root = f"{package.name}/{package.name}"
-        base = _render("base.py", package=package, node=node, imports=base_imports(node))
+        base = _render(
+            "base.py", package=package, node=node, imports=base_imports(package.name, node)
+        )
         files[f"{root}/{node.base_module}.py"] = File(base)
         if not node.raw:
             imports = user_imports(package, node)
@@ -67,6 +79,10 @@ def package_files(
         if node.parameters:
             config = _render("config.yaml", package=package, node=node)
             files[f"{package.name}/config/{node.name}.yaml"] = File(config)
+    if any(node.actions for node in package.nodes):
+        folder = resources.files("deros.generators.rosnode_python.runtime")
+        text = (folder / f"{GOAL_THREADS}.py").read_text(encoding="utf-8")
+        files[f"{root}/{GOAL_THREADS}.py"] = File(licensed(text, copyright_line))
     return files
 
 
@@ -96,7 +112,13 @@ def licensed(text: str, copyright_line: str) -> str:
 
 def _render(template: str, **names: object) -> str:
     loaded = environment("deros.generators.rosnode_python").get_template(f"{template}.j2")
-    text = loaded.render(names, call=call, expression=expression)
+    text = loaded.render(
+        names,
+        call=call,
+        expression=expression,
+        max_goals=_MAX_GOALS,
+        execution=wrapped(_EXECUTION, indent=8),
+    )
     return mark_long_lines(text) if template.endswith(".py") else text
 
 

@@ -8,7 +8,7 @@ from deros.generators.python_source import import_lines
 from deros.generators.rosnode_python.view import NodeView, PackageView, PortView, interface_imports
 
 
-def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
+def base_imports(package: str, node: NodeView) -> tuple[list[str], list[str]]:
     """Return the import statements of the base class: standard library, then the rest."""
     standard: dict[str, set[str]] = {"typing": {"Any"}}
     if not node.raw:
@@ -27,7 +27,7 @@ def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
     add = _Adder(rest)
     if not node.raw:
         add("rclpy")
-        add("rclpy.executors", f"{'Multi' if node.actions else 'Single'}ThreadedExecutor")
+        add("rclpy.executors", "SingleThreadedExecutor")
         add("rclpy.signals", "SignalHandlerOptions")
         add("rclpy.task", "Future")
     if node.lifecycle:
@@ -38,9 +38,9 @@ def base_imports(node: NodeView) -> tuple[list[str], list[str]]:
         add("rclpy.node", "Node")
     _parameter_imports(node, add)
     if node.actions:
-        add("rclpy.action", "ActionServer", "CancelResponse", "GoalResponse")
+        add("rclpy.action", "CancelResponse", "GoalResponse")
         add("rclpy.action.server", "ServerGoalHandle")
-        add("rclpy.callback_groups", "ReentrantCallbackGroup")
+        add(f"{package}.goal_threads", "GoalServer", "GoalThreads")
     if node.action_clients:
         add("rclpy.action", "ActionClient")
     if node.clients or node.action_clients:

@@ -26,6 +26,9 @@ from deros.generators.rosnode_python.qos import qos_view
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 
+GOAL_THREADS = "goal_threads"
+"""The module that packages have whose nodes have actions."""
+
 _RAW_HOOKS = ("on_named",)
 
 # Names that the templates use themselves; a message type called so is imported under another name.
@@ -33,7 +36,6 @@ _TAKEN = frozenset(
     (
         "ABC",
         "ActionClient",
-        "ActionServer",
         "Any",
         "Callable",
         "CancelResponse",
@@ -43,18 +45,18 @@ _TAKEN = frozenset(
         "Duration",
         "FloatingPointRange",
         "Future",
+        "GoalServer",
+        "GoalThreads",
         "GoalResponse",
         "HistoryPolicy",
         "IntegerRange",
         "LifecycleNode",
         "LivelinessPolicy",
-        "MultiThreadedExecutor",
         "Node",
         "Parameter",
         "ParameterDescriptor",
         "Parameters",
         "QoSProfile",
-        "ReentrantCallbackGroup",
         "ReliabilityPolicy",
         "ServerGoalHandle",
         "SetParametersResult",
@@ -287,6 +289,9 @@ def package_view(
         name = python_identifier(model.name)
         origin = f"node {model.name!r}"
         modules += [Emitted(m, origin, model.name_span) for m in (name, f"{name}_base")]
+    with_actions = [model for model in models if model.ports_of(PortKind.ACTION)]
+    for model in with_actions[:1]:
+        modules.append(Emitted(GOAL_THREADS, "the threads of goals", model.name_span))
     check_collisions(modules, f"the modules of package {models[0].package}", files=True)
     nodes = tuple(node_view(model, model.name in raw) for model in models)
     description = " ".join(node.summary for node in nodes)

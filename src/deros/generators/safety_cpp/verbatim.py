@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from importlib import resources
 
+from deros.generators.cpp_source import runtime_in_package
 from deros.generators.protocol import File
 from deros.generators.rosnode_cpp.generate import licensed
 
@@ -36,8 +37,4 @@ def runtime_files(package: str, copyright_line: str = "") -> dict[str, File]:
 def runtime_text(name: str, package: str, generator: str = "safety_cpp") -> str:
     """Return one file of a generator's runtime in the namespace ``runtime`` of a package."""
     folder = resources.files(f"deros.generators.{generator}.runtime")
-    text = (folder / name).read_text(encoding="utf-8")
-    text = text.replace("DEROS_RUNTIME", package.upper())
-    return text.replace("deros_runtime/", f"{package}/").replace(
-        "deros_runtime", f"{package}::runtime"
-    )
+    return runtime_in_package((folder / name).read_text(encoding="utf-8"), package)

@@ -22,7 +22,8 @@ void Counter::on_release(const std_msgs::msg::Empty & /*msg*/)
   RCLCPP_WARN_ONCE(get_logger(), "on_release does nothing yet");
 }
 
-/// Pursue a goal of count: succeed, abort or cancel it.
+/// Execute a goal of count, in a thread of its own: succeed, abort or cancel it. Return soon when
+/// is_executing() is false: a cancel was accepted, or the node ends.
 void Counter::execute_count(
   rclcpp_action::ServerGoalHandle<test_msgs::action::Fibonacci> & goal_handle)
 {

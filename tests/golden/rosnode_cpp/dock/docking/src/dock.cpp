@@ -22,7 +22,8 @@ void Dock::on_clock(const rosgraph_msgs::msg::Clock & /*msg*/)
   RCLCPP_WARN_ONCE(get_logger(), "on_clock does nothing yet");
 }
 
-/// Pursue a goal of dock: succeed, abort or cancel it.
+/// Execute a goal of dock, in a thread of its own: succeed, abort or cancel it. Return soon when
+/// is_executing() is false: a cancel was accepted, or the node ends.
 void Dock::execute_dock(
   rclcpp_action::ServerGoalHandle<example_interfaces::action::Fibonacci> & goal_handle)
 {

@@ -14,7 +14,12 @@ class Counter(CounterBase):
         self.get_logger().warning('on_release does nothing yet', once=True)
 
     def execute_count(self, goal_handle: ServerGoalHandle) -> Fibonacci.Result:
-        """Pursue a goal of count: succeed, abort or cancel it, and return the result."""
+        """
+        Execute a goal of count: succeed, abort or cancel it, and return the result.
+
+        It runs in a thread of its own. Return soon when goal_handle.is_active is false, because
+        the node ends, or goal_handle.is_cancel_requested is true.
+        """
         self.get_logger().warning('execute_count does nothing yet', once=True)
         goal_handle.abort()
         return Fibonacci.Result()

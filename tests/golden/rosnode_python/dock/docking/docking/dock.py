@@ -14,7 +14,12 @@ class Dock(DockBase):
         self.get_logger().warning('on_clock does nothing yet', once=True)
 
     def execute_dock(self, goal_handle: ServerGoalHandle) -> Fibonacci.Result:
-        """Pursue a goal of dock: succeed, abort or cancel it, and return the result."""
+        """
+        Execute a goal of dock: succeed, abort or cancel it, and return the result.
+
+        It runs in a thread of its own. Return soon when goal_handle.is_active is false, because
+        the node ends, or goal_handle.is_cancel_requested is true.
+        """
         self.get_logger().warning('execute_dock does nothing yet', once=True)
         goal_handle.abort()
         return Fibonacci.Result()
