@@ -1,0 +1,70 @@
+"""A component is unloaded amid its goals: none of them uses the node once it is freed."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.breakers import cpp_breaker
+from tests.support.containers import Loader, needs_ros2, running_container
+from tests.support.cpp import colcon_build, instrument, needs_rclcpp, overlay, sanitized
+from tests.support.ros import Peer, stop
+
+pytestmark = [pytest.mark.ros, needs_rclcpp, needs_ros2]
+
+SOURCES = ("src/breaker.cpp", "src/breaker_base.cpp", "src/runtime/goal_threads.cpp")
+TIMES = 10
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give an install folder with a node that notices freed memory."""
+    source = cpp_breaker(tmp_path_factory.mktemp("workspace"))
+    instrument(source / "breaking", "breaker", SOURCES)
+    return colcon_build(source)
+
+
+@pytest.mark.parametrize(
+    "kind", ["component_container", "component_container_isolated", "component_container_mt"]
+)
+def test_goals_of_an_unloaded_node_are_aborted(
+    kind: str, installed: Path, ros_env: dict[str, str], ros_peer: Peer
+) -> None:
+    """The node is destroyed when its goals have returned, and only then."""
+    from rclpy.action.client import ActionClient
+    from test_msgs.action import Fibonacci
+
+    client = ActionClient(ros_peer.node, Fibonacci, "count")
+    feedback: list[Any] = []
+    env = sanitized(overlay(installed, ros_env))
+    with running_container(env, ros_peer, kind) as container:
+        loader = Loader(ros_peer)
+
+        def send_goal() -> None:
+            sent = client.send_goal_async(Fibonacci.Goal(order=5), feedback.append)
+            ros_peer.until(sent.done)
+            assert sent.result().accepted
+
+        for _ in range(TIMES):
+            number = loader.load("breaking", "breaking::Breaker")
+            ros_peer.until(client.server_is_ready)
+            for _ in range(3):
+                send_goal()
+            feedback.clear()
+            ros_peer.until(lambda: feedback)
+            loader.unload(number)
+            ros_peer.until(
+                lambda: (
+                    not ros_peer.node.count_publishers("/echo")
+                    or container.process.poll() is not None
+                )
+            )
+        loader.load("breaking", "breaking::Breaker")
+        ros_peer.until(client.server_is_ready)
+        send_goal()
+        code, output = stop(container.process, signal.SIGINT)
+    client.destroy()
+    assert (code, "AddressSanitizer" in output) == (0, False), output
