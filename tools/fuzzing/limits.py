@@ -85,13 +85,21 @@ def kept_mb() -> float:
     return int(Path("/proc/self/statm").read_text().split()[1]) * _PAGE / _MB
 
 
-def processor_seconds(pid: int) -> float | None:
-    """Return the processor time of another process, or ``None`` if it is gone."""
+@dataclass(frozen=True)
+class Usage:
+    """What the kernel says of another process: its processor time, and whether it could run."""
+
+    seconds: float
+    runnable: bool
+
+
+def usage(pid: int) -> Usage | None:
+    """Return the usage of another process, or ``None`` if it is gone."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     except OSError:
         return None
-    return (int(fields[11]) + int(fields[12])) / _TICKS
+    return Usage((int(fields[11]) + int(fields[12])) / _TICKS, fields[0] == "R")
 
 
 _TICKS = 100  # of the kernel's user interface, on every Linux

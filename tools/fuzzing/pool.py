@@ -30,7 +30,7 @@ from tools.fuzzing.limits import (
     enforce,
     kept_mb,
     limited,
-    processor_seconds,
+    usage,
 )
 from tools.fuzzing.minimising import minimise
 from tools.fuzzing.mutants import KINDS, Drawing, Kind, Mutant
@@ -205,7 +205,10 @@ class _Worker:
     def _stuck(self) -> str:
         """Say how the mutant at work breaks its limits, if the timer has not ended it."""
         begun = self._begun.value
-        used = processor_seconds(self._process.pid or 0) or 0.0
+        now = usage(self._process.pid or 0)
+        used = now.seconds if now is not None else 0.0
+        if now is not None and now.runnable:
+            self._since = time.monotonic()  # it waits for nothing but its turn
         if begun != self._seen:
             self._seen, self._since, self._since_cpu = begun, time.monotonic(), used
         elif begun >= 0 and used - self._since_cpu > self._job.limits.seconds * _PATIENCE:
