@@ -45,15 +45,19 @@ def test_names_that_differ_in_underscores_collide(sections: str, name: str) -> N
 
 
 @pytest.mark.parametrize(
-    ("other", "within"),
-    [("a_main", "'a_main' in the sources of package b"), ("A", "'A' in the namespace b")],
+    ("name", "other", "within"),
+    [
+        ("a", "a_main", "'a_main' in the sources of package b"),
+        ("a", "A", "'a' and 'A' in the sources of package b, one file where case does not count"),
+        ("a_b", "aB", "'AB' in the namespace b"),
+    ],
 )
-def test_nodes_of_one_package_collide(other: str, within: str, tmp_path: Path) -> None:
+def test_nodes_of_one_package_collide(name: str, other: str, within: str, tmp_path: Path) -> None:
     """Two nodes have neither a file nor a class in common."""
-    (tmp_path / "a.rnd").write_text("node a : b")
+    (tmp_path / "own.rnd").write_text(f"node {name} : b")
     (tmp_path / "other.rnd").write_text(f"node {other} : b")
     context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(tmp_path / "a.rnd").model
+    model = context.repository.load(tmp_path / "own.rnd").model
     assert isinstance(model, NodeType)
     with pytest.raises(GenerationError, match=within):
         generate(model, context, {})
