@@ -184,7 +184,9 @@ class Robot:
         node.create_subscription(DiagnosticArray, f"/{NODE}/diagnostics", self._take_statuses, 10)
         self._speed = node.create_publisher(Float64, "/speed", 5)
         self._mode = node.create_publisher(UInt8, "/mode", kept)
+        self._health = node.create_publisher(DiagnosticStatus, "/diagnostics", 5)
         self._message, self._mode_message = Float64, UInt8
+        self._health_message = DiagnosticStatus
 
     def _take_event(self, msg: Any) -> None:
         self.events.append({"message": msg.message, **{v.key: v.value for v in msg.values}})
@@ -236,6 +238,10 @@ class Robot:
     def take_over(self, mode: int) -> None:
         """Publish the operator's mode."""
         self._mode.publish(self._mode_message(data=mode))
+
+    def report_health(self) -> None:
+        """Publish that the body is well."""
+        self._health.publish(self._health_message(level=self._health_message.OK))
 
     def set_parameter(self, name: str, value: bool) -> None:
         """Change a parameter of the safety node."""

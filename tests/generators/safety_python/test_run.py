@@ -82,14 +82,15 @@ def test_a_failing_action_does_not_keep_others_from_acting(
 
 
 def test_a_silent_sensor_and_a_takeover(start: Start, robot: Robot) -> None:
-    """A deadline acts without any message; another action resets it, as the rules say."""
+    """A deadline acts without any message; another action resets it, once all causes are over."""
     with start() as process:
         robot.meet()
         robot.peer.until(lambda: robot.limit[-1] == 0.2)
-        # A takeover may overtake the speed and be refused; then the operator does it again.
+        # A takeover may overtake what ends the causes and be refused; then it is done again.
         modes = itertools.cycle([0, 1])
 
         def released() -> bool:
+            robot.report_health()
             robot.take_over(next(modes))
             return robot.limit[-1] == 0.0
 
