@@ -79,6 +79,12 @@ def test_both_report_the_same_of_the_same_messages(
             robot.meet()
             robot.event("trigger", action="crawl")  # nobody has driven yet
             robot.drive_until(0.9, lambda: robot.stop[-1])
+
+            def is_well() -> bool:
+                robot.report_health()
+                return robot.status("body.ill").message.startswith("false")
+
+            robot.drive_until(0.9, is_well)
             robot.take_over(1)
             robot.peer.until(lambda: robot.status("operator.manual").values.get("mode") == "1")
             robot.event("reset", action="crawl")
@@ -96,10 +102,12 @@ def test_both_report_the_same_of_the_same_messages(
                 name: (status.level, status.message, _timeless(status.values))
                 for name, status in robot.statuses.items()
             }
+            robot.drive_until(0.1, lambda: robot.reset().success)
             events = [
                 _timeless(robot.event("trigger", action="stop")),
                 _timeless(robot.event("trigger", action="crawl")),
                 _timeless(robot.event("trigger", action="log_state")),
+                _timeless(robot.event("refused", action="stop")),
                 _timeless(robot.event("reset", action="stop")),
                 _timeless(robot.event("start")),
             ]
