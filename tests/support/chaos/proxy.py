@@ -3,7 +3,8 @@
 Each topic is subscribed to in the domain where it is published, and published in the others with
 the QoS that its publisher has: reliable, with its durability and depth. The bytes stay as they
 are. When the node behind a topic ends, so does its publisher here, and a new one takes over when
-the node is back: who listens there sees what it would see without a proxy.
+the node is back: who listens there sees what it would see without a proxy. What a foreign process
+says to the safety node has arrived there, too: such topics are noted by a subscription over there.
 """
 
 from __future__ import annotations
@@ -16,8 +17,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from tests.support.chaos.links import BY_NAME, CARRIED, DOMAINS, LINKS, PEDAL, Link, Topic
+from tests.support.chaos.links import (
+    BY_NAME,
+    CARRIED,
+    DOMAINS,
+    LINKS,
+    PEDAL,
+    SAFETY,
+    Link,
+    Topic,
+)
 from tests.support.chaos.record import Record
+from tests.support.chaos.schedule import FOREIGN
+
+_SHARED = frozenset(Link(name, domain) for name, domain in FOREIGN if domain == SAFETY)
+"""Links into a domain where somebody else may speak, too."""
 
 HISTORY = 50
 """Messages of a link that may be said again."""
@@ -63,6 +77,8 @@ class Proxy:
             self._lines[link] = Line(link, self._publisher(link))
         for topic in (*CARRIED, PEDAL):
             self._subscribe(topic)
+        for link in _SHARED:
+            self._note_arrivals(link)
         for name, context in zip(DOMAINS, self._contexts, strict=True):
             executor = EventsExecutor(context=context)
             executor.add_node(self.nodes[name])
@@ -96,6 +112,16 @@ class Proxy:
             topic.message_type(), topic.name, receive, _profile(topic, 100), raw=True
         )
 
+    def _note_arrivals(self, link: Link) -> None:
+        topic = BY_NAME[link.topic]
+
+        def receive(data: bytes) -> None:
+            self._record.add("arrived", link.target, topic.name, data)
+
+        self.nodes[link.target].create_subscription(
+            topic.message_type(), topic.name, receive, _profile(topic, 100), raw=True
+        )
+
     # What becomes of a message ------------------------------------------------------------------
 
     def _carry(self, line: Line, data: bytes) -> None:
@@ -115,7 +141,8 @@ class Proxy:
                 self._deliver(line, word)
 
     def _deliver(self, line: Line, data: bytes) -> None:
-        self._record.add("arrived", line.link.target, line.link.topic, data)
+        if line.link not in _SHARED:
+            self._record.add("arrived", line.link.target, line.link.topic, data)
         if line.publisher is not None:
             line.publisher.publish(data)
 
