@@ -12,7 +12,11 @@ from pathlib import Path
 
 _KILLED_AFTER_S = 300.0
 _STARTER = """\
-import resource, sys
+import atexit, os, resource, sys
+def report(file=int(sys.argv.pop(1))):
+    lines = open("/proc/self/status").read().splitlines()
+    os.write(file, next(each for each in lines if each.startswith("VmHWM")).encode())
+atexit.register(report)
 resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))
 resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
 from deros.cli.main import main
@@ -40,10 +44,15 @@ class Measured:
 
 def run(*arguments: object, folder: Path | None = None) -> Measured:
     """Run ``deros`` and measure it."""
-    command = [sys.executable, "-c", _STARTER, *map(str, arguments)]
-    with tempfile.TemporaryFile() as out:
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as peak:
+        command = [sys.executable, "-c", _STARTER, str(peak.fileno()), *map(str, arguments)]
         process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=out, stderr=out, cwd=folder
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=out,
+            cwd=folder,
+            pass_fds=[peak.fileno()],
         )
         watchdog = threading.Timer(_KILLED_AFTER_S, process.kill)
         watchdog.start()
@@ -52,5 +61,10 @@ def run(*arguments: object, folder: Path | None = None) -> Measured:
         process.returncode = os.waitstatus_to_exitcode(status)
         out.seek(0)
         text = out.read().decode(errors="replace")
+        peak.seek(0)
+        reported = peak.read().split()
     seconds = usage.ru_utime + usage.ru_stime
-    return Measured(process.returncode, text, seconds, usage.ru_maxrss / 1024)
+    # The kernel's figure begins with the memory of this process, so it serves only where the
+    # process could not report its own.
+    peak_kb = int(reported[1]) if reported else usage.ru_maxrss
+    return Measured(process.returncode, text, seconds, peak_kb / 1024)

@@ -81,8 +81,8 @@ def test_fuzzer_finds_nothing(example: Unit, tmp_path: Path) -> None:
 
 SLIPS = {
     "a latch clears itself": (
-        "  const bool holds = (verdict == INTELLIGENT_ONE_TRUE);",
-        "  const bool holds = (verdict == INTELLIGENT_ONE_TRUE);\n  m->stop_active = holds;",
+        "  m->too_fast_condition = condition;",
+        "  m->too_fast_condition = condition;\n  m->stop_active = rises;",
     ),
     "a step back is overlooked": ("(now < m->now) || ", ""),
     "a time is not bounded": ("return (t < 0) ? 0 :", "return (t < 0) ? t :"),

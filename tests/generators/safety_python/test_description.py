@@ -27,7 +27,7 @@ SPAN = Span(NOWHERE, 0, 0)
 
 names = st.from_regex(r"[a-z][a-z0-9_]{0,8}", fullmatch=True)
 graph_names = st.builds("".join, st.tuples(st.sampled_from(["", "/", "~/"]), names))
-texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=12)
+texts = st.text(st.characters(exclude_categories=["Cc", "Cf", "Cs", "Zl", "Zp"]), max_size=12)
 durations = st.integers(1, 10**12)
 numbers = st.floats(allow_nan=False, allow_infinity=False)
 scalars = {
