@@ -55,7 +55,7 @@ misra: $(READY)  ## Hold the emitted C against MISRA C:2012; needs cppcheck
 
 .PHONY: prove
 prove: $(READY)  ## Prove that the monitors in C of the examples do what the rules mean; needs Frama-C
-	@$(ALONE) $(BIN)/python tools/prove.py --jobs $(JOBS)
+	@$(ALONE) $(BIN)/python tools/prove.py --jobs $(JOBS) $(RULES)
 
 .PHONY: slips
 slips: $(READY)  ## Put every single slip into the C that is proved, and see the proof find each; takes hours
