@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
-_PAGE = resource.getpagesize()
 _MB = 1 << 20
 
 
@@ -91,7 +90,7 @@ def _status_kb(field: str) -> int:
 def kept_mb() -> float:
     """Return the memory that this process has, garbage collected."""
     gc.collect()
-    return int(Path("/proc/self/statm").read_text().split()[1]) * _PAGE / _MB
+    return _status_kb("VmRSS") / 1024
 
 
 @dataclass(frozen=True)
