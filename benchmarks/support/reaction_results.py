@@ -20,7 +20,7 @@ class Client:
         timer: the name of the row of the timed relay's lateness before it publishes.
         median, percent_99: at most so many times that of the fastest relay an immediate reaction
             takes; None if nothing is asked.
-        late_median_ms, late_percent_99_ms: a rule with a ``for`` is late by less than that.
+        late_median_ms: a rule with a ``for`` is late by less than that in the median.
     """
 
     name: str
@@ -29,11 +29,13 @@ class Client:
     median: float
     percent_99: float | None
     late_median_ms: float | None
-    late_percent_99_ms: float
 
 
-RCLPY = Client("rclpy", "", "one-shot timer of rclpy", 1.15, 1.3, 0.5, 1.0)
-RCLCPP = Client("rclcpp", "rclcpp, ", "thread on a condition variable", 1.1, None, None, 0.3)
+RCLPY = Client("rclpy", "", "one-shot timer of rclpy", 1.15, 1.3, 0.5)
+RCLCPP = Client("rclcpp", "rclcpp, ", "thread on a condition variable", 1.1, None, None)
+
+LATE = 1.5
+"""In 99 of 100 cases a state is published at most so many times as late as a bare thread wakes."""
 
 LOADED = 2.0
 """Under load everything takes less than so many times as long as its floor under the same load."""
@@ -209,14 +211,23 @@ class Results:
         usual = self.row("immediate rule", "usual relay")
         against_usual = _ratio(safety.summary.median, usual.summary.median)
         yield _below("immediate, median / usual relay's", against_usual, 1.0)
-        for seconds in self.durations:
-            late = self.row(f"for {seconds:g} sec", "safety node, published").summary
-            assert late.median is not None
-            assert late.percent_99 is not None
-            what = f"for {seconds:g} sec"
-            if client.late_median_ms is not None:
-                yield _below(f"{what}, median late", late.median, client.late_median_ms, " ms")
-            yield _below(f"{what}, 99 % late", late.percent_99, client.late_percent_99_ms, " ms")
+        yield from self._lateness_bars()
+
+    def _lateness_bars(self) -> Iterator[Bar]:
+        """Hold lateness, of all durations together, against what waits and does nothing else.
+
+        How late a bare thread wakes is the host's doing: milliseconds say more of it than of deros.
+        """
+        limit = self.run.client.late_median_ms
+        if limit is not None:
+            for seconds in self.durations:
+                late = self.row(f"for {seconds:g} sec", "safety node, published").summary
+                assert late.median is not None
+                yield _below(f"for {seconds:g} sec, median late", late.median, limit, " ms")
+        late = self.row("all of them", "safety node, published").summary
+        bare = self.row("all of them", self.run.client.timer).summary
+        ratio = _ratio(late.percent_99, bare.percent_99)
+        yield _at_most(f"for T, 99 % late / {self.run.client.timer}'s", ratio, LATE)
 
     def _loaded_bars(self) -> Iterator[Bar]:
         sections: Sequence[tuple[str, str]] = (
