@@ -127,9 +127,11 @@ def instrument(package: Path, node: str, sources: Iterable[str]) -> None:
         sources: relative to the package.
     """
     option = "-fsanitize=address"
+    # Compilers that link only the libraries that are needed do not so with a sanitizer.
+    linking = f"{option} LINKER:--as-needed"
     text = (
         f"set_property(SOURCE {' '.join(sources)} APPEND PROPERTY COMPILE_OPTIONS {option})\n"
-        f"target_link_options({node}_component PUBLIC {option})\n"
+        f"target_link_options({node}_component PUBLIC {linking})\n"
     )
     with (package / "custom.cmake").open("a") as file:
         file.write(text)
