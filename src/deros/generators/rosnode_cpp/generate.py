@@ -78,17 +78,17 @@ def package_files(
     }
     for node in package.nodes:
         files |= _node_files(package, node)
-    if any(node.actions for node in package.nodes):
-        files |= _goal_files(root, holder)
+    for name in sorted({name for node in package.nodes for name in node.runtime}):
+        files |= _runtime_files(root, name, holder)
     return files
 
 
-def _goal_files(package: str, holder: str) -> dict[str, File]:
-    """Return what every package has whose nodes have actions."""
+def _runtime_files(package: str, name: str, holder: str) -> dict[str, File]:
+    """Return header and source of what the nodes of a package share."""
     folder = resources.files("deros.generators.rosnode_cpp.runtime")
     paths = {
-        f"{package}/include/{package}/runtime/goal_threads.hpp": "goal_threads.hpp",
-        f"{package}/src/runtime/goal_threads.cpp": "goal_threads.cpp",
+        f"{package}/include/{package}/runtime/{name}.hpp": f"{name}.hpp",
+        f"{package}/src/runtime/{name}.cpp": f"{name}.cpp",
     }
     texts = {path: (folder / name).read_text(encoding="utf-8") for path, name in paths.items()}
     return {
@@ -100,7 +100,7 @@ def _goal_files(package: str, holder: str) -> dict[str, File]:
 def _node_files(package: PackageView, node: NodeView) -> dict[str, File]:
     root, include = package.name, f"{package.name}/include/{package.name}"
     header = _cpp("base.hpp", package, node, base_header(package.name, node))
-    source = _cpp("base.cpp", package, node, base_source(node))
+    source = _cpp("base.cpp", package, node, base_source(package.name, node))
     files = {
         f"{include}/{node.stem}_base.hpp": File(header),
         f"{root}/src/{node.stem}_base.cpp": File(source),

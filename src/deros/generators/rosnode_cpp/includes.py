@@ -24,9 +24,11 @@ def base_header(package: str, node: NodeView) -> list[str]:
     return headers
 
 
-def base_source(node: NodeView) -> list[str]:
+def base_source(package: str, node: NodeView) -> list[str]:
     """Return the headers that the base class's source includes beside its own."""
     headers = list(node.provided.includes) if node.provided else []
+    if node.lifecycle:
+        headers.append(f"{package}/runtime/managed_node.hpp")
     if any(parameter.described for parameter in node.parameters):
         headers.append(_DESCRIPTOR)
     if node.checked:

@@ -132,6 +132,12 @@ class NodeView(NodeBase[PortView, TimerView]):
         return "rclcpp_lifecycle::LifecycleNode" if self.lifecycle else "rclcpp::Node"
 
     @property
+    def runtime(self) -> tuple[str, ...]:
+        """The names of the sources that it shares with the other nodes of its package."""
+        goals = ("goal_threads",) if self.actions else ()
+        return (*goals, "managed_node") if self.lifecycle else goals
+
+    @property
     def checked(self) -> tuple[ParameterView, ...]:
         """The parameters that need more checks than rclcpp makes."""
         return tuple(p for p in self.parameters if p.checks)
@@ -154,8 +160,8 @@ class NodeView(NodeBase[PortView, TimerView]):
     def library(self) -> tuple[str, ...]:
         """The sources of the node's library."""
         own = self.provided.sources if self.provided else (f"src/{self.stem}.cpp",)
-        goals = ("src/runtime/goal_threads.cpp",) if self.actions else ()
-        return tuple(sorted({f"src/{self.stem}_base.cpp", *own, *goals}))
+        shared = (f"src/runtime/{name}.cpp" for name in self.runtime)
+        return tuple(sorted({f"src/{self.stem}_base.cpp", *own, *shared}))
 
     @property
     def program(self) -> tuple[str, ...]:

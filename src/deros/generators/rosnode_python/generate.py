@@ -12,7 +12,12 @@ from deros.generators.node_package import maintainer, nodes_beside, refuse_legac
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.python_source import call, expression, mark_long_lines, wrapped
 from deros.generators.rosnode_python.imports import base_imports, user_imports
-from deros.generators.rosnode_python.view import GOAL_THREADS, PackageView, package_view
+from deros.generators.rosnode_python.view import (
+    GOAL_THREADS,
+    MANAGED_NODE,
+    PackageView,
+    package_view,
+)
 from deros.generators.templates import environment
 from deros.metamodels.node import NodeType
 
@@ -79,10 +84,12 @@ def package_files(
         if node.parameters:
             config = _render("config.yaml", package=package, node=node)
             files[f"{package.name}/config/{node.name}.yaml"] = File(config)
-    if any(node.actions for node in package.nodes):
-        folder = resources.files("deros.generators.rosnode_python.runtime")
-        text = (folder / f"{GOAL_THREADS}.py").read_text(encoding="utf-8")
-        files[f"{root}/{GOAL_THREADS}.py"] = File(licensed(text, copyright_line))
+    shared = {GOAL_THREADS for node in package.nodes if node.actions}
+    shared |= {MANAGED_NODE for node in package.nodes if node.lifecycle}
+    folder = resources.files("deros.generators.rosnode_python.runtime")
+    for module in sorted(shared):
+        text = (folder / f"{module}.py").read_text(encoding="utf-8")
+        files[f"{root}/{module}.py"] = File(licensed(text, copyright_line))
     return files
 
 

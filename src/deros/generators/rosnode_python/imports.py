@@ -31,7 +31,7 @@ def base_imports(package: str, node: NodeView) -> tuple[list[str], list[str]]:
         add("rclpy.signals", "SignalHandlerOptions")
         add("rclpy.task", "Future")
     if node.lifecycle:
-        add("rclpy.lifecycle", "LifecycleNode")
+        add(f"{package}.managed_node", "ManagedNode")
         if node.gated:
             add("rclpy.lifecycle.managed_entity", "SimpleManagedEntity")
     else:

@@ -29,6 +29,9 @@ from deros.metamodels.node import NodeType, Port, PortKind
 GOAL_THREADS = "goal_threads"
 """The module that packages have whose nodes have actions."""
 
+MANAGED_NODE = "managed_node"
+"""The module that packages have with managed nodes."""
+
 _RAW_HOOKS = ("on_named",)
 
 # Names that the templates use themselves; a message type called so is imported under another name.
@@ -50,8 +53,8 @@ _TAKEN = frozenset(
         "GoalResponse",
         "HistoryPolicy",
         "IntegerRange",
-        "LifecycleNode",
         "LivelinessPolicy",
+        "ManagedNode",
         "Node",
         "Parameter",
         "ParameterDescriptor",
@@ -292,6 +295,9 @@ def package_view(
     with_actions = [model for model in models if model.ports_of(PortKind.ACTION)]
     for model in with_actions[:1]:
         modules.append(Emitted(GOAL_THREADS, "the threads of goals", model.name_span))
+    managed = [model for model in models if model.lifecycle]
+    for model in managed[:1]:
+        modules.append(Emitted(MANAGED_NODE, "the class of managed nodes", model.name_span))
     check_collisions(modules, f"the modules of package {models[0].package}", files=True)
     nodes = tuple(node_view(model, model.name in raw) for model in models)
     description = " ".join(node.summary for node in nodes)

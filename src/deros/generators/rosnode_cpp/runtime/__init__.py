@@ -1,1 +1,1 @@
-"""C++ that is the same in every package with actions; its namespace becomes the package."""
+"""C++ that is the same in all packages whose nodes need it; its namespace becomes the package."""

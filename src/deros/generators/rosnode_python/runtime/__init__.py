@@ -1,1 +1,1 @@
-"""Modules that go out into every package with actions, and depend on nothing but ROS 2."""
+"""Modules that go out into packages where nodes need them; they depend on nothing but ROS 2."""
