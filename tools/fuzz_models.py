@@ -4,7 +4,8 @@ Each mutant runs the whole way, in a process with limits on time and memory: loa
 generator, what they made read back, and where the model is sound, a simulation by the reference and
 by the generated monitor. An exception, a hang, growth, a difference between the two monitors, or
 generated text that its reader refuses is a finding: it is made as small as it goes and kept under
-``.tmp/fuzz-models``. Move a folder from there to ``tests/data/fuzzing``, and the tests replay it.
+``.tmp/fuzz-models``. Move a folder from there to ``tests/data/fuzzing``, add to its ``mutant.json``
+how it ends and with which errors, and the tests replay it.
 
 Exit code 1 says that there were findings.
 """
@@ -29,6 +30,7 @@ from tools.fuzzing.limits import Limits
 from tools.fuzzing.mutants import KINDS, Kind
 from tools.fuzzing.pool import Job, minimised, run
 from tools.fuzzing.projects import ROOT, projects
+from tools.fuzzing.running import sound_rules
 
 _NO_LIMIT = 10**9
 _MINIMISING_S = 60.0
@@ -50,7 +52,8 @@ def main() -> int:
     if seconds is None and arguments.mutants is None:
         seconds = 60.0
     kinds: tuple[Kind, ...] = tuple(arguments.kind or KINDS)
-    job = Job(projects(CORPUS), seed, kinds, Limits(seconds=arguments.limit))
+    found = projects(CORPUS)
+    job = Job(found, sound_rules(found), seed, kinds, Limits(seconds=arguments.limit))
     count = arguments.mutants if arguments.mutants is not None else _NO_LIMIT
     numbers = range(arguments.first, arguments.first + count)
     print(f"seed {seed}", flush=True)

@@ -20,6 +20,10 @@ MESSAGE = "message.cdr"
 """The files of a mutant that hold a trace, and a message as bytes."""
 
 
+Rules = Mapping[str, Sequence[str]]
+"""Paths of files of rules, by the name of their project."""
+
+
 @dataclass(frozen=True)
 class Mutant:
     """A folder of files, and what is run of it.
@@ -48,10 +52,17 @@ class Mutant:
 class Drawing:
     """Draws mutants of a set of projects; the same seed and number give the same mutant."""
 
-    def __init__(self, projects: Sequence[Project], seed: int) -> None:
-        """Remember what to draw from."""
+    def __init__(self, projects: Sequence[Project], seed: int, rules: Rules) -> None:
+        """Remember what to draw from.
+
+        Args:
+            projects: what models and definitions are drawn from.
+            seed: of the run.
+            rules: what traces and messages are drawn for: rules without errors.
+        """
         self._projects = {each.name: each for each in projects}
         self._seed = seed
+        self._rules = {name: paths for name, paths in rules.items() if paths}
         self._defined = [each for each in projects if each.definitions]
         self._texts: dict[str, list[str]] = {}
         for each in projects:
@@ -68,18 +79,10 @@ class Drawing:
             return self._definition(number, chance)
         if kind == "model":
             return self._model(number, chance)
-        project = self._rules(chance)
-        rules = [path for path in project.models if path.endswith(".deros")]
         # Trace and message are drawn where the program is known: when the mutant runs.
-        return Mutant(kind, project.name, project.files, chance.choice(rules), number)
-
-    def _rules(self, chance: random.Random) -> Project:
-        with_rules = [
-            each
-            for each in self._projects.values()
-            if any(path.endswith(".deros") for path in each.models)
-        ]
-        return chance.choice(with_rules)
+        name = chance.choice(sorted(self._rules))
+        entry = chance.choice(self._rules[name])
+        return Mutant(kind, name, self._projects[name].files, entry, number)
 
     def _model(self, number: int, chance: random.Random) -> Mutant:
         # A project first: the cases, of which most have errors, would crowd out the others.

@@ -33,7 +33,7 @@ from tools.fuzzing.limits import (
     usage,
 )
 from tools.fuzzing.minimising import minimise
-from tools.fuzzing.mutants import KINDS, Drawing, Kind, Mutant
+from tools.fuzzing.mutants import KINDS, Drawing, Kind, Mutant, Rules
 from tools.fuzzing.projects import Project
 from tools.fuzzing.running import Runner
 
@@ -56,6 +56,7 @@ class Job:
 
     Attributes:
         projects: what mutants are drawn from.
+        rules: what traces and messages are drawn for.
         seed: of the run.
         kinds: of mutants to draw.
         limits: for each mutant.
@@ -64,6 +65,7 @@ class Job:
     """
 
     projects: tuple[Project, ...] = ()
+    rules: Rules = field(default_factory=dict)
     seed: int = 0
     kinds: tuple[Kind, ...] = KINDS
     limits: Limits = field(default_factory=Limits)
@@ -264,7 +266,7 @@ def _kind(mutant: Mutant | None) -> str:
 def _given(job: Job, number: int) -> Mutant:
     if job.given:
         return job.given[number]
-    return Drawing(job.projects, job.seed).draw(number, job.kinds)
+    return Drawing(job.projects, job.seed, job.rules).draw(number, job.kinds)
 
 
 # In the worker ------------------------------------------------------------------------------------
@@ -277,7 +279,7 @@ def _work(
     folder = Path(tempfile.mkdtemp(dir=where))
     enforce(job.limits)
     runner = job.runner(folder)
-    drawing = None if job.given else Drawing(job.projects, job.seed)
+    drawing = None if job.given else Drawing(job.projects, job.seed, job.rules)
     warm = 0.0
     report = _Counting()
     for place, number in enumerate(numbers):

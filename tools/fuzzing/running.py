@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import json
 import random
+import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 from xml.etree import ElementTree
@@ -34,12 +35,23 @@ from deros.validators.check import check, check_file
 from tools.fuzzing import projects
 from tools.fuzzing.mutants import MESSAGE, TRACE, Mutant
 from tools.fuzzing.mutations import mutate_bytes, mutate_text
+from tools.fuzzing.projects import Project
 
 _MESSAGES = 8
 
 
 class Wrong(AssertionError):  # noqa: N818 - a finding, told by this name
     """Something came out that must not: no exception of deros, but not what it promises either."""
+
+
+def sound_rules(found: Sequence[Project]) -> dict[str, tuple[str, ...]]:
+    """Return the files of rules of some projects that build, by the project's name."""
+    with tempfile.TemporaryDirectory(prefix="deros-fuzz-") as folder:
+        runner = Runner(Path(folder))
+        return {
+            each.name: tuple(path for path in each.models if runner.builds(each, path))
+            for each in found
+        }
 
 
 class Runner:
@@ -55,6 +67,17 @@ class Runner:
         self._present: dict[str, dict[str, bytes]] = {}
         self._programs: dict[tuple[str, str], _Sound | None] = {}
         self.ends: Counter[str] = Counter()
+
+    def builds(self, project: Project, path: str) -> bool:
+        """Return whether a model of a project is one of rules without errors."""
+        return (
+            path.endswith(".deros")
+            and self._sound(Mutant("trace", project.name, project.files, path)) is not None
+        )
+
+    def findings(self, mutant: Mutant) -> list[Diagnostic]:
+        """Return what is found when the models of a mutant are checked."""
+        return self._loaded(mutant)[2]
 
     def run(self, mutant: Mutant) -> Mutant:
         """Run one mutant; return it with the trace or message that was drawn for it.

@@ -4,26 +4,29 @@ from __future__ import annotations
 
 import random
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
 from tools.fuzzing.mutants import KINDS, Drawing
 from tools.fuzzing.mutations import LONGEST, mutate_bytes, mutate_text
 from tools.fuzzing.projects import projects
+from tools.fuzzing.running import Runner, sound_rules
 
 PROJECTS = projects()
+RULES = sound_rules(PROJECTS)
 
 
 def test_the_same_seed_and_number_give_the_same_mutant() -> None:
     """So a finding can be had again from what a run prints."""
-    first, second = Drawing(PROJECTS, 7), Drawing(PROJECTS, 7)
+    first, second = Drawing(PROJECTS, 7, RULES), Drawing(PROJECTS, 7, RULES)
     assert all(first.draw(number) == second.draw(number) for number in range(200))
-    assert Drawing(PROJECTS, 8).draw(1) != first.draw(1)
+    assert Drawing(PROJECTS, 8, RULES).draw(1) != first.draw(1)
 
 
 def test_every_kind_is_drawn_and_changes_something() -> None:
     """Models and definitions differ from their project; traces and messages are drawn later."""
-    drawing = Drawing(PROJECTS, 1)
+    drawing = Drawing(PROJECTS, 1, RULES)
     sources = {each.name: each.files for each in PROJECTS}
     kinds: Counter[str] = Counter()
     changed = 0
@@ -38,8 +41,18 @@ def test_every_kind_is_drawn_and_changes_something() -> None:
 
 def test_only_the_kinds_asked_for_are_drawn() -> None:
     """A run may be after one kind alone."""
-    drawing = Drawing(PROJECTS, 1)
+    drawing = Drawing(PROJECTS, 1, RULES)
     assert {drawing.draw(number, ("definition",)).kind for number in range(30)} == {"definition"}
+
+
+def test_every_trace_and_message_is_one_of_a_program(tmp_path: Path) -> None:
+    """Rules with errors, of which the cases are full, would have nothing to play or decode."""
+    drawing, runner = Drawing(PROJECTS, 1, RULES), Runner(tmp_path)
+    drawn = [drawing.draw(number, ("trace", "message")) for number in range(100)]
+    for mutant in drawn:
+        runner.run(mutant)
+    assert "no program" not in runner.ends
+    assert {mutant.project for mutant in drawn} == {name for name in RULES if RULES[name]}
 
 
 @pytest.mark.parametrize("seed", range(40))
