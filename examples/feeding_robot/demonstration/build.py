@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
@@ -78,7 +79,9 @@ def build_cpp(example: Path, folder: Path) -> Path:
     context = Context(InterfaceStore(), repository)
     for file in _load(repository, sorted(example.glob("*.deros"))):
         write(_generate(file, context, "cpp"), folder / "src", overwrite=True)
-    command = ["colcon", "--log-base", "log", "build", "--merge-install"]
+    # Of this environment, unless a workspace has put another one in front.
+    colcon = shutil.which("colcon") or str(Path(sys.executable).with_name("colcon"))
+    command = [colcon, "--log-base", "log", "build", "--merge-install"]
     settings = ["--cmake-args", "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF"]
     log = folder / "build.log"
     try:
