@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from tests.support.faults import NODE, PROMPT, Robot
-from tests.support.played import SENSES, TOPICS, imu, speed, ticks
+from tests.support.gate_nodes import Stranger
+from tests.support.played import SENSES, TOPICS, button, imu, speed, ticks
 
 pytestmark = pytest.mark.ros
 
@@ -65,6 +66,21 @@ def test_a_second_publisher_of_a_state_is_a_fault(robot: Robot) -> None:
         with robot.sensors({"/stop": "std_msgs/msg/Bool"}):
             until_fault(robot, "/stop", "published by /", ", too")
         until_no_fault(robot, "/stop")
+
+
+def test_the_node_alone_publishes_its_topics_and_stands_by_its_word(robot: Robot) -> None:
+    """What a stranger says on them is not taken over: the node repeats what its rules say."""
+    with robot.safety_node() as node:
+        for topic in ("/stop", "/halt", "/slow", HEARTBEAT):
+            found = robot.peer.node.get_publishers_info_by_topic(topic)
+            assert [each.node_name for each in found] == [NODE]
+        with Stranger(robot.env) as stranger:
+            publisher = stranger.state("/halt", button(False))
+            robot.until(publisher.get_subscription_count)
+            robot.until(lambda: not robot.is_active("/halt"))
+            robot.until_stopped("/halt", limit=PROMPT)
+        assert "halt, by" in node.output()
+        assert "halt is reset" not in node.output()
 
 
 def test_a_second_publisher_of_the_heartbeat_is_a_fault(robot: Robot) -> None:

@@ -7,8 +7,9 @@ import math
 import pytest
 
 from tests.faults.test_gate import assert_zeros_only, stands
-from tests.support.faults import Robot
+from tests.support.faults import NODE, Robot
 from tests.support.played import scan, speed
+from tests.support.ros import Peer
 
 pytestmark = pytest.mark.ros
 
@@ -81,3 +82,60 @@ def test_no_reset_while_a_sensor_is_dead(robot: Robot) -> None:
         assert_refused(robot, "speed")
         sensors.drive()
         assert_reset(robot)
+
+
+def test_a_second_reset_finds_nothing_to_reset(robot: Robot) -> None:
+    """Of two that call at once, one resets the stop; the other is answered, and undoes nothing."""
+    with robot.safety_node(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.violate()
+        robot.until(lambda: robot.reset() == (True, "stop is reset"))
+        assert robot.reset() == (True, "no latched action was active")
+        robot.violate()
+        assert robot.is_active("/stop")
+        requests = [robot.call_reset() for _ in range(2)]
+        robot.until(lambda: all(each.done() for each in requests))
+        answers = sorted(each.result().message for each in requests)
+        assert answers == ["no latched action was active", "stop is reset"]
+
+
+def test_a_reset_that_comes_late_is_judged_when_it_is_served(robot: Robot) -> None:
+    """Called while the node hangs, it is not answered; then what is known by then refuses it."""
+    with robot.safety_node() as node, robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_free()
+        sensors.play("/scan", scan(BLOCKED))
+        robot.until_stopped()
+        sensors.play("/scan", scan(CLEAR))
+        robot.spin(0.3)  # by now a reset would be granted
+        sensors.quiet("/speed")
+        robot.spin(0.2)  # what it has sent is taken
+        node.freeze()
+        request = robot.call_reset()
+        robot.spin(1.0)  # longer than the timeout of the speed
+        assert not request.done()
+        assert robot.is_active("/stop")
+        node.thaw()
+        robot.until(request.done)
+        assert not request.result().success
+        assert request.result().message.endswith(", unknown: speed")
+        assert robot.is_active("/stop")
+
+
+def test_a_reset_of_a_stranger_is_judged_like_any_other(robot: Robot) -> None:
+    """Whoever may call is believed: refused while the cause lasts, and granted when it is over."""
+    from std_srvs.srv import Trigger
+
+    stranger = Peer(int(robot.env["ROS_DOMAIN_ID"]), "stranger")
+    client = stranger.node.create_client(Trigger, f"/{NODE}/reset")
+    with robot.safety_node(), robot.sensors() as sensors:
+        sensors.drive()
+        sensors.play("/scan", scan(BLOCKED))
+        robot.until_stopped()
+        answer = stranger.call(client, Trigger.Request())
+        assert not answer.success
+        assert "stop stays active" in answer.message
+        sensors.play("/scan", scan(CLEAR))
+        stranger.until(lambda: stranger.call(client, Trigger.Request()).success)
+        robot.until(lambda: not robot.is_active("/stop"))
+    stranger.close()

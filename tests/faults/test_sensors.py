@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.support.faults import Robot
-from tests.support.played import imu, speed
+from tests.support.played import SENSES, imu, speed
 from tests.support.victims import Sensors
 
 pytestmark = pytest.mark.ros
@@ -84,3 +84,17 @@ def test_stamps_out_of_order_change_no_verdict(robot: Robot) -> None:
         stamps = [50.0, 10.0, 90.0, 90.0, 0.0, 2e9, 30.0]
         sensors.play("/imu", *(imu(TILTED, stamp=each) for each in stamps))
         robot.until_stopped("/halt", limit=0.4 + 1.0)
+
+
+def test_a_plausible_wrong_value_is_believed(robot: Robot) -> None:
+    """A stuck sensor is alive, and what it repeats is judged: only another sensor contradicts."""
+    with robot.safety_node(), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_free()
+        robot.spin(2.0)  # four times the timeout, in which the robot may have run away
+        assert not robot.is_active("/halt")
+        assert not robot.is_active("/stop")
+        with robot.sensors({"/speed": SENSES["/speed"]}) as second:
+            second.match("/speed")
+            second.play("/speed", speed(2.0))
+            robot.until_stopped()

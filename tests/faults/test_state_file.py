@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.faults import Robot
+from tests.support.faults import NODE, Robot
 from tests.support.preload import Disk
 
 pytestmark = pytest.mark.ros
@@ -122,6 +122,19 @@ def test_what_is_no_regular_file_means_stopped_and_is_left_alone(
         assert "not a regular file" in message
         assert robot.is_active("/stop")
         assert described(folder) == before
+
+
+def test_the_state_file_of_another_node_means_stopped(robot: Robot, tmp_path: Path) -> None:
+    """It says that nothing of the other one is active, which is nothing about this one."""
+    file = tmp_path / "state"
+    another = robot.start(NODE, [f"state_file:={file}"], name="another")
+    robot.until(file.exists)
+    robot.until(lambda: robot.states["/stop"])
+    another.end()
+    assert not robot.is_active("/stop")
+    with robot.safety_node(f"state_file:={file}") as node:
+        robot.until_stopped()
+        assert f"{file} is damaged, or not of /{NODE}" in node.output()
 
 
 def test_a_state_file_that_is_removed_while_the_node_runs_comes_back(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import re
 from pathlib import Path
 
 import pytest
 
 from tests.support.faults import NODE, PROMPT, Robot
 from tests.support.ros import LIMIT
+from tests.support.victims import Process
 
 pytestmark = pytest.mark.ros
 
@@ -86,3 +89,41 @@ def test_code_that_is_run_again_at_the_start_comes_after_the_states(
         assert f"interference: {how}" in node.output()
         robot.restart()
         assert robot.is_active("/stop")
+
+
+def test_code_that_does_not_do_its_work_is_believed(robot: Robot) -> None:
+    """A body that only says that it acted looks like one that did; bound actions do not need it."""
+    with robot.safety_node() as node:
+        robot.interfere("claim")
+        robot.until_stopped(limit=PROMPT)
+        robot.until(lambda: "interference: claim" in node.output())
+        robot.until_alive()
+        assert robot.faults == {}
+
+
+def test_each_order_runs_the_code_once_and_in_turn(robot: Robot) -> None:
+    """Two violations are two calls, each once, and in the order in which they came."""
+    orders = ["first", "second"]
+    with robot.safety_node() as node, robot.sensors() as sensors:
+        sensors.drive()
+        for order in orders:
+            robot.interfere(order)
+            robot.until_stopped(limit=PROMPT)
+            robot.until(lambda: robot.reset()[0])
+            robot.until(lambda: not robot.is_active("/stop"))
+        robot.spin(0.5)
+        assert _calls(node) == orders
+
+
+def _calls(node: Process) -> list[str]:
+    """Return what the code has said that it did, in order."""
+    return re.findall(r"interference: (\w+)$", node.output(), re.MULTILINE)
+
+
+def test_code_runs_with_the_rights_of_the_node(robot: Robot) -> None:
+    """It is a part of the process: whoever writes it may do whatever the node may."""
+    with robot.safety_node() as node:
+        robot.interfere("who")
+        robot.until_stopped(limit=PROMPT)
+        who = f"process {node.popen.pid} of user {os.geteuid()}"
+        robot.until(lambda: who in node.output())

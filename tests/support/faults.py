@@ -268,9 +268,19 @@ class Robot:
         finally:
             sensors.close()
 
-    def start(self, module: str = NODE, parameters: Sequence[str] = (), **env: str) -> Process:
-        """Start a node of the generated package; whoever starts it ends it."""
+    def start(
+        self, module: str = NODE, parameters: Sequence[str] = (), name: str = "", **env: str
+    ) -> Process:
+        """Start a node of the generated package; whoever starts it ends it.
+
+        Args:
+            module: the program.
+            parameters: in the form ``name:=value``.
+            name: the node's name, if it is not to be its own.
+            env: what is to be added to the environment.
+        """
         words = [word for each in parameters for word in ("-p", each)]
+        words += ["-r", f"__node:={name}"] if name else []
         ros = ["--ros-args", *words] if words else []
         command, own = self.software.command(module, self.env)
         return self._start([*command, *ros], {**own, **env}, module)
@@ -357,10 +367,16 @@ class Robot:
 
     def reset(self) -> tuple[bool, str]:
         """Call the reset service; return whether it was done, and what it says."""
+        response = self.call_reset()
+        self.until(response.done)
+        return response.result().success, response.result().message
+
+    def call_reset(self) -> Any:
+        """Call the reset service, and return the response that is to come, as a future."""
         from std_srvs.srv import Trigger
 
-        response = self.peer.call(self._reset, Trigger.Request())
-        return response.success, response.message
+        self.until(self._reset.service_is_ready)
+        return self._reset.call_async(Trigger.Request())
 
     def assert_protects(self) -> None:
         """See that the node lives, and that a violation stops the robot unless it is stopped.

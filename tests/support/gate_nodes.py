@@ -23,6 +23,9 @@ from tests.support.ros import Peer, running
 MODELS = Path(__file__).resolve().parent.parent / "generators" / "gate_python" / "models"
 PACKAGE = "gates_safety"
 SAFETY_NODE = "gates_safety_node"
+GATE = "cmd_vel_gate"
+STILL = (0.0, 0.0, 0.0)
+"""What a drive is told that has to stand: forward, sideways, turning."""
 
 
 def write_gates(folder: Path, name: str = "gates") -> Path:
@@ -89,7 +92,8 @@ class World:
         status: its last status on /diagnostics: name, level, message, and all values.
         reports: how many of these there have been.
         beats: how many heartbeats it has published.
-        stop_publisher: that of the stop's state.
+        stop_publisher, mode_publisher, heartbeat: the publishers of the safety node.
+        drive: the subscription of the drive.
     """
 
     def __init__(self, peer: Peer) -> None:
@@ -111,12 +115,18 @@ class World:
         node = peer.node
         self._wish = node.create_publisher(Twist, "/cmd_vel_nav", 10)
         self.stop_publisher = node.create_publisher(Bool, "/stop", kept)
-        self._mode = node.create_publisher(UInt8, "/mode", kept)
-        self._heartbeat = node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
-        node.create_subscription(Twist, "/cmd_vel", self._take, 10, raw=True)
+        self.mode_publisher = node.create_publisher(UInt8, "/mode", kept)
+        self.heartbeat = node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
+        self.drive = self.listen()
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         node.create_subscription(DiagnosticArray, "/diagnostics", self._take_status, 10)
         self.beating = node.create_timer(0.05, self.live, clock=steady)
+
+    def listen(self) -> Any:
+        """Be the drive: subscribe to what the gate lets through."""
+        return self.peer.node.create_subscription(
+            self._types[0], "/cmd_vel", self._take, 10, raw=True
+        )
 
     def _take_status(self, message: Any) -> None:
         (status,) = message.status
@@ -130,7 +140,7 @@ class World:
 
     def meet(self) -> None:
         """Wait until all ends know each other."""
-        ends = (self._wish, self.stop_publisher, self._mode, self._heartbeat)
+        ends = (self._wish, self.stop_publisher, self.mode_publisher, self.heartbeat)
         self.peer.until(lambda: all(each.get_subscription_count() for each in ends))
         self.peer.until(lambda: self.heard)
 
@@ -141,7 +151,7 @@ class World:
     def beat(self) -> None:
         """Be the safety node's heartbeat, once."""
         self.beats += 1
-        self._heartbeat.publish(self._types[3](data=self.beats))
+        self.heartbeat.publish(self._types[3](data=self.beats))
 
     def live(self) -> None:
         """Be the safety node, once: its heartbeat, and what is active, which it says steadily.
@@ -161,7 +171,7 @@ class World:
 
     def mode(self, value: int) -> None:
         """Publish which limits are active: 1 those of slow, 2 those of slower, 0 none."""
-        self._say(self._mode, self._types[2](data=value))
+        self._say(self.mode_publisher, self._types[2](data=value))
 
     def _say(self, publisher: Any, state: Any) -> None:
         self._said[publisher] = state
@@ -207,6 +217,12 @@ class World:
         self.wish_until(0.3, lambda: time.monotonic() > end)
         return [self.speeds(data) for _, data in self.heard[before:]]
 
+    def assert_stands(self, seconds: float) -> None:
+        """Command a speed for a time, and see that zeros come steadily, and nothing else."""
+        told = self.wish_for(seconds)
+        assert len(told) > 5
+        assert set(told) == {STILL}
+
     def until_driving(self) -> None:
         """Command a speed until commands pass, for good."""
         self.wish_until(0.3, lambda: self.last == (0.3, 0.0, 0.0))
@@ -250,8 +266,7 @@ class Stranger:
             name, context=self._context, enable_rosout=False, start_parameter_services=False
         )
         self._kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._stop: Any = None
-        self._heartbeat: Any = None
+        self._publishers: dict[str, Any] = {}
 
     def __enter__(self) -> Stranger:
         """Be there."""
@@ -266,19 +281,27 @@ class Stranger:
         """Publish, latched, whether the stop is active; return the publisher."""
         from std_msgs.msg import Bool
 
-        if self._stop is None:
-            self._stop = self.node.create_publisher(Bool, "/stop", self._kept)
-        self._stop.publish(Bool(data=active))
-        return self._stop
+        return self.state("/stop", Bool(data=active))
+
+    def state(self, topic: str, message: Any) -> Any:
+        """Publish a state, latched; return the publisher."""
+        return self._say(topic, message, self._kept)
 
     def heartbeat(self, counter: int) -> Any:
         """Publish a heartbeat; return the publisher."""
         from std_msgs.msg import UInt64
 
-        if self._heartbeat is None:
-            self._heartbeat = self.node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
-        self._heartbeat.publish(UInt64(data=counter))
-        return self._heartbeat
+        return self.say(f"/{SAFETY_NODE}/heartbeat", UInt64(data=counter))
+
+    def say(self, topic: str, message: Any) -> Any:
+        """Publish any message; return the publisher."""
+        return self._say(topic, message, 10)
+
+    def _say(self, topic: str, message: Any, qos: Any) -> Any:
+        if topic not in self._publishers:
+            self._publishers[topic] = self.node.create_publisher(type(message), topic, qos)
+        self._publishers[topic].publish(message)
+        return self._publishers[topic]
 
 
 class Drive:

@@ -171,7 +171,7 @@ def read_line(process: subprocess.Popen[str]) -> str:
 class Peer:
     """A node of the test itself, in the domain of ``env``, that spins only while it waits."""
 
-    def __init__(self, domain: int) -> None:
+    def __init__(self, domain: int, name: str = "test_peer") -> None:
         """Start the node; end it with :meth:`close`."""
         import rclpy
         from rclpy.context import Context
@@ -184,7 +184,7 @@ class Peer:
         # Without what every node has and no test asks for: it is found, and gone, the sooner.
         described = Parameter("start_type_description_service", value=False)
         self.node: Any = Node(
-            "test_peer",
+            name,
             context=self._context,
             enable_rosout=False,
             start_parameter_services=False,

@@ -46,6 +46,11 @@ inline void interfere_with(rclcpp::Node & node)
   if (how == "kill") {
     ::kill(::getpid(), SIGKILL);
   }
+  if (how == "who") {
+    RCLCPP_INFO(
+      node.get_logger(), "process %ld of user %lu", static_cast<long>(::getpid()),
+      static_cast<unsigned long>(::geteuid()));
+  }
   if (how == "wait") {
     while (!std::ifstream(std::string(path) + ".over")) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));

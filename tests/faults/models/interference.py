@@ -32,6 +32,8 @@ def interfere(node: Node) -> None:
         rclpy.shutdown()
     if how == "kill":
         os.kill(os.getpid(), signal.SIGKILL)
+    if how == "who":
+        node.get_logger().info(f"process {os.getpid()} of user {os.geteuid()}")
     if how == "wait":
         while not FILE.with_suffix(".over").exists():
             time.sleep(0.01)

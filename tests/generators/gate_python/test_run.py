@@ -7,36 +7,20 @@ import math
 import signal
 import statistics
 import time
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.support.gate_nodes import SAFETY_NODE, World
-from tests.support.gate_runners import LANGUAGES, RunGate
+from tests.support.gate_nodes import GATE, SAFETY_NODE, STILL, World
+from tests.support.gate_runners import RunGate
 from tests.support.ros import LIMIT, Peer, set_parameter
 
 pytestmark = pytest.mark.ros
 
-GATE = "cmd_vel_gate"
 PERIOD = 0.05
 PROMPT = 1.0
 """What a busy machine may add, in s, where the question is whether something happens at all."""
-STILL = (0.0, 0.0, 0.0)
 ON_CLOCK = ("use_sim_time:=true", "losses_in_simulated_time:=true")
-
-
-@pytest.fixture(params=LANGUAGES)
-def run_gate(request: pytest.FixtureRequest, tmp_path: Path) -> RunGate:
-    """Give what runs the generated gates of a language."""
-    made: RunGate = request.param(tmp_path)
-    return made
-
-
-@pytest.fixture
-def world(ros_peer: Peer) -> World:
-    """Give all that is around the gate."""
-    return World(ros_peer)
 
 
 def test_commands_pass_as_the_bytes_they_came_in(

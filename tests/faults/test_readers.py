@@ -1,0 +1,59 @@
+"""Whoever reads what the safety node says: nobody has to, anybody may, and none is heard."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import pytest
+
+from tests.support.faults import NODE, Robot
+from tests.support.played import speed
+from tests.support.ros import Peer
+
+pytestmark = pytest.mark.ros
+
+OWN = ("/stop", "/halt", "/slow", f"/{NODE}/heartbeat", f"/{NODE}/events", "/diagnostics")
+"""What the node publishes."""
+
+
+def test_what_readers_say_is_not_heard(robot: Robot) -> None:
+    """The node listens to none of its own topics, so nothing that comes on one changes it."""
+    reports = {
+        f"/{NODE}/events": "diagnostic_msgs/msg/DiagnosticStatus",
+        "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
+    }
+    with robot.safety_node(), robot.sensors(reports) as readers:
+        for topic in OWN:
+            found = robot.peer.node.get_subscriptions_info_by_topic(topic)
+            assert NODE not in [each.node_name for each in found]
+        for topic in reports:
+            readers.play(topic, b"\x00\x01\x00\x00garbage", rate=100.0)
+        robot.until_beats()
+
+
+def test_any_number_of_late_readers_get_the_states(robot: Robot) -> None:
+    """Participants of their own, which nobody knows, are told what was said before they came."""
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from std_msgs.msg import Bool
+
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    with robot.sensors() as sensors:
+        # Within the time of the test it repeats nothing: a state goes out when it changes.
+        node = robot.start(NODE, ["publish_freq:=0.001"])
+        sensors.match("/speed")
+        sensors.play("/speed", speed(2.0))
+        robot.until_stopped()
+        strangers = [Peer(int(robot.env["ROS_DOMAIN_ID"]), f"reader_{n}") for n in range(5)]
+        for stranger in strangers:
+            states: list[bool] = []
+            hear = functools.partial(_hear, states)
+            stranger.node.create_subscription(Bool, "/stop", hear, kept)
+            stranger.until(states.copy)
+            assert states == [True]
+            stranger.close()
+        node.end()
+
+
+def _hear(states: list[bool], message: Any) -> None:
+    states.append(message.data)

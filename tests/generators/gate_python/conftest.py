@@ -1,0 +1,35 @@
+"""A gate in each language, and the robot around it as a test plays it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from subprocess import Popen
+
+import pytest
+
+from tests.support.gate_nodes import GATE, World
+from tests.support.gate_runners import LANGUAGES, RunGate
+from tests.support.ros import Peer
+
+
+@pytest.fixture(params=LANGUAGES)
+def run_gate(request: pytest.FixtureRequest, tmp_path: Path) -> RunGate:
+    """Give what runs the generated gates of a language."""
+    made: RunGate = request.param(tmp_path)
+    return made
+
+
+@pytest.fixture
+def world(ros_peer: Peer) -> World:
+    """Give all that is around the gate, the safety node included."""
+    return World(ros_peer)
+
+
+@pytest.fixture
+def gate(run_gate: RunGate, ros_env: dict[str, str], world: World) -> Iterator[Popen[str]]:
+    """Run the gate; commands pass."""
+    with run_gate(GATE, ros_env) as process:
+        world.meet()
+        world.release()
+        yield process
