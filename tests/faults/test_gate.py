@@ -13,6 +13,7 @@ import pytest
 from tests.support.faults import GATE, PROMPT, Heard, Robot
 from tests.support.played import COMMANDER, SENSES, TOPICS, command, load
 from tests.support.preload import WallClock
+from tests.support.ros import short_lease
 from tests.support.victims import Process, Sensors
 
 pytestmark = pytest.mark.ros
@@ -55,10 +56,11 @@ def drives(robot: Robot) -> bool:
 
 @pytest.mark.parametrize("fault", [Process.kill, Process.freeze])
 def test_a_safety_node_that_dies_or_hangs_stops_the_robot(
-    robot: Robot, fault: Callable[[Process], None]
+    robot: Robot, tmp_path: Path, fault: Callable[[Process], None]
 ) -> None:
     """The last command that is no zero leaves the gate 0.3 s after the last heartbeat."""
-    with robot.safety_node() as node, robot.gate(), robot.sensors() as sensors:
+    lease = short_lease(tmp_path)  # after which the restarted node is obeyed
+    with robot.safety_node(**lease) as node, robot.gate(), robot.sensors() as sensors:
         sensors.drive()
         robot.until(lambda: drives(robot))
         fault(node)
@@ -72,9 +74,10 @@ def test_a_safety_node_that_dies_or_hangs_stops_the_robot(
         robot.until_driving()
 
 
-def test_a_latched_stop_holds_through_any_crash(robot: Robot) -> None:
+def test_a_latched_stop_holds_through_any_crash(robot: Robot, tmp_path: Path) -> None:
     """From the stop to its reset the drive gets zeros only, whoever dies meanwhile."""
-    with robot.safety_node() as node, robot.sensors() as sensors:
+    lease = short_lease(tmp_path)
+    with robot.safety_node(**lease) as node, robot.sensors() as sensors:
         gate = robot.start(GATE)
         sensors.drive()
         robot.until_driving()

@@ -11,6 +11,7 @@ import pytest
 from tests.support.faults import NODE, PROMPT, Robot
 from tests.support.gate_nodes import Stranger
 from tests.support.played import SENSES, TOPICS, button, imu, speed, ticks
+from tests.support.ros import short_lease
 
 pytestmark = pytest.mark.ros
 
@@ -100,9 +101,8 @@ def test_a_second_node_is_found_without_a_common_folder(robot: Robot, tmp_path: 
         robot.until(lambda: time.monotonic() > begun + EARLY)
         folder = tmp_path / "elsewhere"
         folder.mkdir()
-        second = robot.start(
-            NODE, [f"state_file:={folder / 'state'}"], TMPDIR=str(folder), TEMP="", TMP=""
-        )
+        env = {"TMPDIR": str(folder), "TEMP": "", "TMP": "", **short_lease(tmp_path)}
+        second = robot.start(NODE, [f"state_file:={folder / 'state'}"], **env)
         assert robot.until(second.popen.poll) == 1
         assert "another node publishes this heartbeat" in second.output()
         assert "Traceback" not in second.output()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
 from tests.faults.test_gate import assert_zeros_only, stands
 from tests.support.faults import NODE, Robot
 from tests.support.played import scan, speed
-from tests.support.ros import Peer
+from tests.support.ros import Peer, short_lease
 
 pytestmark = pytest.mark.ros
 
@@ -56,9 +57,10 @@ def test_no_reset_while_the_lidar_measures_nothing(robot: Robot) -> None:
         assert_reset(robot)
 
 
-def test_no_reset_before_the_first_scan(robot: Robot) -> None:
+def test_no_reset_before_the_first_scan(robot: Robot, tmp_path: Path) -> None:
     """After a restart nothing is known of the obstacle until the lidar has said something."""
-    with robot.safety_node() as node, robot.gate(), robot.sensors() as sensors:
+    lease = short_lease(tmp_path)
+    with robot.safety_node(**lease) as node, robot.gate(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_driving()
         sensors.play("/scan", scan(BLOCKED))

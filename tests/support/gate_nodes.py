@@ -18,7 +18,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
 from deros.monitor.build import build
-from tests.support.ros import Peer, running
+from tests.support.ros import Peer, running, with_lease
 
 MODELS = Path(__file__).resolve().parent.parent / "generators" / "gate_python" / "models"
 PACKAGE = "gates_safety"
@@ -77,11 +77,14 @@ _PROFILES = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
-def with_shared_memory(folder: Path) -> dict[str, str]:
-    """Return an environment for processes on the loopback that talk through shared memory, too."""
-    path = folder / "with_shared_memory.xml"
-    path.write_text(_PROFILES, encoding="utf-8")
-    return {"FASTRTPS_DEFAULT_PROFILES_FILE": str(path)}
+def with_shared_memory(folder: Path, lease_s: int = 1) -> dict[str, str]:
+    """Return an environment for processes on the loopback that talk through shared memory, too.
+
+    Args:
+        folder: where the profile is written.
+        lease_s: how long others keep what a process had once it was killed.
+    """
+    return with_lease(_PROFILES, folder, lease_s)
 
 
 class World:

@@ -124,6 +124,7 @@ def main(topics: list[str]) -> None:
         if select.select([0], [], [], wait)[0]:
             read = os.read(0, 1 << 20)
             if not read:
+                rclpy.shutdown()  # and say so to everybody
                 return
             *lines, pending = (pending + read).split(b"\n")
             for line in lines:

@@ -83,6 +83,7 @@ class Sensors:
     def __init__(self, topics: Mapping[str, str], env: Mapping[str, str]) -> None:
         """Start it, with a publisher for each topic."""
         self._topics = topics.keys()
+        self._frozen = False
         command = [sys.executable, str(_SENSOR), *(f"{t}={name}" for t, name in topics.items())]
         self._popen = subprocess.Popen(
             command, env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -132,15 +133,26 @@ class Sensors:
     def freeze(self) -> None:
         """Let the sensors hang."""
         freeze(self._popen.pid)
+        self._frozen = True
 
     def thaw(self) -> None:
         """Let the sensors go on."""
         thaw(self._popen.pid)
+        self._frozen = False
 
     def close(self) -> None:
-        """End the process, in whatever state it is."""
+        """End the process, in whatever state it is: in an orderly way, if it can.
+
+        Then all others know at once that its publishers are gone, and not after the lease.
+        """
         with contextlib.suppress(BrokenPipeError), self._popen:
-            self._popen.kill()
+            if self._frozen:
+                self._popen.kill()
+            _present(self._popen.stdin).close()
+            try:
+                self._popen.wait(LIMIT)
+            finally:
+                self._popen.kill()
 
     def _do(self, command: dict[str, Any]) -> int:
         pipe = _present(self._popen.stdin)

@@ -29,7 +29,7 @@ from tests.support.gate_nodes import (
 )
 from tests.support.gate_runners import LANGUAGES, RunGate
 from tests.support.processes import freeze, thaw
-from tests.support.ros import Peer, running
+from tests.support.ros import DEFAULT_LEASE_S, Peer, running
 
 pytestmark = pytest.mark.ros
 
@@ -39,7 +39,7 @@ REPEATS = int(os.environ.get("DEROS_REPEATS", "5"))
 LIMIT_S = 0.3 + 0.05
 """The time of the line about the heartbeat, and what the machine may add."""
 
-StartSafety = Callable[[], AbstractContextManager[Popen[str]]]
+StartSafety = Callable[..., AbstractContextManager[Popen[str]]]
 
 
 @pytest.fixture
@@ -64,10 +64,14 @@ def drive(
 
 @pytest.fixture
 def start_safety(package: Path, ros_env: dict[str, str], tmp_path: Path) -> StartSafety:
-    """Give a function that runs the safety node, which has shared memory, as it has by default."""
+    """Give a function that runs the safety node, which has shared memory, as it has by default.
+
+    Its lease is shorter than by default unless it is said, so that one that was killed is forgotten
+    soon: a gate in Python waits for that.
+    """
     command = [sys.executable, "-m", f"{PACKAGE}.{SAFETY_NODE}"]
-    env = {**ros_env, **with_shared_memory(tmp_path), "PYTHONPATH": str(package)}
-    return lambda: running(command, env)
+    env = {**ros_env, "PYTHONPATH": str(package)}
+    return lambda *lease_s: running(command, {**env, **with_shared_memory(tmp_path, *lease_s)})
 
 
 def report(what: str, delays: list[float]) -> None:
@@ -97,6 +101,19 @@ def test_a_killed_safety_node(drive: Drive, start_safety: StartSafety) -> None:
             safety.wait()
             safety.returncode = 0  # as it was meant
     report("killed", delays)
+
+
+def test_a_killed_safety_node_with_the_default_lease(
+    drive: Drive, start_safety: StartSafety
+) -> None:
+    """Zero in time as well, and until the middleware has forgotten it; then the new one counts."""
+    with start_safety(DEFAULT_LEASE_S) as safety:
+        drive.until_moving()
+        report("killed", [drive.until_zero(safety.kill)])
+        safety.wait()
+        safety.returncode = 0  # as it was meant
+    with start_safety(DEFAULT_LEASE_S):
+        drive.until_moving()
 
 
 def test_a_stopped_safety_node(drive: Drive, start_safety: StartSafety) -> None:
