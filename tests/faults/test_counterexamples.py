@@ -8,29 +8,29 @@ from pathlib import Path
 import pytest
 
 from tests.support.chaos.bench import Bench, running
+from tests.support.chaos.campaign import EXAMPLE, generate_packages
 from tests.support.chaos.round import play
 from tests.support.chaos.schedule import Schedule
-from tests.support.examples import EXAMPLES
+from tests.support.cpp import needs_rclcpp
 from tests.support.ros import environment
 
 pytestmark = pytest.mark.ros
 
-EXAMPLE = EXAMPLES / "feeding_robot"
 SCHEDULES = sorted((Path(__file__).parent / "schedules").glob("*.json"))
 
 
-@pytest.fixture(scope="module")
-def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bench]:
-    """Give the robot, running."""
+@pytest.fixture(scope="module", params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+def bench(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Bench]:
+    """Give the robot, running, with safety node and gate in one language after the other."""
     patch = pytest.MonkeyPatch()
     for name, value in environment(0).items():
         patch.setenv(name, value)
     patch.syspath_prepend(str(EXAMPLE))
-    from demonstration.build import build  # type: ignore[import-not-found]
-
     folder = tmp_path_factory.mktemp("chaos")
-    build(EXAMPLE, folder / "packages")
-    with running(EXAMPLE / "feeding_robot.system", [folder / "packages"], folder, 0) as robot:
+    software = generate_packages(folder, request.param == "cpp")
+    with running(software, folder, 0) as robot:
         yield robot
     patch.undo()
 

@@ -59,6 +59,7 @@ class Disk:
     def __init__(self, folder: Path, library: Path) -> None:
         """Begin with space enough; the library is built into another folder."""
         self._full = library / "disk_full"
+        self._fillings = 0
         self.env = {
             "LD_PRELOAD": build_shim("disk", library),
             "DISK": str(folder.resolve()),
@@ -67,8 +68,11 @@ class Disk:
 
     def fill(self) -> None:
         """Let every write fail from now on."""
+        self._fillings += 1
         self._full.touch()
 
     def clear(self) -> None:
-        """Let writes succeed again."""
-        self._full.unlink()
+        """Let writes succeed again, once it was called as often as :meth:`fill`."""
+        self._fillings -= 1
+        if self._fillings == 0:
+            self._full.unlink()

@@ -97,3 +97,16 @@ def test_the_shims_use_little_of_any_stack(name: str, tmp_path: Path) -> None:
     assert len(uses) > 8
     assert {bound for _, _, bound in uses} == {"static"}
     assert [use for use in uses if int(use[1]) > STACK] == []
+
+
+def test_a_disk_is_full_until_the_last_who_filled_it_clears_it(tmp_path: Path) -> None:
+    """Two faults of a campaign may overlap."""
+    disk = Disk(tmp_path, tmp_path)
+    full = Path(disk.env["DISK_FULL"])
+    for fillings in (1, 2):
+        disk.fill()
+        assert full.exists(), fillings
+    disk.clear()
+    assert full.exists()
+    disk.clear()
+    assert not full.exists()

@@ -65,6 +65,14 @@ def build(example: Path, folder: Path) -> list[str]:
     return packages
 
 
+def generate_cpp(example: Path, folder: Path) -> None:
+    """Generate the package with the safety node and the gate in C++ into a folder."""
+    repository = Repository()
+    context = Context(InterfaceStore(), repository)
+    for file in _load(repository, sorted(example.glob("*.deros"))):
+        write(_generate(file, context, "cpp"), folder, overwrite=True)
+
+
 def build_cpp(example: Path, folder: Path) -> Path:
     """Generate the safety node and the gate in C++, and build them; return the install folder.
 
@@ -75,10 +83,7 @@ def build_cpp(example: Path, folder: Path) -> Path:
     Raises:
         BuildError: if colcon is not there, or does not build the package.
     """
-    repository = Repository()
-    context = Context(InterfaceStore(), repository)
-    for file in _load(repository, sorted(example.glob("*.deros"))):
-        write(_generate(file, context, "cpp"), folder / "src", overwrite=True)
+    generate_cpp(example, folder / "src")
     # Of this environment, unless a workspace has put another one in front.
     colcon = shutil.which("colcon") or str(Path(sys.executable).with_name("colcon"))
     command = [colcon, "--log-base", "log", "build", "--merge-install"]

@@ -6,7 +6,7 @@ import contextlib
 import shutil
 import subprocess
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from tests.support.chaos.links import (
 from tests.support.chaos.proxy import Proxy
 from tests.support.chaos.record import Record
 from tests.support.chaos.robot import Part
+from tests.support.cpp import python_overlay
 from tests.support.preload import Disk, WallClock
 from tests.support.ros import environment, own_domain
 
@@ -116,8 +117,35 @@ class Bench:
         return message is not None and message.time > since
 
 
+@dataclass(frozen=True)
+class Software:
+    """What runs.
+
+    Attributes:
+        system: the system's model.
+        packages: the folder with the packages in Python.
+        installed: where the safety node and the gate are if they are those in C++.
+    """
+
+    system: Path
+    packages: Path
+    installed: Path | None = None
+
+    @property
+    def places(self) -> tuple[Path, ...]:
+        """The folders with packages."""
+        return (self.packages,) if self.installed is None else (self.installed, self.packages)
+
+    def environment(self, part: str, domain: int) -> dict[str, str]:
+        """Return the environment of the nodes of a part, which are in Python in the plant."""
+        env = environment(domain)
+        if self.installed is None or part == PLANT:
+            return env
+        return python_overlay(self.installed, env)
+
+
 @contextlib.contextmanager
-def running(system: Path, packages: Sequence[Path], folder: Path, seed: int) -> Iterator[Bench]:
+def running(robot: Software, folder: Path, seed: int) -> Iterator[Bench]:
     """Run the robot, with everything that it takes to break it."""
     with contextlib.ExitStack() as stack:
         domains = {name: stack.enter_context(own_domain()) for name in DOMAINS}
@@ -133,7 +161,7 @@ def running(system: Path, packages: Sequence[Path], folder: Path, seed: int) -> 
         clocks: dict[str, WallClock] = {}
         parts: dict[str, Part] = {}
         for name in DOMAINS:
-            env = environment(domains[name]) | {"ROS_HOME": str(home)}
+            env = robot.environment(name, domains[name]) | {"ROS_HOME": str(home)}
             if name != PLANT:
                 (folder / name).mkdir(exist_ok=True)
                 clocks[name] = WallClock(folder / name)
@@ -141,8 +169,8 @@ def running(system: Path, packages: Sequence[Path], folder: Path, seed: int) -> 
                 env |= {**disk.env, **clocks[name].env, "LD_PRELOAD": preload}
             parts[name] = Part(
                 name,
-                system,
-                packages,
+                robot.system,
+                robot.places,
                 env,
                 folder / f"{name}.log",
                 lambda node: proxy.revive(OUTPUTS.get(node, ())),

@@ -13,10 +13,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from tests.support.chaos.bench import NotReadyError, running
+from tests.support.chaos.bench import NotReadyError, Software, running
 from tests.support.chaos.referee import Verdict
 from tests.support.chaos.round import play
 from tests.support.chaos.schedule import Schedule
+from tests.support.cpp import colcon_build
 from tests.support.examples import EXAMPLES
 
 SHOWN = 0.9
@@ -77,14 +78,6 @@ def run(
     return _conclude(console, outcomes, time.monotonic() - began)
 
 
-@dataclass(frozen=True)
-class Software:
-    """The system's model, and the folders with its packages."""
-
-    system: Path
-    packages: tuple[Path, ...]
-
-
 def generate_packages(output: Path, in_cpp: bool) -> Software:
     """Generate the feeding robot's packages into a folder, and build what is to be built."""
     from demonstration import build  # type: ignore[import-not-found]
@@ -93,9 +86,9 @@ def generate_packages(output: Path, in_cpp: bool) -> Software:
     packages = output / "packages"
     build.build(EXAMPLE, packages)
     if not in_cpp:
-        return Software(system, (packages,))
-    install = build.build_cpp(EXAMPLE, output / "cpp")
-    return Software(build.in_cpp(system, output), (install, packages))
+        return Software(system, packages)
+    build.generate_cpp(EXAMPLE, output / "cpp")
+    return Software(build.in_cpp(system, output), packages, colcon_build(output / "cpp"))
 
 
 def _keep(console: Console, outcome: Outcome, folder: Path) -> None:
@@ -118,9 +111,7 @@ def _play(batch: Sequence[Schedule], robot: Software, folder: Path) -> Iterator[
     attempt = 0
     while remaining:
         attempt += 1
-        with running(
-            robot.system, robot.packages, folder / str(attempt), remaining[0].seed
-        ) as bench:
+        with running(robot, folder / str(attempt), remaining[0].seed) as bench:
             while remaining:
                 schedule = remaining.pop(0)
                 try:
