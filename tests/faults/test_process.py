@@ -59,6 +59,34 @@ def test_a_deadline_that_passes_in_a_hang_is_met_late_not_lost(robot: Robot) -> 
         robot.until_stopped("/halt", limit=PROMPT)
 
 
+def test_each_of_the_events_that_a_hang_delays_is_explained_by_what_was_known_then(
+    robot: Robot,
+) -> None:
+    """A reset is refused because of a tilt; that nobody measures it any more comes later."""
+    with robot.safety_node() as node, robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_free()
+        sensors.play("/imu", imu(TILTED))
+        robot.until_stopped("/halt", limit=PROMPT)
+        sensors.quiet("/button")
+        robot.until_alive()  # what it has heard is told of by then
+        robot.events.clear()
+        sensors.play("/speed", speed(0.43))
+        robot.spin(0.1)
+        node.freeze()
+        robot.spin(1.0)
+        sensors.quiet("/imu")
+        node.thaw()
+        refused = robot.event("refused", "halt")
+        assert (refused["holding"], refused["unknown"]) == ("leaning", "")
+        assert refused["rule body.tilted"] == "true"
+        assert refused["value orientation.tilt()"].startswith("0.349")
+        assert refused["message"].startswith("halt stays active, called for by leaning (")
+        released = robot.event("trigger", "release")
+        assert released["rule drive.crept"] == "true"
+        assert released["value speed"] == "0.43"
+
+
 def test_a_latched_stop_survives_a_kill(robot: Robot) -> None:
     """The node that is started again says from its first message on that the robot is stopped."""
     with robot.safety_node() as node, robot.sensors() as sensors:

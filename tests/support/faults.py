@@ -146,6 +146,7 @@ class Robot:
         beats: the heartbeats.
         faults: what the safety node's diagnostics say is wrong, by what it is about.
         fault_events: what its events have said of that.
+        events: the values of all its events, and their messages.
         commands: the speeds that have reached the drive.
     """
 
@@ -170,6 +171,7 @@ class Robot:
         self.beats: list[Heard] = []
         self.faults: dict[str, str] = {}
         self.fault_events: dict[str, list[str]] = {}
+        self.events: list[dict[str, str]] = []
         self.commands: list[Heard] = []
         self._speeds: list[Heard] = []
         self._prober: Sensors | None = None
@@ -207,11 +209,19 @@ class Robot:
 
         def happened(msg: DiagnosticStatus) -> None:
             values = {pair.key: pair.value for pair in msg.values}
+            self.events.append({**values, "message": msg.message})
             if values["kind"] == "fault":
                 self.fault_events.setdefault(values["subject"], []).append(msg.message)
 
         self.peer.node.create_subscription(DiagnosticArray, "/diagnostics", diagnosed, 100)
         self.peer.node.create_subscription(DiagnosticStatus, f"/{NODE}/events", happened, 100)
+
+    def event(self, kind: str, action: str) -> dict[str, str]:
+        """Wait for an event of an action, and return its values."""
+        found = self.until(
+            lambda: [e for e in self.events if (e["kind"], e.get("action")) == (kind, action)]
+        )
+        return dict(found[-1])
 
     # What the test may ask
 

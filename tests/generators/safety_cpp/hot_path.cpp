@@ -93,6 +93,8 @@ public:
     ++acted_;
   }
 
+  void remember(std::size_t /*count*/) override {}
+
   void after(
     const std::vector<runtime::Event> & /*events*/,
     const std::vector<runtime::Time> & /*done*/) override
@@ -124,6 +126,7 @@ private:
     // Of the time that is told the clock goes on by 60 ms a message, so that every 'for' passes.
     now_ += 60'000'000;
     speed_.data = taken_ % 8 < 4 ? 0.9 : 0.1;
+    watch_.catch_up();
     every_thing_safety_cpp::take_speed(monitor_, now_, speed_);
     watch_.settle();
     ++taken_;

@@ -39,7 +39,7 @@ class Telling(Clockwork):
     def add(self, *numbers: int) -> None:
         """Add reports."""
         for number in numbers:
-            self.reports.add([Mock(action="stop", number=number)], [7], "states")
+            self.reports.add([Mock(action="stop", number=number)], [7], ["states"])
 
     def pass_time(self, time: int) -> None:
         """Let time pass, and have the executor call the timer."""

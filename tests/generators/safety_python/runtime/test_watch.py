@@ -39,12 +39,18 @@ class Monitor:
         self.next_deadline: int | None = 0
 
     def advance(self, _now: int) -> None:
-        """Order the actions."""
+        """Order the actions, once."""
+        if self.next_deadline is None:
+            return
         self.next_deadline = None
         for action in self.actions:
             self.emit(Event(action))
         if self.failing:
             raise ArithmeticError("in the monitor")
+
+    def explain(self) -> str:
+        """Explain nothing."""
+        return ""
 
 
 class Owner:
@@ -84,9 +90,9 @@ class Owner:
         if event.action in BAD:
             raise BAD[event.action]
 
-    def after(self, events: list[Any], done: list[int]) -> None:
+    def after(self, events: list[Any], done: list[int], states: list[Any]) -> None:
         """Take what has been done."""
-        assert len(events) == len(done)
+        assert len(events) == len(done) == len(states)
         assert all(done)
         self.calls.append(f"after {' '.join(event.action for event in events)}")
 
@@ -183,3 +189,40 @@ def test_what_can_wait_waits_while_a_deadline_is_near() -> None:
         assert max(watch.put_off(), 0) == pause
     watch.monitor.next_deadline = None
     assert watch.put_off() == 0
+
+
+class Counter:
+    """A monitor with a deadline each second, which explains what it has ordered by its count."""
+
+    def __init__(self, emit: Callable[[Event], None]) -> None:
+        """Begin; the first deadline is after a second."""
+        self.emit = emit
+        self.count = 0
+        self.next_deadline = 1
+
+    def advance(self, now: int) -> None:
+        """Order an action at each second."""
+        while self.next_deadline <= now:
+            self.count += 1
+            self.emit(Event(f"stop {self.count}"))
+            self.next_deadline += 1
+
+    def explain(self) -> int:
+        """Return how many actions it has ordered."""
+        return self.count
+
+
+def test_each_of_several_late_events_is_explained_by_what_was_known_then() -> None:
+    """A call that comes late settles one instant after the other; it publishes all at once."""
+    told: list[tuple[str, int]] = []
+    owner = Owner()
+    watch = owner.watch
+    watch.monitor = Counter(watch._take)
+    watch._show = lambda _event: True
+    watch._after = lambda events, _, states: told.extend(
+        (event.action, state) for event, state in zip(events, states, strict=True)
+    )
+    watch.catch_up(3)
+    assert told == []
+    watch.settle()
+    assert told == [("stop 1", 1), ("stop 2", 2), ("stop 3", 3)]

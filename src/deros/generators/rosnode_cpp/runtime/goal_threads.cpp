@@ -23,7 +23,10 @@ namespace
 // How long a shutdown waits for goals: as long as they can publish, and then again.
 constexpr std::chrono::milliseconds PATIENCE{500};
 
-// How often it is checked whether the node has an owner beside its goals.
+// How often it is checked, while there are goals, whether the node has an owner beside them. There
+// is no event to wait for: rclcpp calls nothing when a node is unloaded or taken from its executor,
+// a std::shared_ptr calls nothing when one of several owners lets go, and the destructor, which the
+// last one calls, is too late: the goals would use a node that is being destroyed.
 constexpr std::chrono::milliseconds PERIOD{50};
 
 }  // namespace

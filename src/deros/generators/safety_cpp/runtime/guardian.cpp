@@ -76,6 +76,7 @@ Guardian::Guardian(
     })
 {
   untold_.reserve(2 * SLOTS);
+  slots_.reserve(2 * SLOTS);
   try {
     lock_ = claim(name_, domain_of(node));
   } catch (const std::system_error & error) {
@@ -255,6 +256,14 @@ void Guardian::run_code(const Event & event)
   }
 }
 
+/// Remember what explains some events; the last slot is shared if there are not enough of them.
+void Guardian::remember(std::size_t count)
+{
+  slot_ = std::min(slot_ + 1, SLOTS);
+  robot_.remember(slot_ - 1);
+  slots_.resize(count, slot_ - 1);
+}
+
 void Guardian::after(const std::vector<Event> & events, const std::vector<Time> & done)
 {
   if (latches_) {
@@ -266,11 +275,10 @@ void Guardian::after(const std::vector<Event> & events, const std::vector<Time> 
     }
     latches_->keep();
   }
-  robot_.remember(slot_);
   for (std::size_t i = 0; i < events.size(); ++i) {
-    untold_.push_back({events[i], done[i], slot_});
+    untold_.push_back({events[i], done[i], slots_[i]});
   }
-  ++slot_;
+  slots_.clear();
   if (slot_ == SLOTS) {
     tell();
   } else if (!telling_.is_set()) {  // later, so that those who have to act find a processor
@@ -351,7 +359,7 @@ void Guardian::do_chores()
 bool Guardian::is_ready()
 {
   if (is_starting_) {
-    if (robot_.is_waiting() && now() < watch_.began_at() + grace_) {
+    if (robot_.is_waiting() && watch_.now() < watch_.began_at() + grace_) {
       return false;
     }
     is_starting_ = false;
@@ -422,7 +430,7 @@ void Guardian::switch_behaviours()
     }
     const bool enabled = !enabled_[i];
     enabled_[i] = enabled;
-    robot_.enable(now(), i, enabled);
+    robot_.enable(watch_.catch_up(), i, enabled);
     watch_.settle();
     const char * kind = enabled ? "enabled" : "disabled";
     events_.tell(

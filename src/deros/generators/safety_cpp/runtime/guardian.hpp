@@ -124,10 +124,10 @@ public:
 
   // What the thread of the node does
 
-  /// Return the time that the monitor is told.
-  Time now() const
+  /// Settle what is due before a message, and return the time that the monitor is told.
+  Time catch_up()
   {
-    return watch_.now();
+    return watch_.catch_up();
   }
 
   /// Do what the monitor ordered; to be called after each message.
@@ -166,6 +166,7 @@ private:
   Time due() const override;
   bool show(const Event & event) override;
   void run_code(const Event & event) override;
+  void remember(std::size_t count) override;
   void after(const std::vector<Event> & events, const std::vector<Time> & done) override;
   void tell() override;
   void tell_failure(const Event & event, const char * why) override;
@@ -209,7 +210,8 @@ private:
   Active active_;
   std::vector<bool> enabled_;
   std::vector<Untold> untold_;
-  std::size_t slot_ = 0;
+  std::vector<std::size_t> slots_;  // of the events that after() is going to take
+  std::size_t slot_ = 0;  // how many are in use
   std::uint64_t beats_ = 0;
   bool is_starting_ = true;
   Alarm publishing_;

@@ -39,6 +39,16 @@ void Watch::start()
   arm();
 }
 
+Time Watch::catch_up()
+{
+  const Time t = now();
+  for (Time due = watched_.due(); due <= t; due = watched_.due()) {
+    watched_.advance(due);
+    remember();
+  }
+  return t;
+}
+
 void Watch::take(const Event & event) noexcept
 {
   Indices * left = nullptr;
@@ -57,6 +67,7 @@ void Watch::take(const Event & event) noexcept
 void Watch::settle()
 {
   if (!events_.empty()) {
+    remember();
     carry_out();
   }
   arm();
@@ -72,7 +83,7 @@ void Watch::run_again(const std::vector<Event> & events)
 
 Time Watch::advance()
 {
-  const Time t = now();
+  const Time t = catch_up();
   watched_.advance(t);
   settle();
   return t;
@@ -116,7 +127,17 @@ void Watch::carry_out()
   watched_.after(events_, done_);
   events_.clear();
   done_.clear();
+  remembered_ = 0;
   fail_if_something_failed();
+}
+
+/// Remember what explains the events of the last instant, if there are any.
+void Watch::remember()
+{
+  if (events_.size() > remembered_) {
+    watched_.remember(events_.size());
+    remembered_ = events_.size();
+  }
 }
 
 /// Do something; tell and note what it throws.

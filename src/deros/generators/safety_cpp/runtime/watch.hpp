@@ -34,6 +34,10 @@ public:
   /// Run the robot code that an event asks for.
   virtual void run_code(const Event & event) = 0;
 
+  /// Remember what the monitor is worth now, for the report of the events of this instant.
+  /** \param count how many there are since after(), with those of the instants before */
+  virtual void remember(std::size_t count) = 0;
+
   /// Take the events that have been dealt with, and when each of them was done.
   virtual void after(const std::vector<Event> & events, const std::vector<Time> & done) = 0;
 
@@ -50,7 +54,7 @@ public:
 /// A monitor in time: it is told what time it is, and what it orders is done at once.
 /**
  * It runs on steady time, which never steps, or on ROS time under use_sim_time. The owner hands
- * messages to the monitor, with the time of now(), and calls settle() then.
+ * messages to the monitor, with the time of catch_up(), and calls settle() then.
  */
 class Watch
 {
@@ -71,6 +75,10 @@ public:
 
   /// Start the monitor: its timeouts count from now.
   void start();
+
+  /// Settle what is due before anything else, and return the time that it is now.
+  /** Each instant is settled by itself: its events are explained by what was known then. */
+  Time catch_up();
 
   /// Take an event while the monitor evaluates: show at once what it asks for.
   /** Robot code waits until all events are shown, whatever their order. */
@@ -96,6 +104,7 @@ private:
   using Act = std::function<void (const Event &)>;
 
   void carry_out();
+  void remember();
   void attempt(const Act & act, const Event & event);
   void fail_if_something_failed();
   void arm();
@@ -108,6 +117,7 @@ private:
   std::vector<Time> done_;  // when each of these was done
   Indices unpublished_;  // the indices of those that could not be shown
   Indices code_;  // the indices of those whose code is still to be run
+  std::size_t remembered_ = 0;  // how many of them can be explained
   std::exception_ptr failure_;  // the first one
   Alarm deadline_;
 };

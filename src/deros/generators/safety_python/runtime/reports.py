@@ -49,11 +49,11 @@ class Reports:
         self._waiting: deque[tuple[Any, ...]] = deque()
         self._alarm = Alarm(node, steady, time.monotonic_ns, self._ring, put_off)
 
-    def add(self, events: Sequence[Any], done: Sequence[int], states: Any) -> None:
+    def add(self, events: Sequence[Any], done: Sequence[int], states: Sequence[Any]) -> None:
         """
         Tell soon of events of the monitor.
 
-        done is when each was acted upon; states are what the monitor explains after them.
+        done is when each was acted upon; states are what the monitor explained after each.
         """
         self._waiting.append((events, done, states))
         if len(self._waiting) > ROOM:
@@ -76,7 +76,7 @@ class Reports:
         self._prepare()
         self._diagnostics.changed()
 
-    def _tell(self, events: Sequence[Any], done: Sequence[int], states: Any) -> None:
-        for event, done_at in zip(events, done, strict=False):
-            self._events.ordered(event, done_at, states)
+    def _tell(self, events: Sequence[Any], done: Sequence[int], states: Sequence[Any]) -> None:
+        for event, done_at, explained in zip(events, done, states, strict=False):
+            self._events.ordered(event, done_at, explained)
             self._diagnostics.ordered(event)

@@ -26,7 +26,8 @@ class Watch:
     """
     Runs a monitor on steady time, which never steps, or on ROS time under use_sim_time.
 
-    The owner hands messages to the monitor, with the time of now(), and calls settle() then.
+    For each message, the owner takes the time from now(), calls catch_up() with it, hands both to
+    the monitor, and calls settle() then.
     """
 
     def __init__(
@@ -36,7 +37,7 @@ class Watch:
         begin: Callable[[int, Callable[[Any], None]], Any],
         show: Callable[[Any], bool],
         run: Callable[[Any], None],
-        after: Callable[[list[Any], list[int]], None],
+        after: Callable[[list[Any], list[int], list[Any]], None],
         tell: Callable[[], None],
         stepped: Callable[[], None],
     ) -> None:
@@ -47,8 +48,9 @@ class Watch:
         called again when simulated time begins. show publishes and marks as pending what an event
         asks for, in the middle of an evaluation, and returns whether nothing is left to be done;
         run runs the robot code that is left. after is called with the events that have been dealt
-        with, and when each of them was done; tell before an action's failure ends the node.
-        stepped is called when simulated time has begun or stepped back.
+        with, and for each of them when it was done, and what the monitor explained then; tell
+        before an action's failure ends the node. stepped is called when simulated time has begun
+        or stepped back.
         """
         self.began_at = 0
         self.monitor: Any = None
@@ -64,6 +66,7 @@ class Watch:
         self._done: list[int] = []  # when each of these was done; 0 for not yet
         self._unpublished: list[int] = []  # the indices of those that could not be shown
         self._code: list[int] = []  # the indices of those whose code is still to be run
+        self._states: list[Any] = []  # what the monitor explained after each of them
         refuse_clock_change(node)
         self.now, self.clock = self._choose_clock(steady)
         self._deadline = Alarm(node, self.clock, self.now, self._on_deadline)
@@ -84,10 +87,21 @@ class Watch:
         """Settle all that is due, and return the time that it is now."""
         now = self.now()
         try:
+            self.catch_up(now)
             self.monitor.advance(now)
         finally:
             self.settle()
         return now
+
+    def catch_up(self, now: int) -> None:
+        """
+        Settle what was due up to now, before anything else.
+
+        Each instant is settled by itself: its events are explained by what was known then.
+        """
+        while (due := self.monitor.next_deadline) is not None and due <= now:
+            self.monitor.advance(due)
+            self._explain()
 
     def run_again(self, events: Iterable[Any]) -> None:
         """Run the code of actions that were active before the start, of each of them."""
@@ -149,12 +163,25 @@ class Watch:
             self._done.append(0)
         self._events.append(event)
 
+    def _explain(self) -> None:
+        """Have the monitor explain the events of the last instant, if there are any."""
+        count = len(self._events) - len(self._states)
+        if count:
+            self._states += [self.monitor.explain()] * count
+
     def _carry_out(self) -> None:
         """Do all that is left of what was ordered, and only then fail if something failed."""
-        events, done = self._events, self._done
+        try:
+            self._explain()
+        finally:  # even if it cannot, all is done
+            self._do_all()
+
+    def _do_all(self) -> None:
+        events, done, states = self._events, self._done, self._states
         attempts = [(self._show, self._unpublished), (self._run, self._code)]
         # Code may spin the node, and so come back here: it must find nothing to be done.
         self._events, self._done, self._unpublished, self._code = [], [], [], []
+        self._states = []
         failures: list[BaseException] = []
         try:
             for act, indices in attempts:
@@ -162,7 +189,7 @@ class Watch:
                     failures += self._attempt(act, events[i])
                     done[i] = self.now()
         finally:
-            self._after(events, done)
+            self._after(events, done, states)
         self._fail_with(failures)
 
     def _fail_with(self, failures: list[BaseException]) -> None:
