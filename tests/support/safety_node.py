@@ -228,9 +228,12 @@ class Robot:
 
     def drive_until(self, speed: float, condition: Callable[[], Any]) -> None:
         """Publish a speed again and again, well within its timeout, until something happens."""
+        self._until(speed, condition)
 
+    def _until(self, speed: float | None, condition: Callable[[], Any]) -> None:
         def once() -> Any:
-            self.drive(speed)
+            if speed is not None:
+                self.drive(speed)
             return condition()
 
         self.peer.until(once)
@@ -253,12 +256,20 @@ class Robot:
         (result,) = self.peer.call(client, SetParameters.Request(parameters=[changed])).results
         assert result.successful, result.reason
 
-    def reset(self) -> Any:
-        """Call the reset service and return its response."""
+    def reset(self, speed: float | None = None) -> Any:
+        """Call the reset service and return its response.
+
+        Args:
+            speed: what is published all the while, so that it does not go missing.
+        """
         from std_srvs.srv import Trigger
 
         client = self.peer.node.create_client(Trigger, f"/{NODE}/reset")
-        return self.peer.call(client, Trigger.Request())
+        self._until(speed, client.service_is_ready)
+        future = client.call_async(Trigger.Request())
+        self._until(speed, future.done)
+        self.peer.node.destroy_client(client)
+        return future.result()
 
 
 @pytest.fixture

@@ -45,7 +45,7 @@ def test_each_node_takes_over_what_the_other_has_latched(
             assert all(robot.stop)
             assert robot.event("latched")["action"] == "stop"
             assert not robot.reset().success
-            robot.drive_until(0.1, lambda: robot.reset().message == "stop is reset")
+            robot.peer.until(lambda: robot.reset(0.1).message == "stop is reset")
             robot.peer.until(lambda: not robot.stop[-1])
             process.kill()
             process.wait(LIMIT)
@@ -102,7 +102,7 @@ def test_both_report_the_same_of_the_same_messages(
                 name: (status.level, status.message, _timeless(status.values))
                 for name, status in robot.statuses.items()
             }
-            robot.drive_until(0.1, lambda: robot.reset().success)
+            robot.peer.until(lambda: robot.reset(0.1).success)
             events = [
                 _timeless(robot.event("trigger", action="stop")),
                 _timeless(robot.event("trigger", action="crawl")),

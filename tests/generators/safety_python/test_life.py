@@ -248,7 +248,7 @@ def test_a_latched_action_survives_the_death_of_the_node(start: Start, robot: Ro
             "stop stays active, not known to be false: speeding"
             " (every_thing.deros:28: if drive.fast for 100 ms), unknown: speed"
         )
-        robot.drive_until(0.1, lambda: robot.reset().message == "stop is reset")
+        robot.peer.until(lambda: robot.reset(0.1).message == "stop is reset")
         robot.peer.until(lambda: not robot.stop[-1])
         kill(process)
     robot.stop.clear()
@@ -267,7 +267,7 @@ def test_a_damaged_state_file_means_active(
         robot.peer.until(lambda: robot.stop)
         assert all(robot.stop)
         assert "is damaged" in robot.event("fault", subject="latches")["message"]
-        robot.drive_until(0.1, lambda: robot.reset().success)
+        robot.peer.until(lambda: robot.reset(0.1).success)
         robot.peer.until(lambda: not robot.stop[-1])
 
 
