@@ -96,7 +96,7 @@ def test_gate_as_printed_is_textx_too() -> None:
         "gate\na\n->\nb\n:\ngeometry_msgs . Twist\nrate\n20\nHz\n{\nstop\n:\nzero\n;\n}".replace(
             " . ", "."
         ),
-        'gate /a -> /b : geometry_msgs.Twist rate 20 Hz "The drive" { } ;',
+        'gate /a -> /b : geometry_msgs.Twist rate 20 Hz "The drive" { stop : zero } ;',
         "gate ~/a -> ~/b : geometry_msgs.Twist rate 20 Hz // why\n { /* nothing */ stop: zero; }",
     ],
 )
@@ -110,7 +110,7 @@ def test_layout_is_free(text: str) -> None:
 
 def test_description() -> None:
     """A text behind the rate says what the gate is for."""
-    assert _gate('gate a -> b : x.Y rate 1 Hz "The drive" { }').description == "The drive"
+    assert _gate('gate a -> b : x.Y rate 1 Hz "The drive" { a: zero; }').description == "The drive"
 
 
 def _limit(text: str) -> GateLimit:
@@ -215,6 +215,7 @@ def test_optional_behaviour_needs_a_name() -> None:
         ("gate a -> b { }", "found '{' where ':' is expected"),
         ("gate a b : x.Y rate 1 Hz { }", "found 'b' where '->' is expected"),
         ("gate a -> b : x.Y { }", "found '{' where 'rate' is expected"),
+        ("gate a -> b : x.Y rate 1 Hz { }", "found '}' where 'lost' or a name is expected"),
         ("gate a -> b : x.Y rate 1 Hz { stop: zreo; }", "found 'zreo' where 'zero' or 'limit'"),
         ("gate a -> b : x.Y rate 1 Hz { s: limit x in [0, 1]; }", "found 'in' where"),
         ("gate a -> b : x.Y rate 1 Hz { lost heartbeat: zero; }", "found ':' where 'for' is"),

@@ -20,6 +20,7 @@ ACTIONS = """
 action stop publishes true on /stop : std_msgs.Bool latched;
 action slow publishes true on slow : std_msgs.Bool latched;
 """
+LOST = "lost input for 1 sec: zero;"
 
 
 def _gate(text: str, declarations: str = "") -> ir.Gate:
@@ -59,7 +60,7 @@ def test_gate_of_the_program() -> None:
 
 def test_gates_are_numbered_in_the_order_written() -> None:
     """Each has its index."""
-    text = "".join(f"gate /a -> /b{n} : std_msgs.Int8 rate 1 Hz {{ }}\n" for n in range(3))
+    text = "".join(f"gate /a -> /b{n} : std_msgs.Int8 rate 1 Hz {{ {LOST} }}\n" for n in range(3))
     assert [(each.index, each.target) for each in program(text).gates] == [
         (0, "/b0"),
         (1, "/b1"),
@@ -73,7 +74,7 @@ def test_gates_are_numbered_in_the_order_written() -> None:
 )
 def test_period(rate: str, period_ns: int) -> None:
     """Zeros come at the rate or a trifle faster, never slower."""
-    assert _gate(f"gate /a -> /b : std_msgs.Int8 rate {rate} {{ }}").period_ns == period_ns
+    assert _gate(f"gate /a -> /b : std_msgs.Int8 rate {rate} {{ {LOST} }}").period_ns == period_ns
 
 
 @pytest.mark.parametrize(
@@ -183,7 +184,7 @@ def test_type_with_an_unknown_part(tmp_path: Path) -> None:
     folder = tmp_path / "my_msgs" / "msg"
     folder.mkdir(parents=True)
     (folder / "Wish.msg").write_text("float64 speed\nother_msgs/Extra extra\n", encoding="utf-8")
-    text = "gate /a -> /b : my_msgs.Wish rate 1 Hz { }"
+    text = f"gate /a -> /b : my_msgs.Wish rate 1 Hz {{ {LOST} }}"
     rules = Repository().load_text("a.deros", text).model
     assert isinstance(rules, Rules)
     found = build(rules, InterfaceStore((tmp_path,), prefixes=())).diagnostics
@@ -194,7 +195,7 @@ def test_type_with_an_unknown_part(tmp_path: Path) -> None:
 
 def test_topics_that_ros_refuses() -> None:
     """Each is named; private ones belong to a node, and a gate stands between two."""
-    assert _findings("gate ~/a -> /b/2c : std_msgs.Int8 rate 1 Hz { }") == [
+    assert _findings(f"gate ~/a -> /b/2c : std_msgs.Int8 rate 1 Hz {{ {LOST} }}") == [
         ("DRS332", "~/a", "the topic '~/a' is private: rules name the topics of other nodes"),
         ("DRS332", "/b/2c", "the topic '/b/2c' has a part that starts with a digit ('2c')"),
     ]
