@@ -68,7 +68,7 @@ def test_paused_simulation_lets_violations_through(robot: Robot) -> None:
             sensors.drive()
             robot.until_free()
             sensors.quiet("/clock")
-            robot.spin(0.2)
+            robot.until_silent()
             sensors.quiet("/speed")
             beats = len(robot.beats)
             robot.spin(1.0)

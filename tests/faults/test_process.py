@@ -13,23 +13,13 @@ from tests.support.played import imu, speed
 pytestmark = pytest.mark.ros
 
 TILTED = math.radians(20.0)
-BEAT = 0.1
-"""The period of the heartbeat, in s."""
-
-
-def until_silent(robot: Robot) -> None:
-    """Wait until what the safety node sent before is heard, and see that nothing follows."""
-    robot.spin(3 * BEAT)
-    beats, states = len(robot.beats), len(robot.states["/stop"])
-    robot.spin(5 * BEAT)
-    assert (len(robot.beats), len(robot.states["/stop"])) == (beats, states)
 
 
 def test_a_killed_node_falls_silent(robot: Robot) -> None:
     """Nothing repeats its heartbeat or its states in its place, so whoever listens can tell."""
     with robot.safety_node() as node:
         node.kill()
-        until_silent(robot)
+        robot.until_silent()
         robot.restart()
 
 
@@ -40,7 +30,7 @@ def test_a_hung_node_falls_silent_and_goes_on_where_it_was(robot: Robot) -> None
         robot.until_free()
         node.freeze()
         sensors.play("/speed", speed(2.0))
-        until_silent(robot)
+        robot.until_silent()
         assert not robot.is_active("/stop")
         node.thaw()
         robot.until_stopped(limit=PROMPT)
@@ -94,7 +84,7 @@ def test_a_latched_stop_survives_a_kill(robot: Robot) -> None:
         robot.violate()
         robot.until_alive()  # what it does after the stop, it has done now
         node.kill()
-        until_silent(robot)
+        robot.until_silent()
         seen = len(robot.states["/stop"])
         node = robot.restart()
         assert all(each.value for each in robot.states["/stop"][seen:]), (

@@ -258,6 +258,23 @@ class Robot:
         passed = [each.received for each in self.beats if each.received > now][count - 1] - now
         assert passed < 0.1 * count + PROMPT, f"{count} heartbeats took {passed:.1f} s"
 
+    def until_silent(self) -> None:
+        """Wait until the safety node has not been heard for five periods of its heartbeat.
+
+        What it sent before the fault may still be on its way; for how long is up to the machine.
+
+        Raises:
+            AssertionError: if it does not fall silent, or has sent anything since.
+        """
+        began = time.time()
+        before = -1
+        while (heard := len(self.beats) + len(self.states["/stop"])) != before:
+            assert time.time() < began + LIMIT, "the safety node does not fall silent"
+            before = heard
+            self.spin(0.5)
+        sent = max(each.sent for each in (*self.beats, *self.states["/stop"]))
+        assert sent < began + PROMPT, f"it went on for {sent - began:.1f} s"
+
     def spin(self, seconds: float) -> None:
         """Listen for a time in which something must *not* happen."""
         end = time.monotonic() + seconds
