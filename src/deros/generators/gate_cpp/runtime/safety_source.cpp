@@ -165,6 +165,10 @@ bool SafetySource::is_of_safety_node(const Topic & topic, Stranger & stranger) c
   if (!heartbeat_) {
     return infos.size() == 1 && node_of(*info) == only_state_node();
   }
+  const auto beating = heard_publishers(node_, *heartbeat_);
+  if (find_info(beating, safety_node_->gid) == beating.end()) {
+    return false;  // that one is gone; this may be the next, of which no heartbeat has come yet
+  }
   stranger.is_known = topic.trusted.has_value() || node_of(*info) != safety_node_->node;
   return !stranger.is_known;
 }
@@ -220,14 +224,18 @@ void SafetySource::look_at(Topic & topic)
   if (topic.trusted && (is_gone(*topic.trusted) || (!heartbeat_ && infos.size() > 1))) {
     topic.trusted.reset();
   }
+  const std::string safety_node = safety_node_ ? safety_node_->node : "";
   std::vector<std::string> names;
-  for (const Stranger & each : topic.strangers) {
+  for (Stranger & each : topic.strangers) {
+    const std::string name = node_of(*find_info(infos, each.gid));
+    if (!topic.trusted && name == safety_node) {
+      each.is_known = false;  // beside the one that is gone now, it was not believed
+    }
     if (each.is_known) {
-      names.push_back(node_of(*find_info(infos, each.gid)));
+      names.push_back(name);
     }
   }
   std::sort(names.begin(), names.end());
-  const std::string safety_node = safety_node_ ? safety_node_->node : "";
   report_(
     "state on " + topic.subscribed.name,
     names.empty() ?
