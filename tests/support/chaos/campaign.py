@@ -23,6 +23,9 @@ from tests.support.examples import EXAMPLES
 SHOWN = 0.9
 """The share of the rounds that must have been played, with a robot that drives."""
 
+PROMPT = 0.35
+"""Seconds from a broken rule to zero after which a round's line says so; a loss takes 0.3 s."""
+
 EXAMPLE = EXAMPLES / "feeding_robot"
 
 
@@ -124,6 +127,9 @@ def _play(batch: Sequence[Schedule], robot: Software, folder: Path) -> Iterator[
 def _report(console: Console, outcome: Outcome, number: int, count: int, seconds: float) -> None:
     schedule = outcome.schedule
     faults = "; ".join(str(fault) for fault in schedule.faults)
+    zero = outcome.verdict.slowest if outcome.verdict is not None else 0.0
+    if zero > PROMPT:
+        faults += f"; at zero after {zero:.2f} s"
     colour = {"held": "green", "violation": "bold red"}.get(outcome.result, "yellow")
     console.print(
         f"{number}/{count} {seconds:.0f} s  [{colour}]{outcome.result}[/]  round"
