@@ -1,15 +1,23 @@
 /* What the proofs rely on of the mathematical library: that its functions return, and change
- * nothing that the program can see. Stands in for <math.h> while Frama-C reads the monitor. */
+ * nothing that the program can see; and that equal arguments give equal results. Stands in for <math.h> while Frama-C reads the monitor. */
 #define __FC_MATH
 #define NAN (0.0 / 0.0)
 #define INFINITY (1.0 / 0.0)
+/* Two numbers are the same if no function tells them apart; in ACSL, == is of real numbers. */
+#define same(a, b) (identity(a) == identity(b))
+/*@ axiomatic Libm {
+      logic integer identity(double x);
+      predicate is_sqrt(double y, double x);
+      predicate is_asin(double y, double x);
+      predicate is_atan2(double z, double y, double x);
+    } */
 /*@ assigns \nothing; */
 extern double fabs(double x);
-/*@ assigns \nothing; */
+/*@ assigns \nothing; ensures is_sqrt(\result, x); */
 extern double sqrt(double x);
-/*@ assigns \nothing; */
+/*@ assigns \nothing; ensures is_atan2(\result, y, x); */
 extern double atan2(double y, double x);
-/*@ assigns \nothing; */
+/*@ assigns \nothing; ensures is_asin(\result, x); */
 extern double asin(double x);
 /*@ assigns \nothing; */
 extern double fmod(double x, double y);

@@ -16,7 +16,7 @@ class Contract:
     Nothing under ``assigns`` means that it changes nothing. What is ``checked`` is ensured, too,
     but not relied on by callers: what is said of numbers would make their proofs long for nothing.
     With ``cases``, names and conditions of which one always holds, all is ensured of each by
-    itself: so no proof is about the branches of a function at once.
+    itself, and what is ``of_case``: so no proof is about the branches of a function at once.
     """
 
     requires: list[str] = field(default_factory=list)
@@ -24,6 +24,7 @@ class Contract:
     ensures: list[str] = field(default_factory=list)
     checked: list[str] = field(default_factory=list)
     cases: dict[str, str] = field(default_factory=dict)
+    of_case: dict[str, list[str]] = field(default_factory=dict)
     invariants: list[str] = field(default_factory=list)
     variant: str = ""
     is_loop: bool = False
@@ -56,7 +57,7 @@ class Contract:
         for name, condition in (self.cases or {"": ""}).items():
             if name:
                 yield f"behavior {name}: assumes {condition}"
-            for each in dict.fromkeys(self.ensures):
+            for each in dict.fromkeys([*self.ensures, *self.of_case.get(name, ())]):
                 yield f"ensures {each}"
         if self.cases:
             yield "complete behaviors"
@@ -67,6 +68,18 @@ class Contract:
             yield f"loop variant {self.variant}"
 
 
+def wrapped(text: str, indent: int = 0) -> list[str]:
+    """Return a text in lines that are not too long."""
+    return textwrap.wrap(
+        text,
+        MAX_LINE,
+        initial_indent=" " * indent,
+        subsequent_indent=" " * (indent + 2),
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
 def iff(left: str, right: str) -> str:
     """Return that two statements are equally true."""
     return f"({left} <==> {right})"
@@ -74,9 +87,9 @@ def iff(left: str, right: str) -> str:
 
 def all_of(parts: Iterable[str]) -> str:
     """Return the conjunction."""
-    return f"({' && '.join(parts)})"
+    return f"({' && '.join(parts) or chr(92) + 'true'})"
 
 
 def any_of(parts: Iterable[str]) -> str:
     """Return the disjunction."""
-    return f"({' || '.join(parts)})"
+    return f"({' || '.join(parts) or chr(92) + 'false'})"

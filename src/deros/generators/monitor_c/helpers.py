@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from deros.generators.monitor_c import quantities
 from deros.generators.monitor_c.handlers import ELEMENTS
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
@@ -174,6 +175,8 @@ _TURNED = """\
 /*@ requires \\valid(held) && \\valid(since) && \\separated(held, since);
     assigns *held, *since;
     ensures *held == verdict;
+    ensures *since == (verdict != \\old(*held) && (verdict == $_TRUE || \\old(*held) == $_TRUE)
+      ? now : \\old(*since));
     ensures \\result != 0 <==> verdict != \\old(*held); */
 static bool turned(@_verdict verdict, @_verdict *held, int64_t *since, int64_t now)
 {
@@ -249,7 +252,7 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     for kind, type_ in _STORED.items():
         yield f"store_{kind}", _PUT.replace("KIND", kind).replace("TYPE", type_)
     for name in ("length_of", "clamped", "roll", "pitch", "yaw", "tilt", "norm"):
-        yield name, f"/*@ assigns \\nothing; */\n{C[name]}"
+        yield name, quantities.contract(name, _PARTS.get(name, "")) + C[name]
     yield "magnitude", _MAGNITUDE + C["magnitude"]
     yield "rate", _RATE + C["rate"]
     for base in _extremes(program):
@@ -265,6 +268,13 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     yield "lasting", _LASTING
     yield "turned", _TURNED
 
+
+_PARTS = {
+    "length_of": "x, y, z, w",
+    "clamped": "sine",
+    **dict.fromkeys(("roll", "pitch", "yaw"), "ux, uy, uz, uw"),
+}
+"""The parameters of the functions of which it is stated what number they give."""
 
 _ARRAY = """\
 /*@ requires \\valid_read(values + (0 .. count - 1));

@@ -12,14 +12,19 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from deros.generators.monitor_c.contracts import Contract, all_of, iff
-from deros.generators.monitor_c.handlers import Handler
-from deros.generators.monitor_c.layout import Term
-from deros.generators.monitor_c.predicates import BY_JUDGING, BY_TIME, SOUND, Predicates
-from deros.generators.monitor_c.rule_contracts import RuleContracts, with_earlier_deadline
-from deros.generators.monitor_c.view import MessageView, MonitorView, Timeout
+from deros.generators.monitor_c.contracts import Contract, all_of, any_of, iff
+from deros.generators.monitor_c.message_contracts import MessageContracts
+from deros.generators.monitor_c.predicates import (
+    BY_TIME,
+    EVALUATED,
+    IDLE,
+    IDLE_BEFORE,
+    SOUND,
+    Predicates,
+)
+from deros.generators.monitor_c.rule_contracts import RuleContracts
+from deros.generators.monitor_c.view import Forget, MonitorView, Timeout
 from deros.monitor import walk
-from deros.monitor.ir import Read
 
 _FIELD = re.compile(r"m->(\w+)")
 
@@ -76,8 +81,10 @@ class _Writer:
         for forget in self._view.forgets:
             cleared = [f"m->{name}" for name in forget.known]
             contract = Contract(["\\valid(m)"], [*cleared, *(f"m->{n}" for n in forget.last)])
-            contract.ensures += [f"{each} == 0" for each in cleared]
-            contract.ensures += [f"\\result == 0 ==> {each} == \\old({each})" for each in cleared]
+            contract.ensures.append(all_of(self._forgotten(forget)))
+            known = any_of(f"\\old({each}) != 0" for each in cleared)
+            contract.ensures.append(iff("\\result != 0", known))
+            contract.requires.append(all_of(self.predicates.ranges(forget.known)))
             yield forget.function, contract
         yield "earliest", self._earliest()
         for rule in self._program.rules:
@@ -94,6 +101,7 @@ class _Writer:
         if self._view.timeouts:
             yield "expire", self._expire()
         yield "restart", self._restart()
+        yield "step_back", self._step_back()
         yield "catch_up", self._catch_up()
         yield "arrive", self._arrive()
         yield from self._public()
@@ -106,75 +114,142 @@ class _Writer:
         ranges = self.predicates.ranges(dict.fromkeys(["now", *fields]))
         contract = Contract(["\\valid_read(m)", all_of(ranges), "unexpired(m)"])
         contract.ensures += ["\\result > m->now", "timeouts_in_time(m, \\result)"]
-        contract.ensures.append("ends_in_time(m, \\result)")
+        contract.ensures += ["ends_in_time(m, \\result)", "is_end(m, \\result)"]
         return contract
 
-    def _expire_one(self, timeout: Timeout) -> Contract:
+    def _forgotten(self, forget: Forget) -> list[str]:
+        """Return that no value of an input is known, and none is remembered."""
+        last = [f"\\is_NaN(m->{name})" for name in forget.last]
+        return [*(f"m->{name} == 0" for name in forget.known), *last]
+
+    def _expired(self, timeout: Timeout, before: str = "\\old({})") -> list[str]:
         """Return that an input is missing if its timeout has passed, and its values with it."""
         missing = f"m->{timeout.missing}"
-        ranges = self.predicates.ranges(["now", timeout.base, timeout.missing])
-        contract = Contract(["\\valid(m)", all_of(ranges)], [missing])
         passed = f"m->{timeout.base} + {timeout.duration_ns} <= m->now"
+        was = before.format(missing)
+        found = [iff(f"{missing} != 0", f"({was} != 0 || {passed})")]
+        for forget in self._forgets_of(timeout):
+            gone = f"({was} == 0 && {passed})"
+            found += [
+                f"m->{name} == ({gone} ? 0 : {before.format(f'm->{name}')})"
+                for name in forget.known
+            ]
+            for name in forget.last:
+                kept = f"same(m->{name}, {before.format(f'm->{name}')})"
+                found.append(f"({gone} ==> \\is_NaN(m->{name})) && (!{gone} ==> {kept})")
+        return found
+
+    def _forgets_of(self, timeout: Timeout) -> list[Forget]:
+        return [each for each in self._view.forgets if each.function == timeout.forget]
+
+    def _expire_one(self, timeout: Timeout) -> Contract:
+        missing = f"m->{timeout.missing}"
+        known = [name for each in self._forgets_of(timeout) for name in each.known]
+        names = ["now", timeout.base, timeout.missing, *known]
+        contract = Contract(["\\valid(m)", all_of(self.predicates.ranges(names))], [missing])
+        for forget in self._forgets_of(timeout):
+            contract.assigns += [f"m->{name}" for name in (*forget.known, *forget.last)]
         contract.ensures += self.predicates.ranges([timeout.missing])
-        contract.ensures.append(iff(f"{missing} != 0", f"(\\old({missing}) != 0 || {passed})"))
-        for forget in self._view.forgets:
-            if forget.function == timeout.forget:
-                contract.assigns += [f"m->{name}" for name in (*forget.known, *forget.last)]
-                gone = f"(\\old({missing}) == 0 && {passed})"
-                contract.ensures += [
-                    f"m->{name} == ({gone} ? 0 : \\old(m->{name}))" for name in forget.known
-                ]
+        contract.ensures.append(all_of(self._expired(timeout)))
         return contract
 
     def _expire(self) -> Contract:
-        contract = Contract(["\\valid(m)", "ranged(m)"])
-        for each in map(self._expire_one, self._view.timeouts):
-            contract.assigns += each.assigns
+        """Return the same of all inputs; called at an instant that is due, and at no later one."""
+        contract = Contract(["\\valid(m)", "ranged(m)", "is_end(m, m->now)"])
+        for each in self._view.timeouts:
+            contract.assigns += self._expire_one(each).assigns
+            contract.ensures.append(all_of(self._expired(each)))
         contract.ensures += ["ranged(m)", "unexpired(m)"]
         return contract
 
     def _restart(self) -> Contract:
-        known = dict.fromkeys(name for each in self._view.forgets for name in each.known)
-        last = [name for each in self._view.forgets for name in each.last]
         latest = self.predicates.macro("LATEST")
         contract = Contract(["\\valid(m)", "ranged_but_for_restart(m)"])
         contract.requires.append(f"m->now <= from <= {latest}")
         names = [each.name for each in self._view.fields if each.restarted]
-        contract.assigns += [f"m->{name}" for name in (*names, *known, *last, "due")]
-        contract.ensures += [*SOUND, "m->due > m->now"]
-        contract.ensures += [f"m->{name} == 0" for name in known]
+        names += [name for each in self._view.forgets for name in (*each.known, *each.last)]
+        contract.assigns += [f"m->{name}" for name in dict.fromkeys([*names, "due"])]
+        contract.ensures += [*SOUND, "m->due > m->now", "is_end(m, m->due)"]
+        contract.ensures.append(all_of(self._as_new("from")))
         return contract
+
+    def _as_new(self, start: str) -> list[str]:
+        """Return what all inputs, dates and intervals are after a restart."""
+        layout = self._layout
+        found = []
+        for fields in layout.inputs.values():
+            found += [f"m->{fields.base} == {start}"] if fields.base else []
+            found += [f"m->{name} == 0" for name in (fields.came, fields.missing) if name]
+        found += [f"m->{name} == m->now" for name in layout.turned.values()]
+        unset = self.predicates.macro("UNSET")
+        found += [f"m->{name} == {unset}" for name in layout.since.values()]
+        found += [f"m->{each.last_t} == m->now" for each in layout.memories.values()]
+        found += [each for forget in self._view.forgets for each in self._forgotten(forget)]
+        return found or ["\\true"]
+
+    def _step_back(self) -> Contract:
+        """Return that all is as new at an earlier time, and one event of the rules is settled."""
+        contract = Contract(["\\valid(m)", "sane(m)", "0 <= t < m->now"], [BY_TIME])
+        contract.ensures += ["sane(m)", *self._rules.kept_latched(), *self._stepped_back("t")]
+        return contract
+
+    def _stepped_back(self, t: str) -> list[str]:
+        unset, macro = self.predicates.macro("UNSET"), self.predicates.macro
+        sinces = self._layout.since.values()
+        new = [each for each in self._as_new(t) if f"== {unset}" not in each]
+        new += [f"(m->{since} == {unset} || m->{since} == {t})" for since in sinces]
+        step = f"after(\\old(emitted), m->owner, {t}, {macro('CLOCK_STEP')}, {macro('SITE_NONE')})"
+        emitted = f"emitted == {self.predicates.emissions.by_event(step)}"
+        return [f"m->now == {t}", "m->started == 1", all_of(new), "states_done(m)", emitted]
 
     def _catch_up(self) -> Contract:
         latest = self.predicates.macro("LATEST")
-        contract = Contract(["\\valid(m)", "sane(m)", f"0 <= t <= {latest}"], [BY_TIME])
+        contract = Contract(["\\valid(m)", "sane(m)", f"m->now <= t <= {latest}"])
+        contract.assigns.append("changed_by_deadlines(m)")
         contract.ensures += ["sane(m)", "m->now == t", *self._rules.kept_latched()]
+        contract.ensures += self._caught_up("\\old({})")
         return contract
+
+    def _caught_up(self, before: str) -> list[str]:
+        """Return what of inputs, and of what is emitted, is left by all that was due."""
+        expired = [each for one in self._view.timeouts for each in self._expired(one, before)]
+        return [all_of(expired or ["\\true"]), f"follows({before.format('emitted')}, emitted)"]
 
     def loop(self) -> Contract:
         """Return the invariant of the loop over the deadlines that are due."""
-        contract = Contract([], [BY_TIME], is_loop=True)
+        contract = Contract([], ["changed_by_deadlines(m)"], is_loop=True)
         kept = self._rules.kept_latched("\\at({}, Pre)")
-        contract.invariants += ["sane(m)", "m->now <= t", *kept]
+        contract.invariants += ["sane(m)", "is_end(m, m->due)", "m->now <= t", *kept]
+        contract.invariants += self._caught_up("\\at({}, Pre)")
         contract.variant = "t - m->now"
         return contract
 
     def _arrive(self) -> Contract:
         contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
-        latest = self.predicates.macro("LATEST")
-        now = f"(t < 0 ? 0 : t > {latest} ? {latest} : t)"
-        contract.ensures += ["sane(m)", *self._rules.kept_latched(), f"m->now == {now}"]
-        contract.cases["back"] = f"{now} < m->now"
-        contract.cases["due"] = f"m->now <= {now} && m->due <= {now}"
-        contract.cases["idle"] = f"m->now <= {now} < m->due"
+        contract.ensures += [*SOUND, "m->due > m->now", *EVALUATED, *self._rules.kept_latched()]
+        contract.ensures.append("m->now == time_of(t)")
+        contract.cases["back"] = "time_of(t) < m->now"
+        contract.cases["due"] = "m->now <= time_of(t) && m->due <= time_of(t)"
+        contract.cases["idle"] = IDLE
+        contract.of_case["back"] = self._stepped_back("m->now")[1:]
+        same = [
+            name for name in self.predicates.changed_by_time() if name not in self._by_deadlines()
+        ]
+        kept = [self.predicates.same(same)] if same else []
+        contract.of_case["due"] = [*self._caught_up("\\old({})"), *kept]
+        contract.of_case["idle"] = ["nothing_changed(m)"]
         return contract
+
+    def _by_deadlines(self) -> list[str]:
+        return self.predicates.changed_by_deadlines()
 
     # Public functions ---------------------------------------------------------------------------
 
     def _public(self) -> Iterator[tuple[str, Contract]]:
         prefix = self._view.prefix
         start = Contract(["\\valid(m)"], ["*m"])
-        start.ensures += ["sane(m)", *(f"m->{n} == 0" for n in self._layout.active.values())]
+        start.ensures += ["sane(m)", all_of(self._started()), "is_end(m, m->due)"]
+        start.ensures.append(all_of(self._as_new("time_of(m->now + time_of(grace))")))
         yield f"{prefix}_start", start
         for action in self._latched:
             active = self._layout.active[action.index]
@@ -183,6 +258,7 @@ class _Writer:
             yield f"{prefix}_latch_{action.name}", contract
         advance = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
         advance.ensures += ["sane(m)", "\\result == m->due", *self._rules.kept_latched()]
+        advance.ensures += ["m->now == time_of(t)", f"{IDLE_BEFORE} ==> nothing_changed(m)"]
         yield f"{prefix}_advance", advance
         yield f"{prefix}_waiting", self._waiting()
         if self._view.has_latched:
@@ -193,15 +269,11 @@ class _Writer:
                 [BY_TIME, f"m->{enabled}"],
             )
             contract.ensures += ["sane(m)", f"m->{enabled} == enabled", *self._rules.kept_latched()]
+            contract.ensures.append("m->now == time_of(t)")
             yield function, contract
+        messages = MessageContracts(self._view, self.predicates, self._rules)
         for message in self._view.messages:
-            if message.handler.observer:
-                yield message.handler.observer, self._observe(message.handler)
-            if len(message.judges) > 1:
-                yield message.judge, self._rules.judge_by(message)
-            if message.after:
-                yield message.after, self._after(message)
-            yield message.handler.function, self._message(message.handler)
+            yield from messages.contracts(message)
 
     def _waiting(self) -> Contract:
         fields = [each for t in self._view.timeouts for each in (t.came, t.missing)]
@@ -212,112 +284,37 @@ class _Writer:
         contract.ensures.append(iff("\\result != 0", f"({waits or chr(92) + 'false'})"))
         return contract
 
+    def _started(self) -> list[str]:
+        """Return what all that a restart leaves alone is at the start."""
+        layout, macro = self._layout, self.predicates.macro
+        zero = [each.known for each in layout.terms.values()]
+        zero += [each.name for each in layout.findings.values()]
+        zero += [each.known for each in layout.inputs.values() if each.known]
+        zero += [*layout.active.values(), *layout.ran.values(), "started"]
+        verdicts = [*layout.verdicts.values(), *layout.conditions.values()]
+        found = ["m->owner == owner", "m->now == time_of(t)"]
+        found += [f"m->{each} == {macro('UNKNOWN')}" for each in verdicts]
+        found += [f"m->{each} == 0" for each in dict.fromkeys(zero)]
+        found += [f"m->{each} == 1" for each in layout.enabled.values()]
+        for term in layout.terms.values():
+            double = term.type == "double"
+            found.append(f"same(m->{term.name}, (double)0.0)" if double else f"m->{term.name} == 0")
+        return found
+
     def _reset(self) -> Contract:
         contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
-        contract.ensures.append("sane(m)")
+        contract.ensures += ["sane(m)", "m->now == time_of(t)"]
+        emitted = "\\old(emitted)"
+        emissions = self.predicates.emissions
+        states = []
         for action in self._latched:
             contract.ensures += self._rules.kept_called(action)
+            active = f"m->{self._layout.active[action.index]}"
+            emitted = emissions.by_settling(action, emitted, f"\\old({active})")
+            over = emissions.over(action) or "\\true"
+            contract.ensures.append(f"{over} ==> {active} == 0")
+            states.append(f"({over} || {active} == \\old({active}))")
+        contract.ensures.append(f"{IDLE_BEFORE} ==> {all_of([*states, f'emitted == {emitted}'])}")
         cleared = [f"m->{self._layout.active[each.index]} == 0" for each in self._latched]
         contract.ensures.append(iff("\\result != 0", all_of(cleared)))
         return contract
-
-    def _after(self, message: MessageView) -> Contract:
-        """Return that all is judged anew that a message can have changed."""
-        contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], [BY_JUDGING])
-        names = self._layout.verdicts
-        others = [f"judged_{name}(m)" for each, name in names.items() if each not in message.rules]
-        touched = [f"judged_{names[each]}(m)" for each in message.rules]
-        contract.requires.append(f"m->started != 0 ==> {all_of([*others, 'acted(m)'])}")
-        contract.requires.append(f"m->started != 0 && news == 0 ==> {all_of(touched)}")
-        contract.ensures += self._settled()
-        contract.cases["first"] = "m->started == 0"
-        contract.cases["news"] = "m->started != 0 && news != 0"
-        contract.cases["none"] = "m->started != 0 && news == 0"
-        return contract
-
-    def _message(self, handler: Handler) -> Contract:
-        contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
-        contract.requires += self._arrays(handler)
-        contract.assigns += [f"m->{name}" for name in self._stored(handler)]
-        contract.ensures += self._settled()
-        return contract
-
-    def _settled(self) -> list[str]:
-        """Return that a monitor is sane and has judged, in parts: each is a proof of its own."""
-        parts = [*SOUND, "m->due > m->now", "m->started == 1", "judged(m)", "acted(m)"]
-        return [*parts, *self._rules.kept_latched()]
-
-    def _stored(self, handler: Handler) -> list[str]:
-        """Return the fields that hold what a message says."""
-        terms = [term for index in handler.inputs for term in self._layout.terms_of(index)]
-        findings = self._layout.findings.values()
-        found = [each.name for each in findings if each.inputs & set(handler.inputs)]
-        return [*(term.name for term in terms), *found]
-
-    def _observe(self, handler: Handler) -> Contract:
-        """Return what a message's values become: known, compared, and heard in time."""
-        terms = [term for index in handler.inputs for term in self._layout.terms_of(index)]
-        memories = [
-            each for index in handler.inputs for each in self._layout.memories_of(index).values()
-        ]
-        fields = [self._layout.inputs[index] for index in handler.inputs]
-        bases = [name for each in fields for name in (each.base, each.came) if name]
-        flags = [each.missing for each in fields if each.missing]
-        flags += [term.known for term in terms]
-        stored = self._stored(handler)
-        changed = [*bases, *flags, *stored]
-        changed += [name for each in memories for name in (each.last, each.last_t)]
-        own = self.predicates.ranges(["now", *dict.fromkeys(changed)])
-        own += self.predicates.timeouts_in_time("m->due", bases)
-        own += self.predicates.ends_in_time("m->due", bases)
-        own += self.predicates.unexpired(bases)
-        contract = Contract(["\\valid(m)", all_of(own), *self._arrays(handler)])
-        contract.assigns += [f"m->{name}" for name in changed]
-        contract.ensures += [*own, *self._says_nothing_new(handler, [*flags, *stored])]
-        contract.checked += self._values_of(handler)
-        if bases:
-            with_earlier_deadline(contract)
-        return contract
-
-    def _says_nothing_new(self, handler: Handler, names: list[str]) -> Iterator[str]:
-        """Yield that all that rules read is as it was, if a message is said to bring no news."""
-        floats = {t.name for t in self._layout.terms.values() if t.type == "double"}
-        aged = {end.base for end in self._view.ends}
-        for index in handler.inputs:
-            fields = self._layout.inputs[index]
-            if fields.base in aged:
-                names = [*names, fields.base, fields.came]
-        for name in dict.fromkeys(names):
-            if name not in floats:
-                yield f"\\result == 0 ==> m->{name} == \\old(m->{name})"
-
-    def _values_of(self, handler: Handler) -> Iterator[str]:
-        """Yield how what is stored comes from the message, and what is found from it."""
-        for condition, finding in self._layout.findings.items():
-            if finding.inputs & set(handler.inputs):
-                flags = dict.fromkeys(f"m->{term.known} != 0" for term in finding.terms)
-                compares = iff(f"m->{finding.name} != 0", self.predicates.meaning.holds(condition))
-                yield f"({' && '.join(flags)} ==> {compares})"
-        names = {leaf: each.name for each in handler.parameters for leaf in each.leaves}
-        for index in handler.inputs:
-            for term in self._layout.terms_of(index):
-                if isinstance(term.value, Read) and not term.texts:
-                    yield from self._value_of(term, names[term.value.leaf])
-
-    def _value_of(self, term: Term, name: str) -> Iterator[str]:
-        if term.type == "double":
-            yield f"(\\is_NaN({name}) ==> m->{term.known} == 0)"
-            yield f"(m->{term.known} != 0 ==> \\eq_double(m->{term.name}, {name}))"
-        else:
-            yield f"(m->{term.known} != 0 ==> m->{term.name} == {name})"
-
-    def _arrays(self, handler: Handler) -> Iterator[str]:
-        for parameter in handler.parameters:
-            name = parameter.name
-            extent = {
-                "array": f"{name} + (0 .. {name}_count - 1)",
-                "text": f"{name} + (0 .. {name}_length - 1)",
-            }.get(parameter.form)
-            if extent:
-                yield f"\\valid_read({extent})"
-                yield f"\\separated(m, {extent})"

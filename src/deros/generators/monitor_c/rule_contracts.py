@@ -7,10 +7,10 @@ seen to be as it was wherever it is called.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from deros.generators.monitor_c.contracts import Contract, all_of, iff
-from deros.generators.monitor_c.predicates import BY_JUDGING, Predicates
+from deros.generators.monitor_c.predicates import BY_JUDGING, DONE, Predicates
 from deros.generators.monitor_c.view import MessageView, MonitorView
 from deros.monitor import walk
 from deros.monitor.ir import Action, Behaviour, Condition, For, Rule, Trigger
@@ -26,6 +26,7 @@ class RuleContracts:
         self._program = view.program
         self._layout = view.layout
         self._predicates = predicates
+        self.emissions = predicates.emissions
         self._behaviours = tuple(walk.behaviours(view.program))
         self._latched = [each for each in view.program.actions if each.latched]
         self._true, self._false = predicates.macro("TRUE"), predicates.macro("FALSE")
@@ -40,6 +41,7 @@ class RuleContracts:
         contract.ensures += self._predicates.ranges([name])
         contract.ensures.append(f"judged_{name}(m)")
         contract.ensures.append(iff("\\result != 0", f"m->{name} != \\old(m->{name})"))
+        contract.ensures.append(self._predicates.turned(rule))
         self._with_own_intervals(contract, fors)
         return contract
 
@@ -52,7 +54,8 @@ class RuleContracts:
         contract.assigns += [f"m->{name}" for name in (*names, *turned)]
         contract.ensures += self._predicates.ranges(names)
         contract.ensures += [f"judged_{name}(m)" for name in names]
-        contract.ensures += [f"\\result == 0 ==> m->{n} == \\old(m->{n})" for n in names]
+        contract.ensures.append(iff("\\result != 0", self._predicates.changed(names)))
+        contract.ensures.append(all_of(map(self._predicates.turned, rules)))
         fors = [each for rule in rules for each in self._predicates.fors(rule.condition)]
         self._with_own_intervals(contract, fors)
         return contract
@@ -67,17 +70,20 @@ class RuleContracts:
             ran = self._layout.ran[action.reset_by]
             read.append(ran)
             asked.append(f"m->{ran} != 0")
-        contract = Contract(["\\valid(m)", all_of(self._predicates.ranges(read))], [f"m->{active}"])
+        contract = Contract(["\\valid(m)", all_of(self._predicates.ranges(read))])
+        contract.assigns += [f"m->{active}", "emitted"]
         reset = all_of(asked) if asked else "\\true"
         contract.ensures.append(f"m->{active} == ({reset} ? 0 : \\old(m->{active}))")
+        now = self.emissions.by_settling(action, "\\old(emitted)", f"\\old(m->{active})")
+        contract.ensures.append(f"emitted == {now}")
         return contract
 
     def behave(self, behaviour: Behaviour) -> Contract:
         """Return the contract of the function that runs a behaviour, and those within it."""
-        group = self._closure(behaviour)
+        group = self.emissions.closure(behaviour)
         fors = [each for one in group for each in self._predicates.fors(one.condition)]
         changed = [self._layout.conditions[each.index] for each in group] + self._touched(group)
-        contract = Contract(["\\valid(m)"], [f"m->{name}" for name in changed])
+        contract = Contract(["\\valid(m)"], [*(f"m->{name}" for name in changed), "emitted"])
         for each in group:
             own = self._predicates.fors(each.condition)
             contract.requires.append(self._ranges_read(each.condition, own))
@@ -85,29 +91,33 @@ class RuleContracts:
         contract.ensures += self._predicates.ranges(changed)
         contract.ensures += [f"acted_{self._layout.behave[each.index]}(m)" for each in group]
         contract.ensures += self._done(group)
+        contract.ensures.append(
+            f"emitted == {self.emissions.by_behaviour(behaviour, chr(92) + 'old(emitted)')}"
+        )
         self._with_own_intervals(contract, fors)
         return contract
 
     def act(self) -> Contract:
-        """Return that every behaviour holds if its condition does, and what becomes of actions."""
+        """Return that conditions are what they mean, and what is run, reset and emitted."""
         tables = (self._layout.conditions, self._layout.ran, self._layout.active)
         contract = self._run([each for table in tables for each in table.values()])
+        contract.assigns.append("emitted")
         contract.ensures += ["acted(m)", *self.kept_latched()]
-        for action in self._program.actions:
-            if action.reset_by is not None:
-                contract.ensures += self.kept_called(action)
-        contract.ensures += self._begun()
         fors = [part for each in self._behaviours for part in self._predicates.fors(each.condition)]
-        self._with_intervals(contract, self._sinces(fors))
+        self._with_intervals(contract, fors)
         contract.requires.append("changed == 0 ==> acted(m)")
         contract.cases |= {"change": "changed != 0", "none": "changed == 0"}
+        contract.of_case["change"] = list(DONE)
+        contract.of_case["none"] = ["nothing_done(m)"]
         return contract
 
     def evaluate(self) -> Contract:
         """Return that all is judged, and acted upon."""
         contract = self._run([])
+        contract.requires.append("m->now <= m->due")
         contract.ensures += ["m->started == 1", "judged(m)", "acted(m)", *self.kept_latched()]
-        self._with_intervals(contract, self._layout.since.values())
+        contract.ensures += ["verdicts_dated(m)", *DONE]
+        self._with_intervals(contract, self._predicates.all_fors())
         contract.assigns = [BY_JUDGING]
         return contract
 
@@ -131,30 +141,21 @@ class RuleContracts:
         names = dict.fromkeys([*_FIELD.findall(text), *sinces])
         return all_of(self._predicates.ranges(names))
 
-    def _with_own_intervals(self, contract: Contract, fors: Iterable[For]) -> None:
+    def _with_own_intervals(self, contract: Contract, fors: Sequence[For]) -> None:
         """Add what becomes of the intervals of a condition; they stay in range and in time."""
         sinces = self._sinces(fors)
         if sinces:
             in_time = self._predicates.ends_in_time("m->due", sinces)
             contract.requires += in_time
             contract.ensures += [*self._predicates.ranges(sinces), *in_time]
-            self._with_intervals(contract, sinces)
+            self._with_intervals(contract, fors)
 
-    def _with_intervals(self, contract: Contract, sinces: Iterable[str]) -> None:
-        """Add what becomes of intervals: begun now, kept, or cleared."""
-        unset = self._predicates.macro("UNSET")
-        for since in sinces:
-            contract.assigns.append(f"m->{since}")
-            kept = f"(\\old(m->{since}) == {unset} ? m->now : \\old(m->{since}))"
-            contract.ensures.append(f"m->{since} != {unset} ==> m->{since} == {kept}")
+    def _with_intervals(self, contract: Contract, fors: Sequence[For]) -> None:
+        """Add what becomes of intervals: begun now, kept, or cleared; and of the next deadline."""
+        if fors:
+            contract.assigns += [f"m->{since}" for since in self._sinces(fors)]
+            contract.ensures += self._predicates.run_on(fors)
             with_earlier_deadline(contract)
-
-    def _closure(self, behaviour: Behaviour) -> list[Behaviour]:
-        found = [behaviour]
-        for item in behaviour.body:
-            if isinstance(item, Behaviour):
-                found += self._closure(item)
-        return found
 
     def _guards(self, group: list[Behaviour]) -> Iterator[str]:
         """Yield the fields beside its condition by which a behaviour holds."""
@@ -175,17 +176,12 @@ class RuleContracts:
         return list(names)
 
     def _done(self, group: list[Behaviour]) -> Iterator[str]:
-        """Yield that what is triggered becomes active, and that nothing else changes that."""
-        for index, active in self._layout.active.items():
-            callers = [each for each in group if _triggers(each, index)]
-            if not callers:
-                continue
-            rises = " || ".join(self._rises(each) for each in callers)
-            yield iff(f"m->{active} != 0", f"(\\old(m->{active}) != 0 || {rises})")
-
-    def _rises(self, behaviour: Behaviour) -> str:
-        condition, true = f"m->{self._layout.conditions[behaviour.index]}", self._true
-        return f"({condition} == {true} && \\old({condition}) != {true})"
+        """Yield that what is run becomes active, and that nothing else changes that."""
+        for table in (self._layout.active, self._layout.ran):
+            for index, name in table.items():
+                rises = [self.emissions.rises(b) for b in self.emissions.callers(index, group)]
+                if rises:
+                    yield f"m->{name} == ({' || '.join(rises)} ? 1 : \\old(m->{name}))"
 
     def _run(self, changed: Iterable[str]) -> Contract:
         """Return what is common to what runs rules or behaviours: all stays in range and time."""
@@ -197,20 +193,9 @@ class RuleContracts:
     def _sinces(self, fors: Iterable[For]) -> list[str]:
         return [self._layout.since[each.index] for each in fors]
 
-    def _begun(self) -> Iterator[str]:
-        """Yield that what a behaviour calls for becomes active when its condition turns true."""
-        for behaviour in self._behaviours:
-            for index, active in self._layout.active.items():
-                if _triggers(behaviour, index):
-                    yield f"{self._rises(behaviour)} ==> m->{active} != 0"
-
 
 def with_earlier_deadline(contract: Contract) -> None:
     """Add that the next deadline comes no later than before, and still lies ahead."""
     contract.assigns.append("m->due")
     contract.ensures.append("m->due <= \\old(m->due)")
     contract.ensures.append("\\old(m->due) > m->now ==> m->due > m->now")
-
-
-def _triggers(behaviour: Behaviour, action: int) -> bool:
-    return any(isinstance(item, Trigger) and item.action == action for item in behaviour.body)

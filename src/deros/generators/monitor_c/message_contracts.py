@@ -1,0 +1,274 @@
+"""What is to be proved of the functions that take messages: what each does to every field."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros.generators.monitor_c.contracts import Contract, all_of, iff
+from deros.generators.monitor_c.handlers import Handler, Parameter
+from deros.generators.monitor_c.layout import Finding
+from deros.generators.monitor_c.predicates import BY_JUDGING, BY_TIME, DONE, SOUND, Predicates
+from deros.generators.monitor_c.quantities import is_value
+from deros.generators.monitor_c.rule_contracts import RuleContracts, with_earlier_deadline
+from deros.generators.monitor_c.view import MessageView, MonitorView
+from deros.interfaces.types import FLOAT_TYPES
+from deros.monitor import walk
+from deros.monitor.engine import age_changes
+from deros.monitor.functions import FUNCTIONS, Argument
+from deros.monitor.ir import Age, Apply, Condition, Input, Read
+
+
+class MessageContracts:
+    """Writes the contracts of what a message of one topic runs."""
+
+    def __init__(self, view: MonitorView, predicates: Predicates, rules: RuleContracts) -> None:
+        """Remember what is named how."""
+        self._view = view
+        self._program = view.program
+        self._layout = view.layout
+        self._predicates = predicates
+        self._rules = rules
+
+    def contracts(self, message: MessageView) -> Iterator[tuple[str, Contract]]:
+        """Yield the contract of each function that takes a topic's messages."""
+        if message.handler.observer:
+            yield message.handler.observer, self._observe(message.handler)
+        if len(message.judges) > 1:
+            yield message.judge, self._rules.judge_by(message)
+        if message.after:
+            yield message.after, self._after(message)
+        yield message.handler.function, self._message(message)
+
+    def _after(self, message: MessageView) -> Contract:
+        """Return that all is judged anew that a message can have changed."""
+        contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], [BY_JUDGING])
+        names = self._layout.verdicts
+        others = [f"judged_{name}(m)" for each, name in names.items() if each not in message.rules]
+        touched = [f"judged_{names[each]}(m)" for each in message.rules]
+        contract.requires.append(f"m->started != 0 ==> {all_of([*others, 'acted(m)'])}")
+        contract.requires.append(f"m->started != 0 && news == 0 ==> {all_of(touched)}")
+        contract.requires.append("(m->started == 0 ==> unacted(m))")
+        contract.ensures += [*self._settled(), "verdicts_dated(m)", "intervals_run_on(m)"]
+        changed = self._predicates.changed(names[each] for each in message.rules)
+        contract.cases["first"] = "m->started == 0"
+        contract.of_case["first"] = list(DONE)
+        contract.cases["news"] = "m->started != 0 && news != 0"
+        contract.of_case["news"] = [
+            f"{changed} ==> {' && '.join(DONE)}",
+            f"!{changed} ==> nothing_done(m)",
+        ]
+        contract.cases["none"] = "m->started != 0 && news == 0"
+        contract.of_case["none"] = ["nothing_done(m)"]
+        return contract
+
+    def _message(self, message: MessageView) -> Contract:
+        handler = message.handler
+        contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
+        contract.requires += self._arrays(handler)
+        contract.assigns += [f"m->{name}" for name in self._stored(handler)]
+        contract.ensures += [*self._settled(), "m->now == time_of(t)"]
+        for each in map(self._program.inputs.__getitem__, handler.inputs):
+            counts, _ = self._counts(each, handler)
+            said = self._says(each, handler)
+            if said:
+                contract.ensures.append(f"{counts} ==> {all_of(said)}")
+        return contract
+
+    def _settled(self) -> list[str]:
+        """Return that a monitor is sane and has judged, in parts: each is a proof of its own."""
+        parts = [*SOUND, "m->due > m->now", "m->started == 1", "judged(m)", "acted(m)"]
+        return [*parts, *self._rules.kept_latched()]
+
+    def _stored(self, handler: Handler) -> list[str]:
+        """Return the fields that hold what a message says."""
+        terms = [term for index in handler.inputs for term in self._layout.terms_of(index)]
+        found = [each.name for _, each in self._findings(handler.inputs)]
+        return [*(term.name for term in terms), *found]
+
+    def _findings(self, inputs: tuple[int, ...]) -> list[tuple[Condition, Finding]]:
+        return [
+            (condition, each)
+            for condition, each in self._layout.findings.items()
+            if each.inputs & set(inputs)
+        ]
+
+    # What a message says ------------------------------------------------------------------------
+
+    def _observe(self, handler: Handler) -> Contract:
+        """Return what a message's values become: known, compared, and heard in time."""
+        terms = [term for index in handler.inputs for term in self._layout.terms_of(index)]
+        memories = [
+            each for index in handler.inputs for each in self._layout.memories_of(index).values()
+        ]
+        fields = [self._layout.inputs[index] for index in handler.inputs]
+        bases = [name for each in fields for name in (each.base, each.came) if name]
+        flags = [each.missing for each in fields if each.missing]
+        flags += [each.known for each in fields if each.known]
+        flags += [term.known for term in terms]
+        stored = self._stored(handler)
+        changed = [*bases, *dict.fromkeys(flags), *stored]
+        changed += [name for each in memories for name in (each.last, each.last_t)]
+        own = self._predicates.ranges(["now", *dict.fromkeys(changed)])
+        own += self._predicates.timeouts_in_time("m->due", bases)
+        own += self._predicates.ends_in_time("m->due", bases)
+        own += self._predicates.unexpired(bases)
+        contract = Contract(["\\valid(m)", all_of(own), *self._arrays(handler)])
+        contract.assigns += [f"m->{name}" for name in changed]
+        contract.ensures.append(all_of(own))
+        contract.ensures.append(self._news(handler, [*flags, *stored]))
+        for each in map(self._program.inputs.__getitem__, handler.inputs):
+            contract.ensures += self._effect(each, handler)
+        if bases:
+            with_earlier_deadline(contract)
+        return contract
+
+    def _news(self, handler: Handler, names: list[str]) -> str:
+        """Return whether a message brings news: what rules read is another, or a message's age."""
+        doubles = {t.name for t in self._layout.terms.values() if t.type == "double"}
+        read = [name for name in names if name not in doubles]
+        if not any(self._ages(self._program.inputs[index]) for index in handler.inputs):
+            return iff("\\result != 0", self._predicates.changed(read)) if read else "\\result == 0"
+        for index in handler.inputs:
+            fields = self._layout.inputs[index]
+            read += [name for name in (fields.base, fields.came) if name]
+        return f"\\result == 0 ==> {self._predicates.same(f'm->{name}' for name in read)}"
+
+    def _effect(self, each: Input, handler: Handler) -> Iterator[str]:
+        """Yield what becomes of an input's fields if a message counts, and if it does not."""
+        counts, is_all = self._counts(each, handler)
+        heard = [*self._heard(each, handler), *self._says(each, handler)]
+        if not heard:
+            return
+        if not self._rejects(each, handler):
+            yield all_of(heard)
+        elif is_all:
+            yield f"{counts} ==> {all_of(heard)}"
+            yield f"!{counts} ==> {all_of(self._unheard(each, handler))}"
+        else:
+            taken = all_of([counts, *heard])
+            yield f"({taken} || {all_of(self._unheard(each, handler))})"
+
+    def _heard(self, each: Input, handler: Handler) -> Iterator[str]:
+        """Yield that a message counts from now."""
+        fields = self._layout.inputs[each.index]
+        if fields.base:
+            yield f"m->{fields.base} == m->now"
+            yield f"m->{fields.came} == 1"
+        if fields.missing:
+            yield f"m->{fields.missing} == 0"
+        for memory in self._layout.memories_of(each.index).values():
+            yield f"m->{memory.last_t} == m->now"
+        for condition, finding in self._findings((each.index,)):
+            yield iff(f"m->{finding.name} != 0", self._predicates.meaning.holds(condition))
+        if len(handler.inputs) == 1:
+            waits = [each.timeout_ns] if each.timeout_ns is not None and fields.base else []
+            waits += [wait for age in self._ages(each) for wait in age_changes(age) if wait > 0]
+            due = "\\old(m->due)"
+            yield f"m->due == \\min({due}, m->now + {min(waits)})" if waits else f"m->due == {due}"
+
+    def _says(self, each: Input, handler: Handler) -> list[str]:
+        """Return what is known of a message that counts, and what it is."""
+        leaves = self._leaves(handler)
+        doubles = {
+            leaf: name
+            for leaf, name in leaves.items()
+            if self._program.leaves[leaf].type.base in FLOAT_TYPES
+        }
+        known = self._layout.inputs[each.index].known
+        found = [f"m->{known} == 1"] if known else []
+        lengths: dict[object, str] = {}
+        numbers = []
+        for term in self._layout.terms_of(each.index):
+            if isinstance(term.value, Apply):
+                quaternion = FUNCTIONS[term.value.function].argument is Argument.QUATERNION
+                if quaternion and term.value.arguments not in lengths:
+                    lengths[term.value.arguments] = f"length_{len(lengths) + 1}"
+            if term.type == "double":
+                if not isinstance(term.value, Read):
+                    found.append(iff(f"m->{term.known} != 0", f"!\\is_NaN(m->{term.name})"))
+                numbers.append(is_value(f"m->{term.name}", term.value, doubles, lengths))
+            elif isinstance(term.value, Read) and not term.texts:
+                found.append(f"m->{term.name} == {leaves[term.value.leaf]}")
+        numbers = [text for text in numbers if text]
+        if lengths:
+            of = [
+                f"is_length_of({name}, {', '.join(_parts(arguments, doubles))})"
+                for arguments, name in lengths.items()
+            ]
+            names = ", ".join(lengths.values())
+            return [*found, f"(\\exists double {names}; {' && '.join([*of, *numbers])})"]
+        return [*found, *numbers]
+
+    def _unheard(self, each: Input, handler: Handler) -> Iterator[str]:
+        """Yield that a message does not count: its values are unknown, all else is as it was."""
+        fields = self._layout.inputs[each.index]
+        forgotten: list[str] = []
+        for forget in self._view.forgets:
+            if forget.function == self._layout.forgets.get(each.index):
+                yield from (f"m->{name} == 0" for name in forget.known)
+                yield from (f"\\is_NaN(m->{name})" for name in forget.last)
+                forgotten += [*forget.known, *forget.last]
+        names = [fields.base, fields.came, fields.missing]
+        names += [term.name for term in self._layout.terms_of(each.index)]
+        names += [finding.name for _, finding in self._findings((each.index,))]
+        names += [memory.last_t for memory in self._layout.memories_of(each.index).values()]
+        kept = [f"m->{name}" for name in names if name and name not in forgotten]
+        due = ["m->due"] if len(handler.inputs) == 1 else []
+        yield self._predicates.same([*kept, *due])
+
+    def _counts(self, each: Input, handler: Handler) -> tuple[str, bool]:
+        """Return what must hold for a message to count, and whether that is all of it."""
+        tests: list[str] = []
+        is_all = True
+        for index in each.leaves:
+            leaf, parameter = self._program.leaves[index], self._parameter(index, handler)
+            if parameter is None:
+                continue
+            if parameter.given:
+                tests.append(f"{parameter.name}_given != 0")
+            is_all &= parameter.form != "array"
+            if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown and not leaf.type.is_array:
+                tests.append(f"!\\is_NaN({parameter.name})")
+        guarded = (FUNCTIONS[value.function].guard for value in self._functions_of(each))
+        is_all &= all(guard is None for guard in guarded)
+        return all_of(dict.fromkeys(tests)) if tests else "\\true", is_all
+
+    def _rejects(self, each: Input, handler: Handler) -> bool:
+        """Tell whether a message may not count."""
+        return self._counts(each, handler) != ("\\true", True)
+
+    def _functions_of(self, each: Input) -> list[Apply]:
+        return [
+            value
+            for value in walk.values(walk.conditions(self._program))
+            if isinstance(value, Apply) and value.input == each.index
+        ]
+
+    def _ages(self, each: Input) -> list[Age]:
+        return [
+            condition
+            for condition in walk.conditions(self._program)
+            if isinstance(condition, Age) and condition.input == each.index
+        ]
+
+    def _leaves(self, handler: Handler) -> dict[int, str]:
+        return {leaf: each.name for each in handler.parameters for leaf in each.leaves}
+
+    def _parameter(self, leaf: int, handler: Handler) -> Parameter | None:
+        return next((each for each in handler.parameters if leaf in each.leaves), None)
+
+    def _arrays(self, handler: Handler) -> Iterator[str]:
+        for parameter in handler.parameters:
+            name = parameter.name
+            extent = {
+                "array": f"{name} + (0 .. {name}_count - 1)",
+                "text": f"{name} + (0 .. {name}_length - 1)",
+            }.get(parameter.form)
+            if extent:
+                yield f"\\valid_read({extent})"
+                yield f"\\separated(m, {extent})"
+
+
+def _parts(arguments: object, leaves: dict[int, str]) -> list[str]:
+    assert isinstance(arguments, tuple)
+    return [leaves[each.leaf] for each in arguments if isinstance(each, Read)]
