@@ -16,12 +16,14 @@ class Contract:
     Nothing under ``assigns`` means that it changes nothing. What is ``checked`` is ensured, too,
     but not relied on by callers: what is said of numbers would make their proofs long for nothing.
     With ``cases``, names and conditions of which one always holds, all is ensured of each by
-    itself, and what is ``of_case``: so no proof is about the branches of a function at once.
+    itself, and what is ``of_case``: so no proof is about the branches of a function at once. What
+    is ensured ``at_once`` is proved of all cases together: callers read it once.
     """
 
     requires: list[str] = field(default_factory=list)
     assigns: list[str] = field(default_factory=list)
     ensures: list[str] = field(default_factory=list)
+    at_once: list[str] = field(default_factory=list)
     checked: list[str] = field(default_factory=list)
     cases: dict[str, str] = field(default_factory=dict)
     of_case: dict[str, list[str]] = field(default_factory=dict)
@@ -54,6 +56,8 @@ class Contract:
         for each in dict.fromkeys(self.invariants):
             yield f"loop invariant {each}"
         yield f"{loop}assigns {', '.join(dict.fromkeys(self.assigns)) or chr(92) + 'nothing'}"
+        for each in dict.fromkeys(self.at_once):
+            yield f"ensures {each}"
         for name, condition in (self.cases or {"": ""}).items():
             if name:
                 yield f"behavior {name}: assumes {condition}"

@@ -226,8 +226,8 @@ class _Writer:
 
     def _arrive(self) -> Contract:
         contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
-        contract.ensures += [*SOUND, "m->due > m->now", *EVALUATED, *self._rules.kept_latched()]
-        contract.ensures.append("m->now == time_of(t)")
+        contract.at_once += [*SOUND, "m->due > m->now", *EVALUATED, *self._rules.kept_latched()]
+        contract.at_once.append("m->now == time_of(t)")
         contract.cases["back"] = "time_of(t) < m->now"
         contract.cases["due"] = "m->now <= time_of(t) && m->due <= time_of(t)"
         contract.cases["idle"] = IDLE
