@@ -260,7 +260,7 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
             yield f"{call}_{base}", _of_elements(_ARRAY + _with_loop(C[name], "i, found"), base)
     scan = _ARRAY.replace("values", "ranges")
     yield "nearest", scan + _with_loop(C["nearest"], "i, shortest")
-    yield "scan_usable", scan + _with_loop(C["scan_usable"], "i, usable")
+    yield "scan_usable", _SCAN_USABLE + _with_loop(C["scan_usable"], "i, usable", _SEEN_USABLE)
     yield "truth_of", _TRUTH_OF
     yield "negated", _NEGATED
     yield "both", _BOTH
@@ -280,6 +280,20 @@ _ARRAY = """\
 /*@ requires \\valid_read(values + (0 .. count - 1));
     assigns \\nothing; */
 """
+
+_IS_USABLE = """\
+(\\exists integer k; 0 <= k < COUNT
+      && (\\ge_double((double)ranges[k], range_min)
+      || \\eq_double((double)ranges[k], \\neg_double(\\div_double((double)1.0, (double)0.0)))))"""
+
+_SCAN_USABLE = f"""\
+/*@ requires \\valid_read(ranges + (0 .. count - 1));
+    assigns \\nothing;
+    ensures \\result != 0 <==> {_IS_USABLE.replace("COUNT", "count")}; */
+"""
+
+_SEEN_USABLE = f"usable != 0 <==> {_IS_USABLE.replace('COUNT', 'i')}"
+"""What the loop over a scan keeps: whether one of the ranges before was usable."""
 
 _MAGNITUDE = """\
 /*@ requires value > INT64_MIN;
@@ -318,7 +332,12 @@ def _of_elements(text: str, base: str) -> str:
     )
 
 
-def _with_loop(text: str, assigned: str) -> str:
+def _with_loop(text: str, assigned: str, invariant: str = "") -> str:
     """Return a function's text with what is to be proved of its loop."""
     start = text.index("  for (")
-    return text[:start] + _LOOP.replace("LOOP", assigned) + text[start:]
+    loop = _LOOP.replace("LOOP", assigned)
+    if invariant:
+        bounds, rest = loop.split("\n", 1)
+        seen = invariant.replace("\n", "\n    ")
+        loop = f"{bounds}\n      loop invariant {seen};\n{rest}"
+    return text[:start] + loop + text[start:]
