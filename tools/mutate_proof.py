@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from tests.support import c_proof
 from tests.support.c_mutants import TABLES, Mutant, mutants
-from tests.support.c_slips import Found, Original, Results
+from tests.support.c_slips import Effort, Found, Original, Results
 from tools.prove import EXAMPLES, REPOSITORY, program_of
 
 EQUIVALENT = REPOSITORY / "tools" / "proof" / "equivalent.json"
@@ -108,23 +108,23 @@ def _find(
         (folder / str(number)).mkdir()
         places.put(folder / str(number))
 
-    def one(mutant: Mutant, steps: int) -> Found:
+    def one(mutant: Mutant, effort: Effort) -> Found:
         place = places.get()
         try:
-            return original.find(mutant, place, steps)
+            return original.find(mutant, place, effort)
         finally:
             places.put(place)
 
     with Progress(*columns, TimeElapsedColumn()) as progress, ThreadPoolExecutor(jobs) as pool:
         functions = list(dict.fromkeys(m.function for _, m, _ in todo if m.function != TABLES))
         task = progress.add_task("functions measured", total=len(functions))
-        steps = {}
-        for function, least in zip(functions, pool.map(original.steps, functions), strict=True):
-            steps[function] = least
+        efforts = {}
+        for function, effort in zip(functions, pool.map(original.effort, functions), strict=True):
+            efforts[function] = effort
             progress.advance(task)
         task = progress.add_task("slips", total=len(todo))
         running = {
-            pool.submit(one, mutant, steps.get(mutant.function, 0)): (name, mutant, key)
+            pool.submit(one, mutant, efforts.get(mutant.function, Effort())): (name, mutant, key)
             for name, mutant, key in todo
         }
         for finished in as_completed(running):

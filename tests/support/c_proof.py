@@ -43,7 +43,21 @@ OPTIONS = (
 )
 """What WP is asked for, whichever provers it is given."""
 
-_PROVER = """
+PROVERS = "z3-plain,cvc4-reals"
+"""The provers, in the order in which they are asked."""
+
+_PROVERS = """
+[prover]
+name = "Z3"
+version = "4.8.12"
+alternative = "plain"
+shortcut = "z3-plain"
+command = "{z3} -smt2 -T:%t {plain} -st %f"
+command_steps = "{z3} -smt2 -T:%t {plain} rlimit=%S -st %f"
+driver = "z3_471"
+in_place = false
+interactive = false
+
 [prover]
 name = "CVC4"
 version = "1.8"
@@ -55,7 +69,12 @@ driver = "cvc4_15"
 in_place = false
 interactive = false
 """
-"""CVC4 without a theory of floating-point numbers, which Debian's lacks: Why3 hands it axioms."""
+"""Z3 that does nothing but match patterns, in all that it is given: the fields of a monitor are many,
+but no goal needs a search for models. CVC4 without a theory of floating-point numbers, which
+Debian's lacks: Why3 hands it axioms.
+"""
+
+_PLAIN = "auto_config=false smt.mbqi=false smt.relevancy=0 smt.random_seed=42"
 
 
 @dataclass(frozen=True)
@@ -125,7 +144,7 @@ def prove(
     names = list(functions) or functions_of(source)
     options = [
         *OPTIONS,
-        *("-wp-prover", "cvc4-reals,z3", "-wp-timeout", str(timeout_s), "-wp-par", "1"),
+        *("-wp-prover", PROVERS, "-wp-timeout", str(timeout_s), "-wp-par", "1"),
     ]
     groups = [names[i : i + _AT_ONCE] for i in range(0, len(names), _AT_ONCE)]
     done = 0
@@ -209,6 +228,6 @@ def provers() -> Iterator[dict[str, str]]:
         subprocess.run(command, check=True, stdout=quiet, stderr=quiet)
         text = path.read_text(encoding="utf-8")
         text = re.sub(r"memlimit = \d+", "memlimit = 4000", text)
-        own = _PROVER.format(cvc4=shutil.which("cvc4"))
+        own = _PROVERS.format(cvc4=shutil.which("cvc4"), z3=shutil.which("z3"), plain=_PLAIN)
         path.write_text(text + own, encoding="utf-8")
         yield {**os.environ, "WHY3CONFIG": str(path)}

@@ -9,7 +9,7 @@ import re
 import signal
 import subprocess
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tests.support import c_proof
@@ -18,15 +18,27 @@ from tests.support.c_mutants import TABLES, Mutant
 
 MARGIN = 10
 """How many times the steps of the slowest goal of a function a goal is given once it has a slip."""
-LEAST_STEPS = 200_000
-"""The steps that it is given at least; a goal that needs the prover at all takes about 15,000."""
+LEAST_STEPS = 2_000_000
+"""The steps that it is given at least; a goal that needs a prover at all takes about 200,000."""
 SECONDS = 300
 """The time that it is given, however many steps: what a busy machine needs for them, and more."""
 
-_GOAL = re.compile(r"\[wp\] \[[^\]]+\] Goal (?P<name>\w+) : Valid(?:.*\((?P<steps>\d+)\))?")
+_GOAL = re.compile(
+    r"\[wp\] \[(?P<prover>\w+)[^\]]*\] Goal (?P<name>\w+) : Valid(?:.*\((?P<steps>\d+)\))?"
+)
 _LEFT = re.compile(r"\[wp\] \[(?P<how>[^\]]+)\] Goal (?P<name>\w+)(?P<after> : \w+)?")
 _BLOCK = re.compile(r"/\*@.*?\*/\n.*?\b(?P<name>\w+)\([^;{}]*\);", re.DOTALL)
 _MACRO = re.compile(r"#define (?P<name>\w+)\((?:.*\\\n)*.*\n")
+_PREDICATE = re.compile(r"/\*@ predicate (?P<name>\w+).*?\*/", re.DOTALL)
+_USE = re.compile(r"\b(\w+)(?:\{[^}]*\})?\(")
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What the proof of a function without slips takes: which provers, and the most steps."""
+
+    provers: str = c_proof.PROVERS
+    steps: int = 0
 
 
 @dataclass(frozen=True)
@@ -53,7 +65,11 @@ class Original:
         self.contracts = (folder / f"{prefix}_contracts.h").read_text(encoding="utf-8")
         self._environment = environment
         self._blocks = {e["name"]: e.group() for e in _BLOCK.finditer(self.contracts)}
-        self._macros = {e["name"]: e.group() for e in _MACRO.finditer(self.contracts)}
+        self._macros = {
+            each["name"]: each.group()
+            for pattern in (_MACRO, _PREDICATE)
+            for each in pattern.finditer(self.contracts)
+        }
 
     def key(self, mutant: Mutant) -> str:
         """Return what tells whether a result still stands: all that the proof of a slip reads."""
@@ -62,7 +78,7 @@ class Original:
             rf"^[^\n]*\b{mutant.function}\([^;{{]*\)\n\{{.*?^\}}", mutant.source, re.M | re.S
         )
         text = function.group() if function else mutant.source
-        todo = {mutant.function, *re.findall(r"\b(\w+)\(", text)}
+        todo = {mutant.function, *_USE.findall(text)}
         seen: set[str] = set()
         parts = [body, text, self.header]
         while todo - seen:
@@ -70,23 +86,28 @@ class Original:
             seen.add(name)
             part = self._blocks.get(name, "") + self._macros.get(name, "")
             parts.append(part)
-            todo |= {each for each in re.findall(r"\b(\w+)\(", part) if each in self._macros}
+            todo |= {each for each in _USE.findall(part) if each in self._macros}
         parts += [each for each in self.contracts.split("\n\n") if "axiomatic" in each]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:20]
 
-    def steps(self, function: str) -> int:
-        """Prove a function as it is; return the steps of its slowest goal.
+    def effort(self, function: str) -> Effort:
+        """Prove a function as it is, and tell what that took.
 
         Raises:
-            ValueError: it is not proved by the one prover that slips are tried with.
+            ValueError: it is not proved.
         """
-        log = "".join(_lines([*_options(0), "-wp-fct", function], self.source, self._environment))
+        arguments = [*_options(Effort()), "-wp-fct", function]
+        log = "".join(_lines(arguments, self.source, self._environment))
         proved = re.search(r"Proved goals: +(\d+) / (\d+)", log)
         if proved is None or proved[1] != proved[2]:
             raise ValueError(f"{function} is not proved without a slip:\n{log}")
-        return max([int(each["steps"] or 0) for each in _GOAL.finditer(log)], default=0)
+        goals = list(_GOAL.finditer(log))
+        names = c_proof.PROVERS.split(",")
+        used = {each["prover"].lower() for each in goals}
+        needed = [names[0], *(each for each in names[1:] if each.split("-")[0] in used)]
+        return Effort(",".join(needed), max((int(each["steps"] or 0) for each in goals), default=0))
 
-    def find(self, mutant: Mutant, folder: Path, steps: int) -> Found:
+    def find(self, mutant: Mutant, folder: Path, effort: Effort) -> Found:
         """Return what becomes of a slip; ``folder`` is where its text is written."""
         source = folder / self.source.name
         for path in [*self.source.parent.glob("*.h"), self.source.parent / "eva.c"]:
@@ -97,9 +118,9 @@ class Original:
         if mutant.function == TABLES:
             analysis = c_proof.analyse(source, TABLES_CHECK)
             return Found("" if analysis.is_clean else TABLES_CHECK)
-        limit = max(LEAST_STEPS, MARGIN * steps)
+        more = replace(effort, steps=max(LEAST_STEPS, MARGIN * effort.steps))
         for goals in (["-wp-prop", "@ensures"], []):  # most are found by what is ensured
-            found = self._try([*_options(limit), *goals], mutant, source)
+            found = self._try([*_options(more), *goals], mutant, source)
             if found.goal or found.refused:
                 break
         return found
@@ -124,12 +145,13 @@ class Original:
         return Found()
 
 
-def _options(steps: int) -> list[str]:
+def _options(effort: Effort) -> list[str]:
+    """Return how Frama-C is asked; without steps, there is no limit to them."""
     return [
         *("-no-autoload-plugins", "-load-module", "wp,rtegen"),
         *c_proof.OPTIONS,
-        *("-wp-prover", "cvc4-reals", "-wp-par", "2", "-wp-timeout", str(SECONDS)),
-        *(("-wp-steps", str(steps)) if steps else ()),
+        *("-wp-prover", effort.provers, "-wp-par", "1", "-wp-timeout", str(SECONDS)),
+        *(("-wp-steps", str(effort.steps)) if effort.steps else ()),
     ]
 
 

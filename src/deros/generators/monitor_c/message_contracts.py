@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from deros.generators.monitor_c.changes import (
+    BY_JUDGING,
+    BY_TIME,
+    DONE,
+    INTERVALS_RUN_ON,
+    LATCHED_KEPT,
+    NOTHING_DONE,
+    VERDICTS_DATED,
+    Changes,
+)
 from deros.generators.monitor_c.contracts import Contract, all_of, iff
 from deros.generators.monitor_c.handlers import Handler, Parameter
 from deros.generators.monitor_c.layout import Finding
-from deros.generators.monitor_c.predicates import BY_JUDGING, BY_TIME, DONE, SOUND, Predicates
+from deros.generators.monitor_c.predicates import SOUND, Predicates
 from deros.generators.monitor_c.quantities import is_value
 from deros.generators.monitor_c.rule_contracts import RuleContracts, with_earlier_deadline
 from deros.generators.monitor_c.view import MessageView, MonitorView
@@ -21,13 +31,20 @@ from deros.monitor.ir import Age, Apply, Condition, Input, Read
 class MessageContracts:
     """Writes the contracts of what a message of one topic runs."""
 
-    def __init__(self, view: MonitorView, predicates: Predicates, rules: RuleContracts) -> None:
+    def __init__(
+        self,
+        view: MonitorView,
+        predicates: Predicates,
+        changes: Changes,
+        rules: RuleContracts,
+    ) -> None:
         """Remember what is named how."""
         self._view = view
         self._program = view.program
         self._layout = view.layout
         self._predicates = predicates
         self._rules = rules
+        self._changes = changes
 
     def contracts(self, message: MessageView) -> Iterator[tuple[str, Contract]]:
         """Yield the contract of each function that takes a topic's messages."""
@@ -48,17 +65,17 @@ class MessageContracts:
         contract.requires.append(f"m->started != 0 ==> {all_of([*others, 'acted(m)'])}")
         contract.requires.append(f"m->started != 0 && news == 0 ==> {all_of(touched)}")
         contract.requires.append("(m->started == 0 ==> unacted(m))")
-        contract.ensures += [*self._settled(), "verdicts_dated(m)", "intervals_run_on(m)"]
-        changed = self._predicates.changed(names[each] for each in message.rules)
+        contract.ensures += [*self._settled(), VERDICTS_DATED, INTERVALS_RUN_ON]
+        changed = self._changes.changed(names[each] for each in message.rules)
         contract.cases["first"] = "m->started == 0"
         contract.of_case["first"] = list(DONE)
         contract.cases["news"] = "m->started != 0 && news != 0"
         contract.of_case["news"] = [
             f"{changed} ==> {' && '.join(DONE)}",
-            f"!{changed} ==> nothing_done(m)",
+            f"!{changed} ==> {NOTHING_DONE}",
         ]
         contract.cases["none"] = "m->started != 0 && news == 0"
-        contract.of_case["none"] = ["nothing_done(m)"]
+        contract.of_case["none"] = [NOTHING_DONE]
         return contract
 
     def _message(self, message: MessageView) -> Contract:
@@ -77,7 +94,7 @@ class MessageContracts:
     def _settled(self) -> list[str]:
         """Return that a monitor is sane and has judged, in parts: each is a proof of its own."""
         parts = [*SOUND, "m->due > m->now", "m->started == 1", "judged(m)", "acted(m)"]
-        return [*parts, *self._rules.kept_latched()]
+        return [*parts, LATCHED_KEPT]
 
     def _stored(self, handler: Handler) -> list[str]:
         """Return the fields that hold what a message says."""
@@ -127,11 +144,11 @@ class MessageContracts:
         doubles = {t.name for t in self._layout.terms.values() if t.type == "double"}
         read = [name for name in names if name not in doubles]
         if not any(self._ages(self._program.inputs[index]) for index in handler.inputs):
-            return iff("\\result != 0", self._predicates.changed(read)) if read else "\\result == 0"
+            return iff("\\result != 0", self._changes.changed(read)) if read else "\\result == 0"
         for index in handler.inputs:
             fields = self._layout.inputs[index]
             read += [name for name in (fields.base, fields.came) if name]
-        return f"\\result == 0 ==> {self._predicates.same(f'm->{name}' for name in read)}"
+        return f"\\result == 0 ==> {self._changes.same(f'm->{name}' for name in read)}"
 
     def _effect(self, each: Input, handler: Handler) -> Iterator[str]:
         """Yield what becomes of an input's fields if a message counts, and if it does not."""
@@ -214,7 +231,7 @@ class MessageContracts:
         names += [memory.last_t for memory in self._layout.memories_of(each.index).values()]
         kept = [f"m->{name}" for name in names if name and name not in forgotten]
         due = ["m->due"] if len(handler.inputs) == 1 else []
-        yield self._predicates.same([*kept, *due])
+        yield self._changes.same([*kept, *due])
 
     def _counts(self, each: Input, handler: Handler) -> tuple[str, bool]:
         """Return what must hold for a message to count, and whether that is all of it."""

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Collection, Iterable, Iterator
 
 from deros.generators.monitor_c import quantities
-from deros.generators.monitor_c.contracts import all_of, any_of, iff
+from deros.generators.monitor_c.contracts import all_of, any_of, iff, wrapped
 from deros.generators.monitor_c.emissions import Emissions
 from deros.generators.monitor_c.meaning import Meaning
 from deros.generators.monitor_c.source import MAX_LINE
@@ -37,8 +37,9 @@ class Predicates:
     def declarations(self) -> str:
         """Return the predicates that say what the rules mean, and what a sane monitor is.
 
-        They are macros, which Frama-C replaces by what they stand for: most of it is as it was
-        before a statement, and is seen to be so only where nothing hides it.
+        What is said of a whole monitor is a predicate, which a proof looks into where it has to: a
+        caller mostly hands on what the function that it calls has ensured. Written out in full,
+        hundreds of fields would be weighed at each call.
         """
         lines = [
             "/* What the rules mean, and what holds of a monitor between two calls. */",
@@ -47,20 +48,8 @@ class Predicates:
             f" ? {self.macro('LATEST')} : (t))",
         ]
         for name, parameters, parts in self._predicates():
-            lines += _macro(name, f"m{parameters}", parts)
-        turned = [self.turned(rule) for rule in self._view.program.rules]
-        lines += _macro("verdicts_dated", "m", turned or ["\\true"])
-        for name, parts in self._outcome("\\old(emitted)"):
-            lines += _macro(name, "m", parts)
-        fors = self.all_fors()
-        lines += _macro("intervals_run_on", "m", list(self.run_on(fors)) if fors else ["\\true"])
-        lines += _macro("is_end", "m, t", [self.is_end()])
-        lines += _macro("nothing_done", "m", [self.same(self._changed_by_acting())])
-        idle = [name for name in self.changed_by_time() if name != "m->now"]
-        lines += _macro("nothing_changed", "m", [self.same(idle)])
-        lines += _set("changed_by_judging", self._changed_by_judging())
-        lines += _set("changed_by_deadlines", self.changed_by_deadlines())
-        lines += _set("changed_by_time", self.changed_by_time())
+            lines += predicate(self._layout.prefix, name, parts, parameters)
+
         parts = [self.emissions.declarations(), quantities.declarations(self._view.program)]
         return "\n".join([*parts, *lines, ""])
 
@@ -71,44 +60,7 @@ class Predicates:
         conditions += [each.condition for each in walk.behaviours(program)]
         return [part for each in conditions for part in self.fors(each)]
 
-    def turned(self, rule: Rule) -> str:
-        """Return since when a rule is true, or is not."""
-        verdict, turned = self._layout.verdicts[rule.index], self._layout.turned[rule.index]
-        true = self.macro("TRUE")
-        turns = (
-            f"(m->{verdict} == {true} && \\old(m->{verdict}) != {true}) || "
-            f"(m->{verdict} != {true} && \\old(m->{verdict}) == {true})"
-        )
-        return f"m->{turned} == ({turns} ? m->now : \\old(m->{turned}))"
-
-    def run_on(self, fors: Iterable[For]) -> Iterator[str]:
-        """Yield that intervals begin now or run on, and that the next deadline is no later."""
-        unset, due = self.macro("UNSET"), "\\old(m->due)"
-        kept = []
-        for each in fors:
-            since = self._layout.since[each.index]
-            was = f"\\old(m->{since})"
-            start = f"({was} == {unset} ? m->now : {was})"
-            kept.append(f"(m->{since} != {unset} ==> m->{since} == {start})")
-            end = f"m->now + {each.duration_ns}"
-            begins = f"({was} == {unset} && m->{since} != {unset} ? {end} : {self.macro('NEVER')})"
-            due = f"\\min({due}, {begins})"
-        yield all_of(kept)
-        yield f"m->due == {due}"
-
-    def changed(self, names: Iterable[str]) -> str:
-        """Return that one of the named fields is another than before."""
-        return any_of(f"m->{name} != \\old(m->{name})" for name in dict.fromkeys(names))
-
-    def same(self, names: Iterable[str]) -> str:
-        """Return that each of the named fields is as it was."""
-        doubles = {f"m->{name}" for name, type_ in self._types.items() if type_ == "double"}
-        return all_of(
-            f"same({each}, \\old({each}))" if each in doubles else f"{each} == \\old({each})"
-            for each in names
-        )
-
-    def is_end(self) -> str:
+    def _is_end(self) -> str:
         """Return that an instant is one at which a timeout or an interval ends, or never comes."""
         found = [f"t == {self.macro('NEVER')}"]
         found += [
@@ -119,27 +71,6 @@ class Predicates:
             condition = end.condition if "!=" in end.condition else f"{end.condition} != 0"
             found.append(f"({condition} && t == m->{end.base} + {end.wait_ns})")
         return any_of(found)
-
-    def _outcome(self, before: str) -> Iterator[tuple[str, list[str]]]:
-        """Yield what an event of the rules leaves of actions, and what is emitted."""
-        states = []
-        for index, name in self._layout.ran.items():
-            rises = [self.emissions.rises(each) for each in self.emissions.callers(index)]
-            states.append(
-                f"m->{name} == ({' || '.join(rises)} ? 1 : 0)" if rises else f"m->{name} == 0"
-            )
-        for action in self._view.program.actions:
-            if action.index not in self._layout.active:
-                continue
-            name, active = self._layout.active[action.index], self.emissions.active(action.index)
-            if action.reset_by is not None:
-                over = [f"m->{self._layout.ran[action.reset_by]} != 0"]
-                if action.triggered_by:
-                    over.append(self.emissions.over(action))
-                active = f"({' && '.join(over)} ? 0 : {active})"
-            states.append(f"m->{name} == {active}")
-        yield "states_done", states or ["\\true"]
-        yield "emission_done", [f"emitted == {self.emissions.by_event(before)}"]
 
     def _verdicts(self) -> list[str]:
         values = ("FALSE", "UNKNOWN", "TRUE")
@@ -160,9 +91,10 @@ class Predicates:
         yield "ranged_but_for_restart", "", self.ranges(kept)
         bases = {each.base for each in self._view.timeouts}
         bases |= {each.base for each in self._view.ends}
-        yield "timeouts_in_time", ", due", self.timeouts_in_time("due", bases)
-        yield "ends_in_time", ", due", self.ends_in_time("due", bases)
+        yield "timeouts_in_time", ", integer due", self.timeouts_in_time("due", bases)
+        yield "ends_in_time", ", integer due", self.ends_in_time("due", bases)
         yield "unexpired", "", self.unexpired(bases)
+        yield "is_end", ", integer t", [self._is_end()]
         yield "judged", "", [f"judged_{name}(m)" for name in self._layout.verdicts.values()]
         yield "acted", "", [f"acted_{name}(m)" for name in self._layout.behave.values()]
         unknown = [
@@ -170,34 +102,6 @@ class Predicates:
         ]
         yield "unacted", "", unknown
         yield "sane", "", [*SOUND, "m->due > m->now", *EVALUATED]
-
-    def _changed_by_judging(self) -> list[str]:
-        """Return the fields that are changed where all is judged."""
-        layout = self._layout
-        tables = (layout.verdicts, layout.turned, layout.conditions, layout.active, layout.ran)
-        names = [each for table in (*tables, layout.since) for each in table.values()]
-        return [*(f"m->{name}" for name in ("started", *names, "due")), "emitted"]
-
-    def _changed_by_acting(self) -> list[str]:
-        """Return the fields that are changed by behaviours and resets."""
-        layout = self._layout
-        tables = (layout.conditions, layout.active, layout.ran)
-        return [*(f"m->{name}" for table in tables for name in table.values()), "emitted"]
-
-    def changed_by_deadlines(self) -> list[str]:
-        """Return the fields that are changed where deadlines are settled."""
-        names = [each.missing for each in self._view.timeouts]
-        names += [name for each in self._view.forgets for name in (*each.known, *each.last)]
-        changed = [f"m->{name}" for name in ("now", *names)]
-        return list(dict.fromkeys([*changed, *self._changed_by_judging()]))
-
-    def changed_by_time(self) -> list[str]:
-        """Return the fields that the passing of time can change."""
-        values = {term.name for term in self._layout.terms.values()}
-        values |= {finding.name for finding in self._layout.findings.values()}
-        fixed = {"owner", *values, *self._layout.enabled.values()}
-        names = [f"m->{each.name}" for each in self._view.fields if each.name not in fixed]
-        return [*names, "emitted"]
 
     def macro(self, name: str) -> str:
         """Return the name of one of the monitor's macros."""
@@ -282,19 +186,26 @@ class Predicates:
         ]
 
 
+def predicate(
+    prefix: str, name: str, parts: list[str], parameters: str = "", labels: str = ""
+) -> list[str]:
+    """Return the lines of a predicate on a monitor; of nothing, it is true."""
+    body = " &&\n".join(parts or ["\\true"])
+    if labels:
+        body = f"\\at({body}, Now)"
+    head = f"/*@ predicate {name}{labels}({prefix}_monitor *m{parameters}) ="
+    return [head, *(line for each in f"{body}; */".split("\n") for line in wrapped(each, 6))]
+
+
 def _macro(name: str, parameters: str, parts: list[str]) -> list[str]:
     """Return the lines of a macro that stands for a conjunction; of nothing, that is true."""
     parts = parts or ["\\true"]
     joined = [f"{part} &&" for part in parts[:-1]]
-    return _lines(f"{name}({parameters}) (", [*joined, f"{parts[-1]})"])
+    return macro_lines(f"{name}({parameters}) (", [*joined, f"{parts[-1]})"])
 
 
-def _set(name: str, fields: list[str]) -> list[str]:
-    """Return the lines of a macro that stands for fields of a monitor."""
-    return _lines(f"{name}(m)", [", ".join(fields)])
-
-
-def _lines(head: str, parts: list[str]) -> list[str]:
+def macro_lines(head: str, parts: list[str]) -> list[str]:
+    """Return the lines of a macro."""
     lines = [f"#define {head}"]
     for text in parts:
         lines += textwrap.wrap(
@@ -307,12 +218,6 @@ def _lines(head: str, parts: list[str]) -> list[str]:
         )
     return [f"{line} \\" for line in lines[:-1]] + lines[-1:]
 
-
-BY_JUDGING, BY_TIME = "changed_by_judging(m)", "changed_by_time(m)"
-"""The fields that change where all is judged, and those that change as time passes."""
-
-DONE = ("states_done(m)", "emission_done(m)")
-"""What an event of the rules leaves of actions, and what it emits."""
 
 IDLE = "m->now <= time_of(t) < m->due"
 IDLE_BEFORE = "\\old(m->now) <= time_of(t) < \\old(m->due)"

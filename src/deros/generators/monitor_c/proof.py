@@ -12,18 +12,19 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from deros.generators.monitor_c.changes import (
+    BY_TIME,
+    CAUGHT_UP,
+    LATCHED_KEPT,
+    NOTHING_CHANGED,
+    STEPPED_BACK,
+    Changes,
+)
 from deros.generators.monitor_c.contracts import Contract, all_of, any_of, iff
 from deros.generators.monitor_c.message_contracts import MessageContracts
-from deros.generators.monitor_c.predicates import (
-    BY_TIME,
-    EVALUATED,
-    IDLE,
-    IDLE_BEFORE,
-    SOUND,
-    Predicates,
-)
+from deros.generators.monitor_c.predicates import IDLE, IDLE_BEFORE, SOUND, Predicates
 from deros.generators.monitor_c.rule_contracts import RuleContracts
-from deros.generators.monitor_c.view import Forget, MonitorView, Timeout
+from deros.generators.monitor_c.view import MonitorView, Timeout
 from deros.monitor import walk
 
 _FIELD = re.compile(r"m->(\w+)")
@@ -55,7 +56,8 @@ def proof_of(view: MonitorView) -> Proof:
     writer = _Writer(view)
     contracts = {name: contract.text(0) for name, contract in writer.contracts()}
     contracts["catch_up loop"] = writer.loop().text(2)
-    return Proof(writer.predicates.declarations(), contracts)
+    declarations = writer.predicates.declarations() + writer.changes.declarations()
+    return Proof(declarations, contracts)
 
 
 class _Writer:
@@ -66,7 +68,8 @@ class _Writer:
         self._program = view.program
         self._layout = view.layout
         self.predicates = Predicates(view)
-        self._rules = RuleContracts(view, self.predicates)
+        self.changes = Changes(view, self.predicates)
+        self._rules = RuleContracts(view, self.predicates, self.changes)
         self._behaviours = tuple(walk.behaviours(view.program))
         self._latched = [each for each in view.program.actions if each.latched]
 
@@ -81,7 +84,7 @@ class _Writer:
         for forget in self._view.forgets:
             cleared = [f"m->{name}" for name in forget.known]
             contract = Contract(["\\valid(m)"], [*cleared, *(f"m->{n}" for n in forget.last)])
-            contract.ensures.append(all_of(self._forgotten(forget)))
+            contract.ensures.append(all_of(self.changes.forgotten(forget)))
             known = any_of(f"\\old({each}) != 0" for each in cleared)
             contract.ensures.append(iff("\\result != 0", known))
             contract.requires.append(all_of(self.predicates.ranges(forget.known)))
@@ -103,6 +106,7 @@ class _Writer:
         yield "restart", self._restart()
         yield "step_back", self._step_back()
         yield "catch_up", self._catch_up()
+        yield "pass", self._pass()
         yield "arrive", self._arrive()
         yield from self._public()
 
@@ -117,40 +121,15 @@ class _Writer:
         contract.ensures += ["ends_in_time(m, \\result)", "is_end(m, \\result)"]
         return contract
 
-    def _forgotten(self, forget: Forget) -> list[str]:
-        """Return that no value of an input is known, and none is remembered."""
-        last = [f"\\is_NaN(m->{name})" for name in forget.last]
-        return [*(f"m->{name} == 0" for name in forget.known), *last]
-
-    def _expired(self, timeout: Timeout, before: str = "\\old({})") -> list[str]:
-        """Return that an input is missing if its timeout has passed, and its values with it."""
-        missing = f"m->{timeout.missing}"
-        passed = f"m->{timeout.base} + {timeout.duration_ns} <= m->now"
-        was = before.format(missing)
-        found = [iff(f"{missing} != 0", f"({was} != 0 || {passed})")]
-        for forget in self._forgets_of(timeout):
-            gone = f"({was} == 0 && {passed})"
-            found += [
-                f"m->{name} == ({gone} ? 0 : {before.format(f'm->{name}')})"
-                for name in forget.known
-            ]
-            for name in forget.last:
-                kept = f"same(m->{name}, {before.format(f'm->{name}')})"
-                found.append(f"({gone} ==> \\is_NaN(m->{name})) && (!{gone} ==> {kept})")
-        return found
-
-    def _forgets_of(self, timeout: Timeout) -> list[Forget]:
-        return [each for each in self._view.forgets if each.function == timeout.forget]
-
     def _expire_one(self, timeout: Timeout) -> Contract:
         missing = f"m->{timeout.missing}"
-        known = [name for each in self._forgets_of(timeout) for name in each.known]
+        known = [name for each in self.changes.forgets_of(timeout) for name in each.known]
         names = ["now", timeout.base, timeout.missing, *known]
         contract = Contract(["\\valid(m)", all_of(self.predicates.ranges(names))], [missing])
-        for forget in self._forgets_of(timeout):
+        for forget in self.changes.forgets_of(timeout):
             contract.assigns += [f"m->{name}" for name in (*forget.known, *forget.last)]
         contract.ensures += self.predicates.ranges([timeout.missing])
-        contract.ensures.append(all_of(self._expired(timeout)))
+        contract.ensures.append(all_of(self.changes.expired(timeout)))
         return contract
 
     def _expire(self) -> Contract:
@@ -158,7 +137,7 @@ class _Writer:
         contract = Contract(["\\valid(m)", "ranged(m)", "is_end(m, m->now)"])
         for each in self._view.timeouts:
             contract.assigns += self._expire_one(each).assigns
-            contract.ensures.append(all_of(self._expired(each)))
+            contract.ensures.append(all_of(self.changes.expired(each)))
         contract.ensures += ["ranged(m)", "unexpired(m)"]
         return contract
 
@@ -170,78 +149,54 @@ class _Writer:
         names += [name for each in self._view.forgets for name in (*each.known, *each.last)]
         contract.assigns += [f"m->{name}" for name in dict.fromkeys([*names, "due"])]
         contract.ensures += [*SOUND, "m->due > m->now", "is_end(m, m->due)"]
-        contract.ensures.append(all_of(self._as_new("from")))
+        contract.ensures.append(all_of(self.changes.as_new("from")))
         return contract
-
-    def _as_new(self, start: str) -> list[str]:
-        """Return what all inputs, dates and intervals are after a restart."""
-        layout = self._layout
-        found = []
-        for fields in layout.inputs.values():
-            found += [f"m->{fields.base} == {start}"] if fields.base else []
-            found += [f"m->{name} == 0" for name in (fields.came, fields.missing) if name]
-        found += [f"m->{name} == m->now" for name in layout.turned.values()]
-        unset = self.predicates.macro("UNSET")
-        found += [f"m->{name} == {unset}" for name in layout.since.values()]
-        found += [f"m->{each.last_t} == m->now" for each in layout.memories.values()]
-        found += [each for forget in self._view.forgets for each in self._forgotten(forget)]
-        return found or ["\\true"]
 
     def _step_back(self) -> Contract:
         """Return that all is as new at an earlier time, and one event of the rules is settled."""
         contract = Contract(["\\valid(m)", "sane(m)", "0 <= t < m->now"], [BY_TIME])
-        contract.ensures += ["sane(m)", *self._rules.kept_latched(), *self._stepped_back("t")]
+        contract.ensures += ["sane(m)", LATCHED_KEPT, "m->now == t", STEPPED_BACK]
         return contract
-
-    def _stepped_back(self, t: str) -> list[str]:
-        unset, macro = self.predicates.macro("UNSET"), self.predicates.macro
-        sinces = self._layout.since.values()
-        new = [each for each in self._as_new(t) if f"== {unset}" not in each]
-        new += [f"(m->{since} == {unset} || m->{since} == {t})" for since in sinces]
-        step = f"after(\\old(emitted), m->owner, {t}, {macro('CLOCK_STEP')}, {macro('SITE_NONE')})"
-        emitted = f"emitted == {self.predicates.emissions.by_event(step)}"
-        return [f"m->now == {t}", "m->started == 1", all_of(new), "states_done(m)", emitted]
 
     def _catch_up(self) -> Contract:
         latest = self.predicates.macro("LATEST")
         contract = Contract(["\\valid(m)", "sane(m)", f"m->now <= t <= {latest}"])
         contract.assigns.append("changed_by_deadlines(m)")
-        contract.ensures += ["sane(m)", "m->now == t", *self._rules.kept_latched()]
-        contract.ensures += self._caught_up("\\old({})")
+        contract.ensures += ["sane(m)", "m->now == t", LATCHED_KEPT, CAUGHT_UP]
         return contract
-
-    def _caught_up(self, before: str) -> list[str]:
-        """Return what of inputs, and of what is emitted, is left by all that was due."""
-        expired = [each for one in self._view.timeouts for each in self._expired(one, before)]
-        return [all_of(expired or ["\\true"]), f"follows({before.format('emitted')}, emitted)"]
 
     def loop(self) -> Contract:
         """Return the invariant of the loop over the deadlines that are due."""
         contract = Contract([], ["changed_by_deadlines(m)"], is_loop=True)
-        kept = self._rules.kept_latched("\\at({}, Pre)")
-        contract.invariants += ["sane(m)", "is_end(m, m->due)", "m->now <= t", *kept]
-        contract.invariants += self._caught_up("\\at({}, Pre)")
+        since_call = [each.replace("Old", "Pre") for each in (LATCHED_KEPT, CAUGHT_UP)]
+        contract.invariants += ["sane(m)", "is_end(m, m->due)", "m->now <= t", *since_call]
         contract.variant = "t - m->now"
+        return contract
+
+    def _pass(self) -> Contract:
+        """Return that while nothing is due time alone passes, and all stays as it is."""
+        latest = self.predicates.macro("LATEST")
+        within = ["m->now <= t < m->due", f"t <= {latest}"]
+        contract = Contract(["\\valid(m)", "sane(m)", *within], ["m->now"])
+        contract.ensures += ["sane(m)", "m->now == t", LATCHED_KEPT, NOTHING_CHANGED]
         return contract
 
     def _arrive(self) -> Contract:
         contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
-        contract.at_once += [*SOUND, "m->due > m->now", *EVALUATED, *self._rules.kept_latched()]
-        contract.at_once.append("m->now == time_of(t)")
+        contract.at_once += ["sane(m)", LATCHED_KEPT, "m->now == time_of(t)"]
         contract.cases["back"] = "time_of(t) < m->now"
         contract.cases["due"] = "m->now <= time_of(t) && m->due <= time_of(t)"
         contract.cases["idle"] = IDLE
-        contract.of_case["back"] = self._stepped_back("m->now")[1:]
+        contract.of_case["back"] = [STEPPED_BACK]
         same = [
-            name for name in self.predicates.changed_by_time() if name not in self._by_deadlines()
+            name
+            for name in self.changes.changed_by_time()
+            if name not in self.changes.changed_by_deadlines()
         ]
-        kept = [self.predicates.same(same)] if same else []
-        contract.of_case["due"] = [*self._caught_up("\\old({})"), *kept]
-        contract.of_case["idle"] = ["nothing_changed(m)"]
+        kept = [self.changes.same(same)] if same else []
+        contract.of_case["due"] = [CAUGHT_UP, *kept]
+        contract.of_case["idle"] = [NOTHING_CHANGED]
         return contract
-
-    def _by_deadlines(self) -> list[str]:
-        return self.predicates.changed_by_deadlines()
 
     # Public functions ---------------------------------------------------------------------------
 
@@ -249,7 +204,7 @@ class _Writer:
         prefix = self._view.prefix
         start = Contract(["\\valid(m)"], ["*m"])
         start.ensures += ["sane(m)", all_of(self._started()), "is_end(m, m->due)"]
-        start.ensures.append(all_of(self._as_new("time_of(m->now + time_of(grace))")))
+        start.ensures.append(all_of(self.changes.as_new("time_of(m->now + time_of(grace))")))
         yield f"{prefix}_start", start
         for action in self._latched:
             active = self._layout.active[action.index]
@@ -257,8 +212,8 @@ class _Writer:
             contract.ensures += ["sane(m)", f"m->{active} == 1"]
             yield f"{prefix}_latch_{action.name}", contract
         advance = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
-        advance.ensures += ["sane(m)", "\\result == m->due", *self._rules.kept_latched()]
-        advance.ensures += ["m->now == time_of(t)", f"{IDLE_BEFORE} ==> nothing_changed(m)"]
+        advance.ensures += ["sane(m)", "\\result == m->due", LATCHED_KEPT]
+        advance.ensures += ["m->now == time_of(t)", f"{IDLE_BEFORE} ==> {NOTHING_CHANGED}"]
         yield f"{prefix}_advance", advance
         yield f"{prefix}_waiting", self._waiting()
         if self._view.has_latched:
@@ -268,10 +223,10 @@ class _Writer:
                 ["\\valid(m)", "sane(m)", "(enabled == 0 || enabled == 1)"],
                 [BY_TIME, f"m->{enabled}"],
             )
-            contract.ensures += ["sane(m)", f"m->{enabled} == enabled", *self._rules.kept_latched()]
+            contract.ensures += ["sane(m)", f"m->{enabled} == enabled", LATCHED_KEPT]
             contract.ensures.append("m->now == time_of(t)")
             yield function, contract
-        messages = MessageContracts(self._view, self.predicates, self._rules)
+        messages = MessageContracts(self._view, self.predicates, self.changes, self._rules)
         for message in self._view.messages:
             yield from messages.contracts(message)
 

@@ -9,8 +9,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
+from deros.generators.monitor_c.changes import (
+    BY_JUDGING,
+    DONE,
+    LATCHED_KEPT,
+    NOTHING_DONE,
+    VERDICTS_DATED,
+    Changes,
+)
 from deros.generators.monitor_c.contracts import Contract, all_of, iff
-from deros.generators.monitor_c.predicates import BY_JUDGING, DONE, Predicates
+from deros.generators.monitor_c.predicates import Predicates
 from deros.generators.monitor_c.view import MessageView, MonitorView
 from deros.monitor import walk
 from deros.monitor.ir import Action, Behaviour, Condition, For, Rule, Trigger
@@ -21,14 +29,14 @@ _FIELD = re.compile(r"m->(\w+)")
 class RuleContracts:
     """Writes the contracts of what settles an event."""
 
-    def __init__(self, view: MonitorView, predicates: Predicates) -> None:
+    def __init__(self, view: MonitorView, predicates: Predicates, changes: Changes) -> None:
         """Remember what is named how."""
         self._program = view.program
         self._layout = view.layout
         self._predicates = predicates
+        self._changes = changes
         self.emissions = predicates.emissions
         self._behaviours = tuple(walk.behaviours(view.program))
-        self._latched = [each for each in view.program.actions if each.latched]
         self._true, self._false = predicates.macro("TRUE"), predicates.macro("FALSE")
 
     def judge(self, rule: Rule) -> Contract:
@@ -41,7 +49,7 @@ class RuleContracts:
         contract.ensures += self._predicates.ranges([name])
         contract.ensures.append(f"judged_{name}(m)")
         contract.ensures.append(iff("\\result != 0", f"m->{name} != \\old(m->{name})"))
-        contract.ensures.append(self._predicates.turned(rule))
+        contract.ensures.append(self._changes.turned(rule))
         self._with_own_intervals(contract, fors)
         return contract
 
@@ -54,8 +62,8 @@ class RuleContracts:
         contract.assigns += [f"m->{name}" for name in (*names, *turned)]
         contract.ensures += self._predicates.ranges(names)
         contract.ensures += [f"judged_{name}(m)" for name in names]
-        contract.ensures.append(iff("\\result != 0", self._predicates.changed(names)))
-        contract.ensures.append(all_of(map(self._predicates.turned, rules)))
+        contract.ensures.append(iff("\\result != 0", self._changes.changed(names)))
+        contract.ensures.append(all_of(map(self._changes.turned, rules)))
         fors = [each for rule in rules for each in self._predicates.fors(rule.condition)]
         self._with_own_intervals(contract, fors)
         return contract
@@ -102,29 +110,24 @@ class RuleContracts:
         tables = (self._layout.conditions, self._layout.ran, self._layout.active)
         contract = self._run([each for table in tables for each in table.values()])
         contract.assigns.append("emitted")
-        contract.ensures += ["acted(m)", *self.kept_latched()]
+        contract.ensures += ["acted(m)", LATCHED_KEPT]
         fors = [part for each in self._behaviours for part in self._predicates.fors(each.condition)]
         self._with_intervals(contract, fors)
         contract.requires.append("changed == 0 ==> acted(m)")
         contract.cases |= {"change": "changed != 0", "none": "changed == 0"}
         contract.of_case["change"] = list(DONE)
-        contract.of_case["none"] = ["nothing_done(m)"]
+        contract.of_case["none"] = [NOTHING_DONE]
         return contract
 
     def evaluate(self) -> Contract:
         """Return that all is judged, and acted upon."""
         contract = self._run([])
         contract.requires.append("m->now <= m->due")
-        contract.ensures += ["m->started == 1", "judged(m)", "acted(m)", *self.kept_latched()]
-        contract.ensures += ["verdicts_dated(m)", *DONE]
+        contract.ensures += ["m->started == 1", "judged(m)", "acted(m)", LATCHED_KEPT]
+        contract.ensures += [VERDICTS_DATED, *DONE]
         self._with_intervals(contract, self._predicates.all_fors())
         contract.assigns = [BY_JUDGING]
         return contract
-
-    def kept_latched(self, before: str = "\\old({})") -> list[str]:
-        """Return that a latched action never clears by itself."""
-        names = [f"m->{self._layout.active[each.index]}" for each in self._latched]
-        return [f"{before.format(name)} != 0 ==> {name} != 0" for name in names]
 
     def kept_called(self, action: Action) -> Iterator[str]:
         """Yield that an action stays active unless what triggers it is known to be false."""
@@ -154,7 +157,7 @@ class RuleContracts:
         """Add what becomes of intervals: begun now, kept, or cleared; and of the next deadline."""
         if fors:
             contract.assigns += [f"m->{since}" for since in self._sinces(fors)]
-            contract.ensures += self._predicates.run_on(fors)
+            contract.ensures += self._changes.run_on(fors)
             with_earlier_deadline(contract)
 
     def _guards(self, group: list[Behaviour]) -> Iterator[str]:

@@ -1,0 +1,233 @@
+r"""What becomes of a monitor between two moments, as predicates in ACSL.
+
+The earlier moment is that of the call in a contract (``\old``), and ``Before`` in a predicate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from deros.generators.monitor_c.contracts import all_of, any_of, iff
+from deros.generators.monitor_c.predicates import Predicates, macro_lines, predicate
+from deros.generators.monitor_c.view import Forget, MonitorView, Timeout
+from deros.monitor.ir import For, Rule
+
+
+class Changes:
+    """Writes what is said of one monitor as it is and as it was."""
+
+    def __init__(self, view: MonitorView, predicates: Predicates) -> None:
+        """Remember what is named how."""
+        self._view = view
+        self._layout = view.layout
+        self._predicates = predicates
+        self._emissions = predicates.emissions
+        self._types = {each.name: each.type.strip() for each in view.fields}
+
+    def declarations(self) -> str:
+        """Return the predicates, and the fields that may change."""
+        lines = ["/* What has become of a monitor since an earlier moment. */"]
+        for name, parts in self._changes():
+            texts = [_since(part) for part in parts]
+            lines += predicate(self._layout.prefix, name, texts, labels="{Before, Now}")
+        lines += _set("changed_by_judging", self._changed_by_judging())
+        lines += _set("changed_by_deadlines", self.changed_by_deadlines())
+        lines += _set("changed_by_time", self.changed_by_time())
+        return "\n".join([*lines, ""])
+
+    def _changes(self) -> Iterator[tuple[str, list[str]]]:
+        """Yield the predicates."""
+        rules = self._view.program.rules
+        yield "verdicts_dated", [self.turned(rule) for rule in rules]
+        fors = self._predicates.all_fors()
+        yield "intervals_run_on", list(self.run_on(fors)) if fors else []
+        yield "states_done", self._states()
+        events = self._emissions.by_event("\\old(emitted)")
+        yield "emission_done", [f"emitted == {events}"]
+        yield "nothing_done", [self.same(self._changed_by_acting())]
+        idle = [name for name in self.changed_by_time() if name != "m->now"]
+        yield "nothing_changed", [self.same(idle)]
+        yield "latched_kept", self._latched_kept()
+        yield "caught_up", self._caught_up()
+        yield "stepped_back", self._stepped_back()
+
+    def turned(self, rule: Rule) -> str:
+        """Return since when a rule is true, or is not."""
+        verdict, turned = self._layout.verdicts[rule.index], self._layout.turned[rule.index]
+        true = self._macro("TRUE")
+        turns = (
+            f"(m->{verdict} == {true} && \\old(m->{verdict}) != {true}) || "
+            f"(m->{verdict} != {true} && \\old(m->{verdict}) == {true})"
+        )
+        return f"m->{turned} == ({turns} ? m->now : \\old(m->{turned}))"
+
+    def run_on(self, fors: Iterable[For]) -> Iterator[str]:
+        """Yield that intervals begin now or run on, and that the next deadline is no later."""
+        unset, due = self._macro("UNSET"), "\\old(m->due)"
+        kept = []
+        for each in fors:
+            since = self._layout.since[each.index]
+            was = f"\\old(m->{since})"
+            start = f"({was} == {unset} ? m->now : {was})"
+            kept.append(f"(m->{since} != {unset} ==> m->{since} == {start})")
+            end = f"m->now + {each.duration_ns}"
+            begins = f"({was} == {unset} && m->{since} != {unset} ? {end} : {self._macro('NEVER')})"
+            due = f"\\min({due}, {begins})"
+        yield all_of(kept)
+        yield f"m->due == {due}"
+
+    def changed(self, names: Iterable[str]) -> str:
+        """Return that one of the named fields is another than before."""
+        return any_of(f"m->{name} != \\old(m->{name})" for name in dict.fromkeys(names))
+
+    def same(self, names: Iterable[str]) -> str:
+        """Return that each of the named fields is as it was."""
+        doubles = {f"m->{name}" for name, type_ in self._types.items() if type_ == "double"}
+        return all_of(
+            f"same({each}, \\old({each}))" if each in doubles else f"{each} == \\old({each})"
+            for each in names
+        )
+
+    def _states(self) -> list[str]:
+        """Return what an event of the rules leaves of actions."""
+        states = []
+        for index, name in self._layout.ran.items():
+            rises = [self._emissions.rises(each) for each in self._emissions.callers(index)]
+            states.append(
+                f"m->{name} == ({' || '.join(rises)} ? 1 : 0)" if rises else f"m->{name} == 0"
+            )
+        for action in self._view.program.actions:
+            if action.index not in self._layout.active:
+                continue
+            name, active = self._layout.active[action.index], self._emissions.active(action.index)
+            if action.reset_by is not None:
+                over = [f"m->{self._layout.ran[action.reset_by]} != 0"]
+                if action.triggered_by:
+                    over.append(self._emissions.over(action))
+                active = f"({' && '.join(over)} ? 0 : {active})"
+            states.append(f"m->{name} == {active}")
+        return states
+
+    def _latched_kept(self) -> list[str]:
+        """Return that a latched action never clears by itself."""
+        latched = [each for each in self._view.program.actions if each.latched]
+        names = [f"m->{self._layout.active[each.index]}" for each in latched]
+        return [f"(\\old({name}) != 0 ==> {name} != 0)" for name in names]
+
+    def _caught_up(self) -> list[str]:
+        """Return what of inputs, and of what is emitted, is left by all that was due."""
+        expired = [each for one in self._view.timeouts for each in self.expired(one)]
+        return [*expired, "follows(\\old(emitted), emitted)"]
+
+    def _stepped_back(self) -> list[str]:
+        """Return that all is as new, and one event of the rules is settled."""
+        unset, macro = self._macro("UNSET"), self._macro
+        sinces = self._layout.since.values()
+        new = [each for each in self.as_new("m->now") if f"== {unset}" not in each]
+        new += [f"(m->{since} == {unset} || m->{since} == m->now)" for since in sinces]
+        kind = f"{macro('CLOCK_STEP')}, {macro('SITE_NONE')}"
+        step = f"after(\\old(emitted), m->owner, m->now, {kind})"
+        emitted = f"emitted == {self._emissions.by_event(step)}"
+        return ["m->started == 1", *new, *self._states(), emitted]
+
+    def as_new(self, start: str) -> list[str]:
+        """Return what all inputs, dates and intervals are after a restart."""
+        layout = self._layout
+        found = []
+        for fields in layout.inputs.values():
+            found += [f"m->{fields.base} == {start}"] if fields.base else []
+            found += [f"m->{name} == 0" for name in (fields.came, fields.missing) if name]
+        found += [f"m->{name} == m->now" for name in layout.turned.values()]
+        unset = self._macro("UNSET")
+        found += [f"m->{name} == {unset}" for name in layout.since.values()]
+        found += [f"m->{each.last_t} == m->now" for each in layout.memories.values()]
+        found += [each for forget in self._view.forgets for each in self.forgotten(forget)]
+        return found or ["\\true"]
+
+    def forgotten(self, forget: Forget) -> list[str]:
+        """Return that no value of an input is known, and none is remembered."""
+        last = [f"\\is_NaN(m->{name})" for name in forget.last]
+        return [*(f"m->{name} == 0" for name in forget.known), *last]
+
+    def forgets_of(self, timeout: Timeout) -> list[Forget]:
+        """Return what is forgotten when a timeout passes."""
+        return [each for each in self._view.forgets if each.function == timeout.forget]
+
+    def expired(self, timeout: Timeout) -> list[str]:
+        """Return that an input is missing if its timeout has passed, and its values with it."""
+        missing = f"m->{timeout.missing}"
+        passed = f"m->{timeout.base} + {timeout.duration_ns} <= m->now"
+        found = [iff(f"{missing} != 0", f"(\\old({missing}) != 0 || {passed})")]
+        gone = f"(\\old({missing}) == 0 && {passed})"
+        for forget in self.forgets_of(timeout):
+            found += [f"m->{name} == ({gone} ? 0 : \\old(m->{name}))" for name in forget.known]
+            for name in forget.last:
+                kept = f"same(m->{name}, \\old(m->{name}))"
+                found.append(f"({gone} ==> \\is_NaN(m->{name})) && (!{gone} ==> {kept})")
+        return found
+
+    def _changed_by_judging(self) -> list[str]:
+        """Return the fields that are changed where all is judged."""
+        layout = self._layout
+        tables = (layout.verdicts, layout.turned, layout.conditions, layout.active, layout.ran)
+        names = [each for table in (*tables, layout.since) for each in table.values()]
+        return [*(f"m->{name}" for name in ("started", *names, "due")), "emitted"]
+
+    def _changed_by_acting(self) -> list[str]:
+        """Return the fields that are changed by behaviours and resets."""
+        layout = self._layout
+        tables = (layout.conditions, layout.active, layout.ran)
+        return [*(f"m->{name}" for table in tables for name in table.values()), "emitted"]
+
+    def changed_by_deadlines(self) -> list[str]:
+        """Return the fields that are changed where deadlines are settled."""
+        names = [each.missing for each in self._view.timeouts]
+        names += [name for each in self._view.forgets for name in (*each.known, *each.last)]
+        changed = [f"m->{name}" for name in ("now", *names)]
+        return list(dict.fromkeys([*changed, *self._changed_by_judging()]))
+
+    def changed_by_time(self) -> list[str]:
+        """Return the fields that the passing of time can change."""
+        values = {term.name for term in self._layout.terms.values()}
+        values |= {finding.name for finding in self._layout.findings.values()}
+        fixed = {"owner", *values, *self._layout.enabled.values()}
+        names = [f"m->{each.name}" for each in self._view.fields if each.name not in fixed]
+        return [*names, "emitted"]
+
+    def _macro(self, name: str) -> str:
+        return self._predicates.macro(name)
+
+
+def _since(text: str) -> str:
+    """Return a text of a contract as that of a predicate, which names the moment before."""
+    parts = text.split("\\old(")
+    for place in range(len(parts) - 1, 0, -1):
+        depth, end = 1, 0
+        while depth:
+            depth += {"(": 1, ")": -1}.get(parts[place][end], 0)
+            end += 1
+        inner, rest = parts[place][: end - 1], parts[place][end - 1 :]
+        parts[place - 1 :] = [f"{parts[place - 1]}\\at({inner}, Before{rest}"]
+    return parts[0]
+
+
+def _set(name: str, fields: list[str]) -> list[str]:
+    """Return the lines of a macro that stands for fields of a monitor."""
+    return macro_lines(f"{name}(m)", [", ".join(fields)])
+
+
+BY_JUDGING, BY_TIME = "changed_by_judging(m)", "changed_by_time(m)"
+"""The fields that change where all is judged, and those that change as time passes."""
+
+VERDICTS_DATED, INTERVALS_RUN_ON, STATES_DONE, EMISSION_DONE = (
+    f"{name}{{Old, Here}}(m)"
+    for name in ("verdicts_dated", "intervals_run_on", "states_done", "emission_done")
+)
+NOTHING_DONE, NOTHING_CHANGED, LATCHED_KEPT, CAUGHT_UP, STEPPED_BACK = (
+    f"{name}{{Old, Here}}(m)"
+    for name in ("nothing_done", "nothing_changed", "latched_kept", "caught_up", "stepped_back")
+)
+"""What has become of a monitor since a function was called."""
+
+DONE = (STATES_DONE, EMISSION_DONE)
+"""What an event of the rules leaves of actions, and what it emits."""
