@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from deros.generators.monitor_c.contracts import all_of, any_of, iff
-from deros.generators.monitor_c.predicates import Predicates, macro_lines, predicate
+from deros.generators.monitor_c.predicates import Predicates, predicate
 from deros.generators.monitor_c.view import Forget, MonitorView, Timeout
 from deros.monitor.ir import For, Rule
 
@@ -25,14 +25,11 @@ class Changes:
         self._types = {each.name: each.type.strip() for each in view.fields}
 
     def declarations(self) -> str:
-        """Return the predicates, and the fields that may change."""
+        """Return the predicates."""
         lines = ["/* What has become of a monitor since an earlier moment. */"]
         for name, parts in self._changes():
             texts = [_since(part) for part in parts]
             lines += predicate(self._layout.prefix, name, texts, labels="{Before, Now}")
-        lines += _set("changed_by_judging", self._changed_by_judging())
-        lines += _set("changed_by_deadlines", self.changed_by_deadlines())
-        lines += _set("changed_by_time", self.changed_by_time())
         return "\n".join([*lines, ""])
 
     def _changes(self) -> Iterator[tuple[str, list[str]]]:
@@ -41,13 +38,14 @@ class Changes:
         yield "verdicts_dated", [self.turned(rule) for rule in rules]
         fors = self._predicates.all_fors()
         yield "intervals_run_on", list(self.run_on(fors)) if fors else []
-        yield "states_done", self._states()
-        events = self._emissions.by_event("\\old(emitted)")
-        yield "emission_done", [f"emitted == {events}"]
-        yield "nothing_done", [self.same(self._changed_by_acting())]
-        idle = [name for name in self.changed_by_time() if name != "m->now"]
-        yield "nothing_changed", [self.same(idle)]
-        yield "latched_kept", self._latched_kept()
+        yield "states_done", self.states_done()
+        yield "emission_done", self.emission_done()
+        yield "nothing_done", self.nothing_done()
+        yield "nothing_changed", [self.same(self._all_but(["now"])), "emitted == \\old(emitted)"]
+        yield "latched_kept", self.latched_kept()
+        yield "kept_by_judging", [self.same(self._all_but(self._judged()))]
+        yield "kept_by_deadlines", [self.same(self._all_but(self._settled()))]
+        yield "kept_by_time", [self.same(self._lasting())]
         yield "caught_up", self._caught_up()
         yield "stepped_back", self._stepped_back()
 
@@ -82,13 +80,15 @@ class Changes:
 
     def same(self, names: Iterable[str]) -> str:
         """Return that each of the named fields is as it was."""
-        doubles = {f"m->{name}" for name, type_ in self._types.items() if type_ == "double"}
+        doubles = {name for name, type_ in self._types.items() if type_ == "double"}
         return all_of(
-            f"same({each}, \\old({each}))" if each in doubles else f"{each} == \\old({each})"
+            f"same(m->{each}, \\old(m->{each}))"
+            if each in doubles
+            else f"m->{each} == \\old(m->{each})"
             for each in names
         )
 
-    def _states(self) -> list[str]:
+    def states_done(self) -> list[str]:
         """Return what an event of the rules leaves of actions."""
         states = []
         for index, name in self._layout.ran.items():
@@ -108,7 +108,7 @@ class Changes:
             states.append(f"m->{name} == {active}")
         return states
 
-    def _latched_kept(self) -> list[str]:
+    def latched_kept(self) -> list[str]:
         """Return that a latched action never clears by itself."""
         latched = [each for each in self._view.program.actions if each.latched]
         names = [f"m->{self._layout.active[each.index]}" for each in latched]
@@ -128,7 +128,7 @@ class Changes:
         kind = f"{macro('CLOCK_STEP')}, {macro('SITE_NONE')}"
         step = f"after(\\old(emitted), m->owner, m->now, {kind})"
         emitted = f"emitted == {self._emissions.by_event(step)}"
-        return ["m->started == 1", *new, *self._states(), emitted]
+        return ["m->started == 1", *new, *self.states_done(), emitted]
 
     def as_new(self, start: str) -> list[str]:
         """Return what all inputs, dates and intervals are after a restart."""
@@ -166,33 +166,52 @@ class Changes:
                 found.append(f"({gone} ==> \\is_NaN(m->{name})) && (!{gone} ==> {kept})")
         return found
 
-    def _changed_by_judging(self) -> list[str]:
-        """Return the fields that are changed where all is judged."""
-        layout = self._layout
-        tables = (layout.verdicts, layout.turned, layout.conditions, layout.active, layout.ran)
-        names = [each for table in (*tables, layout.since) for each in table.values()]
-        return [*(f"m->{name}" for name in ("started", *names, "due")), "emitted"]
+    def emission_done(self) -> list[str]:
+        """Return what an event of the rules emits."""
+        events = self._emissions.by_event("\\old(emitted)")
+        return [f"emitted == {events}"]
 
-    def _changed_by_acting(self) -> list[str]:
+    def nothing_done(self) -> list[str]:
+        """Return that no behaviour and no reset has done anything."""
+        return [self.same(self.acted_upon()), "emitted == \\old(emitted)"]
+
+    def kept_but(self, changed: Iterable[str]) -> str:
+        """Return that all fields but some are as they were."""
+        return self.same(self._all_but(changed))
+
+    def kept_over_time_but(self, changed: Iterable[str]) -> str:
+        """Return that of what does not change as time passes all but some fields are kept."""
+        gone = set(changed)
+        return self.same(name for name in self._lasting() if name not in gone)
+
+    def acted_upon(self) -> list[str]:
         """Return the fields that are changed by behaviours and resets."""
         layout = self._layout
         tables = (layout.conditions, layout.active, layout.ran)
-        return [*(f"m->{name}" for table in tables for name in table.values()), "emitted"]
+        return [name for table in tables for name in table.values()]
 
-    def changed_by_deadlines(self) -> list[str]:
+    def _judged(self) -> list[str]:
+        """Return the fields that are changed where all is judged."""
+        layout = self._layout
+        tables = (layout.verdicts, layout.turned, layout.since)
+        names = [each for table in tables for each in table.values()]
+        return ["started", *names, *self.acted_upon(), "due"]
+
+    def _settled(self) -> list[str]:
         """Return the fields that are changed where deadlines are settled."""
         names = [each.missing for each in self._view.timeouts]
         names += [name for each in self._view.forgets for name in (*each.known, *each.last)]
-        changed = [f"m->{name}" for name in ("now", *names)]
-        return list(dict.fromkeys([*changed, *self._changed_by_judging()]))
+        return ["now", *names, *self._judged()]
 
-    def changed_by_time(self) -> list[str]:
-        """Return the fields that the passing of time can change."""
-        values = {term.name for term in self._layout.terms.values()}
-        values |= {finding.name for finding in self._layout.findings.values()}
-        fixed = {"owner", *values, *self._layout.enabled.values()}
-        names = [f"m->{each.name}" for each in self._view.fields if each.name not in fixed]
-        return [*names, "emitted"]
+    def _lasting(self) -> list[str]:
+        """Return the fields that do not change as time passes."""
+        values = [term.name for term in self._layout.terms.values()]
+        values += [finding.name for finding in self._layout.findings.values()]
+        return list(dict.fromkeys(["owner", *values, *self._layout.enabled.values()]))
+
+    def _all_but(self, names: Iterable[str]) -> list[str]:
+        changed = set(names)
+        return [each.name for each in self._view.fields if each.name not in changed]
 
     def _macro(self, name: str) -> str:
         return self._predicates.macro(name)
@@ -211,17 +230,18 @@ def _since(text: str) -> str:
     return parts[0]
 
 
-def _set(name: str, fields: list[str]) -> list[str]:
-    """Return the lines of a macro that stands for fields of a monitor."""
-    return macro_lines(f"{name}(m)", [", ".join(fields)])
+ALL = ("*m", "emitted")
+"""Every field, and what is emitted: what of it is kept, a contract says among what it ensures.
 
-
-BY_JUDGING, BY_TIME = "changed_by_judging(m)", "changed_by_time(m)"
-"""The fields that change where all is judged, and those that change as time passes."""
+A list of fields would be a chain of as many changes, which every look at a field goes through.
+"""
 
 VERDICTS_DATED, INTERVALS_RUN_ON, STATES_DONE, EMISSION_DONE = (
     f"{name}{{Old, Here}}(m)"
     for name in ("verdicts_dated", "intervals_run_on", "states_done", "emission_done")
+)
+KEPT_BY_JUDGING, KEPT_BY_DEADLINES, KEPT_BY_TIME = (
+    f"{name}{{Old, Here}}(m)" for name in ("kept_by_judging", "kept_by_deadlines", "kept_by_time")
 )
 NOTHING_DONE, NOTHING_CHANGED, LATCHED_KEPT, CAUGHT_UP, STEPPED_BACK = (
     f"{name}{{Old, Here}}(m)"

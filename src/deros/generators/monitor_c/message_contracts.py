@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.generators.monitor_c.changes import (
-    BY_JUDGING,
-    BY_TIME,
+    ALL,
     DONE,
     INTERVALS_RUN_ON,
+    KEPT_BY_JUDGING,
     LATCHED_KEPT,
     NOTHING_DONE,
     VERDICTS_DATED,
@@ -58,14 +58,14 @@ class MessageContracts:
 
     def _after(self, message: MessageView) -> Contract:
         """Return that all is judged anew that a message can have changed."""
-        contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], [BY_JUDGING])
+        contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], list(ALL))
         names = self._layout.verdicts
         others = [f"judged_{name}(m)" for each, name in names.items() if each not in message.rules]
         touched = [f"judged_{names[each]}(m)" for each in message.rules]
         contract.requires.append(f"m->started != 0 ==> {all_of([*others, 'acted(m)'])}")
         contract.requires.append(f"m->started != 0 && news == 0 ==> {all_of(touched)}")
         contract.requires.append("(m->started == 0 ==> unacted(m))")
-        contract.ensures += [*self._settled(), VERDICTS_DATED, INTERVALS_RUN_ON]
+        contract.ensures += [*self._settled(), KEPT_BY_JUDGING, VERDICTS_DATED, INTERVALS_RUN_ON]
         changed = self._changes.changed(names[each] for each in message.rules)
         contract.cases["first"] = "m->started == 0"
         contract.of_case["first"] = list(DONE)
@@ -80,10 +80,10 @@ class MessageContracts:
 
     def _message(self, message: MessageView) -> Contract:
         handler = message.handler
-        contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
+        contract = Contract(["\\valid(m)", "sane(m)"], list(ALL))
         contract.requires += self._arrays(handler)
-        contract.assigns += [f"m->{name}" for name in self._stored(handler)]
         contract.ensures += [*self._settled(), "m->now == time_of(t)"]
+        contract.ensures.append(self._changes.kept_over_time_but(self._stored(handler)))
         for each in map(self._program.inputs.__getitem__, handler.inputs):
             counts, _ = self._counts(each, handler)
             said = self._says(each, handler)
@@ -148,7 +148,7 @@ class MessageContracts:
         for index in handler.inputs:
             fields = self._layout.inputs[index]
             read += [name for name in (fields.base, fields.came) if name]
-        return f"\\result == 0 ==> {self._changes.same(f'm->{name}' for name in read)}"
+        return f"\\result == 0 ==> {self._changes.same(read)}"
 
     def _effect(self, each: Input, handler: Handler) -> Iterator[str]:
         """Yield what becomes of an input's fields if a message counts, and if it does not."""
@@ -229,8 +229,8 @@ class MessageContracts:
         names += [term.name for term in self._layout.terms_of(each.index)]
         names += [finding.name for _, finding in self._findings((each.index,))]
         names += [memory.last_t for memory in self._layout.memories_of(each.index).values()]
-        kept = [f"m->{name}" for name in names if name and name not in forgotten]
-        due = ["m->due"] if len(handler.inputs) == 1 else []
+        kept = [name for name in names if name and name not in forgotten]
+        due = ["due"] if len(handler.inputs) == 1 else []
         yield self._changes.same([*kept, *due])
 
     def _counts(self, each: Input, handler: Handler) -> tuple[str, bool]:

@@ -60,16 +60,16 @@ class Predicates:
         conditions += [each.condition for each in walk.behaviours(program)]
         return [part for each in conditions for part in self.fors(each)]
 
-    def _is_end(self) -> str:
+    def end(self, t: str) -> str:
         """Return that an instant is one at which a timeout or an interval ends, or never comes."""
-        found = [f"t == {self.macro('NEVER')}"]
+        found = [f"{t} == {self.macro('NEVER')}"]
         found += [
-            f"(m->{each.missing} == 0 && t == m->{each.base} + {each.duration_ns})"
+            f"(m->{each.missing} == 0 && {t} == m->{each.base} + {each.duration_ns})"
             for each in self._view.timeouts
         ]
         for end in self._view.ends:
             condition = end.condition if "!=" in end.condition else f"{end.condition} != 0"
-            found.append(f"({condition} && t == m->{end.base} + {end.wait_ns})")
+            found.append(f"({condition} && {t} == m->{end.base} + {end.wait_ns})")
         return any_of(found)
 
     def _verdicts(self) -> list[str]:
@@ -79,22 +79,15 @@ class Predicates:
     def _predicates(self) -> Iterator[tuple[str, str, list[str]]]:
         for rule in self._view.program.rules:
             name = self._layout.verdicts[rule.index]
-            yield f"true_{name}", "", [self.meaning.true(rule.condition)]
-            yield f"false_{name}", "", [self.meaning.false(rule.condition)]
-            yield f"judged_{name}", "", self._judged(rule)
+            yield f"judged_{name}", "", self.judged(rule)
         for each in walk.behaviours(self._view.program):
-            yield f"acted_{self._layout.behave[each.index]}", "", self._acted(each)
+            yield f"acted_{self._layout.behave[each.index]}", "", self.acted(each)
         yield "ranged", "", self.ranges(self._types)
-        restarted = {each.name for each in self._view.fields if each.restarted}
-        restarted |= {name for each in self._view.forgets for name in each.known}
-        kept = [name for name in self._types if name not in restarted]
-        yield "ranged_but_for_restart", "", self.ranges(kept)
-        bases = {each.base for each in self._view.timeouts}
-        bases |= {each.base for each in self._view.ends}
+        bases = self._bases()
         yield "timeouts_in_time", ", integer due", self.timeouts_in_time("due", bases)
         yield "ends_in_time", ", integer due", self.ends_in_time("due", bases)
         yield "unexpired", "", self.unexpired(bases)
-        yield "is_end", ", integer t", [self._is_end()]
+        yield "is_end", ", integer t", [self.end("t")]
         yield "judged", "", [f"judged_{name}(m)" for name in self._layout.verdicts.values()]
         yield "acted", "", [f"acted_{name}(m)" for name in self._layout.behave.values()]
         unknown = [
@@ -102,6 +95,19 @@ class Predicates:
         ]
         yield "unacted", "", unknown
         yield "sane", "", [*SOUND, "m->due > m->now", *EVALUATED]
+
+    def all_in_time(self, due: str) -> list[str]:
+        """Return that no deadline lies before ``due``."""
+        bases = self._bases()
+        return [*self.timeouts_in_time(due, bases), *self.ends_in_time(due, bases)]
+
+    def all_unexpired(self) -> list[str]:
+        """Return that no timeout has passed unseen."""
+        return self.unexpired(self._bases())
+
+    def _bases(self) -> set[str]:
+        bases = {each.base for each in self._view.timeouts}
+        return bases | {each.base for each in self._view.ends}
 
     def macro(self, name: str) -> str:
         """Return the name of one of the monitor's macros."""
@@ -153,19 +159,19 @@ class Predicates:
             if each.base in bases
         ]
 
-    def _judged(self, rule: Rule) -> list[str]:
+    def judged(self, rule: Rule) -> list[str]:
         """Return that a rule's verdict is what it means, and its intervals run if they must."""
         name = self._layout.verdicts[rule.index]
         return [
             *map(self._runs, self.fors(rule.condition)),
-            iff(f"m->{name} == {self.macro('TRUE')}", f"true_{name}(m)"),
-            iff(f"m->{name} == {self.macro('FALSE')}", f"false_{name}(m)"),
+            iff(f"m->{name} == {self.macro('TRUE')}", self.meaning.true(rule.condition)),
+            iff(f"m->{name} == {self.macro('FALSE')}", self.meaning.false(rule.condition)),
         ]
 
     def _runs(self, condition: For) -> str:
         return iff(self.meaning.runs(condition), self.meaning.true(condition.operand))
 
-    def _acted(self, behaviour: Behaviour) -> list[str]:
+    def acted(self, behaviour: Behaviour) -> list[str]:
         """Return what a behaviour's condition is worth, with all that encloses it."""
         true, false = self.macro("TRUE"), self.macro("FALSE")
         holds = [self.meaning.true(behaviour.condition)]

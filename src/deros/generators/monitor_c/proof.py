@@ -13,8 +13,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from deros.generators.monitor_c.changes import (
-    BY_TIME,
+    ALL,
     CAUGHT_UP,
+    KEPT_BY_DEADLINES,
+    KEPT_BY_TIME,
     LATCHED_KEPT,
     NOTHING_CHANGED,
     STEPPED_BACK,
@@ -22,7 +24,7 @@ from deros.generators.monitor_c.changes import (
 )
 from deros.generators.monitor_c.contracts import Contract, all_of, any_of, iff
 from deros.generators.monitor_c.message_contracts import MessageContracts
-from deros.generators.monitor_c.predicates import IDLE, IDLE_BEFORE, SOUND, Predicates
+from deros.generators.monitor_c.predicates import IDLE, IDLE_BEFORE, Predicates
 from deros.generators.monitor_c.rule_contracts import RuleContracts
 from deros.generators.monitor_c.view import MonitorView, Timeout
 from deros.monitor import walk
@@ -98,6 +100,7 @@ class _Writer:
         for behaviour in self._behaviours:
             yield self._layout.behave[behaviour.index], self._rules.behave(behaviour)
         yield "act", self._rules.act()
+        yield "judge_all", self._rules.judge_all()
         yield "evaluate", self._rules.evaluate()
         for timeout in self._view.timeouts:
             yield timeout.function, self._expire_one(timeout)
@@ -134,41 +137,51 @@ class _Writer:
 
     def _expire(self) -> Contract:
         """Return the same of all inputs; called at an instant that is due, and at no later one."""
-        contract = Contract(["\\valid(m)", "ranged(m)", "is_end(m, m->now)"])
+        names = ["now"]
+        changed: list[str] = []
         for each in self._view.timeouts:
-            contract.assigns += self._expire_one(each).assigns
+            known = [name for f in self.changes.forgets_of(each) for name in f.known]
+            last = [name for f in self.changes.forgets_of(each) for name in f.last]
+            names += [each.base, each.missing, *known]
+            changed += [each.missing, *known, *last]
+        ranges = self.predicates.ranges(names)
+        contract = Contract(["\\valid(m)", all_of(ranges), "is_end(m, m->now)"], list(ALL))
+        contract.ensures += [self.changes.kept_but(changed), "emitted == \\old(emitted)"]
+        for each in self._view.timeouts:
             contract.ensures.append(all_of(self.changes.expired(each)))
-        contract.ensures += ["ranged(m)", "unexpired(m)"]
+        contract.ensures += [all_of(ranges), all_of(self.predicates.all_unexpired())]
         return contract
 
     def _restart(self) -> Contract:
         latest = self.predicates.macro("LATEST")
-        contract = Contract(["\\valid(m)", "ranged_but_for_restart(m)"])
-        contract.requires.append(f"m->now <= from <= {latest}")
+        contract = Contract(["\\valid(m)"], list(ALL))
+        contract.requires.append(f"0 <= m->now <= from <= {latest}")
         names = [each.name for each in self._view.fields if each.restarted]
         names += [name for each in self._view.forgets for name in (*each.known, *each.last)]
-        contract.assigns += [f"m->{name}" for name in dict.fromkeys([*names, "due"])]
-        contract.ensures += [*SOUND, "m->due > m->now", "is_end(m, m->due)"]
+        contract.ensures += [self.changes.kept_but([*names, "due"]), "emitted == \\old(emitted)"]
         contract.ensures.append(all_of(self.changes.as_new("from")))
+        contract.ensures.append(all_of(self.predicates.all_in_time("m->due")))
+        contract.ensures += ["m->due > m->now", self.predicates.end("m->due")]
         return contract
 
     def _step_back(self) -> Contract:
         """Return that all is as new at an earlier time, and one event of the rules is settled."""
-        contract = Contract(["\\valid(m)", "sane(m)", "0 <= t < m->now"], [BY_TIME])
-        contract.ensures += ["sane(m)", LATCHED_KEPT, "m->now == t", STEPPED_BACK]
+        contract = Contract(["\\valid(m)", "sane(m)", "0 <= t < m->now"], list(ALL))
+        contract.ensures += ["sane(m)", LATCHED_KEPT, "m->now == t", STEPPED_BACK, KEPT_BY_TIME]
         return contract
 
     def _catch_up(self) -> Contract:
         latest = self.predicates.macro("LATEST")
-        contract = Contract(["\\valid(m)", "sane(m)", f"m->now <= t <= {latest}"])
-        contract.assigns.append("changed_by_deadlines(m)")
-        contract.ensures += ["sane(m)", "m->now == t", LATCHED_KEPT, CAUGHT_UP]
+        contract = Contract(["\\valid(m)", "sane(m)", f"m->now <= t <= {latest}"], list(ALL))
+        contract.ensures += ["sane(m)", "m->now == t", LATCHED_KEPT, CAUGHT_UP, KEPT_BY_DEADLINES]
         return contract
 
     def loop(self) -> Contract:
         """Return the invariant of the loop over the deadlines that are due."""
-        contract = Contract([], ["changed_by_deadlines(m)"], is_loop=True)
-        since_call = [each.replace("Old", "Pre") for each in (LATCHED_KEPT, CAUGHT_UP)]
+        contract = Contract([], list(ALL), is_loop=True)
+        since_call = [
+            each.replace("Old", "Pre") for each in (LATCHED_KEPT, CAUGHT_UP, KEPT_BY_DEADLINES)
+        ]
         contract.invariants += ["sane(m)", "is_end(m, m->due)", "m->now <= t", *since_call]
         contract.variant = "t - m->now"
         return contract
@@ -182,19 +195,13 @@ class _Writer:
         return contract
 
     def _arrive(self) -> Contract:
-        contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
-        contract.at_once += ["sane(m)", LATCHED_KEPT, "m->now == time_of(t)"]
+        contract = Contract(["\\valid(m)", "sane(m)"], list(ALL))
+        contract.at_once += ["sane(m)", LATCHED_KEPT, "m->now == time_of(t)", KEPT_BY_TIME]
         contract.cases["back"] = "time_of(t) < m->now"
         contract.cases["due"] = "m->now <= time_of(t) && m->due <= time_of(t)"
         contract.cases["idle"] = IDLE
         contract.of_case["back"] = [STEPPED_BACK]
-        same = [
-            name
-            for name in self.changes.changed_by_time()
-            if name not in self.changes.changed_by_deadlines()
-        ]
-        kept = [self.changes.same(same)] if same else []
-        contract.of_case["due"] = [CAUGHT_UP, *kept]
+        contract.of_case["due"] = [CAUGHT_UP, KEPT_BY_DEADLINES]
         contract.of_case["idle"] = [NOTHING_CHANGED]
         return contract
 
@@ -211,9 +218,13 @@ class _Writer:
             contract = Contract(["\\valid(m)", "sane(m)"], [f"m->{active}"])
             contract.ensures += ["sane(m)", f"m->{active} == 1"]
             yield f"{prefix}_latch_{action.name}", contract
-        advance = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
+        advance = Contract(["\\valid(m)", "sane(m)"], list(ALL))
         advance.ensures += ["sane(m)", "\\result == m->due", LATCHED_KEPT]
-        advance.ensures += ["m->now == time_of(t)", f"{IDLE_BEFORE} ==> {NOTHING_CHANGED}"]
+        advance.ensures += [
+            "m->now == time_of(t)",
+            KEPT_BY_TIME,
+            f"{IDLE_BEFORE} ==> {NOTHING_CHANGED}",
+        ]
         yield f"{prefix}_advance", advance
         yield f"{prefix}_waiting", self._waiting()
         if self._view.has_latched:
@@ -221,10 +232,11 @@ class _Writer:
         for _, function, enabled in self._view.optional:
             contract = Contract(
                 ["\\valid(m)", "sane(m)", "(enabled == 0 || enabled == 1)"],
-                [BY_TIME, f"m->{enabled}"],
+                list(ALL),
             )
             contract.ensures += ["sane(m)", f"m->{enabled} == enabled", LATCHED_KEPT]
             contract.ensures.append("m->now == time_of(t)")
+            contract.ensures.append(self.changes.kept_over_time_but([enabled]))
             yield function, contract
         messages = MessageContracts(self._view, self.predicates, self.changes, self._rules)
         for message in self._view.messages:
@@ -257,8 +269,8 @@ class _Writer:
         return found
 
     def _reset(self) -> Contract:
-        contract = Contract(["\\valid(m)", "sane(m)"], [BY_TIME])
-        contract.ensures += ["sane(m)", "m->now == time_of(t)"]
+        contract = Contract(["\\valid(m)", "sane(m)"], list(ALL))
+        contract.ensures += ["sane(m)", "m->now == time_of(t)", KEPT_BY_TIME]
         emitted = "\\old(emitted)"
         emissions = self.predicates.emissions
         states = []

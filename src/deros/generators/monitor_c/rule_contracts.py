@@ -10,10 +10,11 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from deros.generators.monitor_c.changes import (
-    BY_JUDGING,
+    ALL,
     DONE,
+    INTERVALS_RUN_ON,
+    KEPT_BY_JUDGING,
     LATCHED_KEPT,
-    NOTHING_DONE,
     VERDICTS_DATED,
     Changes,
 )
@@ -47,7 +48,7 @@ class RuleContracts:
         contract.requires.append(self._ranges_read(rule.condition, fors))
         contract.assigns += [f"m->{name}", f"m->{self._layout.turned[rule.index]}"]
         contract.ensures += self._predicates.ranges([name])
-        contract.ensures.append(f"judged_{name}(m)")
+        contract.ensures.append(all_of(self._predicates.judged(rule)))
         contract.ensures.append(iff("\\result != 0", f"m->{name} != \\old(m->{name})"))
         contract.ensures.append(self._changes.turned(rule))
         self._with_own_intervals(contract, fors)
@@ -56,15 +57,29 @@ class RuleContracts:
     def judge_by(self, message: MessageView) -> Contract:
         """Return that the rules that read a topic are judged, and whether a verdict changes."""
         rules = [each for each in self._program.rules if each.index in message.rules]
+        contract = self._judge(rules)
+        changed = self._changes.changed(self._layout.verdicts[each.index] for each in rules)
+        contract.ensures.append(iff("\\result != 0", changed))
+        return contract
+
+    def judge_all(self) -> Contract:
+        """Return that all rules are judged."""
+        return self._judge(self._program.rules)
+
+    def _judge(self, rules: Sequence[Rule]) -> Contract:
+        """Return that some rules are judged; all is written out, as for :meth:`act`."""
         names = [self._layout.verdicts[each.index] for each in rules]
         turned = [self._layout.turned[each.index] for each in rules]
-        contract = Contract(["\\valid(m)", "ranged(m)"])
-        contract.assigns += [f"m->{name}" for name in (*names, *turned)]
-        contract.ensures += self._predicates.ranges(names)
-        contract.ensures += [f"judged_{name}(m)" for name in names]
-        contract.ensures.append(iff("\\result != 0", self._changes.changed(names)))
-        contract.ensures.append(all_of(map(self._changes.turned, rules)))
         fors = [each for rule in rules for each in self._predicates.fors(rule.condition)]
+        contract = Contract(["\\valid(m)"], list(ALL))
+        for rule in rules:
+            own = self._predicates.fors(rule.condition)
+            contract.requires.append(self._ranges_read(rule.condition, own))
+        contract.ensures.append(self._changes.kept_but(self._with_fors([*names, *turned], fors)))
+        contract.ensures.append("emitted == \\old(emitted)")
+        contract.ensures.append(all_of(self._predicates.ranges(names)))
+        contract.ensures += [all_of(self._predicates.judged(rule)) for rule in rules]
+        contract.ensures.append(all_of(map(self._changes.turned, rules)))
         self._with_own_intervals(contract, fors)
         return contract
 
@@ -97,7 +112,7 @@ class RuleContracts:
             contract.requires.append(self._ranges_read(each.condition, own))
         contract.requires.append(all_of(self._predicates.ranges([*self._guards(group), *changed])))
         contract.ensures += self._predicates.ranges(changed)
-        contract.ensures += [f"acted_{self._layout.behave[each.index]}(m)" for each in group]
+        contract.ensures += [all_of(self._predicates.acted(each)) for each in group]
         contract.ensures += self._done(group)
         contract.ensures.append(
             f"emitted == {self.emissions.by_behaviour(behaviour, chr(92) + 'old(emitted)')}"
@@ -106,28 +121,43 @@ class RuleContracts:
         return contract
 
     def act(self) -> Contract:
-        """Return that conditions are what they mean, and what is run, reset and emitted."""
-        tables = (self._layout.conditions, self._layout.ran, self._layout.active)
-        contract = self._run([each for table in tables for each in table.values()])
-        contract.assigns.append("emitted")
-        contract.ensures += ["acted(m)", LATCHED_KEPT]
+        """Return that conditions are what they mean, and what is run, reset and emitted.
+
+        All is written out: of what it changes field by field, no predicate is seen to hold.
+        """
         fors = [part for each in self._behaviours for part in self._predicates.fors(each.condition)]
-        self._with_intervals(contract, fors)
-        contract.requires.append("changed == 0 ==> acted(m)")
+        changed = self._with_fors(self._changes.acted_upon(), fors)
+        contract = Contract(["\\valid(m)"], list(ALL))
+        for each in self._behaviours:
+            own = self._predicates.fors(each.condition)
+            contract.requires.append(self._ranges_read(each.condition, own))
+        read = [*self._guards(self._behaviours), *self._changes.acted_upon()]
+        contract.requires.append(all_of(self._predicates.ranges(dict.fromkeys(read))))
+        contract.requires.append(f"changed == 0 ==> {all_of(self._acted())}")
+        contract.ensures.append(self._changes.kept_but(changed))
+        contract.ensures.append(all_of(self._predicates.ranges(self._changes.acted_upon())))
+        contract.ensures += self._acted()
+        contract.ensures += self._changes.latched_kept()
+        self._with_own_intervals(contract, fors)
         contract.cases |= {"change": "changed != 0", "none": "changed == 0"}
-        contract.of_case["change"] = list(DONE)
-        contract.of_case["none"] = [NOTHING_DONE]
+        done = [*self._changes.states_done(), *self._changes.emission_done()]
+        contract.of_case["change"] = done
+        contract.of_case["none"] = self._changes.nothing_done()
         return contract
 
     def evaluate(self) -> Contract:
         """Return that all is judged, and acted upon."""
-        contract = self._run([])
-        contract.requires.append("m->now <= m->due")
-        contract.ensures += ["m->started == 1", "judged(m)", "acted(m)", LATCHED_KEPT]
-        contract.ensures += [VERDICTS_DATED, *DONE]
-        self._with_intervals(contract, self._predicates.all_fors())
-        contract.assigns = [BY_JUDGING]
+        same = ["ranged(m)", "timeouts_in_time(m, m->due)", "ends_in_time(m, m->due)"]
+        same.append("unexpired(m)")
+        contract = Contract(["\\valid(m)", *same, "m->now <= m->due"], list(ALL))
+        contract.ensures += [*same, KEPT_BY_JUDGING, "m->started == 1", "judged(m)", "acted(m)"]
+        contract.ensures += [LATCHED_KEPT, VERDICTS_DATED, *DONE, INTERVALS_RUN_ON]
+        contract.ensures.append("\\old(m->due) > m->now ==> m->due > m->now")
         return contract
+
+    def _acted(self) -> list[str]:
+        """Return what each behaviour's condition is worth."""
+        return [all_of(self._predicates.acted(each)) for each in self._behaviours]
 
     def kept_called(self, action: Action) -> Iterator[str]:
         """Yield that an action stays active unless what triggers it is known to be false."""
@@ -160,7 +190,7 @@ class RuleContracts:
             contract.ensures += self._changes.run_on(fors)
             with_earlier_deadline(contract)
 
-    def _guards(self, group: list[Behaviour]) -> Iterator[str]:
+    def _guards(self, group: Iterable[Behaviour]) -> Iterator[str]:
         """Yield the fields beside its condition by which a behaviour holds."""
         for each in group:
             if each.parent is not None:
@@ -186,12 +216,9 @@ class RuleContracts:
                 if rises:
                     yield f"m->{name} == ({' || '.join(rises)} ? 1 : \\old(m->{name}))"
 
-    def _run(self, changed: Iterable[str]) -> Contract:
-        """Return what is common to what runs rules or behaviours: all stays in range and time."""
-        contract = Contract(["\\valid(m)", "ranged(m)", "ends_in_time(m, m->due)"])
-        contract.assigns += [f"m->{name}" for name in changed]
-        contract.ensures += ["ranged(m)", "ends_in_time(m, m->due)"]
-        return contract
+    def _with_fors(self, names: Iterable[str], fors: Sequence[For]) -> list[str]:
+        """Return fields, and those that intervals change."""
+        return [*names, *self._sinces(fors), *(["due"] if fors else [])]
 
     def _sinces(self, fors: Iterable[For]) -> list[str]:
         return [self._layout.since[each.index] for each in fors]
