@@ -70,8 +70,8 @@ in_place = false
 interactive = false
 """
 """Z3 that matches patterns in all that it is given, and does nothing else: the fields of a monitor
-are many, but no goal needs a search for models. CVC4 without a theory of floating-point numbers, which
-Debian's lacks: Why3 hands it axioms.
+are many, but no goal needs a search for models. CVC4 without a theory of floating-point numbers,
+which Debian's lacks: Why3 hands it axioms.
 """
 
 _DRIVER = """

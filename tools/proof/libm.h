@@ -1,12 +1,13 @@
 /* What the proofs rely on of the mathematical library: that its functions return, and change
- * nothing that the program can see; and that equal arguments give equal results. Stands in for <math.h> while Frama-C reads the monitor. */
+ * nothing that the program can see, and that equal arguments give equal results. Stands in for
+ * <math.h> while Frama-C reads the monitor. */
 #define __FC_MATH
 #define NAN (0.0 / 0.0)
 #define INFINITY (1.0 / 0.0)
-/* Two numbers are the same if no function tells them apart; in ACSL, == is of real numbers. */
-#define same(a, b) (identity(a) == identity(b))
+/* Two numbers are the same if no function tells them apart, NaN and zeros included: so it is with
+ * members of sets, where == would be of real numbers. */
+#define same(a, b) \subset({a}, {b})
 /*@ axiomatic Libm {
-      logic integer identity(double x);
       predicate is_sqrt(double y, double x);
       predicate is_asin(double y, double x);
       predicate is_atan2(double z, double y, double x);

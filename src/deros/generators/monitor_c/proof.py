@@ -145,8 +145,8 @@ class _Writer:
             names += [each.base, each.missing, *known]
             changed += [each.missing, *known, *last]
         ranges = self.predicates.ranges(names)
-        contract = Contract(["\\valid(m)", all_of(ranges), "is_end(m, m->now)"], list(ALL))
-        contract.ensures += [self.changes.kept_but(changed), "emitted == \\old(emitted)"]
+        contract = Contract(["\\valid(m)", all_of(ranges), "is_end(m, m->now)"], ["*m"])
+        contract.ensures.append(self.changes.kept_but(changed))
         for each in self._view.timeouts:
             contract.ensures.append(all_of(self.changes.expired(each)))
         contract.ensures += [all_of(ranges), all_of(self.predicates.all_unexpired())]
@@ -154,11 +154,11 @@ class _Writer:
 
     def _restart(self) -> Contract:
         latest = self.predicates.macro("LATEST")
-        contract = Contract(["\\valid(m)"], list(ALL))
+        contract = Contract(["\\valid(m)"], ["*m"])
         contract.requires.append(f"0 <= m->now <= from <= {latest}")
         names = [each.name for each in self._view.fields if each.restarted]
         names += [name for each in self._view.forgets for name in (*each.known, *each.last)]
-        contract.ensures += [self.changes.kept_but([*names, "due"]), "emitted == \\old(emitted)"]
+        contract.ensures.append(self.changes.kept_but([*names, "due"]))
         contract.ensures.append(all_of(self.changes.as_new("from")))
         contract.ensures.append(all_of(self.predicates.all_in_time("m->due")))
         contract.ensures += ["m->due > m->now", self.predicates.end("m->due")]

@@ -71,12 +71,11 @@ class RuleContracts:
         names = [self._layout.verdicts[each.index] for each in rules]
         turned = [self._layout.turned[each.index] for each in rules]
         fors = [each for rule in rules for each in self._predicates.fors(rule.condition)]
-        contract = Contract(["\\valid(m)"], list(ALL))
+        contract = Contract(["\\valid(m)"], ["*m"])
         for rule in rules:
             own = self._predicates.fors(rule.condition)
             contract.requires.append(self._ranges_read(rule.condition, own))
         contract.ensures.append(self._changes.kept_but(self._with_fors([*names, *turned], fors)))
-        contract.ensures.append("emitted == \\old(emitted)")
         contract.ensures.append(all_of(self._predicates.ranges(names)))
         contract.ensures += [all_of(self._predicates.judged(rule)) for rule in rules]
         contract.ensures.append(all_of(map(self._changes.turned, rules)))
