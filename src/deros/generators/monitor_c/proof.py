@@ -107,8 +107,8 @@ class _Writer:
         if self._view.timeouts:
             yield "expire", self._expire()
         yield "restart", self._restart()
-        yield "step_back", self._step_back()
         yield "catch_up", self._catch_up()
+        yield "step_back", self._step_back()
         yield "pass", self._pass()
         yield "arrive", self._arrive()
         yield from self._public()
@@ -119,9 +119,11 @@ class _Writer:
         ]
         fields += [each for t in self._view.timeouts for each in (t.base, t.missing)]
         ranges = self.predicates.ranges(dict.fromkeys(["now", *fields]))
-        contract = Contract(["\\valid_read(m)", all_of(ranges), "unexpired(m)"])
-        contract.ensures += ["\\result > m->now", "timeouts_in_time(m, \\result)"]
-        contract.ensures += ["ends_in_time(m, \\result)", "is_end(m, \\result)"]
+        unexpired = all_of(self.predicates.all_unexpired())
+        contract = Contract(["\\valid_read(m)", all_of(ranges), unexpired])
+        contract.ensures.append("\\result > m->now")
+        contract.ensures.append(all_of(self.predicates.all_in_time("\\result")))
+        contract.ensures.append(self.predicates.end("\\result"))
         return contract
 
     def _expire_one(self, timeout: Timeout) -> Contract:

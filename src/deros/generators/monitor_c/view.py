@@ -157,6 +157,11 @@ class MonitorView:
         return (total + 7) // 8 * 8
 
     @property
+    def has_instant_timeouts(self) -> bool:
+        """Whether an input is missing from the moment on at which its timeout begins."""
+        return any(each.duration_ns == 0 for each in self.timeouts)
+
+    @property
     def has_base(self) -> bool:
         """Whether an input counts time from a restart."""
         return any(field.restarted == "from" for field in self.fields)
