@@ -24,8 +24,9 @@ def until_fault(robot: Robot, topic: str, *texts: str) -> None:
     """Wait until the diagnostics and an event tell of a fault of a topic in such words."""
 
     def is_told() -> bool:
-        told = [robot.faults.get(topic, ""), *robot.fault_events.get(topic, [])]
-        return len(told) > 1 and all(text in each for text in texts for each in told[-2:])
+        events = robot.fault_events.get(topic, [])[-1:]  # who it is may not be known at first
+        told = [robot.faults.get(topic, ""), *events]
+        return bool(events) and all(text in each for text in texts for each in told)
 
     robot.until(is_told)
 

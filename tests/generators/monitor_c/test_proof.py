@@ -68,7 +68,7 @@ SLIPS = {
     "a timeout that is one late": ("expire_speed", "<= m->now", "< m->now"),
     "a forgotten behaviour": ("act", "    behave_tilted(m);\n", ""),
     "a forgotten rule": (
-        "evaluate",
+        "judge_all",
         "  (void)judge_imu_sensor_system_tilt_not_ok(m);\n",
         "",
     ),
