@@ -49,7 +49,6 @@ class Predicates:
         ]
         for name, parameters, parts in self._predicates():
             lines += predicate(self._layout.prefix, name, parts, parameters)
-
         parts = [self.emissions.declarations(), quantities.declarations(self._view.program)]
         return "\n".join([*parts, *lines, ""])
 
@@ -204,16 +203,10 @@ def predicate(
 
 
 def _macro(name: str, parameters: str, parts: list[str]) -> list[str]:
-    """Return the lines of a macro that stands for a conjunction; of nothing, that is true."""
-    parts = parts or ["\\true"]
+    """Return the lines of a macro that stands for a conjunction."""
     joined = [f"{part} &&" for part in parts[:-1]]
-    return macro_lines(f"{name}({parameters}) (", [*joined, f"{parts[-1]})"])
-
-
-def macro_lines(head: str, parts: list[str]) -> list[str]:
-    """Return the lines of a macro."""
-    lines = [f"#define {head}"]
-    for text in parts:
+    lines = [f"#define {name}({parameters}) ("]
+    for text in [*joined, f"{parts[-1]})"]:
         lines += textwrap.wrap(
             text,
             MAX_LINE - len(" \\"),

@@ -19,7 +19,7 @@ from deros.generators.monitor_c.changes import (
     Changes,
 )
 from deros.generators.monitor_c.contracts import Contract, all_of, iff
-from deros.generators.monitor_c.predicates import Predicates
+from deros.generators.monitor_c.predicates import SOUND, Predicates
 from deros.generators.monitor_c.view import MessageView, MonitorView
 from deros.monitor import walk
 from deros.monitor.ir import Action, Behaviour, Condition, For, Rule, Trigger
@@ -38,7 +38,7 @@ class RuleContracts:
         self._changes = changes
         self.emissions = predicates.emissions
         self._behaviours = tuple(walk.behaviours(view.program))
-        self._true, self._false = predicates.macro("TRUE"), predicates.macro("FALSE")
+        self._false = predicates.macro("FALSE")
 
     def judge(self, rule: Rule) -> Contract:
         """Return that a rule's verdict is what it means, and whether it has changed."""
@@ -146,10 +146,8 @@ class RuleContracts:
 
     def evaluate(self) -> Contract:
         """Return that all is judged, and acted upon."""
-        same = ["ranged(m)", "timeouts_in_time(m, m->due)", "ends_in_time(m, m->due)"]
-        same.append("unexpired(m)")
-        contract = Contract(["\\valid(m)", *same, "m->now <= m->due"], list(ALL))
-        contract.ensures += [*same, KEPT_BY_JUDGING, "m->started == 1", "judged(m)", "acted(m)"]
+        contract = Contract(["\\valid(m)", *SOUND, "m->now <= m->due"], list(ALL))
+        contract.ensures += [*SOUND, KEPT_BY_JUDGING, "m->started == 1", "judged(m)", "acted(m)"]
         contract.ensures += [LATCHED_KEPT, VERDICTS_DATED, *DONE, INTERVALS_RUN_ON]
         contract.ensures.append("\\old(m->due) > m->now ==> m->due > m->now")
         return contract
