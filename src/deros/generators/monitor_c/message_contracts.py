@@ -19,7 +19,7 @@ from deros.generators.monitor_c.handlers import Handler, Parameter
 from deros.generators.monitor_c.layout import Finding
 from deros.generators.monitor_c.predicates import SOUND, Predicates
 from deros.generators.monitor_c.quantities import is_value
-from deros.generators.monitor_c.rule_contracts import RuleContracts, with_earlier_deadline
+from deros.generators.monitor_c.rule_contracts import EARLIER_DEADLINE, RuleContracts
 from deros.generators.monitor_c.view import MessageView, MonitorView
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
@@ -136,7 +136,8 @@ class MessageContracts:
         for each in map(self._program.inputs.__getitem__, handler.inputs):
             contract.ensures += self._effect(each, handler)
         if bases:
-            with_earlier_deadline(contract)
+            contract.assigns.append("m->due")
+            contract.ensures += EARLIER_DEADLINE
         return contract
 
     def _news(self, handler: Handler, names: list[str]) -> str:

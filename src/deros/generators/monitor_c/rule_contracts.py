@@ -46,7 +46,8 @@ class RuleContracts:
         fors = self._predicates.fors(rule.condition)
         contract = Contract(["\\valid(m)"])
         contract.requires.append(self._ranges_read(rule.condition, fors))
-        contract.assigns += [f"m->{name}", f"m->{self._layout.turned[rule.index]}"]
+        changed = self._with_fors([name, self._layout.turned[rule.index]], fors)
+        contract.assigns += [f"m->{each}" for each in changed]
         contract.ensures += self._predicates.ranges([name])
         contract.ensures.append(all_of(self._predicates.judged(rule)))
         contract.ensures.append(iff("\\result != 0", f"m->{name} != \\old(m->{name})"))
@@ -106,6 +107,7 @@ class RuleContracts:
         fors = [each for one in group for each in self._predicates.fors(one.condition)]
         changed = [self._layout.conditions[each.index] for each in group] + self._touched(group)
         contract = Contract(["\\valid(m)"], [*(f"m->{name}" for name in changed), "emitted"])
+        contract.assigns += [f"m->{name}" for name in self._with_fors([], fors)]
         for each in group:
             own = self._predicates.fors(each.condition)
             contract.requires.append(self._ranges_read(each.condition, own))
@@ -172,20 +174,17 @@ class RuleContracts:
         return all_of(self._predicates.ranges(names))
 
     def _with_own_intervals(self, contract: Contract, fors: Sequence[For]) -> None:
-        """Add what becomes of the intervals of a condition; they stay in range and in time."""
+        """Add what becomes of the intervals of a condition, and of the next deadline.
+
+        They begin now, run on or are cleared, and stay in range and in time.
+        """
         sinces = self._sinces(fors)
         if sinces:
             in_time = self._predicates.ends_in_time("m->due", sinces)
             contract.requires += in_time
             contract.ensures += [*self._predicates.ranges(sinces), *in_time]
-            self._with_intervals(contract, fors)
-
-    def _with_intervals(self, contract: Contract, fors: Sequence[For]) -> None:
-        """Add what becomes of intervals: begun now, kept, or cleared; and of the next deadline."""
-        if fors:
-            contract.assigns += [f"m->{since}" for since in self._sinces(fors)]
             contract.ensures += self._changes.run_on(fors)
-            with_earlier_deadline(contract)
+            contract.ensures += EARLIER_DEADLINE
 
     def _guards(self, group: Iterable[Behaviour]) -> Iterator[str]:
         """Yield the fields beside its condition by which a behaviour holds."""
@@ -221,8 +220,5 @@ class RuleContracts:
         return [self._layout.since[each.index] for each in fors]
 
 
-def with_earlier_deadline(contract: Contract) -> None:
-    """Add that the next deadline comes no later than before, and still lies ahead."""
-    contract.assigns.append("m->due")
-    contract.ensures.append("m->due <= \\old(m->due)")
-    contract.ensures.append("\\old(m->due) > m->now ==> m->due > m->now")
+EARLIER_DEADLINE = ("m->due <= \\old(m->due)", "\\old(m->due) > m->now ==> m->due > m->now")
+"""The next deadline comes no later than before, and still lies ahead."""
