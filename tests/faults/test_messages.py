@@ -22,15 +22,16 @@ def test_a_flood_on_one_input_starves_no_other(robot: Robot) -> None:
         robot.until_free()
         flood.match("/load")
         flood.play("/load", load(1.0), load(2.0), rate=20_000.0)
-        begun = time.monotonic()
+        begun, waited = time.monotonic(), flood.waited()
         robot.until_beats()
         assert not robot.is_active("/halt"), "a sensor that talks was taken for silent"
         sensors.play("/imu", imu(TILTED))
         robot.until_stopped("/halt", limit=0.4 + PROMPT)
         sensors.play("/speed", speed(2.0))
         robot.until_stopped(limit=PROMPT)
-        rate = flood.quiet("/load") / (time.monotonic() - begun)
-        assert rate > 10_000, "this machine is too slow, or too busy, to flood a topic"
+        sent = flood.quiet("/load")
+        running = time.monotonic() - begun - (flood.waited() - waited)
+        assert sent > 10_000 * running, f"{sent} messages in {running:.1f} s are no flood"
 
 
 def test_a_violation_within_a_flood_stops_the_robot(robot: Robot) -> None:
@@ -42,18 +43,23 @@ def test_a_violation_within_a_flood_stops_the_robot(robot: Robot) -> None:
 
 
 def test_a_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
-    """A scan of a million beams or more is judged, and the others are watched meanwhile."""
+    """A scan of a million beams or more is judged, and the others are watched meanwhile.
+
+    The lidar is a process of its own: handling a scan must not keep the other sensors from talking.
+    """
     beams = robot.software.beams
-    with robot.safety_node(), robot.sensors() as sensors:
+    with robot.safety_node(), robot.sensors() as sensors, robot.sensors() as lidar:
         sensors.drive()
-        sensors.match("/scan")
+        sensors.quiet("/scan")
+        lidar.match("/scan")
         robot.until_free()
-        sensors.send("/scan", scan(5.0, beams=beams), times=5, rate=5.0)
+        sensors.quiet("/button")  # so that a halt would last
+        lidar.send("/scan", scan(5.0, beams=beams), times=5, rate=5.0)
         robot.until_alive()
-        assert not robot.is_active("/halt"), "a sensor that talks was taken for silent"
         assert not robot.is_active("/stop")
-        sensors.play("/scan", scan(0.1, beams=beams), rate=5.0)  # no single one is sure to arrive
-        robot.until_stopped(limit=2 * PROMPT)
+        lidar.send("/scan", scan(0.1, beams=beams), times=5, rate=5.0)  # one is not sure to arrive
+        robot.until_stopped(limit=PROMPT)
+        assert not robot.is_active("/halt"), "a sensor that talks was taken for silent"
 
 
 def test_another_type_on_the_topic_is_not_taken_for_the_sensor(robot: Robot) -> None:

@@ -125,6 +125,17 @@ class Sensors:
         command = {"send": topic, "messages": _serialized(messages), "rate": rate}
         self._do({**command, "times": times or len(messages)})
 
+    def waited(self) -> float:
+        """Return the seconds for which it has been ready to run and other processes ran instead.
+
+        It is 0 where the kernel does not count them.
+        """
+        try:
+            counted = Path(f"/proc/{self._popen.pid}/schedstat").read_text(encoding="ascii")
+        except FileNotFoundError:
+            return 0.0
+        return int(counted.split()[1]) / 1e9
+
     def kill(self) -> None:
         """End the sensors as a crash would."""
         self._popen.kill()
