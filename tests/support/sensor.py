@@ -116,7 +116,7 @@ def main(topics: list[str]) -> None:
         publisher = node.create_publisher(message_type(name), topic, QoSProfile(depth=10))
         players[topic] = Player(publisher)
     answer(len(players))
-    pending = b""
+    pending = bytearray()
     while True:
         now = time.monotonic()
         due = min(player.wakes(now) for player in players.values())
@@ -126,9 +126,11 @@ def main(topics: list[str]) -> None:
             if not read:
                 rclpy.shutdown()  # and say so to everybody
                 return
-            *lines, pending = (pending + read).split(b"\n")
-            for line in lines:
-                obey(json.loads(line), players)
+            pending += read
+            if b"\n" in read:  # a command of megabytes comes in many pieces
+                *lines, pending = pending.split(b"\n")
+                for line in lines:
+                    obey(json.loads(line), players)
         now = time.monotonic()
         for player in players.values():
             if player.due <= now:
