@@ -20,7 +20,7 @@ from deros.monitor.ir import Program
 
 _SHARED = (
     *("agenda", "clock_choice", "instance", "machine", "process", "publishers", "regular_file"),
-    *("sha256", "simulated", "text", "worker"),
+    *("sha256", "simulated", "start_order", "text", "worker"),
 )
 """The sources that gates have in common with the safety node."""
 

@@ -30,6 +30,7 @@ RUNTIME = (
     "publishers",
     "regular_file",
     "safety_source",
+    "start_order",
     "target_publishers",
     "waker",
 )

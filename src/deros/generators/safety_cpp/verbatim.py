@@ -13,7 +13,7 @@ _HEADERS_ONLY = ("descriptor", "refusal")
 _SOURCES = (
     *("agenda", "clock_choice", "diagnostics", "events", "guardian", "instance", "latches"),
     *("machine", "ports", "process", "publishers", "regular_file", "sha256", "siblings"),
-    *("simulated", "text", "told", "watch", "worker"),
+    *("simulated", "start_order", "text", "told", "watch", "worker"),
 )
 
 

@@ -52,6 +52,7 @@ RUNTIME = (
     "regular_file",
     "reports",
     "siblings",
+    "start_order",
     "waker",
     "watch",
 )

@@ -14,6 +14,7 @@
 #include "tested/runtime/instance.hpp"
 #include "tested/runtime/latches.hpp"
 #include "tested/runtime/sha256.hpp"
+#include "tested/runtime/start_order.hpp"
 #include "tested/runtime/text.hpp"
 
 namespace
@@ -61,6 +62,17 @@ std::string claimed(const std::string & folder, const std::string & domain, cons
   return "held";
 }
 
+/// Return what a node decides, started at 0: y or n at each TIME+ with another node, TIME- without.
+std::string decided(const std::string & looks)
+{
+  tested::runtime::StartOrder order(0);
+  std::string found;
+  for (const std::string & look : words_of(looks, ',')) {
+    found += order.gives_way(look.back() == '+', std::stoll(look)) ? 'y' : 'n';
+  }
+  return found;
+}
+
 std::string answer(const std::vector<std::string> & words)
 {
   const std::string & what = words.at(0);
@@ -75,6 +87,9 @@ std::string answer(const std::vector<std::string> & words)
   }
   if (what == "place") {
     return tested::runtime::default_path(words.at(1)).string();
+  }
+  if (what == "order") {
+    return decided(words.at(1));
   }
   if (what == "claim") {
     return claimed(words.at(1), words.at(2), words.at(3));

@@ -15,6 +15,7 @@ import pytest
 
 from deros.generators.safety_python.runtime.instance import Refusal, claim, file_stem
 from deros.generators.safety_python.runtime.latches import LatchFile, default_path
+from deros.generators.safety_python.runtime.start_order import StartOrder
 from tests.support.cpp import needs_compiler
 from tests.support.safety_cpp import Harness, compiled
 
@@ -47,6 +48,19 @@ def test_numbers_are_shown_as_python_shows_them(harness: Harness) -> None:
     for value in numbers:
         bits = struct.pack(">d", value).hex()
         assert harness.ask("number", bits) == str(value)
+
+
+def test_nodes_of_both_languages_give_way_alike(harness: Harness) -> None:
+    """They meet each other, too."""
+    drawn = random.Random(2)
+    for _ in range(100):
+        times = sorted(drawn.randrange(0, 15 * 10**9, 10**8) for _ in range(40))
+        gone = drawn.randrange(40)
+        looks = [(time, number != gone) for number, time in enumerate(times)]
+        order = StartOrder(0)
+        decided = "".join("ny"[order.gives_way(double, time)] for time, double in looks)
+        text = ",".join(f"{time}{'+' if double else '-'}" for time, double in looks)
+        assert harness.ask("order", text) == decided
 
 
 @pytest.mark.parametrize("length", [0, 1, 55, 56, 63, 64, 65, 119, 120, 1000])

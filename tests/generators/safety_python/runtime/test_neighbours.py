@@ -13,7 +13,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 from deros.generators.safety_python.runtime.instance import Refusal
 from deros.generators.safety_python.runtime.publishers import Publishers
-from deros.generators.safety_python.runtime.siblings import EARLY, Siblings
+from deros.generators.safety_python.runtime.siblings import Siblings
 
 RELIABLE = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -69,19 +69,23 @@ def test_a_node_without_subscriptions_has_nothing_to_look_at() -> None:
     Publishers(Mock(subscriptions=[]), Mock(side_effect=AssertionError)).look()
 
 
-def test_a_young_node_gives_way_and_an_old_one_reports() -> None:
-    """Who has been there first goes on."""
+def test_a_second_heartbeat_is_reported_and_ends_the_node_that_started_last() -> None:
+    """It is a fault until it is known which of the two that is."""
     node, found = Mock(), Mock()
     node.count_publishers.return_value = 2
     siblings = Siblings(node, "/safety/heartbeat", [], found)
+    siblings._order = Mock()
+    siblings._order.gives_way.return_value = False
+    siblings.look()
+    assert siblings._order.gives_way.call_args.args[0]
+    assert found.call_args.args[1].startswith("another node publishes this heartbeat")
+    siblings._order.gives_way.return_value = True
     with pytest.raises(Refusal, match="this one started last"):
         siblings.look()
-    found.assert_not_called()
-    siblings._give_way_until -= EARLY
-    siblings.look()
-    assert found.call_args.args[1].startswith("another node publishes this heartbeat")
+    siblings._order.gives_way.return_value = False
     node.count_publishers.return_value = 1
     siblings.look()
+    assert not siblings._order.gives_way.call_args.args[0]
     assert found.call_args.args == ("/safety/heartbeat", "")
 
 

@@ -48,7 +48,7 @@ GateReport::GateReport(
     node,
     [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
   target_(
-    node, target,
+    agenda, node, target,
     [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
   alarm_(agenda, Clock(), [this] {ring();})
 {
@@ -57,6 +57,7 @@ GateReport::GateReport(
 void GateReport::begin()
 {
   alarm_.ring_at(0);
+  target_.begin();
 }
 
 void GateReport::look()

@@ -15,24 +15,54 @@ namespace deros_runtime
 namespace
 {
 
-// A gate that finds a second one within this time, in ns, of its start gives way.
-constexpr Time EARLY = 5'000'000'000;
+// In ns from look to look, while a second gate might be met.
+constexpr Time PERIOD = 100'000'000;
 
-// Looks in a row that have to find it: one that is just ending is not taken for it.
-constexpr int LOOKS = 2;
+// In ns after its start; a gate that met a second one while young has given way by then.
+constexpr Time EARLY = 2 * StartOrder::YOUNG;
 
 }  // namespace
 
 TargetPublishers::TargetPublishers(
-  rclcpp::Node & node, const std::string & target, Report report)
+  Agenda & agenda, rclcpp::Node & node, const std::string & target, Report report)
 : node_(node),
   target_(node.get_node_topics_interface()->resolve_topic_name(target)),
   report_(std::move(report)),
-  give_way_until_(steady_now() + EARLY)
+  order_(steady_now()),
+  early_until_(steady_now() + EARLY),
+  early_(agenda, Clock(), [this] {look_early();})
 {
 }
 
+void TargetPublishers::begin()
+{
+  early_.ring_at(0);
+}
+
+void TargetPublishers::look_early()
+{
+  if (early_.due() < early_until_) {
+    early_.repeat(PERIOD);
+  }
+  find();
+}
+
 void TargetPublishers::look()
+{
+  auto [others, second] = find();
+  std::vector<std::string> faults;
+  if (!second.empty()) {
+    faults.push_back(second);
+  }
+  if (!others.empty()) {
+    std::sort(others.begin(), others.end());
+    faults.push_back("published past the gate: " + joined(others, ", "));
+  }
+  report_(target_, joined(faults, "; "));
+}
+
+/// Return the nodes that publish past the gate, and what is to be said of a second gate.
+std::pair<std::vector<std::string>, std::string> TargetPublishers::find()
 {
   const std::string own = node_.get_fully_qualified_name();
   int gates = 0;
@@ -45,20 +75,11 @@ void TargetPublishers::look()
       others.push_back(name.empty() ? "a node that is not known yet" : name);
     }
   }
-  std::vector<std::string> faults;
-  found_ = gates > 1 ? std::min(found_ + 1, LOOKS) : 0;
-  if (gates > 1) {
-    const std::string text = "a second gate of the name " + own + " publishes on it";
-    if (found_ == LOOKS && steady_now() < give_way_until_) {
-      throw Refusal(target_ + ": " + text + "; this one started last and ends now");
-    }
-    faults.push_back(text);
+  const std::string text = "a second gate of the name " + own + " publishes on it";
+  if (order_.gives_way(gates > 1, steady_now())) {
+    throw Refusal(target_ + ": " + text + "; this one started last and ends now");
   }
-  if (!others.empty()) {
-    std::sort(others.begin(), others.end());
-    faults.push_back("published past the gate: " + joined(others, ", "));
-  }
-  report_(target_, joined(faults, "; "));
+  return {others, gates > 1 ? text : ""};
 }
 
 }  // namespace deros_runtime

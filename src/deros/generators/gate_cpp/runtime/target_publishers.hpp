@@ -6,8 +6,11 @@
 
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/start_order.hpp"
 #include "rclcpp/rclcpp.hpp"
 
 namespace deros_runtime
@@ -20,17 +23,25 @@ public:
   /// Takes the topic and what is wrong with it, empty if nothing is.
   using Report = std::function<void (const std::string &, const std::string &)>;
 
-  TargetPublishers(rclcpp::Node & node, const std::string & target, Report report);
+  TargetPublishers(
+    Agenda & agenda, rclcpp::Node & node, const std::string & target, Report report);
 
-  /// Look now. \throw Refusal if there is a second gate and this one has just started
+  /// Look often from now on, while a second gate might be met.
+  void begin();
+
+  /// Look now. \throw Refusal if there is a second gate and this one started last
   void look();
 
 private:
+  void look_early();
+  std::pair<std::vector<std::string>, std::string> find();
+
   rclcpp::Node & node_;
   const std::string target_;
   Report report_;
-  const Time give_way_until_;
-  int found_ = 0;  // looks in a row that have found a second gate
+  StartOrder order_;
+  const Time early_until_;
+  Alarm early_;
 };
 
 }  // namespace deros_runtime

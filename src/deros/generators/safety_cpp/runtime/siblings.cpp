@@ -12,19 +12,11 @@
 namespace deros_runtime
 {
 
-namespace
-{
-
-// Who finds another one within this time, in ns, of its start gives way.
-constexpr Time EARLY = 5'000'000'000;
-
-}  // namespace
-
 Siblings::Siblings(rclcpp::Node & node, std::string heartbeat, Report report)
 : node_(node),
   heartbeat_(std::move(heartbeat)),
   report_(std::move(report)),
-  give_way_until_(steady_now() + EARLY)
+  order_(steady_now())
 {
 }
 
@@ -44,16 +36,13 @@ void Siblings::look()
 
 void Siblings::look_at_heartbeat()
 {
-  if (node_.count_publishers(heartbeat_) <= 1) {
-    report_(heartbeat_, "");
-    return;
-  }
+  const bool has_double = node_.count_publishers(heartbeat_) > 1;
   const std::string text =
     "another node publishes this heartbeat: whoever heeds it cannot tell them apart";
-  if (steady_now() < give_way_until_) {
+  if (order_.gives_way(has_double, steady_now())) {
     throw Refusal(heartbeat_ + ": " + text + "; this one started last and ends now");
   }
-  report_(heartbeat_, text);
+  report_(heartbeat_, has_double ? text : "");
 }
 
 /// Return the names of the nodes that publish on a topic besides this one.

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/start_order.hpp"
 #include "rclcpp/rclcpp.hpp"
 
 namespace deros_runtime
@@ -32,7 +32,7 @@ public:
     states_.push_back(std::move(topic));
   }
 
-  /// Look now. \throw Refusal if there is a second node and this one has just started
+  /// Look now. \throw Refusal if there is a second node and this one started last
   void look();
 
 private:
@@ -44,7 +44,7 @@ private:
   std::vector<std::string> states_;
   std::size_t next_ = 0;
   Report report_;
-  Time give_way_until_;
+  StartOrder order_;
 };
 
 }  // namespace deros_runtime

@@ -10,8 +10,7 @@ from rclpy.node import Node
 
 from .instance import Refusal
 from .publishers import listed, node_of
-
-EARLY = 5_000_000_000  # ns; who finds another one within this time of its start gives way
+from .start_order import StartOrder
 
 
 class Siblings:
@@ -34,10 +33,10 @@ class Siblings:
         self._heartbeat = heartbeat
         self._states = itertools.cycle(states)
         self._report = report
-        self._give_way_until = time.monotonic_ns() + EARLY
+        self._order = StartOrder(time.monotonic_ns())
 
     def look(self) -> None:
-        """Look now; raises Refusal if there is a second node and this one has just started."""
+        """Look now; raises Refusal if there is a second node and this one started last."""
         self._look_at_heartbeat()
         topic = next(self._states, None)
         if topic is not None:
@@ -46,13 +45,11 @@ class Siblings:
             self._report(topic, text if others else '')
 
     def _look_at_heartbeat(self) -> None:
-        if self._node.count_publishers(self._heartbeat) <= 1:
-            self._report(self._heartbeat, '')
-            return
+        has_double = self._node.count_publishers(self._heartbeat) > 1
         text = 'another node publishes this heartbeat: whoever heeds it cannot tell them apart'
-        if time.monotonic_ns() < self._give_way_until:
+        if self._order.gives_way(has_double, time.monotonic_ns()):
             raise Refusal(f'{self._heartbeat}: {text}; this one started last and ends now')
-        self._report(self._heartbeat, text)
+        self._report(self._heartbeat, text if has_double else '')
 
     def _others(self, topic: str) -> str:
         """Return the names of the nodes that publish on a topic besides this one."""

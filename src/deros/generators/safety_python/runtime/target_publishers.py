@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 import time
 
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from .alarm import Alarm
 from .instance import Refusal
 from .publishers import listed, node_of
+from .start_order import StartOrder, YOUNG
 
-EARLY = 5_000_000_000  # ns; a gate that finds a second one within this time of its start gives way
-LOOKS = 2  # in a row that have to find it: one that is just ending is not taken for it
+PERIOD = 100_000_000  # ns from look to look, while a second gate might be met
+EARLY = 2 * YOUNG  # ns after its start; a gate that met it while young has given way by then
 
 
 class TargetPublishers:
@@ -23,23 +27,33 @@ class TargetPublishers:
         self._node = node
         self._target = node.resolve_topic_name(target)
         self._report = report
-        self._give_way_until = time.monotonic_ns() + EARLY
-        self._found = 0  # looks in a row that have found a second gate
+        started = time.monotonic_ns()
+        self._order = StartOrder(started)
+        self._early_until = started + EARLY
+        clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self._early = Alarm(node, clock, time.monotonic_ns, self._look_early)
+        self._early.ring_at(0)
 
     def look(self) -> None:
-        """Look now; raises Refusal if there is a second gate and this one has just started."""
-        publishers = self._node.get_publishers_info_by_topic(self._target)
-        self._report(self._target, '; '.join(self._faults(publishers)))
+        """Look now; raises Refusal if there is a second gate and this one started last."""
+        others, second = self._found()
+        faults = [second] if second else []
+        if others:
+            faults.append(f'published past the gate: {listed(others)}')
+        self._report(self._target, '; '.join(faults))
 
-    def _faults(self, publishers: list[TopicEndpointInfo]) -> Iterator[str]:
+    def _look_early(self) -> None:
+        if self._early.due < self._early_until:
+            self._early.repeat(PERIOD)
+        self._found()
+
+    def _found(self) -> tuple[list[TopicEndpointInfo], str]:
+        """Return the publishers of other nodes, and what is to be said of a second gate."""
+        publishers = self._node.get_publishers_info_by_topic(self._target)
         own = self._node.get_fully_qualified_name()
         others = [info for info in publishers if node_of(info) != own]
-        is_second = len(publishers) - len(others) > 1
-        self._found = self._found + 1 if is_second else 0
-        if is_second:
-            text = f'a second gate of the name {own} publishes on it'
-            if self._found >= LOOKS and time.monotonic_ns() < self._give_way_until:
-                raise Refusal(f'{self._target}: {text}; this one started last and ends now')
-            yield text
-        if others:
-            yield f'published past the gate: {listed(others)}'
+        has_double = len(publishers) - len(others) > 1
+        text = f'a second gate of the name {own} publishes on it'
+        if self._order.gives_way(has_double, time.monotonic_ns()):
+            raise Refusal(f'{self._target}: {text}; this one started last and ends now')
+        return others, text if has_double else ''

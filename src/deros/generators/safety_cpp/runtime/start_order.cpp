@@ -1,0 +1,32 @@
+#include "deros_runtime/runtime/start_order.hpp"
+
+namespace deros_runtime
+{
+
+namespace
+{
+
+// In ns; for so long the other one has to be there: it may be just ending.
+constexpr Time PATIENCE = 200'000'000;
+
+}  // namespace
+
+StartOrder::StartOrder(Time now)
+: started_(now)
+{
+}
+
+bool StartOrder::gives_way(bool has_double, Time now)
+{
+  if (!has_double) {
+    met_.reset();
+    return false;
+  }
+  if (!met_) {
+    met_ = now;
+  }
+  const Time age = *met_ - started_;
+  return age < YOUNG && now - *met_ >= PATIENCE + age;
+}
+
+}  // namespace deros_runtime
