@@ -11,7 +11,6 @@ import pytest
 from tests.support.faults import NODE, PROMPT, Robot
 from tests.support.gate_nodes import Stranger
 from tests.support.played import SENSES, TOPICS, button, imu, speed, ticks
-from tests.support.ros import short_lease
 
 pytestmark = pytest.mark.ros
 
@@ -100,7 +99,7 @@ def test_a_second_node_is_found_without_a_common_folder(robot: Robot, tmp_path: 
     with robot.safety_node():
         folder = tmp_path / "elsewhere"
         folder.mkdir()
-        env = {"TMPDIR": str(folder), "TEMP": "", "TMP": "", **short_lease(tmp_path)}
+        env = {"TMPDIR": str(folder), "TEMP": "", "TMP": ""}
         second = robot.start(NODE, [f"state_file:={folder / 'state'}"], **env)
         assert robot.until(second.popen.poll) == 1
         assert "another node publishes this heartbeat" in second.output()

@@ -14,6 +14,8 @@ from tests.support.victims import Process
 
 pytestmark = pytest.mark.ros
 
+HEARTBEAT = f"/{NODE}/heartbeat"
+
 FAILURES = {
     "throw": "action interfere failed",
     "throw something else": "action interfere failed",
@@ -36,6 +38,16 @@ def test_code_that_ends_the_node_costs_neither_stop_nor_latch(robot: Robot, how:
         seen = len(robot.states["/stop"])
         robot.restart()
         assert all(each.value for each in robot.states["/stop"][seen:]), "a restart undid the stop"
+
+
+def test_a_node_that_fails_leaves_the_graph_at_once(robot: Robot) -> None:
+    """Nobody takes what is left of it for a second publisher once it has been started again."""
+    with robot.safety_node() as node:
+        robot.until(lambda: robot.peer.node.count_publishers(HEARTBEAT) == 1)
+        robot.interfere("throw")
+        assert node.popen.wait(LIMIT) == 1
+        robot.until(lambda: robot.peer.node.count_publishers(HEARTBEAT) == 0, limit=PROMPT)
+        robot.restart()
 
 
 @pytest.mark.parametrize("how", ["exit at once", "kill"])

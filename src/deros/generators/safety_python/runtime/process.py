@@ -70,13 +70,16 @@ def _serve(node: Node, signals: StopSignals) -> None:
     """Run the callbacks of a node until a signal comes."""
     executor = EventsExecutor()
     executor.add_node(node)
-    with Waker(node):
-        # What is there now stays for good: no later collection has to look through it.
-        gc.collect()
-        gc.freeze()
-        with contextlib.suppress(ExternalShutdownException):
-            while ok() and not signals.came:
-                executor.spin_once(timeout_sec=WAIT)
+    try:
+        with Waker(node):
+            # What is there now stays for good: no later collection has to look through it.
+            gc.collect()
+            gc.freeze()
+            with contextlib.suppress(ExternalShutdownException):
+                while ok() and not signals.came:
+                    executor.spin_once(timeout_sec=WAIT)
+    finally:
+        executor.shutdown()  # it holds the node, which could not be destroyed before
     if not signals.came:
         raise Refusal('the context of ROS 2 was shut down within the node, which ends now')
 
