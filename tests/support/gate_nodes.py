@@ -232,7 +232,11 @@ class World:
 
     def until_fault(self, text: str) -> None:
         """Command a speed until the gate reports a fault that contains a text."""
-        self.wish_until(0.3, lambda: text in self.status["message"] and self.status["level"] == "2")
+
+        def is_told() -> bool:  # there may have been no status at all yet
+            return text in self.status.get("message", "") and self.status["level"] == "2"
+
+        self.wish_until(0.3, is_told)
 
     def silence(self, seconds: float) -> int:
         """Return how many messages the gate publishes while nobody commands anything."""
