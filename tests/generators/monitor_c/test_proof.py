@@ -63,7 +63,7 @@ SLIPS = {
         "truth_of(true, m->speed_missing)",
         "truth_of(true, m->orientation_missing)",
     ),
-    "a stale time": ("catch_up", "    m->now = m->due;\n", ""),
+    "a stale time": ("reach_deadline", "  m->now = m->due;\n", ""),
     "a stale base": ("observe_speed", "    m->speed_base = m->now;\n", ""),
     "a timeout that is one late": ("expire_speed", "<= m->now", "< m->now"),
     "a forgotten behaviour": ("act", "    behave_tilted(m);\n", ""),

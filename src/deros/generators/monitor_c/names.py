@@ -19,7 +19,8 @@ _STANDARD = """assert errno main NULL NAN INFINITY INT64_MAX INT64_C abs fabs hy
 fmod fmin fmax index time signal"""
 _OURS = """m t now due owner started count verdict condition held rises changed done grace
 enabled value both either negated truth_of lasting earlier ahead is_number bounded arrive step_back
-catch_up earliest judge_all evaluate act restart pass move_to rate emitted after follows same"""
+reach_deadline catch_up earliest judge_all evaluate act restart
+pass move_to rate emitted after follows same"""
 
 RESERVED = frozenset(f"{_C} {_CPP} {_STANDARD} {_OURS}".split())
 """Names that nothing made from a model gets."""

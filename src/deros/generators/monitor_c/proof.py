@@ -107,6 +107,7 @@ class _Writer:
         if self._view.timeouts:
             yield "expire", self._expire()
         yield "restart", self._restart()
+        yield "reach_deadline", self._reach_deadline()
         yield "catch_up", self._catch_up()
         yield "step_back", self._step_back()
         yield "pass", self._pass()
@@ -170,6 +171,17 @@ class _Writer:
         """Return that all is as new at an earlier time, and one event of the rules is settled."""
         contract = Contract(["\\valid(m)", "sane(m)", "0 <= t < m->now"], list(ALL))
         contract.ensures += ["sane(m)", LATCHED_KEPT, "m->now == t", STEPPED_BACK, KEPT_BY_TIME]
+        return contract
+
+    def _reach_deadline(self) -> Contract:
+        """Return that what is due is settled at its own instant.
+
+        A function of its own, so that the loop which calls it is proved from these few words.
+        """
+        due = ["is_end(m, m->due)", f"m->due <= {self.predicates.macro('LATEST')}"]
+        contract = Contract(["\\valid(m)", "sane(m)", *due], list(ALL))
+        contract.ensures += ["sane(m)", "is_end(m, m->due)", "m->now == \\old(m->due)"]
+        contract.ensures += [LATCHED_KEPT, CAUGHT_UP, KEPT_BY_DEADLINES]
         return contract
 
     def _catch_up(self) -> Contract:
