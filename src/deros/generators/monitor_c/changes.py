@@ -123,7 +123,7 @@ class Changes:
         """Return that all is as new, and one event of the rules is settled."""
         unset, macro = self._macro("UNSET"), self._macro
         sinces = self._layout.since.values()
-        new = [each for each in self.as_new("m->now") if f"== {unset}" not in each]
+        new = self._inputs_as_new("m->now")
         new += [f"(m->{since} == {unset} || m->{since} == m->now)" for since in sinces]
         kind = f"{macro('CLOCK_STEP')}, {macro('SITE_NONE')}"
         step = f"after(\\old(emitted), m->owner, m->now, {kind})"
@@ -132,17 +132,20 @@ class Changes:
 
     def as_new(self, start: str) -> list[str]:
         """Return what all inputs, dates and intervals are after a restart."""
+        unset = self._macro("UNSET")
+        sinces = [f"m->{name} == {unset}" for name in self._layout.since.values()]
+        return [*self._inputs_as_new(start), *sinces] or ["\\true"]
+
+    def _inputs_as_new(self, start: str) -> list[str]:
+        """Return what all inputs and dates are after a restart."""
         layout = self._layout
         found = []
         for fields in layout.inputs.values():
             found += [f"m->{fields.base} == {start}"] if fields.base else []
             found += [f"m->{name} == 0" for name in (fields.came, fields.missing) if name]
         found += [f"m->{name} == m->now" for name in layout.turned.values()]
-        unset = self._macro("UNSET")
-        found += [f"m->{name} == {unset}" for name in layout.since.values()]
         found += [f"m->{each.last_t} == m->now" for each in layout.memories.values()]
-        found += [each for forget in self._view.forgets for each in self.forgotten(forget)]
-        return found or ["\\true"]
+        return found + [each for forget in self._view.forgets for each in self.forgotten(forget)]
 
     def forgotten(self, forget: Forget) -> list[str]:
         """Return that no value of an input is known, and none is remembered."""

@@ -20,7 +20,7 @@ fmod fmin fmax index time signal"""
 _OURS = """m t now due owner started count verdict condition held rises changed done grace
 enabled value both either negated truth_of lasting earlier ahead is_number bounded arrive step_back
 reach_deadline catch_up earliest judge_all evaluate act restart
-pass move_to rate emitted after follows same"""
+clear pass move_to rate emitted after follows same"""
 
 RESERVED = frozenset(f"{_C} {_CPP} {_STANDARD} {_OURS}".split())
 """Names that nothing made from a model gets."""

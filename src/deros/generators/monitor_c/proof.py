@@ -223,6 +223,9 @@ class _Writer:
 
     def _public(self) -> Iterator[tuple[str, Contract]]:
         prefix = self._view.prefix
+        clear = Contract(["\\valid(m)"], ["*m"])
+        clear.ensures.append(all_of(self._started()))
+        yield "clear", clear
         start = Contract(["\\valid(m)"], ["*m"])
         start.ensures += ["sane(m)", all_of(self._started()), "is_end(m, m->due)"]
         start.ensures.append(all_of(self.changes.as_new("time_of(m->now + time_of(grace))")))
