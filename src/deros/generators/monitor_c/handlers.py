@@ -76,6 +76,8 @@ class Handler:
         signature: its first line or lines, without what follows them.
         observer: the name of the function that takes the inputs' values; empty if nobody asks.
         observing: the first line or lines of that; ``observe`` what is in it.
+        taker: the name of the function that settles a message at its time; empty likewise.
+        taking: the first line or lines of that.
         values: the names of all parameters.
         inputs: what it changes.
     """
@@ -88,6 +90,8 @@ class Handler:
     observer: str
     observing: tuple[str, ...]
     observe: tuple[str, ...]
+    taker: str
+    taking: tuple[str, ...]
     values: tuple[str, ...]
     inputs: tuple[int, ...]
 
@@ -101,6 +105,11 @@ class Handler:
     def call_in_vain(self) -> list[str]:
         """The same, where no rule asks what it brings."""
         return lay_out_list(2, f"(void){self.observer}(", ["m", *self.values], ");")
+
+    @property
+    def take(self) -> list[str]:
+        """The line or lines that call the taker."""
+        return lay_out_list(2, f"{self.taker}(", ["m", *self.values], ");")
 
 
 def handlers(program: Program, layout: Layout) -> tuple[Handler, ...]:
@@ -124,7 +133,7 @@ class _Writer:
         prefix = self._layout.prefix
         only = self._inputs[0].name if len(self._inputs) == 1 else self._topic
         name = names.new(only)
-        function, observer = f"{prefix}_on_{name}", f"observe_{name}"
+        function, observer, taker = f"{prefix}_on_{name}", f"observe_{name}", f"take_{name}"
         monitor = f"{prefix}_monitor *m"
         declared = [text for each in self._parameters for text in each.declarations]
         lines = [line for each in self._inputs for line in self._observe(each)]
@@ -137,6 +146,8 @@ class _Writer:
             observer if lines else "",
             tuple(lay_out_list(0, f"static bool {observer}(", [monitor, *declared], ")")),
             ("  bool news = false;", *lines, "  return news;"),
+            taker if lines else "",
+            tuple(lay_out_list(0, f"static void {taker}(", [monitor, *declared], ")")),
             tuple(text.rsplit(" ", 1)[-1].lstrip("*") for text in declared),
             tuple(each.index for each in self._inputs),
         )

@@ -54,6 +54,8 @@ class MessageContracts:
             yield message.judge, self._rules.judge_by(message)
         if message.after:
             yield message.after, self._after(message)
+        if message.handler.taker:
+            yield message.handler.taker, self._take(message)
         yield message.handler.function, self._message(message)
 
     def _after(self, message: MessageView) -> Contract:
@@ -78,11 +80,22 @@ class MessageContracts:
         contract.of_case["none"] = [NOTHING_DONE]
         return contract
 
+    def _take(self, message: MessageView) -> Contract:
+        """Return what a message changes that comes now.
+
+        A function of its own, so that no proof has to look through a message and the time before.
+        """
+        return self._taken(message.handler, "\\old(m->now)")
+
     def _message(self, message: MessageView) -> Contract:
-        handler = message.handler
+        """Return what a message changes, and the time before it."""
+        return self._taken(message.handler, "time_of(t)")
+
+    def _taken(self, handler: Handler, now: str) -> Contract:
+        """Return that a message that comes at some time is settled."""
         contract = Contract(["\\valid(m)", "sane(m)"], list(ALL))
         contract.requires += self._arrays(handler)
-        contract.ensures += [*self._settled(), "m->now == time_of(t)"]
+        contract.ensures += [*self._settled(), f"m->now == {now}"]
         contract.ensures.append(self._changes.kept_over_time_but(self._stored(handler)))
         for each in map(self._program.inputs.__getitem__, handler.inputs):
             counts, _ = self._counts(each, handler)
