@@ -98,10 +98,7 @@ class MessageContracts:
         contract.ensures += [*self._settled(), f"m->now == {now}"]
         contract.ensures.append(self._changes.kept_over_time_but(self._stored(handler)))
         for each in map(self._program.inputs.__getitem__, handler.inputs):
-            counts, _ = self._counts(each, handler)
-            said = self._says(each, handler)
-            if said:
-                contract.ensures.append(f"{counts} ==> {all_of(said)}")
+            contract.ensures += self._either(each, handler, self._says(each, handler), [])
         return contract
 
     def _settled(self) -> list[str]:
@@ -166,18 +163,24 @@ class MessageContracts:
 
     def _effect(self, each: Input, handler: Handler) -> Iterator[str]:
         """Yield what becomes of an input's fields if a message counts, and if it does not."""
-        counts, is_all = self._counts(each, handler)
         heard = [*self._heard(each, handler), *self._says(each, handler)]
+        yield from self._either(each, handler, heard, self._unheard(each, handler))
+
+    def _either(
+        self, each: Input, handler: Handler, heard: list[str], unheard: list[str]
+    ) -> Iterator[str]:
+        """Yield what holds if a message counts, and if it does not: then nothing is known, too."""
         if not heard:
             return
+        counts, is_all = self._counts(each, handler)
+        rest = [*self._unknown(each), *unheard]
         if not self._rejects(each, handler):
             yield all_of(heard)
         elif is_all:
             yield f"{counts} ==> {all_of(heard)}"
-            yield f"!{counts} ==> {all_of(self._unheard(each, handler))}"
+            yield f"!{counts} ==> {all_of(rest)}"
         else:
-            taken = all_of([counts, *heard])
-            yield f"({taken} || {all_of(self._unheard(each, handler))})"
+            yield f"({all_of([counts, *heard])} || {all_of(rest)})"
 
     def _heard(self, each: Input, handler: Handler) -> Iterator[str]:
         """Yield that a message counts from now."""
@@ -230,22 +233,25 @@ class MessageContracts:
             return [*found, f"(\\exists double {names}; {' && '.join([*of, *numbers])})"]
         return [*found, *numbers]
 
-    def _unheard(self, each: Input, handler: Handler) -> Iterator[str]:
-        """Yield that a message does not count: its values are unknown, all else is as it was."""
+    def _unknown(self, each: Input) -> list[str]:
+        """Return that no value of an input is known."""
+        name = self._layout.forgets.get(each.index)
+        forgets = [forget for forget in self._view.forgets if forget.function == name]
+        return [text for forget in forgets for text in self._changes.forgotten(forget)]
+
+    def _unheard(self, each: Input, handler: Handler) -> list[str]:
+        """Return that of a message that does not count all else is as it was."""
         fields = self._layout.inputs[each.index]
-        forgotten: list[str] = []
-        for forget in self._view.forgets:
-            if forget.function == self._layout.forgets.get(each.index):
-                yield from (f"m->{name} == 0" for name in forget.known)
-                yield from (f"\\is_NaN(m->{name})" for name in forget.last)
-                forgotten += [*forget.known, *forget.last]
+        name = self._layout.forgets.get(each.index)
+        forgets = [forget for forget in self._view.forgets if forget.function == name]
+        forgotten = [name for forget in forgets for name in (*forget.known, *forget.last)]
         names = [fields.base, fields.came, fields.missing]
         names += [term.name for term in self._layout.terms_of(each.index)]
         names += [finding.name for _, finding in self._findings((each.index,))]
         names += [memory.last_t for memory in self._layout.memories_of(each.index).values()]
         kept = [name for name in names if name and name not in forgotten]
         due = ["due"] if len(handler.inputs) == 1 else []
-        yield self._changes.same([*kept, *due])
+        return [self._changes.same([*kept, *due])]
 
     def _counts(self, each: Input, handler: Handler) -> tuple[str, bool]:
         """Return what must hold for a message to count, and whether that is all of it."""

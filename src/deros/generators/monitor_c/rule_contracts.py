@@ -45,7 +45,7 @@ class RuleContracts:
         name = self._layout.verdicts[rule.index]
         fors = self._predicates.fors(rule.condition)
         contract = Contract(["\\valid(m)"])
-        contract.requires.append(self._ranges_read(rule.condition, fors))
+        contract.requires.append(self._ranges(self._read(rule.condition)))
         changed = self._with_fors([name, self._layout.turned[rule.index]], fors)
         contract.assigns += [f"m->{each}" for each in changed]
         contract.ensures += self._predicates.ranges([name])
@@ -73,9 +73,8 @@ class RuleContracts:
         turned = [self._layout.turned[each.index] for each in rules]
         fors = [each for rule in rules for each in self._predicates.fors(rule.condition)]
         contract = Contract(["\\valid(m)"], ["*m"])
-        for rule in rules:
-            own = self._predicates.fors(rule.condition)
-            contract.requires.append(self._ranges_read(rule.condition, own))
+        read = [name for rule in rules for name in self._read(rule.condition)]
+        contract.requires.append(self._ranges(read))
         contract.ensures.append(self._changes.kept_but(self._with_fors([*names, *turned], fors)))
         contract.ensures.append(all_of(self._predicates.ranges(names)))
         contract.ensures += [all_of(self._predicates.judged(rule)) for rule in rules]
@@ -108,10 +107,8 @@ class RuleContracts:
         changed = [self._layout.conditions[each.index] for each in group] + self._touched(group)
         contract = Contract(["\\valid(m)"], [*(f"m->{name}" for name in changed), "emitted"])
         contract.assigns += [f"m->{name}" for name in self._with_fors([], fors)]
-        for each in group:
-            own = self._predicates.fors(each.condition)
-            contract.requires.append(self._ranges_read(each.condition, own))
-        contract.requires.append(all_of(self._predicates.ranges([*self._guards(group), *changed])))
+        read = [name for each in group for name in self._read(each.condition)]
+        contract.requires.append(self._ranges([*read, *self._guards(group), *changed]))
         contract.ensures += self._predicates.ranges(changed)
         contract.ensures += [all_of(self._predicates.acted(each)) for each in group]
         contract.ensures += self._done(group)
@@ -129,11 +126,9 @@ class RuleContracts:
         fors = [part for each in self._behaviours for part in self._predicates.fors(each.condition)]
         changed = self._with_fors(self._changes.acted_upon(), fors)
         contract = Contract(["\\valid(m)"], list(ALL))
-        for each in self._behaviours:
-            own = self._predicates.fors(each.condition)
-            contract.requires.append(self._ranges_read(each.condition, own))
-        read = [*self._guards(self._behaviours), *self._changes.acted_upon()]
-        contract.requires.append(all_of(self._predicates.ranges(dict.fromkeys(read))))
+        read = [name for each in self._behaviours for name in self._read(each.condition)]
+        read += [*self._guards(self._behaviours), *self._changes.acted_upon()]
+        contract.requires.append(self._ranges(read))
         contract.requires.append(f"changed == 0 ==> {all_of(self._acted())}")
         contract.ensures.append(self._changes.kept_but(changed))
         contract.ensures.append(all_of(self._predicates.ranges(self._changes.acted_upon())))
@@ -165,13 +160,15 @@ class RuleContracts:
             over = f"m->{self._layout.conditions[index]} == {self._false}"
             yield f"\\old(m->{active}) != 0 && !({over}) ==> m->{active} != 0"
 
-    def _ranges_read(self, condition: Condition, fors: Iterable[For]) -> str:
-        """Return that all that a condition reads, and its intervals, are in range."""
+    def _read(self, condition: Condition) -> list[str]:
+        """Return the fields that a condition reads, those of its intervals among them."""
         meaning = self._predicates.meaning
         text = f"m->now {meaning.true(condition)} {meaning.false(condition)}"
-        sinces = self._sinces(fors)
-        names = dict.fromkeys([*_FIELD.findall(text), *sinces])
-        return all_of(self._predicates.ranges(names))
+        return [*_FIELD.findall(text), *self._sinces(self._predicates.fors(condition))]
+
+    def _ranges(self, names: Iterable[str]) -> str:
+        """Return that fields are in range, each said once."""
+        return all_of(self._predicates.ranges(dict.fromkeys(names)))
 
     def _with_own_intervals(self, contract: Contract, fors: Sequence[For]) -> None:
         """Add what becomes of the intervals of a condition, and of the next deadline.
