@@ -122,6 +122,7 @@ def _find(
         for function, effort in zip(functions, pool.map(original.effort, functions), strict=True):
             efforts[function] = effort
             progress.advance(task)
+        todo.sort(key=lambda each: efforts.get(each[1].function, Effort()).most)
         task = progress.add_task("slips", total=len(todo))
         running = {
             pool.submit(one, mutant, efforts.get(mutant.function, Effort())): (name, mutant, key)

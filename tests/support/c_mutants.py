@@ -116,6 +116,8 @@ def _told(data: bytes, change: _Change) -> tuple[str, str]:
     while around.parent is not None and around.type not in _SIMPLE:
         if around.type in ("initializer_list", "if_statement", "while_statement"):
             break
+        if around.parent.type == "for_statement":
+            break
         around = around.parent
     if change.node.type in _STATEMENTS:
         around = change.node

@@ -8,8 +8,8 @@ import os
 import re
 import signal
 import subprocess
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from tests.support import c_proof
@@ -17,9 +17,7 @@ from tests.support.c_eva import TABLES_CHECK
 from tests.support.c_mutants import TABLES, Mutant
 
 MARGIN = 3
-"""How many times the steps of the slowest goal of a function a goal is given once it has a slip.
-
-A goal that does not hold uses up all of them."""
+"""How many times the steps that it took without the slip a goal is given with it."""
 LEAST_STEPS = 2_000_000
 """The steps that it is given at least; a goal that needs a prover at all takes about 200,000."""
 SECONDS = 300
@@ -37,10 +35,19 @@ _USE = re.compile(r"\b(\w+)(?:\{[^}]*\})?\(")
 
 @dataclass(frozen=True)
 class Effort:
-    """What the proof of a function without slips takes: which provers, and the most steps."""
+    """What the proof of a function without slips takes: which provers, and the steps by goal."""
 
     provers: str = c_proof.PROVERS
-    steps: int = 0
+    steps: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def most(self) -> int:
+        """The steps of the slowest goal."""
+        return max(self.steps.values(), default=0)
+
+    def allowed(self, goal: str) -> int:
+        """Return the steps that a goal may take once there is a slip."""
+        return max(LEAST_STEPS, MARGIN * self.steps.get(goal, 0))
 
 
 @dataclass(frozen=True)
@@ -98,7 +105,7 @@ class Original:
         Raises:
             ValueError: it is not proved.
         """
-        arguments = [*_options(Effort()), "-wp-fct", function]
+        arguments = [*_options(c_proof.PROVERS), "-wp-fct", function]
         log = "".join(_lines(arguments, self.source, self._environment))
         proved = re.search(r"Proved goals: +(\d+) / (\d+)", log)
         if proved is None or proved[1] != proved[2]:
@@ -107,7 +114,7 @@ class Original:
         names = c_proof.PROVERS.split(",")
         used = {each["prover"].lower() for each in goals}
         needed = [names[0], *(each for each in names[1:] if each.split("-")[0] in used)]
-        return Effort(",".join(needed), max((int(each["steps"] or 0) for each in goals), default=0))
+        return Effort(",".join(needed), {each["name"]: int(each["steps"] or 0) for each in goals})
 
     def find(self, mutant: Mutant, folder: Path, effort: Effort) -> Found:
         """Return what becomes of a slip; ``folder`` is where its text is written."""
@@ -120,40 +127,52 @@ class Original:
         if mutant.function == TABLES:
             analysis = c_proof.analyse(source, TABLES_CHECK)
             return Found("" if analysis.is_clean else TABLES_CHECK)
-        more = replace(effort, steps=max(LEAST_STEPS, MARGIN * effort.steps))
-        for goals in (["-wp-prop", "@ensures"], []):  # most are found by what is ensured
-            found = self._try([*_options(more), *goals], mutant, source)
-            if found.goal or found.refused:
-                break
+        few, all_steps = LEAST_STEPS, max(LEAST_STEPS, MARGIN * effort.most)
+        ways = [(few, ["-wp-prop", "@ensures"]), (few, [])]  # most are found by what is ensured
+        ways += [(all_steps, [])] if all_steps > few else []
+        found: Found | None = None
+        for steps, goals in ways:
+            options = [*_options(effort.provers, steps), *goals, "-wp-fct", mutant.function]
+            found = self._try(options, mutant, source, effort, steps)
+            if found is not None and (found.goal or found.refused or not goals):
+                return found
+        assert found is not None
         return found
 
-    def _try(self, options: Sequence[str], mutant: Mutant, source: Path) -> Found:
-        arguments = [*options, "-wp-fct", mutant.function]
+    def _try(
+        self, arguments: Sequence[str], mutant: Mutant, source: Path, effort: Effort, steps: int
+    ) -> Found | None:
+        """Ask for the proof; return nothing if a goal has had fewer steps than it is allowed."""
         done = ""
+        is_short = False
         for line in _lines(arguments, source, self._environment):
             if "guaranteed RTE" in line:  # what is sure to fail is no goal
                 return Found("a run-time error")
             left = _LEFT.match(line)
             if left and not _GOAL.match(line):
-                return Found(left["name"])
+                if effort.allowed(left["name"]) <= steps:
+                    return Found(left["name"])
+                is_short = True
             done += line
         proved = re.search(r"Proved goals: +(\d+) / (\d+)", done)
         if proved is None and ("User Error" in done or "syntax error" in done):
             return Found(refused=True)
         if "No goal generated" in done or "No proof obligations" in done:
             return Found()
+        if is_short:
+            return None
         if proved is None or proved[1] != proved[2]:
             raise RuntimeError(f"Frama-C has not come to its end: {mutant.name}\n{done}")
         return Found()
 
 
-def _options(effort: Effort) -> list[str]:
+def _options(provers: str, steps: int = 0) -> list[str]:
     """Return how Frama-C is asked; without steps, there is no limit to them."""
     return [
         *("-no-autoload-plugins", "-load-module", "wp,rtegen"),
         *c_proof.OPTIONS,
-        *("-wp-prover", effort.provers, "-wp-par", "1", "-wp-timeout", str(SECONDS)),
-        *(("-wp-steps", str(effort.steps)) if effort.steps else ()),
+        *("-wp-prover", provers, "-wp-par", "1", "-wp-timeout", str(SECONDS)),
+        *(("-wp-steps", str(steps)) if steps else ()),
     ]
 
 
