@@ -176,36 +176,51 @@ static int64_t magnitude(int64_t value)
 """,
     "min": _c_extreme("least", "<"),
     "max": _c_extreme("greatest", ">"),
+    "beam": """\
+static double beam(
+  double measured, double bearing, double range_min, double range_max, double start, double end)
+{
+  const double turn = 6.283185307179586;
+  double width = end - start;
+  double offset = fmod(bearing - start, turn);
+  double distance = NAN;
+  if (end < start) {
+    width += turn;
+  }
+  if (offset < 0.0) {
+    offset += turn;
+  }
+  const bool inside = (offset <= (width + 1e-6)) || (offset >= (turn - 1e-6));
+  if (inside && (measured == -INFINITY)) {  /* too near to measure (REP 117) */
+    distance = range_min;
+  } else if (inside && (measured >= range_min)) {
+    distance = (measured > range_max) ? INFINITY : measured;
+  } else {
+    /* beside the sector, or invalid */
+  }
+  return distance;
+}
+""",
     "nearest": """\
 static double nearest(
   const float *ranges, size_t count, double angle_min, double angle_increment,
   double range_min, double range_max, double start, double end)
 {
-  const double turn = 6.283185307179586;
-  double width = end - start;
   double shortest = NAN;
-  if (end < start) {
-    width += turn;
-  }
   for (size_t i = 0U; i < count; ++i) {
-    double offset = fmod((angle_min + ((double)i * angle_increment)) - start, turn);
-    double distance = (double)ranges[i];
-    if (offset < 0.0) {
-      offset += turn;
-    }
-    const bool inside = (offset <= (width + 1e-6)) || (offset >= (turn - 1e-6));
-    if (distance == -INFINITY) {  /* too near to measure (REP 117) */
-      distance = range_min;
-    } else if (distance >= range_min) {
-      distance = (distance > range_max) ? INFINITY : distance;
-    } else {  /* invalid */
-      distance = NAN;
-    }
-    if (inside && is_number(distance) && !(shortest <= distance)) {
+    const double bearing = angle_min + ((double)i * angle_increment);
+    const double distance = beam((double)ranges[i], bearing, range_min, range_max, start, end);
+    if (is_number(distance) && !(shortest <= distance)) {
       shortest = distance;
     }
   }
   return shortest;
+}
+""",
+    "valid_range": """\
+static bool valid_range(double measured, double range_min)
+{
+  return (measured >= range_min) || (measured == -INFINITY);
 }
 """,
     "scan_usable": """\
@@ -213,7 +228,7 @@ static bool scan_usable(const float *ranges, size_t count, double range_min)
 {
   bool usable = false;
   for (size_t i = 0U; i < count; ++i) {
-    if (((double)ranges[i] >= range_min) || ((double)ranges[i] == -INFINITY)) {
+    if (valid_range((double)ranges[i], range_min)) {
       usable = true;
     }
   }
@@ -225,8 +240,9 @@ static bool scan_usable(const float *ranges, size_t count, double range_min)
 
 They need ``<math.h>``, the fixed-width integers and ``bool``, and of each other: ``pitch`` needs
 ``clamped``. Those of quaternions take the parts divided by ``length_of`` them, which is NaN for a
-quaternion that has no attitude. ``nearest`` needs ``is_number``, which says of a number that it
-is no NaN. Of those of arrays there is one per type of element: ``BASE`` stands for the name of
-the type in ROS 2, ``ELEMENT`` for that in C, ``RESULT`` for the type of the result and ``NONE``
-for what an empty array gives (``abs`` of an integer is ``magnitude``).
+quaternion that has no attitude. ``nearest`` needs ``beam``, which gives the distance that one beam
+of a scan shows in the sector, and ``is_number``, which says of a number that it is no NaN;
+``scan_usable`` needs ``valid_range``. Of those of arrays there is one per type of element: ``BASE``
+stands for the name of the type in ROS 2, ``ELEMENT`` for that in C, ``RESULT`` for the type of the
+result and ``NONE`` for what an empty array gives (``abs`` of an integer is ``magnitude``).
 """

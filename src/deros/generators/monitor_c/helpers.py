@@ -6,9 +6,9 @@ Each text holds its contract. ``@`` stands for the prefix of public types, ``$``
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from deros.generators.monitor_c import quantities
+from deros.generators.monitor_c import quantities, scans
 from deros.generators.monitor_c.handlers import ELEMENTS
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
@@ -258,9 +258,16 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     for base in _extremes(program):
         for name, call in (("min", "least"), ("max", "greatest")):
             yield f"{call}_{base}", _of_elements(_ARRAY + _with_loop(C[name], "i, found"), base)
-    scan = _ARRAY.replace("values", "ranges")
-    yield "nearest", scan + _with_loop(C["nearest"], "i, shortest")
-    yield "scan_usable", _SCAN_USABLE + _with_loop(C["scan_usable"], "i, usable", _SEEN_USABLE)
+    yield "beam", scans.BEAM + C["beam"]
+    yield (
+        "nearest",
+        scans.NEAREST + _with_loop(C["nearest"], "i, shortest", scans.NEAREST_LOOP),
+    )
+    yield "valid_range", scans.VALID_RANGE + C["valid_range"]
+    yield (
+        "scan_usable",
+        scans.USABLE + _with_loop(C["scan_usable"], "i, usable", scans.USABLE_LOOP),
+    )
     yield "truth_of", _TRUTH_OF
     yield "negated", _NEGATED
     yield "both", _BOTH
@@ -280,20 +287,6 @@ _ARRAY = """\
 /*@ requires \\valid_read(values + (0 .. count - 1));
     assigns \\nothing; */
 """
-
-_IS_USABLE = """\
-(\\exists integer k; 0 <= k < COUNT
-      && (\\ge_double((double)ranges[k], range_min)
-      || \\eq_double((double)ranges[k], \\neg_double(\\div_double((double)1.0, (double)0.0)))))"""
-
-_SCAN_USABLE = f"""\
-/*@ requires \\valid_read(ranges + (0 .. count - 1));
-    assigns \\nothing;
-    ensures \\result != 0 <==> {_IS_USABLE.replace("COUNT", "count")}; */
-"""
-
-_SEEN_USABLE = f"usable != 0 <==> {_IS_USABLE.replace('COUNT', 'i')}"
-"""What the loop over a scan keeps: whether one of the ranges before was usable."""
 
 _MAGNITUDE = """\
 /*@ requires value > INT64_MIN;
@@ -332,12 +325,10 @@ def _of_elements(text: str, base: str) -> str:
     )
 
 
-def _with_loop(text: str, assigned: str, invariant: str = "") -> str:
+def _with_loop(text: str, assigned: str, kept: Iterable[str] = ()) -> str:
     """Return a function's text with what is to be proved of its loop."""
     start = text.index("  for (")
-    loop = _LOOP.replace("LOOP", assigned)
-    if invariant:
-        bounds, rest = loop.split("\n", 1)
-        seen = invariant.replace("\n", "\n    ")
-        loop = f"{bounds}\n      loop invariant {seen};\n{rest}"
-    return text[:start] + loop + text[start:]
+    bounds, rest = _LOOP.replace("LOOP", assigned).split("\n", 1)
+    indented = (each.replace("\n", "\n      ") for each in kept)
+    lines = [bounds, *(f"      loop invariant {each};" for each in indented)]
+    return text[:start] + "\n".join([*lines, rest]) + text[start:]

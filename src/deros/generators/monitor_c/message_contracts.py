@@ -24,7 +24,7 @@ from deros.generators.monitor_c.view import MessageView, MonitorView
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
-from deros.monitor.functions import FUNCTIONS, Argument
+from deros.monitor.functions import FUNCTIONS, Argument, Guard
 from deros.monitor.ir import Age, Apply, Condition, Input, Read
 
 
@@ -263,12 +263,25 @@ class MessageContracts:
                 continue
             if parameter.given:
                 tests.append(f"{parameter.name}_given != 0")
-            is_all &= parameter.form != "array"
-            if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown and not leaf.type.is_array:
-                tests.append(f"!\\is_NaN({parameter.name})")
-        guarded = (FUNCTIONS[value.function].guard for value in self._functions_of(each))
-        is_all &= all(guard is None for guard in guarded)
+            if parameter.form == "array":
+                tests.append(f"{parameter.name}_count <= {self._predicates.macro('MOST_ELEMENTS')}")
+            if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
+                is_all &= not leaf.type.is_array
+                tests += [] if leaf.type.is_array else [f"!\\is_NaN({parameter.name})"]
+        for value in self._functions_of(each):
+            guard = FUNCTIONS[value.function].guard
+            if guard is not None:
+                tests.append(self._is_met(guard, value, handler))
         return all_of(dict.fromkeys(tests)) if tests else "\\true", is_all
+
+    def _is_met(self, guard: Guard, value: Apply, handler: Handler) -> str:
+        """Return that a function takes its arguments: that of scans asks whether one is usable."""
+        leaves = self._leaves(handler)
+        ranges, range_min = (value.arguments[index] for index in guard.arguments)
+        assert isinstance(ranges, Read)
+        assert isinstance(range_min, Read)
+        array = leaves[ranges.leaf]
+        return f"is_usable({array}, {array}_count, {leaves[range_min.leaf]})"
 
     def _rejects(self, each: Input, handler: Handler) -> bool:
         """Tell whether a message may not count."""

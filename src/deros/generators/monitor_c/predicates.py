@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Collection, Iterable, Iterator
 
-from deros.generators.monitor_c import quantities
+from deros.generators.monitor_c import quantities, scans
 from deros.generators.monitor_c.contracts import all_of, any_of, iff, wrapped
 from deros.generators.monitor_c.emissions import Emissions
 from deros.generators.monitor_c.meaning import Meaning
@@ -49,7 +49,9 @@ class Predicates:
         ]
         for name, parameters, parts in self._predicates():
             lines += predicate(self._layout.prefix, name, parts, parameters)
-        parts = [self.emissions.declarations(), quantities.declarations(self._view.program)]
+        program = self._view.program
+        parts = [self.emissions.declarations(), quantities.declarations(program)]
+        parts.append(scans.declarations(program))
         return "\n".join([*parts, *lines, ""])
 
     def all_fors(self) -> list[For]:

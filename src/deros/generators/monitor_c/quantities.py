@@ -20,52 +20,54 @@ def constant(value: float | str) -> str:
     return f"(double){value!r}" if isinstance(value, float) else f"(double){value}"
 
 
-def _of(operation: str, first: str, second: str) -> str:
+def of(operation: str, first: str, second: str) -> str:
+    """Return an operation on two doubles, rounded as C rounds it."""
     return f"\\{operation}_double({first}, {second})"
 
 
 def _sum(*parts: str) -> str:
     total = parts[0]
     for part in parts[1:]:
-        total = _of("add", total, part)
+        total = of("add", total, part)
     return total
 
 
 def _product(first: str, second: str) -> str:
-    return _of("mul", first, second)
+    return of("mul", first, second)
 
 
-_ONE, _TWO, _ZERO = constant(1.0), constant(2.0), constant(0.0)
-_INFINITY, _NAN = _of("div", _ONE, _ZERO), _of("div", _ZERO, _ZERO)
+ONE, TWO, ZERO = constant(1.0), constant(2.0), constant(0.0)
+INFINITY, NAN = of("div", ONE, ZERO), of("div", ZERO, ZERO)
+TURN = constant(6.283185307179586)
 
 
 def _angle(above: tuple[str, str, str, str], first: str, second: str) -> str:
     """Return roll or yaw: atan2(2 (a b + c d), 1 - 2 (e e + f f))."""
     a, b, c, d = above
-    sine = _product(_TWO, _sum(_product(a, b), _product(c, d)))
+    sine = _product(TWO, _sum(_product(a, b), _product(c, d)))
     squares = _sum(_product(first, first), _product(second, second))
-    return f"is_atan2(r, {sine}, {_of('sub', _ONE, _product(_TWO, squares))})"
+    return f"is_atan2(r, {sine}, {of('sub', ONE, _product(TWO, squares))})"
 
 
 def _usable(length: str) -> str:
-    return f"\\gt_double({length}, {_ZERO}) && \\lt_double({length}, {_INFINITY})"
+    return f"\\gt_double({length}, {ZERO}) && \\lt_double({length}, {INFINITY})"
 
 
 _SQUARES = _sum(*(_product(each, each) for each in "xyzw"))
-_SINE = _product(_TWO, _of("sub", _product("uw", "uy"), _product("uz", "ux")))
+_SINE = _product(TWO, of("sub", _product("uw", "uy"), _product("uz", "ux")))
 _PARTS = "double r, double ux, double uy, double uz, double uw"
 
 PREDICATES = {
     "clamped": (
         "double r, double sine",
-        f"(\\gt_double(sine, {_ONE}) ==> same(r, {_ONE})) && "
+        f"(\\gt_double(sine, {ONE}) ==> same(r, {ONE})) && "
         f"(\\lt_double(sine, {constant(-1.0)}) ==> same(r, {constant(-1.0)})) && "
-        f"(!\\gt_double(sine, {_ONE}) && !\\lt_double(sine, {constant(-1.0)}) ==> same(r, sine))",
+        f"(!\\gt_double(sine, {ONE}) && !\\lt_double(sine, {constant(-1.0)}) ==> same(r, sine))",
     ),
     "length_of": (
         "double r, double x, double y, double z, double w",
         f"\\exists double l; is_sqrt(l, {_SQUARES}) && ({_usable('l')} ==> same(r, l)) && "
-        f"(!({_usable('l')}) ==> same(r, {_NAN}))",
+        f"(!({_usable('l')}) ==> same(r, {NAN}))",
     ),
     "roll": (_PARTS, _angle(("uw", "ux", "uy", "uz"), "ux", "uy")),
     "yaw": (_PARTS, _angle(("uw", "uz", "ux", "uy"), "uy", "uz")),
@@ -123,15 +125,26 @@ def is_value(
         leaves: the doubles that hold the leaves.
         lengths: those that hold the lengths of quaternions, by their parts.
     """
+    if isinstance(value, Apply) and FUNCTIONS[value.function].argument is Argument.SCAN:
+        return _of_scan(name, value, leaves)
     if isinstance(value, Apply):
         call = FUNCTIONS[value.function].c_call
         if call not in PREDICATES or value.arguments not in lengths:
             return ""
         parts = [_term(each, leaves) for each in value.arguments]
-        shares = [_of("div", each, lengths[value.arguments]) for each in parts]
+        shares = [of("div", each, lengths[value.arguments]) for each in parts]
         return f"is_{call}({name}, {', '.join(shares)})" if all(parts) else ""
     term = _term(value, leaves)
     return f"same({name}, {term})" if term else ""
+
+
+def _of_scan(name: str, value: Apply, leaves: Mapping[int, str]) -> str:
+    """Return that a double is what a function of a scan gives."""
+    ranges, *rest = value.arguments
+    assert isinstance(ranges, Read)
+    array = leaves[ranges.leaf]
+    terms = [array, f"{array}_count", *(_term(each, leaves) for each in rest)]
+    return f"is_{FUNCTIONS[value.function].c_call}({', '.join([name, *terms])})"
 
 
 def _term(value: ValueExpression, leaves: Mapping[int, str]) -> str:
