@@ -77,7 +77,7 @@ def _prove(source: Path, name: str, options: argparse.Namespace) -> bool:
     functions = [each for each in options.functions.split(",") if each]
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, TimeElapsedColumn(), console=console) as progress:
-        task = progress.add_task(f"{name}: functions", total=None)
+        task = progress.add_task(f"{name}: proving", total=None)
         proof = c_proof.prove(
             source,
             functions,

@@ -31,7 +31,7 @@ _UNTOLD = (
 )
 
 Progress = Callable[[int, int], None]
-"""Told how many functions are done, and how many there are."""
+"""Told how many parts of the proof are done, and how many there are."""
 
 _DEFINITION = re.compile(r"^(?!typedef)\w[^;{}=]*?\b(?P<name>\w+)\([^;{}]*\)\n\{", re.MULTILINE)
 _AT_ONCE = 2
@@ -157,29 +157,30 @@ def prove(
     processes share the functions.
     """
     names = list(functions) or functions_of(source)
+    asked = [["-wp-fct", ",".join(names[i : i + _AT_ONCE])] for i in range(0, len(names), _AT_ONCE)]
+    if not functions and _states_lemmas(source):
+        asked.append(["-wp-prop", "@lemma"])
     options = [
         *OPTIONS,
         *("-wp-prover", PROVERS, "-wp-timeout", str(timeout_s), "-wp-par", "1"),
     ]
-    groups = [names[i : i + _AT_ONCE] for i in range(0, len(names), _AT_ONCE)]
     done = 0
     with provers() as environment, ThreadPoolExecutor(jobs) as pool:
 
         def prove_group(group: Sequence[str]) -> str:
-            arguments = [*options, "-wp-fct", ",".join(group), source.name]
-            return "".join(_run(arguments, source.parent, environment))
+            return "".join(_run([*options, *group, source.name], source.parent, environment))
 
-        running = {pool.submit(prove_group, group): group for group in groups}
-        for finished in as_completed(running):
-            done += len(running[finished])
+        running = [pool.submit(prove_group, group) for group in asked]
+        for _ in as_completed(running):
+            done += 1
             if progress is not None:
-                progress(done, len(names))
+                progress(done, len(asked))
         log = "".join(each.result() for each in running)
     matches = list(_PROVED.finditer(log))
     complaints = [
         line.strip() for line in log.splitlines() if any(each in line for each in _UNTOLD)
     ]
-    if len(matches) != len(groups):
+    if len(matches) != len(asked):
         complaints.append("Frama-C has not come to its end")
     return Proof(
         sum(int(each["proved"]) for each in matches),
@@ -188,6 +189,12 @@ def prove(
         tuple(dict.fromkeys(complaints)),
         log,
     )
+
+
+def _states_lemmas(source: Path) -> bool:
+    """Tell whether the contracts of a source state lemmas: they are goals of no function."""
+    texts = (each.read_text(encoding="utf-8") for each in source.parent.glob("*.h"))
+    return any("/*@ lemma" in text for text in texts)
 
 
 def functions_of(source: Path) -> list[str]:

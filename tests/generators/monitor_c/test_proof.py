@@ -174,6 +174,25 @@ def test_wrong_table_is_found(right: str, wrong: str, tmp_path: Path) -> None:
     assert not c_proof.analyse(source, TABLES_CHECK).is_clean
 
 
+@needs_frama_c
+def test_lemmas_are_goals(tmp_path: Path) -> None:
+    """What the contracts state of themselves is proved with the functions, or the proof fails."""
+    (tmp_path / "order_contracts.h").write_text(
+        "/*@ lemma right: \\forall double a; !\\is_NaN(a) ==> \\le_double(a, a); */\n"
+        "/*@ lemma wrong: \\forall double a; \\le_double(a, a); */\n",
+        encoding="utf-8",
+    )
+    source = tmp_path / "order_monitor.c"
+    source.write_text(
+        '#include "order_contracts.h"\n'
+        "/*@ assigns \\nothing; ensures \\result == 1; */\nint one(void)\n{\n  return 1;\n}\n",
+        encoding="utf-8",
+    )
+    proof = c_proof.prove(source, timeout_s=3)
+    assert proof.left == ("typed_lemma_wrong",)
+    assert not proof.is_complete
+
+
 def test_every_function_has_a_contract() -> None:
     """Each function that a monitor defines is in the file of contracts, and no other."""
     for program in (everything(), *examples()):
