@@ -128,16 +128,13 @@ class Original:
             analysis = c_proof.analyse(source, TABLES_CHECK)
             return Found("" if analysis.is_clean else TABLES_CHECK)
         few, all_steps = LEAST_STEPS, max(LEAST_STEPS, MARGIN * effort.most)
-        ways = [(few, ["-wp-prop", "@ensures"]), (few, [])]  # most are found by what is ensured
-        ways += [(all_steps, [])] if all_steps > few else []
-        found: Found | None = None
-        for steps, goals in ways:
+        # Most are found by what is ensured, and with few steps; the last way is short of none.
+        for steps, goals in ((few, ["-wp-prop", "@ensures"]), (few, []), (all_steps, [])):
             options = [*_options(effort.provers, steps), *goals, "-wp-fct", mutant.function]
             found = self._try(options, mutant, source, effort, steps)
             if found is not None and (found.goal or found.refused or not goals):
                 return found
-        assert found is not None
-        return found
+        raise AssertionError(f"{mutant.name}: no goal is allowed more than {all_steps} steps")
 
     def _try(
         self, arguments: Sequence[str], mutant: Mutant, source: Path, effort: Effort, steps: int

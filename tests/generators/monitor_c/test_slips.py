@@ -10,6 +10,7 @@ import pytest
 from tests.support.c_everything import examples
 from tests.support.c_harness import Unit, unit
 from tests.support.c_mutants import KINDS, Mutant, mutants
+from tests.support.c_slips import LEAST_STEPS, MARGIN, Effort
 from tools.mutate_proof import equivalent
 
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
@@ -51,3 +52,17 @@ def test_listed_slips_are_made(slips: list[Mutant]) -> None:
     for slip, reason in equivalent()["intelligent_one"].items():
         assert re.sub(r" \(\d+\)$", "", slip) in names
         assert len(reason) > 20
+
+
+def test_a_slip_in_the_head_of_a_loop_is_named_by_what_changes() -> None:
+    """Neither the body of the loop nor the rest of the file is part of its name."""
+    loop = "int f(int n)\n{\n  for (int i = 0; i < n; ++i) {\n    g(i);\n  }\n  return n;\n}\n"
+    named = {each.name for each in mutants(loop, "") if each.kind == "comparison"}
+    assert named == {"f: i < n -> i <= n", "f: i < n -> i > n"}
+
+
+def test_a_goal_is_allowed_more_than_it_took() -> None:
+    """What it took without the slip decides, and not what other goals took."""
+    effort = Effort(steps={"hard": 5_000_000, "easy": 10})
+    assert effort.allowed("hard") == MARGIN * 5_000_000
+    assert effort.allowed("easy") == effort.allowed("another") == LEAST_STEPS

@@ -152,9 +152,9 @@ class Changes:
         last = [f"\\is_NaN(m->{name})" for name in forget.last]
         return [*(f"m->{name} == 0" for name in forget.known), *last]
 
-    def forgets_of(self, timeout: Timeout) -> list[Forget]:
-        """Return what is forgotten when a timeout passes."""
-        return [each for each in self._view.forgets if each.function == timeout.forget]
+    def forgets_of(self, function: str) -> list[Forget]:
+        """Return what a function forgets; nothing if it is empty, since there is none."""
+        return [each for each in self._view.forgets if each.function == function]
 
     def expired(self, timeout: Timeout) -> list[str]:
         """Return that an input is missing if its timeout has passed, and its values with it."""
@@ -162,7 +162,7 @@ class Changes:
         passed = f"m->{timeout.base} + {timeout.duration_ns} <= m->now"
         found = [iff(f"{missing} != 0", f"(\\old({missing}) != 0 || {passed})")]
         gone = f"(\\old({missing}) == 0 && {passed})"
-        for forget in self.forgets_of(timeout):
+        for forget in self.forgets_of(timeout.forget):
             found += [f"m->{name} == ({gone} ? 0 : \\old(m->{name}))" for name in forget.known]
             for name in forget.last:
                 kept = f"same(m->{name}, \\old(m->{name}))"

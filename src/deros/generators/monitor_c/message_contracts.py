@@ -20,7 +20,7 @@ from deros.generators.monitor_c.layout import Finding
 from deros.generators.monitor_c.predicates import SOUND, Predicates
 from deros.generators.monitor_c.quantities import is_value
 from deros.generators.monitor_c.rule_contracts import EARLIER_DEADLINE, RuleContracts
-from deros.generators.monitor_c.view import MessageView, MonitorView
+from deros.generators.monitor_c.view import Forget, MessageView, MonitorView
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
@@ -174,7 +174,7 @@ class MessageContracts:
             return
         counts, is_all = self._counts(each, handler)
         rest = [*self._unknown(each), *unheard]
-        if not self._rejects(each, handler):
+        if counts == "\\true" and is_all:  # every message does
             yield all_of(heard)
         elif is_all:
             yield f"{counts} ==> {all_of(heard)}"
@@ -233,18 +233,20 @@ class MessageContracts:
             return [*found, f"(\\exists double {names}; {' && '.join([*of, *numbers])})"]
         return [*found, *numbers]
 
+    def _forgets(self, each: Input) -> list[Forget]:
+        """Return what is forgotten when a message of an input does not count."""
+        return self._changes.forgets_of(self._layout.forgets.get(each.index, ""))
+
     def _unknown(self, each: Input) -> list[str]:
         """Return that no value of an input is known."""
-        name = self._layout.forgets.get(each.index)
-        forgets = [forget for forget in self._view.forgets if forget.function == name]
-        return [text for forget in forgets for text in self._changes.forgotten(forget)]
+        return [text for forget in self._forgets(each) for text in self._changes.forgotten(forget)]
 
     def _unheard(self, each: Input, handler: Handler) -> list[str]:
         """Return that of a message that does not count all else is as it was."""
         fields = self._layout.inputs[each.index]
-        name = self._layout.forgets.get(each.index)
-        forgets = [forget for forget in self._view.forgets if forget.function == name]
-        forgotten = [name for forget in forgets for name in (*forget.known, *forget.last)]
+        forgotten = [
+            name for forget in self._forgets(each) for name in (*forget.known, *forget.last)
+        ]
         names = [fields.base, fields.came, fields.missing]
         names += [term.name for term in self._layout.terms_of(each.index)]
         names += [finding.name for _, finding in self._findings((each.index,))]
@@ -282,10 +284,6 @@ class MessageContracts:
         assert isinstance(range_min, Read)
         array = leaves[ranges.leaf]
         return f"is_usable({array}, {array}_count, {leaves[range_min.leaf]})"
-
-    def _rejects(self, each: Input, handler: Handler) -> bool:
-        """Tell whether a message may not count."""
-        return self._counts(each, handler) != ("\\true", True)
 
     def _functions_of(self, each: Input) -> list[Apply]:
         return [

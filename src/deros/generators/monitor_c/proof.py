@@ -129,10 +129,10 @@ class _Writer:
 
     def _expire_one(self, timeout: Timeout) -> Contract:
         missing = f"m->{timeout.missing}"
-        known = [name for each in self.changes.forgets_of(timeout) for name in each.known]
+        known = [name for each in self.changes.forgets_of(timeout.forget) for name in each.known]
         names = ["now", timeout.base, timeout.missing, *known]
         contract = Contract(["\\valid(m)", all_of(self.predicates.ranges(names))], [missing])
-        for forget in self.changes.forgets_of(timeout):
+        for forget in self.changes.forgets_of(timeout.forget):
             contract.assigns += [f"m->{name}" for name in (*forget.known, *forget.last)]
         contract.ensures += self.predicates.ranges([timeout.missing])
         contract.ensures.append(all_of(self.changes.expired(timeout)))
@@ -143,8 +143,8 @@ class _Writer:
         names = ["now"]
         changed: list[str] = []
         for each in self._view.timeouts:
-            known = [name for f in self.changes.forgets_of(each) for name in f.known]
-            last = [name for f in self.changes.forgets_of(each) for name in f.last]
+            known = [name for f in self.changes.forgets_of(each.forget) for name in f.known]
+            last = [name for f in self.changes.forgets_of(each.forget) for name in f.last]
             names += [each.base, each.missing, *known]
             changed += [each.missing, *known, *last]
         ranges = self.predicates.ranges(names)

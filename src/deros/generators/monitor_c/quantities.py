@@ -38,7 +38,6 @@ def _product(first: str, second: str) -> str:
 
 ONE, TWO, ZERO = constant(1.0), constant(2.0), constant(0.0)
 INFINITY, NAN = of("div", ONE, ZERO), of("div", ZERO, ZERO)
-TURN = constant(6.283185307179586)
 
 
 def _angle(above: tuple[str, str, str, str], first: str, second: str) -> str:

@@ -8,8 +8,9 @@ stands for is proved of the function itself.
 from __future__ import annotations
 
 from deros.generators.monitor_c.contracts import wrapped
-from deros.generators.monitor_c.quantities import INFINITY, TURN, ZERO, constant, of
+from deros.generators.monitor_c.quantities import INFINITY, ZERO, constant, of
 from deros.monitor import walk
+from deros.monitor.function_values import BEARING_TOLERANCE, FULL_TURN
 from deros.monitor.functions import FUNCTIONS, Argument
 from deros.monitor.ir import Apply, Program
 
@@ -20,7 +21,7 @@ _SCAN = (
     f"double range_min, double range_max, {_SECTOR}"
 )
 _SCAN_OF = "ranges, {count}, angle_min, angle_increment, range_min, range_max, start, end"
-_MARGIN = constant(1e-6)
+_TURN, _MARGIN = constant(FULL_TURN), constant(BEARING_TOLERANCE)
 _TOO_NEAR = f"\\eq_double(measured, \\neg_double({INFINITY}))"
 _INSIDE = "is_inside(past, start, end)"
 _VALID = "\\ge_double(measured, range_min)"
@@ -32,21 +33,21 @@ _PREDICATES = (
     (
         f"is_by_offset(double offset, double width) = "
         f"\\le_double(offset, {of('add', 'width', _MARGIN)}) || "
-        f"\\ge_double(offset, {of('sub', TURN, _MARGIN)})"
+        f"\\ge_double(offset, {of('sub', _TURN, _MARGIN)})"
     ),
     (
         f"is_within(double past, double width) = (\\lt_double(past, {ZERO}) ==> "
-        f"is_by_offset({of('add', 'past', TURN)}, width)) && "
+        f"is_by_offset({of('add', 'past', _TURN)}, width)) && "
         f"(!\\lt_double(past, {ZERO}) ==> is_by_offset(past, width))"
     ),
     (
         f"is_inside(double past, {_SECTOR}) = (\\lt_double(end, start) ==> "
-        f"is_within(past, {of('add', of('sub', 'end', 'start'), TURN)})) && "
+        f"is_within(past, {of('add', of('sub', 'end', 'start'), _TURN)})) && "
         f"(!\\lt_double(end, start) ==> is_within(past, {of('sub', 'end', 'start')}))"
     ),
     (
         f"formula_of_beam(double r, {_BEAM}, {_SECTOR}) = \\exists double past; "
-        f"is_fmod(past, {of('sub', 'bearing', 'start')}, {TURN}) && "
+        f"is_fmod(past, {of('sub', 'bearing', 'start')}, {_TURN}) && "
         f"({_INSIDE} && {_TOO_NEAR} ==> same(r, range_min)) && "
         f"({_INSIDE} && !{_TOO_NEAR} && {_VALID} && {_BEYOND} ==> same(r, {INFINITY})) && "
         f"({_INSIDE} && !{_TOO_NEAR} && {_VALID} && !{_BEYOND} ==> same(r, measured)) && "
