@@ -215,6 +215,12 @@ def analyse(source: Path, function: str = "main") -> Analysis:
     return Analysis(int(match["count"]) if match else None, log)
 
 
+def unreadable(source: Path) -> str:
+    """Return why Frama-C cannot read a source and its contracts; nothing if it can."""
+    log = "".join(_run(["-no-autoload-plugins", source.name], source.parent, dict(os.environ)))
+    return log if "error" in log.lower() else ""
+
+
 def command(arguments: Sequence[str]) -> list[str]:
     """Return the command that runs Frama-C. NaN and infinities are values like others."""
     return [

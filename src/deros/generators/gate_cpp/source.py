@@ -41,10 +41,12 @@ class CppNames(Names):
         """Start with the names that the templates use."""
         super().__init__(frozenset(_OURS.split()))
 
-    def new(self, *parts: str | int) -> str:
-        """Return an identifier made of ``parts``."""
-        name = super().new(*parts)
-        return super().new(name, "value") if is_reserved(name) else name
+    def new(self, *parts: str | int, endings: Sequence[str] = ()) -> str:
+        """Return an identifier of ``parts`` that is free, as it is and with each of ``endings``."""
+        name = super().new(*parts, endings=endings)
+        if is_reserved(name):
+            name = super().new(name, "value", endings=endings)
+        return name
 
 
 # Literals -----------------------------------------------------------------------------------------

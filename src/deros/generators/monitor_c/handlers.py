@@ -12,7 +12,8 @@ from deros.generators.monitor_c.expressions import (
     expression,
     present,
 )
-from deros.generators.monitor_c.layout import InputFields, Layout, Term, c_type
+from deros.generators.monitor_c.helpers import helper_names
+from deros.generators.monitor_c.layout import ELEMENTS, InputFields, Layout, Term, c_type
 from deros.generators.monitor_c.names import new_names
 from deros.generators.monitor_c.source import (
     Call,
@@ -23,21 +24,11 @@ from deros.generators.monitor_c.source import (
     lay_out_list,
 )
 from deros.generators.monitor_python.names import Names
-from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, STRING_TYPES
+from deros.interfaces.types import FLOAT_TYPES, STRING_TYPES
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
 from deros.monitor.functions import FUNCTIONS, Argument
 from deros.monitor.ir import Age, Apply, Input, Leaf, Program, Read, ValueExpression
-
-ELEMENTS = {
-    **{base: f"{base}_t" for base in INTEGER_RANGES},
-    "byte": "uint8_t",
-    "char": "uint8_t",
-    "float32": "float",
-    "float64": "double",
-    "bool": "bool",
-}
-"""The C type of an array's element, by the primitive type of ROS 2."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,26 +106,32 @@ class Handler:
 def handlers(program: Program, layout: Layout) -> tuple[Handler, ...]:
     """Return the handlers of a program, in the order of its topics."""
     names = new_names()
-    return tuple(_Writer(program, layout, topic).handler(names) for topic in program.topics)
+    return tuple(_Writer(program, layout, topic, names).handler() for topic in program.topics)
+
+
+_OF_MESSAGES = ("observe", "take", "after", "judge_by")
+"""What the functions of one topic begin with; the first two have its parameters."""
+_ENDINGS = ("_count", "_length", "_given")
+"""What else is passed of a value: its elements' or bytes' number, and whether there is one."""
 
 
 class _Writer:
     """Writes the handler of one topic."""
 
-    def __init__(self, program: Program, layout: Layout, topic: str) -> None:
+    def __init__(self, program: Program, layout: Layout, topic: str, names: Names) -> None:
         self._program = program
         self._layout = layout
         self._topic = topic
         self._inputs = [each for each in program.inputs if each.topic == topic]
+        name = names.new(self._inputs[0].name if len(self._inputs) == 1 else topic)
+        self._functions = (f"{layout.prefix}_on_{name}", *(f"{e}_{name}" for e in _OF_MESSAGES))
         self._parameters = self._name_parameters()
         self._arguments = Arguments(self._leaf_names(), self._count_names())
 
-    def handler(self, names: Names) -> Handler:
-        prefix = self._layout.prefix
-        only = self._inputs[0].name if len(self._inputs) == 1 else self._topic
-        name = names.new(only)
-        function, observer, taker = f"{prefix}_on_{name}", f"observe_{name}", f"take_{name}"
-        monitor = f"{prefix}_monitor *m"
+    def handler(self) -> Handler:
+        """Return the handler."""
+        function, observer, taker, *_ = self._functions
+        monitor = f"{self._layout.prefix}_monitor *m"
         declared = [text for each in self._parameters for text in each.declarations]
         lines = [line for each in self._inputs for line in self._observe(each)]
         return Handler(
@@ -155,14 +152,19 @@ class _Writer:
     # Parameters ---------------------------------------------------------------------------------
 
     def _name_parameters(self) -> tuple[Parameter, ...]:
+        """Name the parameters, none as a function that is called where they are known."""
         groups: dict[tuple[str | int, ...], list[Leaf]] = {}
         for each in self._inputs:
             for index in each.leaves if self._is_observed(each) else ():
                 leaf = self._program.leaves[index]
                 if self._is_needed(leaf):
                     groups.setdefault(leaf.path, []).append(leaf)
-        names = new_names()
-        return tuple(self._parameter(names.new(*path), path, g) for path, g in groups.items())
+        called = (*self._functions, *self._layout.judges.values())
+        names = new_names({*helper_names(self._program), *called})
+        return tuple(
+            self._parameter(names.new(*path, endings=_ENDINGS), path, group)
+            for path, group in groups.items()
+        )
 
     def _parameter(self, name: str, path: tuple[str | int, ...], group: list[Leaf]) -> Parameter:
         leaf = group[0]

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from deros.generators.monitor_c import quantities, scans
-from deros.generators.monitor_c.handlers import ELEMENTS
+from deros.generators.monitor_c.layout import ELEMENTS
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
 from deros.monitor.function_texts import C
@@ -238,6 +238,11 @@ def helper_texts(program: Program, text: str) -> list[str]:
             needed.append(known[name])
             wanted += known[name]
     return needed[::-1]
+
+
+def helper_names(program: Program) -> frozenset[str]:
+    """Return the names of all functions that the monitor of a program may have beside its own."""
+    return frozenset(name for name, _ in _all(program))
 
 
 def _all(program: Program) -> Iterator[tuple[str, str]]:

@@ -10,7 +10,7 @@ from deros.diagnostics import Span, report
 from deros.generators.monitor_c.names import new_names, prefix_of
 from deros.generators.monitor_python.names import Names
 from deros.generators.protocol import GenerationError
-from deros.interfaces.types import FLOAT_TYPES, STRING_TYPES, FieldType
+from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, STRING_TYPES, FieldType
 from deros.monitor import walk
 from deros.monitor.functions import FUNCTIONS, Result
 from deros.monitor.ir import (
@@ -28,6 +28,16 @@ from deros.monitor.ir import (
     ValueExpression,
     Within,
 )
+
+ELEMENTS = {
+    **{base: f"{base}_t" for base in INTEGER_RANGES},
+    "byte": "uint8_t",
+    "char": "uint8_t",
+    "float32": "float",
+    "float64": "double",
+    "bool": "bool",
+}
+"""The C type of an array's element, by the primitive type of ROS 2."""
 
 LATEST = 2**62 - 1
 """The greatest time, and the greatest duration, in nanoseconds: sums of two stay in 64 bits."""

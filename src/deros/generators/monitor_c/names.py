@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 from deros.generators.monitor_python.names import Names
 from deros.generators.names import python_identifier
@@ -26,9 +27,9 @@ RESERVED = frozenset(f"{_C} {_CPP} {_STANDARD} {_OURS}".split())
 """Names that nothing made from a model gets."""
 
 
-def new_names() -> Names:
-    """Return what hands out the identifiers of one program."""
-    return Names(RESERVED)
+def new_names(taken: Iterable[str] = ()) -> Names:
+    """Return what hands out the identifiers of a program or a function, none of those taken."""
+    return Names(RESERVED.union(taken))
 
 
 def prefix_of(program_name: str) -> str:

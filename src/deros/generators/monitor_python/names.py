@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import keyword
+from collections.abc import Sequence
 
 from deros.generators.names import python_identifier
 from deros.monitor.functions import FUNCTIONS
@@ -48,14 +49,19 @@ class Names:
         """Start with the names that are ``taken``."""
         self._taken = set(taken)
 
-    def new(self, *parts: str | int) -> str:
-        """Return an identifier made of ``parts``; a number is added where it is taken already."""
+    def new(self, *parts: str | int, endings: Sequence[str] = ()) -> str:
+        """Return an identifier made of ``parts``; a number is added where it is taken already.
+
+        Args:
+            parts: the words of the identifier.
+            endings: what others end in that are made of it; they are as free as it is, and taken.
+        """
         words = (python_identifier(str(part)).strip("_") for part in parts)
         base = "_".join(word for word in words if word) or "value"
         if base[0].isdigit():
             base = f"n{base}"
         name, number = base, 2
-        while name in self._taken:
+        while not self._taken.isdisjoint(wanted := {name, *(name + each for each in endings)}):
             name, number = f"{base}_{number}", number + 1
-        self._taken.add(name)
+        self._taken |= wanted
         return name
