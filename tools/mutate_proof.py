@@ -115,12 +115,21 @@ def _find(
         finally:
             places.put(place)
 
+    def measured(function: str) -> Effort:
+        key = original.effort_key(function)
+        effort = results.effort(key)
+        if effort is None:
+            effort = original.effort(function)
+            results.add_effort(key, function, effort)
+        return effort
+
     with Progress(*columns, TimeElapsedColumn()) as progress, ThreadPoolExecutor(jobs) as pool:
         functions = list(dict.fromkeys(m.function for _, m, _ in todo if m.function != TABLES))
         task = progress.add_task("functions measured", total=len(functions))
         efforts = {}
-        for function, effort in zip(functions, pool.map(original.effort, functions), strict=True):
-            efforts[function] = effort
+        measuring = {pool.submit(measured, function): function for function in functions}
+        for done in as_completed(measuring):
+            efforts[measuring[done]] = done.result()
             progress.advance(task)
         todo.sort(key=lambda each: efforts.get(each[1].function, Effort()).most)
         task = progress.add_task("slips", total=len(todo))

@@ -82,18 +82,22 @@ class Original:
 
     def key(self, mutant: Mutant) -> str:
         """Return what tells whether a result still stands: all that the proof of a slip reads."""
-        body = mutant.before + mutant.after
-        function = re.search(
-            rf"^[^\n]*\b{mutant.function}\([^;{{]*\)\n\{{.*?^\}}", mutant.source, re.M | re.S
-        )
-        text = function.group() if function else mutant.source
-        todo = {mutant.function, *_USE.findall(text)}
+        return self._key(mutant.function, mutant.source, mutant.before + mutant.after)
+
+    def effort_key(self, function: str) -> str:
+        """Return what tells whether an effort still stands: all that the proof reads."""
+        return self._key(function, self.text, "")
+
+    def _key(self, name: str, source: str, body: str) -> str:
+        function = re.search(rf"^[^\n]*\b{name}\([^;{{]*\)\n\{{.*?^\}}", source, re.M | re.S)
+        text = function.group() if function else source
+        todo = {name, *_USE.findall(text)}
         seen: set[str] = set()
         parts = [body, text, self.header]
         while todo - seen:
-            name = min(todo - seen)
-            seen.add(name)
-            part = self._blocks.get(name, "") + self._macros.get(name, "")
+            used = min(todo - seen)
+            seen.add(used)
+            part = self._blocks.get(used, "") + self._macros.get(used, "")
             parts.append(part)
             todo |= {each for each in _USE.findall(part) if each in self._macros}
         parts += [each for each in self.contracts.split("\n\n") if "axiomatic" in each]
@@ -208,9 +212,12 @@ class Results:
         """Read what is known."""
         self._path = path
         self._known: dict[str, Found] = {}
-        if path.exists():
-            for line in path.read_text(encoding="utf-8").splitlines():
-                row = json.loads(line)
+        self._efforts: dict[str, Effort] = {}
+        for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
+            row = json.loads(line)
+            if "steps" in row:
+                self._efforts[row["key"]] = Effort(row["provers"], row["steps"])
+            else:
                 self._known[row["key"]] = Found(row["goal"], row["refused"])
 
     def get(self, key: str) -> Found | None:
@@ -220,6 +227,18 @@ class Results:
     def add(self, key: str, name: str, found: Found) -> None:
         """Write what has become of a slip."""
         self._known[key] = found
-        row = {"key": key, "name": name, "goal": found.goal, "refused": found.refused}
+        self._write({"key": key, "name": name, "goal": found.goal, "refused": found.refused})
+
+    def effort(self, key: str) -> Effort | None:
+        """Return what is known of the proof of a function without slips."""
+        return self._efforts.get(key)
+
+    def add_effort(self, key: str, name: str, effort: Effort) -> None:
+        """Write what the proof of a function takes."""
+        self._efforts[key] = effort
+        row = {"key": key, "name": name, "provers": effort.provers, "steps": dict(effort.steps)}
+        self._write(row)
+
+    def _write(self, row: Mapping[str, object]) -> None:
         with self._path.open("a", encoding="utf-8") as file:
             file.write(json.dumps(row) + "\n")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
 from tests.support.c_everything import examples
 from tests.support.c_harness import Unit, unit
 from tests.support.c_mutants import KINDS, Mutant, mutants
-from tests.support.c_slips import LEAST_STEPS, MARGIN, Effort
+from tests.support.c_slips import LEAST_STEPS, MARGIN, Effort, Found, Results
 from tools.mutate_proof import equivalent
 
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
@@ -66,3 +67,16 @@ def test_a_goal_is_allowed_more_than_it_took() -> None:
     effort = Effort(steps={"hard": 5_000_000, "easy": 10})
     assert effort.allowed("hard") == MARGIN * 5_000_000
     assert effort.allowed("easy") == effort.allowed("another") == LEAST_STEPS
+
+
+def test_an_interrupted_run_goes_on(tmp_path: Path) -> None:
+    """What became of a slip, and what a function's proof takes, are read again."""
+    path = tmp_path / "results.jsonl"
+    before = Results(path)
+    before.add("a", "f: x -> y", Found(goal="ensures"))
+    before.add_effort("b", "f", Effort("z3", {"ensures": 5}))
+    after = Results(path)
+    assert after.get("a") == Found(goal="ensures")
+    assert after.effort("b") == Effort("z3", {"ensures": 5})
+    assert after.get("b") is None
+    assert after.effort("a") is None
