@@ -126,6 +126,9 @@ GATE_WITHOUT_INPUT = _declare(344, "gate that does not watch its input", _W)
 GATE_HEARTBEAT_TOO_SHORT = _declare(345, "heartbeat given up sooner than it can be trusted", _W)
 STATE_PUBLISHED_TWICE = _declare(346, "state of an action that two nodes publish")
 HEARTBEAT_PUBLISHED_TWICE = _declare(347, "heartbeat that two nodes publish")
+GATE_RESUMES_BY_ITSELF = _declare(357, "gate that lets the robot go on by itself", _I)
+GATE_LIMIT_UNTIL_RESET = _declare(358, "limit that is to last until a reset")
+GATE_LIMIT_TO_ZERO = _declare(359, "limit that leaves a gate nothing but zero", _I)
 
 # Generation
 NAME_COLLISION = _declare(401, "two generated names collide")

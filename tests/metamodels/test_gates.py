@@ -108,6 +108,20 @@ def test_layout_is_free(text: str) -> None:
     assert all(line.action or line.duration for line in gate.lines)
 
 
+def test_what_follows_a_zero() -> None:
+    """`until reset` belongs to its line, `resume on zero command` to the gate, wherever it is."""
+    for text in (
+        "stop: zero until reset; lost input for 1 s: zero; resume on zero command;",
+        "resume on zero command stop: zero until reset lost input for 1 s: zero",
+        "stop :zero until\nreset\nresume on\nzero command lost input for 1 s : zero",
+    ):
+        gate = _gate(f"gate a -> b : x.Y rate 1 Hz {{ {text} }}")
+        assert [line.until_reset for line in gate.lines] == [True, False]
+        assert gate.resume is not None
+        assert gate.resume.text.split()[0] == "resume"
+    assert _gate(PRINTED).resume is None
+
+
 def test_description() -> None:
     """A text behind the rate says what the gate is for."""
     assert _gate('gate a -> b : x.Y rate 1 Hz "The drive" { a: zero; }').description == "The drive"
@@ -177,6 +191,26 @@ def test_keywords_are_names_too() -> None:
     ]
 
 
+def test_actions_may_be_called_as_what_follows_a_zero() -> None:
+    """`until`, `reset`, `resume` and `command` are words of a gate in their places alone."""
+    (gate,) = _rules(
+        """gate a -> b : x.Y rate 1 Hz {
+          resume: zero until: zero until reset reset: limit x to [0, 1] resume on zero command
+          command: limit y to [0, 1] until: zero on: zero
+        }"""
+    ).gates
+    assert [line.action and line.action.text for line in gate.lines] == [
+        "resume",
+        "until",
+        "reset",
+        "command",
+        "until",
+        "on",
+    ]
+    assert [line.until_reset for line in gate.lines] == [False, True, *[False] * 4]
+    assert all(limit.unit is None for line in gate.lines for limit in line.limits)
+
+
 def test_numbers_before_the_new_words_have_no_unit() -> None:
     """``gate``, ``optional`` and ``lost`` start what follows a number."""
     rules = _rules(
@@ -215,7 +249,10 @@ def test_optional_behaviour_needs_a_name() -> None:
         ("gate a -> b { }", "found '{' where ':' is expected"),
         ("gate a b : x.Y rate 1 Hz { }", "found 'b' where '->' is expected"),
         ("gate a -> b : x.Y { }", "found '{' where 'rate' is expected"),
-        ("gate a -> b : x.Y rate 1 Hz { }", "found '}' where 'lost' or a name is expected"),
+        ("gate a -> b : x.Y rate 1 Hz { }", "found '}' where 'lost', a name or 'resume' is"),
+        ("gate a -> b : x.Y rate 1 Hz { s: zero until; }", "found ';' where 'reset' or ':' is"),
+        ("gate a -> b : x.Y rate 1 Hz { resume on zero; }", "found ';' where 'command' is"),
+        ("gate a -> b : x.Y rate 1 Hz { resume on zero command; }", "a gate needs a line that"),
         ("gate a -> b : x.Y rate 1 Hz { stop: zreo; }", "found 'zreo' where 'zero' or 'limit'"),
         ("gate a -> b : x.Y rate 1 Hz { s: limit x in [0, 1]; }", "found 'in' where"),
         ("gate a -> b : x.Y rate 1 Hz { lost heartbeat: zero; }", "found ':' where 'for' is"),

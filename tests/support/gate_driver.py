@@ -35,6 +35,14 @@ class Driver:
         """Command a speed."""
         return shown(self.engine.command(at(t_ms), twist(speed, turn)))
 
+    def stand(self, t_ms: float) -> Shown:
+        """Command zero, in all numbers."""
+        return shown(self.engine.command(at(t_ms), zero_twist()))
+
+    def reset(self, t_ms: float) -> tuple[int, ...]:
+        """Reset the gate; return the indices of the lines that stand against it."""
+        return self.engine.reset(at(t_ms))
+
     def state(self, t_ms: float, action: str, active: bool, *, is_trusted: bool = True) -> Shown:
         """Say what an action is."""
         message = {"data": active}
@@ -77,6 +85,11 @@ def twist(speed: Any, turn: float = 0.0) -> Message:
         "linear": {"x": speed, "y": 7.0, "z": 0.0},
         "angular": {"x": 0.0, "y": 0.0, "z": turn},
     }
+
+
+def zero_twist() -> Message:
+    """Return the command to stand."""
+    return {name: dict.fromkeys("xyz", 0.0) for name in ("linear", "angular")}
 
 
 def shown(outputs: list[Output]) -> Shown:

@@ -199,6 +199,11 @@ class RulesConverter(Converter):
     # Gates ------------------------------------------------------------------------------------
 
     def _gate(self, found: Any) -> Gate:
+        resumes = [self.span(each) for each in found.resumes]
+        if not found.lines:
+            message = "a gate needs a line that says when it holds commands back"
+            hint = "write for instance 'lost heartbeat for 0.3 sec: zero until reset;'"
+            self.report(codes.SYNTAX_ERROR, message, resumes[0], hint)
         return Gate(
             self.name(found.source),
             self.name(found.target),
@@ -208,6 +213,7 @@ class RulesConverter(Converter):
             self.span(found),
             self.token_span(found.type),
             self.text(found.description),
+            resumes[0] if resumes else None,
         )
 
     def _gate_line(self, found: Any) -> GateLine:
@@ -218,6 +224,7 @@ class RulesConverter(Converter):
             None if loss is None else self._number(loss.duration),
             tuple(map(self._gate_limit, found.limits)),
             self.span(found),
+            found.until is not None,
         )
 
     def _gate_limit(self, found: Any) -> GateLimit:

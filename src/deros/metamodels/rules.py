@@ -299,7 +299,8 @@ class GateLine:
     """One line of a gate: when it applies, and what it makes of the command.
 
     It applies while ``action`` is active or, without one, when what ``lost`` names has been silent
-    for ``duration``. ``limits`` is empty for a line that commands zero.
+    for ``duration``. ``limits`` is empty for a line that commands zero. ``until_reset``: the zero
+    lasts until a reset of the gate, however long the line applies.
     """
 
     action: Name | None
@@ -307,11 +308,15 @@ class GateLine:
     duration: Number | None
     limits: tuple[GateLimit, ...]
     span: Span = field(compare=False, repr=False)
+    until_reset: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """``gate SOURCE -> TARGET : TYPE rate R { … }``: what safety lets through of a command."""
+    """``gate SOURCE -> TARGET : TYPE rate R { … }``: what safety lets through of a command.
+
+    ``resume`` is where ``resume on zero command`` stands, if it does.
+    """
 
     source: Name
     target: Name
@@ -321,6 +326,7 @@ class Gate:
     span: Span = field(compare=False, repr=False)
     type_span: Span = field(compare=False, repr=False)
     description: str = ""
+    resume: Span | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

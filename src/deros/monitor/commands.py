@@ -41,6 +41,28 @@ def is_finite(value: Any) -> bool:
     return True
 
 
+def is_zero(store: InterfaceStore, kind: InterfaceType, message: Message) -> bool:
+    """Return whether a command is to do nothing: all numbers that :func:`zero` changes are 0.
+
+    Booleans are false. Texts, the layout of arrays and headers say nothing about motion; nor does
+    the ``w`` of a quaternion that is no rotation.
+    """
+    if kind == QUATERNION:
+        return not (message["x"] or message["y"] or message["z"])
+    definition = store.message(kind)
+    assert definition is not None, f"{kind} was known when the gate was built"
+    return all(_is_zero_field(store, field, message[name]) for name, field in definition.fields)
+
+
+def _is_zero_field(store: InterfaceStore, kind: FieldType, value: Any) -> bool:
+    if kind.base in (HEADER, LAYOUT) or kind.base in STRING_TYPES:
+        return True
+    values = value if kind.is_array else [value]
+    if isinstance(kind.base, InterfaceType):
+        return all(is_zero(store, kind.base, each) for each in values)
+    return not any(values)
+
+
 def limited(message: Message, limits: Iterable[Limit]) -> Message:
     """Return the message with every limit kept: itself, where it keeps them all already."""
     for limit in limits:

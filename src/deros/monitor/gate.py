@@ -16,6 +16,12 @@ same nanosecond. In short:
   inactive.
 * For each number of the command, the first line that applies and speaks of it decides; ``zero``
   speaks of all. The limits of an action say nothing while the heartbeat or the input is lost.
+* A line with ``zero until reset`` that has applied is *latched* until the gate's reset: zero, in
+  every number, whether or not it still applies. A reset is refused, and not remembered, while a
+  line with ``zero`` applies or anything is lost.
+* With ``resume on zero command``, the gate *waits* from the start and from each zero line that
+  applies, or is latched, on: zero, in every number. The waiting ends with a good command that is
+  zero, and comes while nothing is latched and no zero line applies.
 * A good command is published at once, with the limits kept. While a zero line decides, it is not
   published: zeros are, at once and then with the gate's period, until no zero line decides.
 * A limit that comes into force between two commands holds for the one being executed: if that
@@ -31,7 +37,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from deros.interfaces.store import InterfaceStore
-from deros.monitor.commands import Message, is_finite, limited, put, value_at, zero
+from deros.monitor.commands import Message, is_finite, is_zero, limited, put, value_at, zero
 from deros.monitor.ir import Action, Gate, GateLine, Limit
 
 OutputKind = Literal["pass", "limited", "zero"]
@@ -89,9 +95,11 @@ class GateEngine:
         self._counter: int | None
         self._heartbeat_ns: int | None
         self._command_ns: int | None
+        self._latched: set[int] = set()  # indices of lines
         self._last_good: Message | None = None
         self._executed: Message | None = None  # what was published last, unless that was zero
         self._forget()
+        self._hold()
         self._decision = self._decide()
         self._zero_due_ns = start_ns if self._decision.zero else None
 
@@ -99,6 +107,23 @@ class GateEngine:
     def next_deadline(self) -> int | None:
         """The earliest instant at which something can happen by itself, if there is one."""
         return min(self._deadlines(), default=None)
+
+    @property
+    def applying(self) -> tuple[bool, ...]:
+        """What holds commands back, as of the last call.
+
+        Of each line whether it applies; then of each line with ``until_reset`` whether it is
+        latched though it does not apply; then, with ``resume_on_zero``, whether the gate waits for
+        a command that is zero, and for nothing else.
+        """
+        lines = tuple(map(self._applies, self._gate.lines))
+        latched = tuple(
+            index in self._latched and not lines[index]
+            for index, line in enumerate(self._gate.lines)
+            if line.until_reset
+        )
+        waits = (self._waits and not self._is_stopped(),) if self._gate.resume_on_zero else ()
+        return (*lines, *latched, *waits)
 
     # What happens -------------------------------------------------------------------------------
 
@@ -160,6 +185,19 @@ class GateEngine:
         self._settle()
         return self.outputs[before:]
 
+    def reset(self, t_ns: int) -> tuple[int, ...]:
+        """Take a reset. Return the indices of the lines that stand against it: none, it is done."""
+        self._catch_up(t_ns)
+        against = tuple(
+            index
+            for index, line in enumerate(self._gate.lines)
+            if (line.lost or not line.limits) and self._applies(line)
+        )
+        if not against:
+            self._latched.clear()
+            self._settle()
+        return against
+
     def advance(self, t_ns: int) -> list[Output]:
         """Settle all that is due up to and including ``t_ns``. Return what is published."""
         before = len(self.outputs)
@@ -203,6 +241,7 @@ class GateEngine:
         self._command_ns = None
         self._refused = False
         self._heartbeat_was_lost = self._is_lost("heartbeat")
+        self._waits = self._gate.resume_on_zero
 
     # What applies -------------------------------------------------------------------------------
 
@@ -227,7 +266,24 @@ class GateEngine:
             return False
         return self._active.get(line.action, True)
 
+    def _is_stopped(self) -> bool:
+        """Return whether a zero line applies, or one is latched."""
+        zeros = (line for line in self._gate.lines if not line.limits)
+        return bool(self._latched) or any(map(self._applies, zeros))
+
+    def _hold(self, command: Message | None = None) -> None:
+        """Latch the lines that apply until the reset, and wait for a zero command, or for none."""
+        for index, line in enumerate(self._gate.lines):
+            if line.until_reset and self._applies(line):
+                self._latched.add(index)
+        if self._is_stopped():
+            self._waits = self._gate.resume_on_zero
+        elif command is not None and is_zero(self._store, self._gate.type, command):
+            self._waits = False
+
     def _decide(self) -> Decision:
+        if self._latched or self._waits:
+            return Decision(True)
         limits: dict[FieldPath, Limit] = {}
         for line in self._gate.lines:
             if not self._applies(line):
@@ -246,6 +302,7 @@ class GateEngine:
         if lost and not self._heartbeat_was_lost:
             self._active.clear()
         self._heartbeat_was_lost = lost
+        self._hold(command)
         before, self._decision = self._decision, self._decide()
         if self._decision.zero:
             due = self._zero_due_ns is not None and self._zero_due_ns <= self._now_ns

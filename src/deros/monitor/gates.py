@@ -104,6 +104,7 @@ class Gates:
             tuple(each for each in lines if each is not None),
             gate.span,
             gate.description,
+            gate.resume is not None,
         )
 
     def _check_type(self, gate: rules.Gate, topics: tuple[str, str]) -> None:
@@ -148,6 +149,11 @@ class Gates:
         self, line: rules.GateLine, gate: rules.Gate, topics: tuple[str, str]
     ) -> ir.GateLine | None:
         limits = tuple(self._limits(line, gate, topics))
+        if line.until_reset and line.limits:
+            message = "only a zero lasts until a reset, not a limit"
+            hint = "write 'zero until reset', or leave 'until reset' out"
+            self._scope.fault(codes.GATE_LIMIT_UNTIL_RESET, message, line.span, hint)
+            return None
         action = lost_ns = None
         if line.action is not None:
             action = self._actions.bound(line.action)
@@ -155,7 +161,7 @@ class Gates:
             lost_ns = self._lost_ns(line.duration)
         if len(limits) < len(line.limits) or (action is None and lost_ns is None):
             return None
-        return ir.GateLine(action, line.lost, lost_ns, limits, line.span)
+        return ir.GateLine(action, line.lost, lost_ns, limits, line.span, line.until_reset)
 
     def _lost_ns(self, duration: rules.Number) -> int | None:
         lost_ns = self._scope.duration_ns(duration)

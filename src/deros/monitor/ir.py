@@ -290,7 +290,8 @@ class GateLine:
     """When a gate does something to the command, and what.
 
     ``action`` is the index of a bound action; without one the line is about the loss, for
-    ``lost_ns``, of what ``lost`` names. No ``limits``: the line commands zero.
+    ``lost_ns``, of what ``lost`` names. No ``limits``: the line commands zero, and does so
+    ``until_reset`` where that is written.
     """
 
     action: int | None
@@ -298,14 +299,16 @@ class GateLine:
     lost_ns: int | None
     limits: tuple[Limit, ...]
     span: Span = field(compare=False, repr=False)
+    until_reset: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Gate:
     """What safety lets through of the commands on ``source`` to ``target``.
 
-    ``period_ns`` is that at which zeros are published. What a gate does with its lines is defined
-    by :mod:`deros.monitor.gate`.
+    ``period_ns`` is that at which zeros are published. ``resume_on_zero``: after any zero, commands
+    pass again only when the controller has commanded zero. What a gate does with its lines is
+    defined by :mod:`deros.monitor.gate`.
     """
 
     index: int
@@ -316,6 +319,7 @@ class Gate:
     lines: tuple[GateLine, ...]
     span: Span = field(compare=False, repr=False)
     description: str = ""
+    resume_on_zero: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,8 +33,11 @@ def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
             yield from _wiring(gate, each)
         if result.topics.complete:
             yield from _ends(gate, rules, result.topics)
-    for built in result.program.gates if result.program else ():
-        yield from _hasty(built)
+    if result.program is not None:
+        for built in result.program.gates:
+            yield from _hasty(built)
+            yield from _resuming(built, rules.gates[built.index], result.program)
+            yield from _limits_to_zero(built)
 
 
 # Lines ------------------------------------------------------------------------------------------
@@ -42,8 +45,10 @@ def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
 
 def _order(gate: Gate) -> Iterator[Diagnostic]:
     """Find zero lines that a limit before them leaves numbers of."""
+    if gate.resume is not None:
+        return  # every zero is one in all numbers then
     for index, line in enumerate(gate.lines):
-        if line.limits:
+        if line.limits or line.until_reset:
             continue
         # The limits of an action say nothing while something is lost.
         earlier = (each for each in gate.lines[:index] if each.limits)
@@ -91,6 +96,47 @@ def _hasty(gate: ir.Gate) -> Iterator[Diagnostic]:
                 " a late one would be taken for a lost one",
                 line.span,
                 "write 0.25 sec or more, and mind 'publish_freq' if you set it",
+            )
+
+
+def _resuming(gate: ir.Gate, written: Gate, program: ir.Program) -> Iterator[Diagnostic]:
+    """Find what lets commands pass again without a person's reset or the controller's zero."""
+    if gate.resume_on_zero:
+        return
+    lines = [
+        line
+        for line in gate.lines
+        if not (line.limits or line.until_reset)
+        and (line.action is None or not program.actions[line.action].latched)
+    ]
+    ends = [_ended(line, program) for line in lines]
+    if not any(line.until_reset for line in gate.lines):
+        ends.append("the gate's own start")
+    if ends:
+        listed = " and ".join([", ".join(ends[:-1]), ends[-1]] if ends[1:] else ends)
+        yield report(
+            codes.GATE_RESUMES_BY_ITSELF,
+            f"commands to '{gate.target}' pass again by themselves after {listed}",
+            written.target.span,
+            "add 'resume on zero command;', or write 'zero until reset' for a loss",
+            tuple(Related(line.span, "this zero ends by itself") for line in lines),
+        )
+
+
+def _ended(line: ir.GateLine, program: ir.Program) -> str:
+    return f"a lost {line.lost}" if line.action is None else f"'{program.actions[line.action].name}'"
+
+
+def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
+    """Find limits that stop the robot, and which nothing waits after."""
+    for line in gate.lines:
+        if line.limits and all(limit.lower == limit.upper == 0 for limit in line.limits):
+            yield report(
+                codes.GATE_LIMIT_TO_ZERO,
+                "a limit to 0 stops as a zero does, but ends by itself: neither 'until reset' nor"
+                " 'resume on zero command' holds for it",
+                line.span,
+                "write 'zero' if the robot is to stand",
             )
 
 

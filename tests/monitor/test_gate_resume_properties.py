@@ -1,0 +1,142 @@
+"""What holds for a gate that waits, whatever happens to it, in whatever order."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from deros.monitor.gate import Output
+from deros.monitor.ir import Gate, Program
+from tests.monitor.test_gate_properties import Happening, Run, calls, gates, is_zero, waits_and_steps
+from tests.support.gate_driver import HEARTBEAT, INPUT, LOW, STOP, twist, zero_twist
+
+LATCHED_HEARTBEAT = HEARTBEAT.replace("zero", "zero until reset")
+LATCHED_INPUT = INPUT.replace("zero", "zero until reset")
+RESUME = "resume on zero command;"
+
+LATCHING = (
+    (STOP, LATCHED_HEARTBEAT, INPUT, LOW),
+    (LOW, STOP, INPUT, LATCHED_HEARTBEAT),
+    (LOW, LATCHED_INPUT, LATCHED_HEARTBEAT, STOP),
+)
+WAITING = tuple((*lines, RESUME) for lines in (*LATCHING, (STOP, HEARTBEAT, INPUT, LOW)))
+
+more_calls = st.one_of(
+    calls,
+    calls,
+    st.just(("command", zero_twist())),
+    st.just(("reset", None)),
+    st.sampled_from((("/stop", False), ("beat", 1))),
+)
+histories = st.lists(st.builds(lambda w, call: (w, *call), waits_and_steps, more_calls), max_size=50)
+
+
+class Waiting(Run):
+    """A gate at work that may be reset.
+
+    Attributes:
+        granted: whether the call that is being checked was a reset, and was done.
+    """
+
+    def __init__(self, gate: tuple[Gate, Program]) -> None:
+        """Start at 0."""
+        super().__init__(gate)
+        self.granted = False
+
+    def happen(self, call: str, value: Any) -> list[Output]:
+        """Let one thing happen now, and remember it."""
+        self.granted = False
+        if call != "reset":
+            return super().happen(call, value)
+        published = self.engine.advance(self.now)
+        before = len(self.engine.outputs)
+        self.granted = not self.engine.reset(self.now)
+        return published + self.engine.outputs[before:]
+
+
+@given(gates(*WAITING), histories)
+def test_the_controller_stands_before_it_drives(
+    gate: tuple[Gate, Program], history: list[Happening]
+) -> None:
+    """Between a zero of the gate and motion there is a zero of the controller, which passed."""
+    run = Waiting(gate)
+    run.live(history)
+    waits = True
+    for each in run.engine.outputs:
+        if each.kind == "zero":
+            waits = True
+            assert is_zero(each.message)
+        elif is_zero(each.message):
+            waits = False
+        else:
+            assert not waits
+
+
+@given(gates(*LATCHING, *WAITING), histories)
+def test_a_loss_lasts_until_the_reset(
+    gate: tuple[Gate, Program], history: list[Happening]
+) -> None:
+    """From the loss on, and from the start on, all is zero until a reset that was granted."""
+    run = Waiting(gate)
+    latched = [True]
+    watched = [line.lost for line in gate[0].lines if line.until_reset]
+
+    def check(published: list[Output]) -> None:
+        for each in published:
+            # What a call publishes before it resets is of the time before.
+            assert each.kind == "zero" or not latched[0]
+        for lost in watched:
+            latched[0] = latched[0] or run.is_silent(str(lost), run.now)
+        if run.granted:
+            latched[0] = False
+
+    run.live(history, check)
+
+
+@given(gates(*LATCHING, *WAITING), histories)
+def test_no_reset_while_something_is_lost_or_active(
+    gate: tuple[Gate, Program], history: list[Happening]
+) -> None:
+    """And none makes the gate publish anything by itself."""
+    run = Waiting(gate)
+
+    def check(published: list[Output]) -> None:
+        if run.granted:
+            assert not any(run.is_silent(lost, run.now) for lost in ("heartbeat", "input"))
+            assert not run.said.get("/stop", True)
+        if run.call == "reset":
+            assert {each.kind for each in published} <= {"zero", "limited"}
+
+    run.live(history, check)
+
+
+@given(gates(*LATCHING, *WAITING), histories, st.floats(-9, 9))
+def test_the_gate_can_always_be_opened(
+    gate: tuple[Gate, Program], history: list[Happening], speed: float
+) -> None:
+    """Everybody is there, nothing is active; a reset, a zero, and the very command passes."""
+    run = Waiting(gate)
+    opening = [
+        *((0, "beat", 1), (0, "beat", 1), (0, "/stop", False), (0, "/low_speed", False)),
+        *((0, "command", twist(1.0)), (0, "reset", None), (0, "command", zero_twist())),
+    ]
+    run.live([*history, *opening])
+    command = twist(speed)
+    published = run.engine.command(run.now, command)
+    assert [(each.t_ns, each.kind) for each in published] == [(run.now, "pass")]
+    assert published[0].message is command
+    assert not any(run.engine.applying)
+
+
+@given(gates(*WAITING), histories)
+def test_late_calls_decide_alike(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """A gate without any timer publishes the same for what comes; only zeros fall out."""
+    timely, late = Waiting(gate), Waiting(gate)
+    timely.live(history)
+    for wait, call, value in history:
+        late.now += wait
+        late.happen(call, value)
+    driven = [each for each in timely.engine.outputs if each.kind != "zero"]
+    assert [each for each in late.engine.outputs if each.kind != "zero"] == driven
