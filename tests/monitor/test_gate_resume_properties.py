@@ -9,7 +9,14 @@ from hypothesis import strategies as st
 
 from deros.monitor.gate import Output
 from deros.monitor.ir import Gate, Program
-from tests.monitor.test_gate_properties import Happening, Run, calls, gates, is_zero, waits_and_steps
+from tests.monitor.test_gate_properties import (
+    Happening,
+    Run,
+    calls,
+    gates,
+    is_zero,
+    waits_and_steps,
+)
 from tests.support.gate_driver import HEARTBEAT, INPUT, LOW, STOP, twist, zero_twist
 
 LATCHED_HEARTBEAT = HEARTBEAT.replace("zero", "zero until reset")
@@ -30,7 +37,9 @@ more_calls = st.one_of(
     st.just(("reset", None)),
     st.sampled_from((("/stop", False), ("beat", 1))),
 )
-histories = st.lists(st.builds(lambda w, call: (w, *call), waits_and_steps, more_calls), max_size=50)
+histories = st.lists(
+    st.builds(lambda w, call: (w, *call), waits_and_steps, more_calls), max_size=50
+)
 
 
 class Waiting(Run):
@@ -75,9 +84,7 @@ def test_the_controller_stands_before_it_drives(
 
 
 @given(gates(*LATCHING, *WAITING), histories)
-def test_a_loss_lasts_until_the_reset(
-    gate: tuple[Gate, Program], history: list[Happening]
-) -> None:
+def test_a_loss_lasts_until_the_reset(gate: tuple[Gate, Program], history: list[Happening]) -> None:
     """From the loss on, and from the start on, all is zero until a reset that was granted."""
     run = Waiting(gate)
     latched = [True]

@@ -80,11 +80,19 @@ def gates(draw: st.DrawFn) -> Gate:
         type=message_type(name),
         period_ns=draw(st.integers(1, 12)),
         lines=tuple(
-            GateLine(*head, draw(_limits(name)), span(number))
+            _line(head, draw(_limits(name)), draw(_rarely), number)
             for number, head in enumerate(lines, start=2)
         ),
         span=span(1),
+        resume_on_zero=draw(_rarely),
     )
+
+
+_rarely = st.sampled_from((False, False, True))
+
+
+def _line(head: Any, limits: tuple[Limit, ...], until_reset: bool, number: int) -> GateLine:
+    return GateLine(*head, limits, span(number), until_reset and not limits)
 
 
 _heads: st.SearchStrategy[tuple[Any, Any, Any]] = st.one_of(
@@ -138,13 +146,15 @@ QUIET = (
 
 CALLS = (
     *("command", "command", "command", "state", "state"),
-    *("heartbeat", "heartbeat", "advance", "no_safety_node"),
+    *("heartbeat", "heartbeat", "advance", "no_safety_node", "reset"),
 )
 """What may happen, some of it more often."""
 
 _mostly = st.sampled_from((True, True, True, False))
 _waits = st.sampled_from((0, 0, 0, 1, 1, 2, 3, 4, 5, 7, 10, 12, 25, 60, -1, -5))
 _tame_floats = st.sampled_from((-3.0, -1.0, -0.5, -0.0, 0.0, 0.25, 0.5, 1.0, 3.0))
+_zeros = st.just(0.0)
+_integers = st.integers(-9, 9)
 _wild_floats = st.sampled_from((math.nan, math.inf)) | st.floats()
 
 
@@ -161,7 +171,9 @@ def _happening(draw: st.DrawFn, kind: InterfaceType) -> Happening:
     call = draw(st.sampled_from(CALLS))
     if call == "command":
         good, any_at_all = messages(kind, _tame_floats), messages(kind, _wild_floats)
-        return Happening(wait_ns, call, draw(st.one_of(good, good, good, any_at_all, st.none())))
+        none = messages(kind, _zeros, st.just(0))
+        drawn = st.one_of(good, good, good, none, none, any_at_all, st.none())
+        return Happening(wait_ns, call, draw(drawn))
     if call == "state":
         topic = draw(st.sampled_from(("/stop", "/go", "/mode", "/mode")))
         values = st.integers(0, 3) if topic == "/mode" else st.booleans()
@@ -173,23 +185,27 @@ def _happening(draw: st.DrawFn, kind: InterfaceType) -> Happening:
 
 
 def messages(
-    kind: InterfaceType, floats: st.SearchStrategy[float]
+    kind: InterfaceType,
+    floats: st.SearchStrategy[float],
+    integers: st.SearchStrategy[int] = _integers,
 ) -> st.SearchStrategy[dict[str, Any]]:
-    """Draw messages as plain data, with their floats out of ``floats``."""
+    """Draw messages as plain data, with numbers out of ``floats`` and ``integers``."""
     definition = STORE.message(kind)
     assert definition is not None
-    fields = {name: _values(field, floats) for name, field in definition.fields}
+    fields = {name: _values(field, floats, integers) for name, field in definition.fields}
     return st.fixed_dictionaries(fields)
 
 
-def _values(field: FieldType, floats: st.SearchStrategy[float]) -> st.SearchStrategy[Any]:
+def _values(
+    field: FieldType, floats: st.SearchStrategy[float], integers: st.SearchStrategy[int]
+) -> st.SearchStrategy[Any]:
     if field.is_array:
-        return st.lists(_values(field.element, floats), max_size=3)
+        return st.lists(_values(field.element, floats, integers), max_size=3)
     if isinstance(field.base, InterfaceType):
-        return messages(field.base, floats)
+        return messages(field.base, floats, integers)
     if field.is_float:
         return floats
-    return st.sampled_from(("", "a b")) if field.base == "string" else st.integers(-9, 9)
+    return st.sampled_from(("", "a b")) if field.base == "string" else integers
 
 
 # The generated gate -------------------------------------------------------------------------------
@@ -252,7 +268,8 @@ class GeneratedGate:
             return
         self._command = message
         fields = self._functions["limited_fields"](_object(message)) if self._view.fields else ()
-        self._gate.on_command(t_ns, *fields)
+        is_zero = [self._functions["is_zero"](_object(message))] if self._view.waits else []
+        self._gate.on_command(t_ns, *fields, *is_zero)
 
     def state(
         self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
@@ -279,6 +296,13 @@ class GeneratedGate:
             self._gate.on_no_safety_node(t_ns)
         else:
             self._gate.advance(t_ns)
+
+    def reset(self, t_ns: int) -> tuple[int, ...]:
+        """Take a reset; return the indices of the lines that stand against it."""
+        if not self._view.latching:
+            self._gate.advance(t_ns)
+            return ()
+        return tuple(map(self._logic["LINES"].index, self._gate.on_reset(t_ns)))
 
     def advance(self, t_ns: int) -> None:
         """Settle all that is due up to and including ``t_ns``."""
@@ -346,12 +370,15 @@ class Player(Protocol):
     def no_safety_node(self, t_ns: int) -> object:
         """Take note that no node can be the safety node."""
 
+    def reset(self, t_ns: int) -> object:
+        """Take a reset."""
+
     def advance(self, t_ns: int) -> object:
         """Settle all that is due."""
 
 
-def play(gate: Player, t_ns: int, each: Happening) -> None:
-    """Let something happen to a gate."""
+def play(gate: Player, t_ns: int, each: Happening) -> object:
+    """Let something happen to a gate; of a reset, return what stands against it."""
     if each.call == "command":
         gate.command(t_ns, each.message)
     elif each.call == "state":
@@ -360,5 +387,8 @@ def play(gate: Player, t_ns: int, each: Happening) -> None:
         gate.heartbeat(t_ns, each.counter)
     elif each.call == "no_safety_node":
         gate.no_safety_node(t_ns)
+    elif each.call == "reset":
+        return gate.reset(t_ns)
     else:
         gate.advance(t_ns)
+    return None

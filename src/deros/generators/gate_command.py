@@ -29,12 +29,14 @@ class CommandType:
         type: its name in ROS 2.
         finite: the fields that hold floats, themselves or in the messages that they are.
         zeros: the fields that zero changes; of a header that is its stamp.
+        numbers: those of them that are 0 in a command to do nothing; no header is among them.
         stamped: whether it, or a message in it, has a header that takes the time.
     """
 
     type: InterfaceType
     finite: Fields
     zeros: Fields
+    numbers: Fields
     stamped: bool
 
     def is_one(self, field: str) -> bool:
@@ -50,12 +52,14 @@ class TypeBase:
         type: its name in ROS 2.
         finite: the operands whose conjunction tells whether each float in it is finite.
         zeros: the statements that make zeros of it.
+        zero_tests: the operands whose conjunction tells whether it commands nothing.
         stamped: whether it, or a message in it, has a header that takes the time.
     """
 
     type: InterfaceType
     finite: tuple[str, ...]
     zeros: tuple[str, ...]
+    zero_tests: tuple[str, ...]
     stamped: bool
 
 
@@ -83,7 +87,8 @@ def _collect(
     if finite or zeros:
         parts = [found.get(base) for base in nested]
         stamped = HEADER in nested or any(part.stamped for part in parts if part)
-        found[kind] = CommandType(kind, finite, zeros, stamped)
+        numbers = tuple(_numbers(kind, zeros, found))
+        found[kind] = CommandType(kind, finite, zeros, numbers, stamped)
 
 
 def _finite(
@@ -109,6 +114,16 @@ def _zeros(
                 field.base in found and bool(found[field.base].zeros)
             )
         if is_changed:
+            yield name, field
+
+
+def _numbers(
+    kind: InterfaceType, zeros: Fields, found: dict[InterfaceType, CommandType]
+) -> Iterator[tuple[str, FieldType]]:
+    for name, field in zeros:
+        if kind == QUATERNION and name == "w":
+            continue  # of no rotation it is 1
+        if isinstance(field.base, str) or (field.base in found and found[field.base].numbers):
             yield name, field
 
 

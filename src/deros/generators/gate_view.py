@@ -14,6 +14,10 @@ from deros.interfaces.fields import format_path
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Limit, Program
 
 
+WAITS = "waits for a zero command"
+"""What a gate says while that is all that holds commands back."""
+
+
 @dataclass(frozen=True, slots=True)
 class ActionView:
     """An action that the gate heeds: the name of its state, and when a message says active."""
@@ -35,6 +39,8 @@ class LineView:
             silent; 0 of any other line.
         state: the name of the action's state, of a line about an action.
         limits: what it keeps fields within; none: it commands zero.
+        latch: the name of what tells that it has applied since the last reset, if it commands zero
+            until a reset; else empty.
     """
 
     name: str
@@ -45,6 +51,7 @@ class LineView:
     lost_ns: int
     state: str
     limits: tuple[Limit, ...]
+    latch: str
 
     @property
     def zero(self) -> bool:
@@ -62,6 +69,7 @@ class GateBase:
         period_ns: between two zeros.
         types: what is done to messages of each type in the command, which is the last.
         actions: those that it heeds.
+        waits: whether commands pass again only after one that is zero.
     """
 
     origin: str
@@ -70,6 +78,7 @@ class GateBase:
     types: tuple[TypeBase, ...]
     actions: tuple[ActionView, ...]
     lines: tuple[LineView, ...]
+    waits: bool
 
     @property
     def has_floats(self) -> bool:
@@ -90,6 +99,28 @@ class GateBase:
     def losses(self) -> tuple[LineView, ...]:
         """The lines about a loss."""
         return tuple(line for line in self.lines if line.lost)
+
+    @property
+    def latching(self) -> tuple[LineView, ...]:
+        """The lines that command zero until a reset."""
+        return tuple(line for line in self.lines if line.latch)
+
+    @property
+    def releasing(self) -> tuple[LineView, ...]:
+        """The lines that command zero for as long as they apply, and let go by themselves."""
+        return tuple(line for line in self.lines if line.zero and not line.latch)
+
+    @property
+    def refusing(self) -> tuple[int, ...]:
+        """The numbers of the lines that refuse a reset while they apply."""
+        return tuple(n for n, line in enumerate(self.lines) if line.lost or line.zero)
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """What can hold commands back, one text each: lines, latches, and the wait for a zero."""
+        latched = (f"waits for a reset, after {line.shown}" for line in self.latching)
+        waits = (WAITS,) if self.waits else ()
+        return (*(line.shown for line in self.lines), *latched, *waits)
 
     @property
     def lost(self) -> tuple[str, ...]:
@@ -139,7 +170,16 @@ def _line(line: GateLine, program: Program, states: Mapping[str, str], names: Na
         lost_ns=line.lost_ns or 0,
         state=state,
         limits=line.limits,
+        latch=names.new(name, "latched") if line.until_reset else "",
     )
+
+
+def limiting_lines(gate: Gate, lines: Sequence[LineView]) -> tuple[LineView, ...]:
+    """Return the lines among which the first that applies and speaks of a field decides on it.
+
+    What holds all fields at zero whenever it applies is left out: it is decided before.
+    """
+    return tuple(line for line in lines if not (line.zero and (line.latch or gate.resume_on_zero)))
 
 
 def deciding_lines(lines: Sequence[LineView], path: str) -> list[tuple[LineView, Limit | None]]:

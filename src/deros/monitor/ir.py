@@ -321,6 +321,16 @@ class Gate:
     description: str = ""
     resume_on_zero: bool = False
 
+    @property
+    def is_latching(self) -> bool:
+        """Whether a line commands zero until a reset, so that the gate has one."""
+        return any(line.until_reset for line in self.lines)
+
+    @property
+    def is_holding(self) -> bool:
+        """Whether zero can outlast the line that commands it."""
+        return self.resume_on_zero or self.is_latching
+
 
 @dataclass(frozen=True, slots=True)
 class Program:

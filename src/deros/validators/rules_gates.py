@@ -124,7 +124,9 @@ def _resuming(gate: ir.Gate, written: Gate, program: ir.Program) -> Iterator[Dia
 
 
 def _ended(line: ir.GateLine, program: ir.Program) -> str:
-    return f"a lost {line.lost}" if line.action is None else f"'{program.actions[line.action].name}'"
+    return (
+        f"a lost {line.lost}" if line.action is None else f"'{program.actions[line.action].name}'"
+    )
 
 
 def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:

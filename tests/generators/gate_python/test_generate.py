@@ -18,7 +18,7 @@ from tests.support.gate_nodes import MODELS, write_gates
 from tests.support.golden import Golden
 from tests.support.lint import assert_lint_clean
 
-GATES = ("cmd_vel_gate", "arm_command_gate", "lamp_command_gate")
+GATES = ("cmd_vel_gate", "arm_command_gate", "wheels_command_gate", "lamp_command_gate")
 HEAD = """
 use "robot.system" import Robot
 action stop publishes true on /stop : std_msgs.Bool latched;
@@ -52,7 +52,7 @@ def test_the_files_are_as_kept(golden: Golden) -> None:
     assert isinstance(model, Rules)
     made = generate(model, context, {})
     ends = (".py", ".rnd", "_logic.py", "_message.py")
-    own = {f"{gate}{end}" for gate in GATES[:2] for end in ends}
+    own = {f"{gate}{end}" for gate in GATES[:3] for end in ends}
     kept = {path: file for path, file in made.items() if Path(path).name in own}
     assert len(kept) == len(own)
     golden.check("gate_python/gates", kept)

@@ -51,8 +51,9 @@ def type_views(store: InterfaceStore, kind: InterfaceType) -> tuple[TypeView, ..
     for each in command_types(store, kind):
         finite = tuple(_is_finite(name, field, views) for name, field in each.finite)
         zeros = tuple(_make_zero(each, name, field, views) for name, field in each.zeros)
+        tests = tuple(_is_zero(name, field, views) for name, field in each.numbers)
         prefix = "" if each.type == kind else _prefix(each.type, views)
-        views[each.type] = TypeView(each.type, finite, zeros, each.stamped, prefix)
+        views[each.type] = TypeView(each.type, finite, zeros, tests, each.stamped, prefix)
     return tuple(views.values())
 
 
@@ -67,6 +68,16 @@ def _is_finite(name: str, field: FieldType, views: Mapping[InterfaceType, TypeVi
     base = field.base
     test = "isfinite" if isinstance(base, str) else f"{views[base].prefix}is_finite"
     return f"all(map({test}, msg.{name}))" if field.is_array else f"{test}(msg.{name})"
+
+
+def _is_zero(name: str, field: FieldType, views: Mapping[InterfaceType, TypeView]) -> str:
+    base, place = field.base, f"msg.{name}"
+    if isinstance(base, InterfaceType):
+        test = f"{views[base].prefix}is_zero"
+        return f"all(map({test}, {place}))" if field.is_array else f"{test}({place})"
+    if base == "byte":
+        return f"not any(map(ord, {place}))" if field.is_array else f"not ord({place})"
+    return f"not any({place})" if field.is_array else f"not {place}"
 
 
 def _make_zero(

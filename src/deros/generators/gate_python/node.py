@@ -10,7 +10,9 @@ from deros.generators.safety_python.node import (
     DIAGNOSTICS_QOS,
     DIAGNOSTICS_TYPE,
     HEARTBEAT_TYPE,
+    RESET,
     STATE_QOS,
+    TRIGGER,
     are_reliable,
     made_port,
     stated_qos,
@@ -119,6 +121,10 @@ def _ports(gate: Gate, program: Program, topics: SystemTopics, safety_node: Node
         DIAGNOSTICS_QOS,
         "What applies",
     )
+    if gate.is_latching:
+        description = "Ends the zeros that last until a reset, once their causes are over"
+        reset = made_port(PortKind.SERVICE, RESET, TRIGGER, gate.span, None, description)
+        return [target, diagnostics, *ports.values(), reset]
     return [target, diagnostics, *ports.values()]
 
 

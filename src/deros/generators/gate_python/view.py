@@ -15,6 +15,7 @@ from deros.generators.gate_view import (
     LineView,
     deciding_lines,
     heeded_actions,
+    limiting_lines,
     line_views,
 )
 from deros.generators.message_fields import field_type
@@ -28,7 +29,7 @@ from deros.generators.rosnode_python.view import (
     node_view,
 )
 from deros.generators.safety_python.messages import literal
-from deros.generators.safety_python.node import HEARTBEAT_TYPE
+from deros.generators.safety_python.node import HEARTBEAT_TYPE, RESET, TRIGGER
 from deros.interfaces.fields import format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
@@ -42,9 +43,13 @@ _TAKEN = frozenset(
         "LINES",
         "Limits",
         "PERIOD",
+        "REFUSING",
         "Values",
+        "against",
         "applying",
+        "is_held",
         "is_new",
+        "is_zero",
         "kept",
         "limits",
         "values",
@@ -102,6 +107,7 @@ class GateView(GateBase):
         source: the port that commands come in by, and ``target`` that which they go out by.
         heartbeat: the port of the heartbeat, where a line needs one.
         imports: the statements that import the interfaces.
+        trigger: the service class of ``~/reset`` as the module names it; empty without latches.
     """
 
     node: NodeView
@@ -113,6 +119,7 @@ class GateView(GateBase):
     imports: tuple[str, ...]
     fields: tuple[FieldView, ...]
     states: tuple[StateView, ...]
+    trigger: str
 
     @property
     def lost_heartbeat(self) -> str:
@@ -133,13 +140,26 @@ class GateView(GateBase):
 
     @property
     def zero(self) -> str:
-        """The condition that some line commands zero."""
-        return _any_of(line.name for line in self.lines if line.zero) or "False"
+        """The condition that some line commands zero, or is latched."""
+        releasing = (line.name for line in self.releasing)
+        return _any_of((*releasing, *(["is_held"] if self.latching else []))) or "False"
+
+    @property
+    def latched(self) -> str:
+        """The condition that some line is latched."""
+        return _any_of(f"self._{line.latch}" for line in self.latching)
 
     @property
     def all_lines(self) -> Call:
-        """Of each line, whether it applies."""
-        return _tuple(line.name for line in self.lines)
+        """Of all that can hold commands back, whether it does."""
+        names = [line.name for line in self.lines]
+        names += [f"self._{line.latch} and not {line.name}" for line in self.latching]
+        return _tuple([*names, *(["is_held and not zero"] if self.waits else [])])
+
+    @property
+    def refusing_lines(self) -> Call:
+        """The numbers of the lines that refuse a reset."""
+        return _tuple(map(str, self.refusing))
 
     @property
     def values(self) -> Call:
@@ -155,14 +175,15 @@ class GateView(GateBase):
     def command_parameters(self) -> tuple[str, ...]:
         """The parameters of the method that takes a command."""
         fields = (f"{each.field.name}: float | None" for each in self.fields)
-        return ("self", "t: int", *fields)
+        return ("self", "t: int", *fields, *(["is_zero: bool"] if self.waits else []))
 
     @property
     def follow(self) -> str:
         """The arguments of the method that does what follows."""
+        zero = "is_held" if self.waits else "zero"
         if not self.fields:
-            return "t, zero, is_new"
-        return f"t, zero, limits, is_new{f', {self.lost_input}' if 'input' in self.lost else ''}"
+            return f"t, {zero}, is_new"
+        return f"t, {zero}, limits, is_new{f', {self.lost_input}' if 'input' in self.lost else ''}"
 
     @property
     def lost_due(self) -> Call | str:
@@ -211,6 +232,7 @@ def gate_view(
     heard = {binding.type for bound in heeded.values() for _, binding in bound}
     if node.port(heartbeat):
         heard.add(HEARTBEAT_TYPE)
+    called = {TRIGGER} if node.port(RESET) else set()
     return GateView(
         node=base,
         rules=origin(gate.span).rpartition(":")[0],
@@ -220,14 +242,20 @@ def gate_view(
         source=_port(base.subscriptions, gate.source),
         target=_port(base.publishers, gate.target),
         heartbeat=_port(base.subscriptions, heartbeat) if node.port(heartbeat) else None,
-        imports=tuple(_imports(base, node, {gate.type, *heard}, is_heeding=bool(heard))),
+        imports=tuple(_imports(base, node, {gate.type, *heard, *called}, is_heeding=bool(heard))),
         period_ns=gate.period_ns,
         types=type_views(store, gate.type),
         fields=tuple(_fields(gate, lines, store, names)),
         lines=lines,
         actions=actions,
         states=states,
+        waits=gate.resume_on_zero,
+        trigger=_trigger(base) if node.port(RESET) else "",
     )
+
+
+def _trigger(base: NodeView) -> str:
+    return dict(base.interfaces)[TRIGGER]
 
 
 def nanoseconds(count: int) -> str:
@@ -283,13 +311,15 @@ def _action(action: Action, binding: Binding, store: InterfaceStore, names: Name
 def _fields(
     gate: Gate, lines: Sequence[LineView], store: InterfaceStore, names: Names
 ) -> Iterator[FieldView]:
+    limiting = limiting_lines(gate, lines)
     for path in limited_paths(gate):
         field = limited_field(store, gate.type, path, names.new(*path))
         decided = (
             f"{_interval(limit)} if {line.name}"
-            for line, limit in deciding_lines(lines, field.path)
+            for line, limit in deciding_lines(limiting, field.path)
         )
-        yield FieldView(field, (*decided, "None"))
+        held = ["None if is_held"] if gate.is_holding else []
+        yield FieldView(field, (*held, *decided, "None"))
 
 
 def _interval(limit: Limit | None) -> str:

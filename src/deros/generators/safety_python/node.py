@@ -22,7 +22,7 @@ DIAGNOSTICS = "/diagnostics"
 RESET = "~/reset"
 
 HEARTBEAT_TYPE = InterfaceType("std_msgs", "msg", "UInt64")
-_TRIGGER = InterfaceType("std_srvs", "srv", "Trigger")
+TRIGGER = InterfaceType("std_srvs", "srv", "Trigger")
 _STATUS = InterfaceType("diagnostic_msgs", "msg", "DiagnosticStatus")
 DIAGNOSTICS_TYPE = InterfaceType("diagnostic_msgs", "msg", "DiagnosticArray")
 STATE_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1)
@@ -201,7 +201,7 @@ def _ports(program: Program, topics: SystemTopics, start: Span) -> list[Port]:
         ports.append(made_port(PortKind.SUBSCRIPTION, topic, kind, spans[topic], qos, ""))
     if any(action.latched for action in program.actions):
         description = "Resets the latched actions that no behaviour calls for"
-        ports.append(made_port(PortKind.SERVICE, RESET, _TRIGGER, start, None, description))
+        ports.append(made_port(PortKind.SERVICE, RESET, TRIGGER, start, None, description))
     return ports
 
 

@@ -76,6 +76,16 @@ class Report:
         self._cause = cause
         self._hurry()
 
+    def answer(self, against: Sequence[str]) -> str:
+        """Log a reset, and return the answer to it; against are the lines that refuse it."""
+        if against:
+            text = f'not reset, because this applies: {"; ".join(against)}'
+            self._node.get_logger().warning(text)
+        else:
+            text = f'reset: {"; ".join(self._applying()) or "commands pass"}'
+            self._node.get_logger().info(text)
+        return text
+
     def fault(self, subject: str, text: str) -> None:
         """Note or, with an empty text, forget what is wrong with something."""
         if self.faults.get(subject, '') == text:
