@@ -31,6 +31,8 @@ from tests.support.victims import Process, Sensors
 NODE = "faulty_safety_node"
 PACKAGE = "faulty_safety"
 GATE = "cmd_vel_gate"
+WHEELS_GATE = "wheels_gate"
+"""The gate that lets nothing move again by itself."""
 
 PROMPT = 1.0
 """Seconds from hearing a violation to the stop that counts as not missed, on any machine.
@@ -148,6 +150,8 @@ class Robot:
         fault_events: what its events have said of that.
         events: the values of all its events, and their messages.
         commands: the speeds that have reached the drive.
+        wheels: the speeds that have reached the wheels, past the gate that waits.
+        waiting: what that gate says that it holds commands back for.
     """
 
     def __init__(
@@ -173,17 +177,22 @@ class Robot:
         self.fault_events: dict[str, list[str]] = {}
         self.events: list[dict[str, str]] = []
         self.commands: list[Heard] = []
+        self.wheels: list[Heard] = []
+        self.waiting = ""
         self._speeds: list[Heard] = []
         self._prober: Sensors | None = None
         self._node: Process | None = None
         self._processes: list[Process] = []
-        self._reset = peer.node.create_client(Trigger, f"/{NODE}/reset")
+        self._resets = {
+            node: peer.node.create_client(Trigger, f"/{node}/reset") for node in (NODE, WHEELS_GATE)
+        }
         for topic, seen in self.states.items():
             self._listen(Bool, topic, seen, kept=True)
         self._listen(UInt64, f"/{NODE}/heartbeat", self.beats)
         self._listen_to_reports()
         self._listen(Float64, "/speed", self._speeds)
         self._listen(Twist, "/cmd_vel", self.commands)
+        self._listen(Twist, "/wheels", self.wheels)
 
     def _listen(self, message: Any, topic: str, seen: list[Heard], kept: bool = False) -> None:
         from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -206,6 +215,8 @@ class Robot:
                     values = {pair.key: pair.value for pair in status.values}
                     self.faults = {k: v for k, v in values.items() if k != "state"}
                     assert (status.level == DiagnosticStatus.ERROR) == bool(self.faults)
+                elif status.name == f"/{WHEELS_GATE}":
+                    self.waiting = status.message
 
         def happened(msg: DiagnosticStatus) -> None:
             values = {pair.key: pair.value for pair in msg.values}
@@ -345,6 +356,15 @@ class Robot:
         yield gate
         gate.end()
 
+    @contextlib.contextmanager
+    def wheels_gate(self) -> Iterator[Process]:
+        """Run the gate that waits, as :meth:`gate` does the other one."""
+        gate = self.start(WHEELS_GATE)
+        self.until(lambda: self.wheels)
+        yield gate
+        if gate.popen.poll() is None:
+            gate.end()
+
     def restart(self) -> Process:
         """Start the safety node again, as it was started before, once it has ended."""
         assert self._node is not None
@@ -392,18 +412,18 @@ class Robot:
         self._prober.play("/speed", speed(0.1))
         self.until(lambda: self._speeds[-1].value == 0.1)
 
-    def reset(self) -> tuple[bool, str]:
-        """Call the reset service; return whether it was done, and what it says."""
-        response = self.call_reset()
+    def reset(self, node: str = NODE) -> tuple[bool, str]:
+        """Call the reset service of a node; return whether it was done, and what it says."""
+        response = self.call_reset(node)
         self.until(response.done)
         return response.result().success, response.result().message
 
-    def call_reset(self) -> Any:
+    def call_reset(self, node: str = NODE) -> Any:
         """Call the reset service, and return the response that is to come, as a future."""
         from std_srvs.srv import Trigger
 
-        self.until(self._reset.service_is_ready)
-        return self._reset.call_async(Trigger.Request())
+        self.until(self._resets[node].service_is_ready)
+        return self._resets[node].call_async(Trigger.Request())
 
     def assert_protects(self) -> None:
         """See that the node lives, and that a violation stops the robot unless it is stopped.

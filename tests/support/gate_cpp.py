@@ -36,7 +36,7 @@ SANITIZED = ("-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover
 needs_clang = pytest.mark.skipif(shutil.which("clang++") is None, reason="no clang++")
 
 _KINDS: tuple[OutputKind, ...] = ("pass", "limited", "zero")
-_CALLS = ("command", "state", "heartbeat", "advance", "no_safety_node")
+_CALLS = ("command", "state", "heartbeat", "advance", "no_safety_node", "reset")
 _NEVER = 2**63 - 1
 
 
@@ -104,6 +104,7 @@ public:
     wire::get(from, counter);
     out_ = wire::Bytes{{}};
     count_ = 0;
+    is_done_ = true;
     take(call, t, topic, is_given, is_trusted, counter, from);
     wire::put(to, count_);
     to.data += out_.data;
@@ -111,6 +112,7 @@ public:
     for (const bool applies : gate_->applying()) {{
       wire::put(to, applies);
     }}
+    wire::put(to, is_done_);
   }}
 
 private:
@@ -133,6 +135,7 @@ private:
 {states}
 {heartbeat}
 {lost}
+{reset}
     (void)topic;
     (void)is_trusted;
     (void)counter;
@@ -150,6 +153,7 @@ private:
   std::optional<{logic}> gate_{{}};
   wire::Bytes out_{{}};
   std::uint32_t count_{{0}};
+  bool is_done_{{true}};
 }};
 
 }}  // namespace {package}
@@ -246,12 +250,14 @@ def _adapter(view: GateView) -> str:
     )
     heartbeat = "    if (call == 2) {gate_->on_heartbeat(t, counter); return;}"
     lost = "    if (call == 4) {gate_->on_no_safety_node(t); return;}"
+    reset = "    if (call == 5) {is_done_ = gate_->on_reset(t); return;}"
     return _ADAPTER.format(
         package=view.package,
         logic=view.logic_class,
         states=states,
         heartbeat=heartbeat if view.heartbeat_port else "",
         lost=lost if view.heeds_safety_node else "",
+        reset=reset if view.latching else "",
         stamp=_STAMP if view.stamped else "",
     )
 
@@ -319,12 +325,14 @@ class Answer:
     Attributes:
         outputs: when, what kind, and the message as :func:`tests.support.wire.encode` writes it.
         next_deadline: when something can happen by itself.
-        applying: of each line, whether it applies.
+        applying: of all that can hold commands back, whether it does.
+        is_done: whether it was granted, of a reset.
     """
 
     outputs: tuple[tuple[int, OutputKind, bytes], ...]
     next_deadline: int | None
     applying: tuple[bool, ...]
+    is_done: bool
 
 
 class Players:
@@ -393,8 +401,10 @@ def _answers(gate: Gate, data: bytes, count: int) -> Iterator[Answer]:
             t_ns, what = reader.take("<q"), reader.take("<B")
             outputs.append((t_ns, _KINDS[what], reader.skip(gate.type)))
         due = reader.take("<q")
-        applying = tuple(reader.take("<?") for _ in gate.lines)
-        yield Answer(tuple(outputs), None if due == _NEVER else due, applying)
+        held = len(gate.lines) + sum(line.until_reset for line in gate.lines)
+        applying = tuple(reader.take("<?") for _ in range(held + gate.resume_on_zero))
+        is_done = reader.take("<?")
+        yield Answer(tuple(outputs), None if due == _NEVER else due, applying, is_done)
     assert reader.is_at_end
 
 

@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
-from deros.monitor.commands import LAYOUT, QUATERNION, TIME
+from deros.monitor.commands import LAYOUT, QUATERNION, TIME, Message, zero
 from deros.monitor.ir import Gate, GateLine, Limit
 from tests.support.gates import (
     ACTIONS,
@@ -53,11 +53,14 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
     lines = []
     for number in range(2, 2 + rng.randint(1, 6)):
         limits = _limits(rng, name, paths)
+        latches = not limits and rng.random() < 0.3
         if rng.random() < 0.5:
-            lines.append(GateLine(rng.randrange(len(ACTIONS)), None, None, limits, span(number)))
+            action = rng.randrange(len(ACTIONS))
+            lines.append(GateLine(action, None, None, limits, span(number), latches))
         else:
             lost: Literal["heartbeat", "input"] = rng.choice(("heartbeat", "input"))
-            lines.append(GateLine(None, lost, rng.randint(1, 60), limits, span(number)))
+            lost_ns = rng.randint(1, 60)
+            lines.append(GateLine(None, lost, lost_ns, limits, span(number), latches))
     return Gate(
         index=0,
         source="/wish",
@@ -66,6 +69,7 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
         period_ns=rng.randint(1, 12),
         lines=tuple(lines),
         span=span(1),
+        resume_on_zero=rng.random() < 0.4,
     )
 
 
@@ -114,7 +118,13 @@ def _happening(rng: random.Random, kind: InterfaceType) -> Happening:
     call = rng.choice(CALLS)
     if call == "command":
         fate = rng.random()
-        message = None if fate < 0.1 else random_message(rng, kind, wild=fate < 0.25)
+        message: Message | None
+        if fate > 0.7:
+            message = zero(
+                STORE, kind, random_message(rng, kind, wild=False), t_ns=rng.randint(0, 9)
+            )
+        else:
+            message = None if fate < 0.1 else random_message(rng, kind, wild=fate < 0.25)
         return Happening(wait_ns, call, message)
     if call == "state":
         topic = rng.choice(("/stop", "/go", "/mode", "/mode"))

@@ -92,7 +92,8 @@ _rarely = st.sampled_from((False, False, True))
 
 
 def _line(head: Any, limits: tuple[Limit, ...], until_reset: bool, number: int) -> GateLine:
-    return GateLine(*head, limits, span(number), until_reset and not limits)
+    action, lost, lost_ns = head
+    return GateLine(action, lost, lost_ns, limits, span(number), until_reset and not limits)
 
 
 _heads: st.SearchStrategy[tuple[Any, Any, Any]] = st.one_of(

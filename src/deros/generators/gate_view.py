@@ -13,7 +13,6 @@ from deros.generators.python_source import one_line
 from deros.interfaces.fields import format_path
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Limit, Program
 
-
 WAITS = "waits for a zero command"
 """What a gate says while that is all that holds commands back."""
 

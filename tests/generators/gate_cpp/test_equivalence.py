@@ -60,7 +60,9 @@ def check_trace(players: Players, gates: Sequence[Gate], number: int, trace: Tra
     answers = players.play(number, START_NS, trace)
     for step, ((t_ns, happening), answer) in enumerate(zip(trace, answers, strict=True)):
         before = len(engine.outputs)
-        play(engine, t_ns, happening)
+        against = play(engine, t_ns, happening)
+        assert answer.is_done == (not against) or not gate.is_latching
+        assert not engine.outputs or answer.applying == engine.applying
         expected = tuple(
             (each.t_ns, each.kind, encoded(gate.type, each.message))
             for each in engine.outputs[before:]

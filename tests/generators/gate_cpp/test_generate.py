@@ -19,7 +19,7 @@ from tests.support.gate_cpp_nodes import PACKAGE, gate_package
 from tests.support.gate_nodes import MODELS
 from tests.support.golden import Golden
 
-GATES = ("cmd_vel_gate", "arm_command_gate", "lamp_command_gate")
+GATES = ("cmd_vel_gate", "arm_command_gate", "wheels_command_gate", "lamp_command_gate")
 HEAD = """
 use "robot.system" import Robot
 action stop publishes true on /stop : std_msgs.Bool latched;
@@ -65,8 +65,8 @@ def files() -> Files:
 
 def test_the_files_are_as_kept(golden: Golden, files: Files) -> None:
     """Logic, node, program and description have the text that was reviewed."""
-    own = {f"{gate}{end}" for gate in GATES[:2] for end in (".hpp", ".cpp", "_cpp.rnd")}
-    own |= {f"{gate}_logic{end}" for gate in GATES[:2] for end in (".hpp", ".cpp")}
+    own = {f"{gate}{end}" for gate in GATES[:3] for end in (".hpp", ".cpp", "_cpp.rnd")}
+    own |= {f"{gate}_logic{end}" for gate in GATES[:3] for end in (".hpp", ".cpp")}
     own.add("cmd_vel_gate_main.cpp")
     kept = {path: file for path, file in files.items() if Path(path).name in own}
     assert len(kept) == len(own)

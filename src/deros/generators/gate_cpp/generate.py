@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from deros.generators.cpp_source import arguments, call, comment, include_lines, mark_long_lines
+from deros.generators.cpp_source import (
+    arguments,
+    call,
+    comment,
+    cpp_header,
+    cpp_string,
+    cpp_type,
+    include_lines,
+    mark_long_lines,
+)
 from deros.generators.gate_cpp.node import base_node
 from deros.generators.gate_cpp.source import condition, origin_comment, string_lines
 from deros.generators.gate_cpp.view import GateView, gate_view, nanoseconds
@@ -13,14 +22,15 @@ from deros.generators.protocol import File
 from deros.generators.rosnode_cpp.generate import Provided, licensed
 from deros.generators.safety_cpp.verbatim import runtime_sources, runtime_text
 from deros.generators.safety_python.description import node_description
+from deros.generators.safety_python.node import RESET, TRIGGER
 from deros.generators.templates import environment
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType
 from deros.monitor.ir import Program
 
 _SHARED = (
-    *("agenda", "clock_choice", "instance", "machine", "process", "publishers", "regular_file"),
-    *("sha256", "simulated", "start_order", "text", "worker"),
+    *("agenda", "clock_choice", "instance", "machine", "ports", "process", "publishers"),
+    *("regular_file", "sha256", "simulated", "start_order", "text", "worker"),
 )
 """The sources that gates have in common with the safety node."""
 
@@ -105,6 +115,8 @@ def render(template: str, view: GateView) -> str:
         own.append("runtime/safety_source")
     headers = [f"{view.package}/{name}.hpp" for name in own]
     heard = [view.heartbeat_port.header] if view.heartbeat_port else []
+    if view.latching:
+        heard.append(cpp_header(TRIGGER))
     text = loaded.render(
         gate=view,
         includes=include_lines([*headers, *heard, "rclcpp/rclcpp.hpp"]),
@@ -114,6 +126,8 @@ def render(template: str, view: GateView) -> str:
         condition=condition,
         nanoseconds=nanoseconds,
         origin_comment=origin_comment,
+        reset=cpp_string(RESET),
+        trigger=cpp_type(TRIGGER),
         string_lines=string_lines,
         taken=("const rclcpp::SerializedMessage & data", "const rclcpp::MessageInfo & info"),
     )

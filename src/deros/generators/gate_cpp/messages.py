@@ -63,7 +63,8 @@ def type_views(store: InterfaceStore, kind: InterfaceType) -> tuple[TypeView, ..
     for each in command_types(store, kind):
         finite = tuple(_is_finite(name, field) for name, field in each.finite)
         zeros = tuple(_make_zero(each, name, field, views) for name, field in each.zeros)
-        views[each.type] = TypeView(each.type, finite, zeros, each.stamped)
+        tests = tuple(_is_zero(name, field) for name, field in each.numbers)
+        views[each.type] = TypeView(each.type, finite, zeros, tests, each.stamped)
     return tuple(views.values())
 
 
@@ -74,6 +75,17 @@ def _is_finite(name: str, field: FieldType) -> str:
     if field.is_array:
         return f"runtime::are_all({place}, [](const auto & each) {{return is_finite(each);}})"
     return f"is_finite({place})"
+
+
+def _is_zero(name: str, field: FieldType) -> str:
+    place = f"message.{name}"
+    if isinstance(field.base, str):
+        if field.is_array:
+            return f"runtime::all_zero({place})"
+        return f"!{place}" if field.base == "bool" else f"{place} == {_zero(field.base)}"
+    if field.is_array:
+        return f"runtime::are_all({place}, [](const auto & each) {{return is_zero(each);}})"
+    return f"is_zero({place})"
 
 
 def _make_zero(

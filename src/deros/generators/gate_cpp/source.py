@@ -30,8 +30,9 @@ NUMBERS = {
 } | {name: f"std::{name}_t" for name in INTEGER_RANGES if name not in ("byte", "char")}
 """The C++ type of every primitive that is no text."""
 
-_OURS = """applying begin bounded command follow is_heartbeat_lost is_input_lost is_new keep limit
-limits message no_limit settle std t zero LATEST LINES LONG_AGO NEVER PERIOD"""
+_OURS = """applying begin bounded command follow is_heartbeat_lost is_input_lost is_latched is_new
+is_zero keep limit limits message may_release no_limit settle std t zero LATEST LINES LONG_AGO
+NEVER PERIOD REFUSING"""
 
 
 class CppNames(Names):

@@ -27,6 +27,7 @@ from deros.generators.gate_view import (
     LineView,
     deciding_lines,
     heeded_actions,
+    limiting_lines,
     line_views,
 )
 from deros.generators.message_fields import field_type
@@ -37,7 +38,7 @@ from deros.generators.python_source import sentence
 from deros.generators.rosnode_cpp.qos import qos_expression
 from deros.interfaces.fields import format_path
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.node import NodeType, Port
+from deros.metamodels.node import NodeType, Port, PortKind
 from deros.monitor.gates import CPP_SUFFIX
 from deros.monitor.ir import Action, Binding, Gate, Limit, Program
 
@@ -146,8 +147,26 @@ class GateView(GateBase):
 
     @property
     def zero(self) -> str:
-        """The condition that some line commands zero."""
-        return " || ".join(line.name for line in self.lines if line.zero) or "false"
+        """The condition that some line commands zero, or is latched."""
+        releasing = (line.name for line in self.releasing)
+        return " || ".join((*releasing, *(["is_latched"] if self.latching else []))) or "false"
+
+    @property
+    def latched(self) -> str:
+        """The condition that some line is latched."""
+        return " || ".join(f"{line.latch}_" for line in self.latching)
+
+    @property
+    def all_lines(self) -> tuple[str, ...]:
+        """Of all that can hold commands back, whether it does."""
+        names = [line.name for line in self.lines]
+        names += [f"{line.latch}_ && !{line.name}" for line in self.latching]
+        return (*names, *(["waits_ && !zero"] if self.waits else []))
+
+    @property
+    def settled(self) -> str:
+        """The parameters of what settles, after the time, and their defaults."""
+        return "bool is_new = false" + (", bool may_release = false" if self.waits else "")
 
     @property
     def headers(self) -> tuple[str, ...]:
@@ -175,7 +194,8 @@ def gate_view(
     """
     names = CppNames()
     name = node.name.removesuffix(CPP_SUFFIX)
-    ports = {port.name: _port(port) for port in node.ports}
+    topics = (port for port in node.ports if port.kind is not PortKind.SERVICE)
+    ports = {port.name: _port(port) for port in topics}
     states = tuple(
         _state(ports[topic], topic, bound, store, names)
         for topic, bound in heeded_actions(gate, program).items()
@@ -202,6 +222,7 @@ def gate_view(
         lines=lines,
         actions=actions,
         states=states,
+        waits=gate.resume_on_zero,
     )
 
 
@@ -253,13 +274,20 @@ def _action(action: Action, binding: Binding, store: InterfaceStore, names: Name
 def _fields(
     gate: Gate, lines: Sequence[LineView], store: InterfaceStore, names: Names
 ) -> Iterator[FieldView]:
+    limiting = limiting_lines(gate, lines)
     for path in limited_paths(gate):
         field = limited_field(store, gate.type, path, names.new(*path))
         decided = (
             f"{line.name} ? {_interval(field, limit)} :"
-            for line, limit in deciding_lines(lines, field.path)
+            for line, limit in deciding_lines(limiting, field.path)
         )
-        yield FieldView(field, (*decided, _interval(field, None)))
+        held = [f"{_held(gate)} ? {_interval(field, None)} :"] if gate.is_holding else []
+        yield FieldView(field, (*held, *decided, _interval(field, None)))
+
+
+def _held(gate: Gate) -> str:
+    """Return the condition that all numbers are zero, whatever the lines say."""
+    return "waits_" if gate.resume_on_zero else "is_latched"
 
 
 def _interval(field: LimitedField, limit: Limit | None) -> str:

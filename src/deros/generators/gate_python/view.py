@@ -47,7 +47,7 @@ _TAKEN = frozenset(
         "Values",
         "against",
         "applying",
-        "is_held",
+        "is_latched",
         "is_new",
         "is_zero",
         "kept",
@@ -142,7 +142,7 @@ class GateView(GateBase):
     def zero(self) -> str:
         """The condition that some line commands zero, or is latched."""
         releasing = (line.name for line in self.releasing)
-        return _any_of((*releasing, *(["is_held"] if self.latching else []))) or "False"
+        return _any_of((*releasing, *(["is_latched"] if self.latching else []))) or "False"
 
     @property
     def latched(self) -> str:
@@ -154,7 +154,7 @@ class GateView(GateBase):
         """Of all that can hold commands back, whether it does."""
         names = [line.name for line in self.lines]
         names += [f"self._{line.latch} and not {line.name}" for line in self.latching]
-        return _tuple([*names, *(["is_held and not zero"] if self.waits else [])])
+        return _tuple([*names, *(["self._waits and not zero"] if self.waits else [])])
 
     @property
     def refusing_lines(self) -> Call:
@@ -180,7 +180,7 @@ class GateView(GateBase):
     @property
     def follow(self) -> str:
         """The arguments of the method that does what follows."""
-        zero = "is_held" if self.waits else "zero"
+        zero = "self._waits" if self.waits else "zero"
         if not self.fields:
             return f"t, {zero}, is_new"
         return f"t, {zero}, limits, is_new{f', {self.lost_input}' if 'input' in self.lost else ''}"
@@ -318,8 +318,13 @@ def _fields(
             f"{_interval(limit)} if {line.name}"
             for line, limit in deciding_lines(limiting, field.path)
         )
-        held = ["None if is_held"] if gate.is_holding else []
+        held = [f"None if {_held(gate)}"] if gate.is_holding else []
         yield FieldView(field, (*held, *decided, "None"))
+
+
+def _held(gate: Gate) -> str:
+    """Return the condition that all numbers are zero, whatever the lines say."""
+    return "self._waits" if gate.resume_on_zero else "is_latched"
 
 
 def _interval(limit: Limit | None) -> str:

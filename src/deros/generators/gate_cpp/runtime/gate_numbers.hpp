@@ -45,6 +45,13 @@ bool all_finite(const Array & array)
   return are_all(array, [](const auto & each) {return std::isfinite(each);});
 }
 
+/// Tell whether all numbers or booleans of an array are zero.
+template<typename Array>
+bool all_zero(const Array & array)
+{
+  return are_all(array, [](const auto & each) {return each == typename Array::value_type{};});
+}
+
 /// Set all numbers or booleans of an array to zero.
 template<typename Array>
 void fill_with_zeros(Array & array)

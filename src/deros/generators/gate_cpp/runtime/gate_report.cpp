@@ -74,6 +74,19 @@ void GateReport::refuse(const std::string & cause)
   hurry();
 }
 
+std::string GateReport::answer(const std::vector<std::string> & against) const
+{
+  if (!against.empty()) {
+    const std::string text = "not reset, because this applies: " + joined(against, "; ");
+    RCLCPP_WARN(node_.get_logger(), "%s", text.c_str());
+    return text;
+  }
+  const std::string left = applying();
+  const std::string text = "reset: " + (left.empty() ? FINE : left);
+  RCLCPP_INFO(node_.get_logger(), "%s", text.c_str());
+  return text;
+}
+
 void GateReport::fault(const std::string & subject, const std::string & text)
 {
   const auto known = std::find_if(

@@ -58,6 +58,12 @@ public:
   /// Count a command that was refused.
   void refuse(const std::string & cause);
 
+  /// Log a reset, and return the answer to it.
+  /**
+   * \param against the lines of the gate that refuse it
+   */
+  std::string answer(const std::vector<std::string> & against) const;
+
   /// Note or, with an empty text, forget what is wrong with something.
   void fault(const std::string & subject, const std::string & text);
 

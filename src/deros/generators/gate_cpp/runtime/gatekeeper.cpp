@@ -38,6 +38,7 @@ Gatekeeper::Gatekeeper(
     [this](const GateReport::Message & message) {gate_.report(message);}, target),
   deadline_(agenda_, clock_, [this] {advance();}),
   check_(agenda_, Clock(), [this] {check_publishers();}),
+  ports_(agenda_, [](const std::string &, const std::string &) {}),
   worker_(
     agenda_,
     [this](const char * why) {

@@ -17,6 +17,7 @@
 #include "deros_runtime/runtime/clock_choice.hpp"
 #include "deros_runtime/runtime/descriptor.hpp"
 #include "deros_runtime/runtime/gate_report.hpp"
+#include "deros_runtime/runtime/ports.hpp"
 #include "deros_runtime/runtime/simulated.hpp"
 #include "deros_runtime/runtime/worker.hpp"
 #include "rclcpp/rclcpp.hpp"
@@ -97,6 +98,27 @@ public:
     return {subscription->get_topic_name(), type, subscription->get_actual_qos()};
   }
 
+  /// Serve a service that resets the gate; to be called before start().
+  /**
+   * \param reset returns the lines of the gate that refuse it; none: it is done
+   */
+  template<typename ServiceT>
+  void serve_reset(const std::string & name, std::function<std::vector<std::string>()> reset)
+  {
+    ports_.serve(
+      node_.create_service<ServiceT>(
+        name,
+        [this, reset](
+          const typename ServiceT::Request::SharedPtr,
+          typename ServiceT::Response::SharedPtr response) {
+          const std::vector<std::string> against = reset();
+          settle();
+          response->success = against.empty();
+          response->message = report_.answer(against);
+        },
+        rclcpp::ServicesQoS(), group_));
+  }
+
   /// Start the gate: with the zeros that are due, and then with what comes.
   void start();
 
@@ -148,6 +170,7 @@ private:
   Alarm deadline_;
   Alarm check_;
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
+  Ports ports_;
   Worker worker_;
 };
 

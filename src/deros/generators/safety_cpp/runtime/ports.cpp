@@ -46,7 +46,7 @@ void Ports::serve(const rclcpp::CallbackGroup & group)
       serve_messages(each);
       serve_shared(each);
     },
-    [this](const rclcpp::ServiceBase::SharedPtr & each) {serve_requests(each);},
+    [this](const rclcpp::ServiceBase::SharedPtr & each) {serve(each);},
     [](const rclcpp::ClientBase::SharedPtr &) {},
     [](const rclcpp::TimerBase::SharedPtr &) {},
     [](const rclcpp::Waitable::SharedPtr &) {});
@@ -95,7 +95,7 @@ void Ports::serve_shared(const rclcpp::SubscriptionBase::SharedPtr & subscriptio
   shared_.push_back(waitable);
 }
 
-void Ports::serve_requests(const rclcpp::ServiceBase::SharedPtr & service)
+void Ports::serve(const rclcpp::ServiceBase::SharedPtr & service)
 {
   const auto take = [from = service.get()] {
       const std::shared_ptr<void> request = from->create_request();

@@ -33,6 +33,9 @@ public:
   /// Serve all that a callback group has now; no executor may spin it.
   void serve(const rclcpp::CallbackGroup & group);
 
+  /// Serve a service; no executor may spin its callback group.
+  void serve(const rclcpp::ServiceBase::SharedPtr & service);
+
   /// Return the subscriptions.
   const std::vector<rclcpp::SubscriptionBase::SharedPtr> & subscriptions() const
   {
@@ -42,7 +45,6 @@ public:
 private:
   void serve_messages(const rclcpp::SubscriptionBase::SharedPtr & subscription);
   void serve_shared(const rclcpp::SubscriptionBase::SharedPtr & subscription);
-  void serve_requests(const rclcpp::ServiceBase::SharedPtr & service);
 
   Agenda & agenda_;
   Refuse refuse_;

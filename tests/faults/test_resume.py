@@ -1,0 +1,217 @@
+"""What was stopped moves again when somebody means it to, and not because a fault is over.
+
+The controller goes on commanding throughout, as one does that knows nothing of gates.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tests.support.faults import WHEELS_GATE, Robot
+from tests.support.played import COMMAND, COMMANDER, SENSES, command, imu
+from tests.support.ros import short_lease
+from tests.support.victims import Process, Sensors
+
+pytestmark = pytest.mark.ros
+
+RESET, ZERO = "waits for a reset", "waits for a zero command"
+
+
+def drive(sensors: Sensors) -> None:
+    """Command a speed, and go on doing so."""
+    sensors.play("/cmd_vel_nav", command(), rate=20.0)
+
+
+def until_moving(robot: Robot) -> None:
+    """Wait until commands pass."""
+    robot.until(lambda: robot.wheels and robot.wheels[-1].value == COMMAND)
+
+
+def until_standing(robot: Robot) -> None:
+    """Wait until the wheels get zeros for good: one alone may be of a machine that is late."""
+    robot.until(lambda: len(robot.wheels) >= 5 and not any(w.value for w in robot.wheels[-5:]))
+
+
+def release(robot: Robot, sensors: Sensors) -> None:
+    """Command zero until that passes, and then a speed again: it passes, too."""
+    sensors.play("/cmd_vel_nav", command(0.0), rate=20.0)
+    robot.until(lambda: robot.waiting == "commands pass")
+    drive(sensors)
+    until_moving(robot)
+
+
+def assert_waits(robot: Robot, why: str, since: int | None = None) -> None:
+    """See that the gate says why it waits, and that nothing moves while it does.
+
+    Args:
+        robot: the robot.
+        why: what the gate says.
+        since: how many commands had reached the wheels when they stood; without it, when it says so.
+    """
+    robot.until(lambda: robot.waiting.startswith(why))
+    first = len(robot.wheels) if since is None else since
+    heard = len(robot.wheels)
+    robot.spin(1.0)
+    assert len(robot.wheels) >= heard + 10, "the gate fell silent"
+    assert not any(each.value for each in robot.wheels[first:])
+    assert robot.waiting.startswith(why)
+
+
+@contextmanager
+def moving(robot: Robot, topics: dict[str, str] | None = None) -> Iterator[Sensors]:
+    """Let the wheels turn, as an operator does: reset the gate, release, and drive."""
+    with robot.sensors({**SENSES, **COMMANDER} if topics is None else topics) as sensors:
+        sensors.drive()
+        drive(sensors)
+        robot.until_free()
+        assert_waits(robot, RESET, 0)
+        robot.until(lambda: robot.reset(WHEELS_GATE)[0])
+        assert_waits(robot, ZERO, 0)
+        release(robot, sensors)
+        yield sensors
+
+
+@pytest.mark.parametrize("fault", [Process.kill, Process.freeze])
+def test_a_safety_node_that_comes_back_starts_nothing(
+    robot: Robot, tmp_path: Path, fault: Callable[[Process], None]
+) -> None:
+    """Whether it was dead or hung: a person resets the gate, and then the controller releases."""
+    lease = short_lease(tmp_path)  # after which the restarted node is obeyed
+    with robot.safety_node(**lease) as node, robot.wheels_gate(), moving(robot) as sensors:
+        fault(node)
+        until_standing(robot)
+        standing = len(robot.wheels)
+        if fault is Process.kill:
+            robot.restart()
+        else:
+            node.thaw()
+        assert_waits(robot, RESET, standing)
+        assert robot.reset(WHEELS_GATE) == (True, f"reset: {ZERO}")
+        assert_waits(robot, ZERO, standing)
+        release(robot, sensors)
+
+
+def test_a_gate_that_comes_back_starts_nothing(robot: Robot) -> None:
+    """Killed while commands passed, it begins as after a loss."""
+    with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
+        gate.kill()
+        killed = len(robot.wheels)
+        gate = robot.start(WHEELS_GATE)
+        robot.until(lambda: len(robot.wheels) > killed)
+        robot.wheels.clear()
+        assert_waits(robot, RESET, 0)
+        assert robot.reset(WHEELS_GATE) == (True, f"reset: {ZERO}")
+        assert_waits(robot, ZERO, 0)
+        release(robot, sensors)
+        gate.end()
+
+
+def test_a_gate_that_hung_starts_nothing(robot: Robot) -> None:
+    """It cannot know what it has missed: the first thing that it does is to latch."""
+    with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
+        gate.freeze()
+        robot.spin(1.0)
+        robot.wheels.clear()
+        gate.thaw()
+        assert_waits(robot, RESET, 0)
+        assert robot.reset(WHEELS_GATE)[0]
+        release(robot, sensors)
+
+
+@pytest.mark.parametrize("fault", [Sensors.kill, Sensors.freeze])
+def test_a_controller_that_comes_back_starts_nothing(
+    robot: Robot, fault: Callable[[Sensors], None]
+) -> None:
+    """Another one that takes its place has to begin with zero, and so has itself."""
+    with (
+        robot.safety_node(),
+        robot.wheels_gate(),
+        robot.sensors(SENSES) as senses,
+    ):
+        senses.drive()
+        with moving(robot, COMMANDER) as controller:
+            fault(controller)
+            until_standing(robot)
+            standing = len(robot.wheels)
+            if fault is Sensors.freeze:
+                controller.thaw()
+                assert_waits(robot, ZERO, standing)
+                release(robot, controller)
+                return
+        with robot.sensors(COMMANDER) as controller:
+            drive(controller)
+            assert_waits(robot, ZERO, standing)
+            release(robot, controller)
+
+
+def test_an_action_that_is_reset_starts_nothing(robot: Robot) -> None:
+    """Neither one that is latched, and reset by a person, nor one that ends by itself."""
+    with robot.safety_node(), robot.wheels_gate(), moving(robot) as sensors:
+        robot.violate()
+        until_standing(robot)
+        standing = len(robot.wheels)
+        robot.until(lambda: robot.reset()[0])
+        assert_waits(robot, ZERO, standing)
+        release(robot, sensors)
+        sensors.play("/imu", imu(math.radians(30.0)))
+        robot.until_stopped("/halt")
+        until_standing(robot)
+        standing = len(robot.wheels)
+        sensors.play("/imu", imu())
+        robot.until_free()
+        assert_waits(robot, ZERO, standing)
+        release(robot, sensors)
+
+
+def test_a_nan_between_commands_starts_nothing(robot: Robot) -> None:
+    """It is a loss that is over with the next command, which does not pass."""
+    with robot.safety_node(), robot.wheels_gate(), moving(robot) as sensors:
+        sensors.send("/cmd_vel_nav", command(), command(math.nan), command())
+        drive(sensors)
+        assert_waits(robot, ZERO)
+        release(robot, sensors)
+
+
+def test_a_zero_during_the_stop_starts_nothing(robot: Robot) -> None:
+    """When the stop ends it is stale: the controller commands a speed by then."""
+    with robot.safety_node(), robot.wheels_gate(), moving(robot) as sensors:
+        robot.violate()
+        until_standing(robot)
+        standing = len(robot.wheels)
+        sensors.play("/cmd_vel_nav", command(0.0), rate=20.0)
+        robot.spin(0.5)
+        drive(sensors)
+        robot.spin(0.5)
+        robot.until(lambda: robot.reset()[0])
+        assert_waits(robot, ZERO, standing)
+        release(robot, sensors)
+
+
+def test_a_reset_is_refused_while_its_cause_lasts(robot: Robot, tmp_path: Path) -> None:
+    """The answer names what lasts; nobody remembers that somebody asked."""
+    lease = short_lease(tmp_path)
+    with robot.safety_node(**lease) as node, robot.wheels_gate(), moving(robot) as sensors:
+        node.kill()
+        until_standing(robot)
+        standing = len(robot.wheels)
+        done, why = robot.reset(WHEELS_GATE)
+        assert not done
+        assert why.startswith("not reset, because this applies: stop: zero (")
+        assert "lost heartbeat for 0.3 sec: zero until reset" in why
+        robot.restart()
+        assert_waits(robot, RESET, standing)
+        sensors.quiet("/cmd_vel_nav")
+        robot.until(lambda: "lost input" in robot.waiting)
+        done, why = robot.reset(WHEELS_GATE)
+        assert not done
+        assert "lost input for 0.5 sec: zero" in why
+        drive(sensors)
+        assert_waits(robot, RESET, standing)
+        assert robot.reset(WHEELS_GATE)[0]
+        assert_waits(robot, ZERO, standing)
+        release(robot, sensors)
