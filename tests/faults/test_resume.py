@@ -51,7 +51,7 @@ def assert_waits(robot: Robot, why: str, since: int | None = None) -> None:
     Args:
         robot: the robot.
         why: what the gate says.
-        since: how many commands had reached the wheels when they stood; without it, when it says so.
+        since: how many commands had reached the wheels when they stood; else, when it says so.
     """
     robot.until(lambda: robot.waiting.startswith(why))
     first = len(robot.wheels) if since is None else since

@@ -39,6 +39,7 @@ gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
   stop: limit linear.x to [-crawl, crawl];
   lost heartbeat for 0.3 sec: zero;
   lost input for 0.5 sec: zero;
+  resume on zero command;
 }
 """
 
@@ -160,3 +161,57 @@ def test_generation_comes_before_the_wiring() -> None:
     outcome = deros("generate", "s.deros", "--target", "python", "-o", "out")
     assert "DRS340" in outcome.err
     assert outcome.code == 0, outcome.err
+
+
+HEARTBEAT, INPUT = "lost heartbeat for 0.3 sec: zero", "lost input for 0.5 sec: zero"
+RESUME = "resume on zero command;"
+
+
+def _resuming(*lines: str, stop: str = "latched") -> list[tuple[str, list[str]]]:
+    """Return what goes on by itself in a gate of some lines, and the lines that are named."""
+    head = RULES.partition("gate /nav")[0].replace("latched", stop)
+    gate = f"gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {{ {'; '.join(lines)}; }}"
+    found = _findings(PLANNER + GATE + DRIVE, rules=head + gate)
+    named = [each for each in found if each.code.name == "DRS357"]
+    assert all((each.severity.value, each.span.text) == ("info", "/cmd_vel") for each in named)
+    return [
+        (each.message.partition(" after ")[2], [line.span.text for line in each.related])
+        for each in named
+    ]
+
+
+def test_a_gate_that_goes_on_by_itself() -> None:
+    """Every zero that ends without anybody's act is named, and so is the gate's own start."""
+    ((after, lines),) = _resuming("stop: zero", HEARTBEAT, INPUT, stop="reset_by go; action go")
+    assert after == "'stop', a lost heartbeat, a lost input and the gate's own start"
+    assert lines == ["stop: zero;", f"{HEARTBEAT};", f"{INPUT};"]
+
+
+def test_a_gate_that_goes_on_by_itself_in_part() -> None:
+    """An action that is latched ends by somebody's reset; with `until reset`, so does the start."""
+    ((after, lines),) = _resuming("stop: zero", f"{HEARTBEAT} until reset", INPUT)
+    assert (after, lines) == ("a lost input", [f"{INPUT};"])
+    assert _resuming("stop: zero") == [("the gate's own start", [])]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ("stop: zero", HEARTBEAT, INPUT, RESUME[:-1]),
+        ("stop: zero", f"{HEARTBEAT} until reset", f"{INPUT} until reset"),
+        ("stop: zero until reset", f"{HEARTBEAT} until reset", "lost input for 1 s: limit "
+         "linear.x to [0, 1] m/s"),
+    ],
+)  # fmt: skip
+def test_a_gate_that_waits(lines: tuple[str, ...]) -> None:
+    """For a person, or for the controller."""
+    assert _resuming(*lines) == []
+
+
+@pytest.mark.parametrize("end", [" until reset", f"; {RESUME[:-1]}"])
+def test_a_limit_before_a_zero_that_holds_all_numbers(end: str) -> None:
+    """Leaves nothing of it to the controller, so there is nothing to warn of."""
+    limit = "lost input for 0.2 sec: limit linear.x to [0, 0.1] m/s"
+    rules = RULES.partition("  stop: limit")[0] + f"{limit}; {HEARTBEAT}"
+    assert "DRS342" in _codes(PLANNER + GATE + DRIVE, rules=f"{rules}; stop: zero; }}")
+    assert "DRS342" not in _codes(PLANNER + GATE + DRIVE, rules=f"{rules}{end}; }}")
