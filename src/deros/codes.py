@@ -77,6 +77,11 @@ AMBIGUOUS_NODE_TYPE = _declare(224, "node type name that two imported files defi
 SERVICE_WITHOUT_SERVER = _declare(225, "service or action without a server", _W)
 DUPLICATE_SUBSYSTEM = _declare(226, "two subsystems with one name in one place")
 PARAMETER_WITHOUT_VALUE = _declare(227, "parameter without default and without value", _W)
+INCOMPATIBLE_QOS = _declare(228, "two ends whose QoS does not match")
+UNCERTAIN_QOS = _declare(229, "two ends whose QoS may not match", _W)
+PINNED_QOS_VIOLATED = _declare(230, "pinned QoS violated")
+EMPTY_PIN = _declare(231, "QoS of a topic that pins nothing")
+STANDARD_TOPIC_TYPE = _declare(232, "standard topic with another type than everywhere else")
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(301, "topic of the rules that the system lacks")

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span
 from deros.interfaces.names import did_you_mean, near
+from deros.metamodels.common import QosProfile
 from deros.metamodels.convert import Converter, Sections
 from deros.metamodels.convert_node import as_double
 from deros.metamodels.node import NodeType
+from deros.metamodels.qos import pinned_policies
 from deros.metamodels.system import (
     Import,
     NodeInstance,
@@ -82,7 +84,7 @@ class SystemConverter(Converter):
                 if not attributes.once(what, self.span(attribute)):
                     continue
                 if what == "qos":
-                    settings["qos"] = self.qos(attribute)
+                    settings["qos"] = self._pin(attribute)
                 else:
                     settings["description"] = self.text(attribute.text)
         return Topic(
@@ -92,6 +94,18 @@ class SystemConverter(Converter):
             external=found.external,
             **settings,
         )
+
+    def _pin(self, found: Any) -> QosProfile:
+        before = len(self.diagnostics)
+        qos = self.qos(found)
+        if not pinned_policies(qos) and len(self.diagnostics) == before:
+            self.report(
+                codes.EMPTY_PIN,
+                "this pins nothing: of system_default, the middleware chooses every policy",
+                self.span(found),
+                "write the policies that the ends have to meet, as 'qos reliable'",
+            )
+        return qos
 
     def _subsystem(self, found: Any) -> Subsystem:
         topics: list[Topic] = []

@@ -11,6 +11,7 @@ from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.flatten import FlatPort, FlatTopic, UntypedWiring, flatten
 from deros.metamodels.node import PortKind
+from deros.metamodels.safety_qos import Offers
 from deros.metamodels.system import System
 
 _INDEX = re.compile(r"\[\d+\]")
@@ -41,6 +42,16 @@ class KnownTopic:
     def external(self) -> bool:
         """Whether the topic is fed or read from outside the model."""
         return any(each.declaration.external for each in self.declarations)
+
+    @property
+    def offers(self) -> Offers:
+        """What the publishers offer: as stated, and as the first declaration with a QoS pins it."""
+        pins = (each.declaration.qos for each in self.declarations)
+        return Offers(
+            [each.port.qos for each in self.publishers],
+            next((qos for qos in pins if qos is not None), None),
+            self.external or bool(self.untyped),
+        )
 
     @property
     def type(self) -> InterfaceType | None:
@@ -88,6 +99,11 @@ class SystemTopics:
     def get(self, name: str) -> KnownTopic | None:
         """Return what is known of the topic with the graph name ``name``, or ``None``."""
         return self._topics.get(name)
+
+    def offers(self, name: str) -> Offers:
+        """Return what the publishers of the topic with the graph name ``name`` offer."""
+        known = self.get(name)
+        return known.offers if known is not None else Offers()
 
     @property
     def names(self) -> Iterable[str]:

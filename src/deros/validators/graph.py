@@ -43,6 +43,7 @@ from deros.metamodels.node import PortKind
 if TYPE_CHECKING:
     from deros.diagnostics import Span
     from deros.interfaces.types import InterfaceType
+    from deros.metamodels.common import QosProfile
     from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, UntypedWiring
 
 VertexKind = Literal["node", "topic", "service", "action"]
@@ -89,6 +90,26 @@ class End:
     def name(self) -> str:
         """Node and port for messages, as ``/base/odometry (odom)``."""
         return f"{self.node.full_name} ({self.port.port.name})"
+
+    @property
+    def qos(self) -> QosProfile | None:
+        """The QoS that the node description states."""
+        return self.port.port.qos
+
+    @property
+    def qos_span(self) -> Span:
+        """Where the QoS is stated, else where the port is declared."""
+        qos = self.port.port.qos
+        return qos.span if qos is not None and qos.span is not None else self.port.port.span
+
+    @property
+    def is_assumed(self) -> bool:
+        """Whether the QoS is the default only because nobody describes that of the program."""
+        return (
+            self.qos is None
+            and self.node.instance.type is not None
+            and (self.node.instance.type.executable is not None)
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,12 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import ClassVar
 
+from deros.diagnostics import Span
+from deros.metamodels import safety_qos
+from deros.metamodels.common import Name, QosProfile
 from deros.metamodels.flatten import resolve_name
+from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Rules
+from deros.monitor.topics import SystemTopics
 from deros.validators.rules_walk import topics_read
+
+
+@dataclass(frozen=True, slots=True)
+class RulesEnd:
+    """An end that the safety node or a gate of a program has, whether or not a system names it."""
+
+    name: str
+    kind: PortKind
+    topic: str
+    qos: QosProfile
+    span: Span = field(compare=False, repr=False)
+    is_assumed: ClassVar[bool] = False
+
+    @property
+    def qos_span(self) -> Span:
+        """Where the rules give the end its QoS: they name the topic there."""
+        return self.span
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,26 +42,56 @@ class RulesEnds:
         read: those that they subscribe.
         fed: those that they publish.
         gated: source and target of each gate.
+        ends: all of these ends, with their QoS.
     """
 
     read: frozenset[str] = frozenset()
     fed: frozenset[str] = frozenset()
     gated: frozenset[tuple[str, str]] = frozenset()
+    ends: tuple[RulesEnd, ...] = ()
 
 
 def ends_of(programs: Iterable[Rules]) -> RulesEnds:
     """Return the ends of the safety nodes and the gates that the programs become."""
-    read: set[str] = set()
-    fed: set[str] = set()
-    gated: set[tuple[str, str]] = set()
-    for rules in programs:
-        read.update(resolve_name(name.text, "/") for name in topics_read(rules))
-        bindings = (action.binding for action in rules.actions)
-        fed.update(resolve_name(each.topic.text, "/") for each in bindings if each is not None)
-        gated.update(
-            (resolve_name(gate.source.text, "/"), resolve_name(gate.target.text, "/"))
-            for gate in rules.gates
-        )
-    read.update(source for source, _ in gated)
-    fed.update(target for _, target in gated)
-    return RulesEnds(frozenset(read), frozenset(fed), frozenset(gated))
+    programs = tuple(programs)
+    ends = tuple(chain.from_iterable(map(_ends, programs)))
+    gated = frozenset(
+        (resolve_name(gate.source.text, "/"), resolve_name(gate.target.text, "/"))
+        for rules in programs
+        for gate in rules.gates
+    )
+    return RulesEnds(
+        frozenset(end.topic for end in ends if end.kind is PortKind.SUBSCRIPTION),
+        frozenset(end.topic for end in ends if end.kind is PortKind.PUBLISHER),
+        gated,
+        ends,
+    )
+
+
+def _ends(rules: Rules) -> Iterator[RulesEnd]:
+    systems = (use.system for use in rules.uses)
+    topics = SystemTopics(system for system in systems if system is not None)
+    node = f"the safety node of '{rules.name}'"
+    seen: set[tuple[str, PortKind]] = set()
+
+    def end(owner: str, kind: PortKind, name: Name, qos: QosProfile) -> RulesEnd:
+        return RulesEnd(owner, kind, resolve_name(name.text, "/"), qos, name.span)
+
+    for name in topics_read(rules):
+        topic = resolve_name(name.text, "/")
+        if (topic, PortKind.SUBSCRIPTION) not in seen:
+            seen.add((topic, PortKind.SUBSCRIPTION))
+            yield end(node, PortKind.SUBSCRIPTION, name, safety_qos.input_qos(topics.offers(topic)))
+    for action in rules.actions:
+        if action.binding is not None:
+            name = action.binding.topic
+            topic = resolve_name(name.text, "/")
+            if (topic, PortKind.PUBLISHER) not in seen:
+                seen.add((topic, PortKind.PUBLISHER))
+                yield end(node, PortKind.PUBLISHER, name, safety_qos.STATE)
+    for gate in rules.gates:
+        owner = f"the gate to '{gate.target}'"
+        source = resolve_name(gate.source.text, "/")
+        qos = safety_qos.gate_source_qos(topics.offers(source))
+        yield end(owner, PortKind.SUBSCRIPTION, gate.source, qos)
+        yield end(owner, PortKind.PUBLISHER, gate.target, safety_qos.GATE_TARGET)

@@ -18,6 +18,7 @@ from deros.validators.graph import wiring_graph
 from deros.validators.rules_ends import ends_of
 from deros.validators.system_names import check_names
 from deros.validators.system_nodes import check_instances
+from deros.validators.system_qos import check_qos
 from deros.validators.system_safety import check_safety_publishers
 from deros.validators.system_topics import check_topics
 
@@ -33,7 +34,10 @@ def check_system(
     yield from check_names(flat, store)
     yield from check_instances(flat)
     programs = tuple(watchers)
-    yield from check_topics(flat, wiring_graph(flat), ends_of(programs))
+    graph = wiring_graph(flat)
+    ends = ends_of(programs)
+    yield from check_topics(flat, graph, ends)
+    yield from check_qos(flat, graph, ends)
     yield from check_safety_publishers(flat, programs)
 
 

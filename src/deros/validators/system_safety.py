@@ -89,6 +89,11 @@ def _heartbeats(flat: FlatSystem) -> set[str]:
     return found
 
 
+def is_of_safety(node: FlatNode) -> bool:
+    """Tell whether a node is a generated safety node or a gate."""
+    return _is_safety_node(node) or _is_gate(node)
+
+
 def _is_safety_node(node: FlatNode) -> bool:
     return node.type is not None and any(
         port.kind is PortKind.PUBLISHER

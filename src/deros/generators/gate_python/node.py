@@ -7,17 +7,13 @@ from deros.diagnostics import Related, SourceFile, report
 from deros.generators.protocol import GenerationError
 from deros.generators.safety_python.node import (
     DIAGNOSTICS,
-    DIAGNOSTICS_QOS,
     DIAGNOSTICS_TYPE,
     HEARTBEAT_TYPE,
     RESET,
-    STATE_QOS,
     TRIGGER,
-    are_reliable,
     made_port,
-    stated_qos,
 )
-from deros.metamodels.common import QosProfile
+from deros.metamodels import safety_qos
 from deros.metamodels.node import NodeType, Parameter, ParameterType, Port, PortKind
 from deros.monitor.gates import gate_node_name
 from deros.monitor.ir import Gate, Program
@@ -25,9 +21,6 @@ from deros.monitor.topics import SystemTopics
 
 PROCESS_PARAMETERS = ("realtime_priority", "lock_memory", "garbage_collection")
 """The parameters that a gate has in common with the safety node."""
-
-_RELIABLE_QOS = QosProfile(reliability="reliable", depth=10)
-_BEST_EFFORT_QOS = QosProfile(reliability="best_effort", depth=10)
 
 
 def gate_nodes(program: Program, topics: SystemTopics, safety_node: NodeType) -> list[NodeType]:
@@ -93,9 +86,9 @@ def _losses_in_simulated_time(gate: Gate) -> Parameter:
 def _ports(gate: Gate, program: Program, topics: SystemTopics, safety_node: NodeType) -> list[Port]:
     description = "What safety lets through"
     target = made_port(
-        PortKind.PUBLISHER, gate.target, gate.type, gate.span, _RELIABLE_QOS, description
+        PortKind.PUBLISHER, gate.target, gate.type, gate.span, safety_qos.GATE_TARGET, description
     )
-    qos = _source_qos(topics, gate.source)
+    qos = safety_qos.gate_source_qos(topics.offers(gate.source))
     source = made_port(
         PortKind.SUBSCRIPTION, gate.source, gate.type, gate.span, qos, "What is asked for"
     )
@@ -104,13 +97,18 @@ def _ports(gate: Gate, program: Program, topics: SystemTopics, safety_node: Node
         binding = program.actions[line.action].binding if line.action is not None else None
         if binding is not None:
             state = made_port(
-                PortKind.SUBSCRIPTION, binding.topic, binding.type, line.span, STATE_QOS, ""
+                PortKind.SUBSCRIPTION, binding.topic, binding.type, line.span, safety_qos.STATE, ""
             )
             ports.setdefault(state.name, state)
         if line.lost == "heartbeat":
             name = heartbeat_port(safety_node)
             beat = made_port(
-                PortKind.SUBSCRIPTION, name, HEARTBEAT_TYPE, line.span, _RELIABLE_QOS, ""
+                PortKind.SUBSCRIPTION,
+                name,
+                HEARTBEAT_TYPE,
+                line.span,
+                safety_qos.GATE_HEARTBEAT,
+                "",
             )
             ports.setdefault(name, beat)
     diagnostics = made_port(
@@ -118,7 +116,7 @@ def _ports(gate: Gate, program: Program, topics: SystemTopics, safety_node: Node
         DIAGNOSTICS,
         DIAGNOSTICS_TYPE,
         gate.span,
-        DIAGNOSTICS_QOS,
+        safety_qos.DIAGNOSTICS,
         "What applies",
     )
     if gate.is_latching:
@@ -126,8 +124,3 @@ def _ports(gate: Gate, program: Program, topics: SystemTopics, safety_node: Node
         reset = made_port(PortKind.SERVICE, RESET, TRIGGER, gate.span, None, description)
         return [target, diagnostics, *ports.values(), reset]
     return [target, diagnostics, *ports.values()]
-
-
-def _source_qos(topics: SystemTopics, topic: str) -> QosProfile:
-    """Return a profile that every publisher meets; never one that has an old command replayed."""
-    return _RELIABLE_QOS if are_reliable(stated_qos(topics, topic)) else _BEST_EFFORT_QOS

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span, report
 from deros.generators.protocol import GenerationError, Options
 from deros.interfaces.names import check_node_name, check_package_name
 from deros.interfaces.types import InterfaceType
+from deros.metamodels import safety_qos
 from deros.metamodels.common import Interval, QosProfile, Scalar
 from deros.metamodels.node import NodeType, Parameter, ParameterType, Port, PortKind
 from deros.monitor import walk
@@ -25,12 +26,6 @@ HEARTBEAT_TYPE = InterfaceType("std_msgs", "msg", "UInt64")
 TRIGGER = InterfaceType("std_srvs", "srv", "Trigger")
 _STATUS = InterfaceType("diagnostic_msgs", "msg", "DiagnosticStatus")
 DIAGNOSTICS_TYPE = InterfaceType("diagnostic_msgs", "msg", "DiagnosticArray")
-STATE_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1)
-_HEARTBEAT_QOS = QosProfile(reliability="reliable", depth=1)
-_EVENTS_QOS = QosProfile(reliability="reliable", durability="transient_local", depth=1000)
-DIAGNOSTICS_QOS = QosProfile(reliability="reliable", depth=10)
-_INPUT_DEPTH = 10
-_RELIABLE_PRESETS = frozenset({"services", "parameters"})
 
 
 def safety_node(
@@ -183,21 +178,29 @@ def _ports(program: Program, topics: SystemTopics, start: Span) -> list[Port]:
         span = action.span or start
         topic, kind = action.binding.topic, action.binding.type
         description = f"Active: {' or '.join(bound_actions(program, topic))}"
-        ports.append(made_port(PortKind.PUBLISHER, topic, kind, span, STATE_QOS, description))
+        ports.append(
+            made_port(PortKind.PUBLISHER, topic, kind, span, safety_qos.STATE, description)
+        )
     description = "Counts up at publish_freq: stop when it stops"
     ports.append(
-        made_port(PortKind.PUBLISHER, HEARTBEAT, HEARTBEAT_TYPE, start, _HEARTBEAT_QOS, description)
+        made_port(
+            PortKind.PUBLISHER, HEARTBEAT, HEARTBEAT_TYPE, start, safety_qos.HEARTBEAT, description
+        )
     )
     description = "Tells of each action, reset and fault"
-    ports.append(made_port(PortKind.PUBLISHER, EVENTS, _STATUS, start, _EVENTS_QOS, description))
+    ports.append(
+        made_port(PortKind.PUBLISHER, EVENTS, _STATUS, start, safety_qos.EVENTS, description)
+    )
     description = "State of the node, of its actions and of its rules"
     name = _diagnostics_name(program)
     ports.append(
-        made_port(PortKind.PUBLISHER, name, DIAGNOSTICS_TYPE, start, DIAGNOSTICS_QOS, description)
+        made_port(
+            PortKind.PUBLISHER, name, DIAGNOSTICS_TYPE, start, safety_qos.DIAGNOSTICS, description
+        )
     )
     spans = {each.topic: each.span for each in reversed(program.inputs)}
     for topic, kind in program.topics.items():
-        qos = _input_qos(topics, topic)
+        qos = safety_qos.input_qos(topics.offers(topic))
         ports.append(made_port(PortKind.SUBSCRIPTION, topic, kind, spans[topic], qos, ""))
     if any(action.latched for action in program.actions):
         description = "Resets the latched actions that no behaviour calls for"
@@ -226,36 +229,3 @@ def made_port(
 ) -> Port:
     """Return a port that nobody has written: its places are those of what it comes from."""
     return Port(kind, name, interface, span, span, span, qos=qos, description=description)
-
-
-def stated_qos(topics: SystemTopics, topic: str) -> list[QosProfile | None]:
-    """Return what each publisher of a topic in the used systems is stated to offer."""
-    known = topics.get(topic)
-    return [flat.port.qos for flat in known.publishers] if known else []
-
-
-def are_reliable(stated: Sequence[QosProfile | None]) -> bool:
-    """Tell whether there are publishers, and all of them are stated to be reliable."""
-    return bool(stated) and all(map(_is_reliable, stated))
-
-
-def _input_qos(topics: SystemTopics, topic: str) -> QosProfile:
-    stated = stated_qos(topics, topic)
-    reliable = are_reliable(stated)
-    durable = bool(stated) and all(
-        q is not None and q.durability == "transient_local" for q in stated
-    )
-    depths = [qos.depth or 0 for qos in stated if qos is not None]
-    return QosProfile(
-        reliability="reliable" if reliable else "best_effort",
-        durability="transient_local" if durable else None,
-        depth=max([_INPUT_DEPTH, *depths]),
-    )
-
-
-def _is_reliable(qos: QosProfile | None) -> bool:
-    if qos is None:
-        return False
-    if qos.reliability is not None:
-        return qos.reliability == "reliable"
-    return qos.preset in _RELIABLE_PRESETS

@@ -1,0 +1,168 @@
+"""Which ends match: held against the ROS 2 function that decides it, for every pair of profiles."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import pytest
+
+from deros.metamodels.common import QosProfile
+from deros.metamodels.qos import (
+    DEFAULT,
+    SYSTEM_DEFAULT,
+    Policies,
+    duration_text,
+    excess,
+    policies,
+    publisher_violations,
+    shortfalls,
+    subscription_violations,
+)
+
+MS = 10**6
+KINDS = {
+    "reliability": ("best_effort", "reliable", SYSTEM_DEFAULT),
+    "durability": ("volatile", "transient_local", SYSTEM_DEFAULT),
+    "liveliness": ("automatic", "manual_by_topic", SYSTEM_DEFAULT),
+}
+TIMES = (None, 100 * MS, 200 * MS)
+
+
+def _all_policies() -> list[Policies]:
+    return [
+        Policies(reliability, durability, deadline, liveliness, lease)
+        for reliability, durability, liveliness in itertools.product(*KINDS.values())
+        for deadline, lease in itertools.product(TIMES, TIMES)
+    ]
+
+
+def _profile(each: Policies) -> Any:
+    """Return the profile of rclpy."""
+    from rclpy.duration import Duration
+    from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
+
+    return QoSProfile(
+        depth=1,
+        reliability=ReliabilityPolicy[each.reliability.upper()],
+        durability=DurabilityPolicy[each.durability.upper()],
+        liveliness=LivelinessPolicy[each.liveliness.upper()],
+        deadline=Duration(nanoseconds=each.deadline or 0),
+        liveliness_lease_duration=Duration(nanoseconds=each.lease or 0),
+    )
+
+
+def test_every_pair_is_judged_as_ros_does() -> None:
+    """Errors and warnings of rclpy's qos_check_compatible are what is certain, and what is not."""
+    qos = pytest.importorskip("rclpy.qos")
+    every = [(each, _profile(each)) for each in _all_policies()]
+    compared = 0
+    for (offered, publisher), (requested, subscription) in itertools.product(every, every):
+        verdict, reason = qos.qos_check_compatible(publisher, subscription)
+        found = shortfalls(offered, requested)
+        expected = qos.QoSCompatibility.OK
+        if any(each.certain for each in found):
+            expected = qos.QoSCompatibility.ERROR
+        elif found:
+            expected = qos.QoSCompatibility.WARNING
+        assert verdict == expected, (offered, requested, reason)
+        compared += 1
+    print(f"{compared} pairs of profiles compared with qos_check_compatible")
+
+
+@pytest.mark.parametrize(
+    ("profile", "name"),
+    [
+        (None, "default"),
+        (QosProfile(preset="sensor_data"), "sensor_data"),
+        (QosProfile(preset="services"), "services_default"),
+        (QosProfile(preset="parameters"), "parameters"),
+        (QosProfile(preset="system_default"), "system_default"),
+    ],
+)
+def test_presets_are_those_of_ros(profile: QosProfile | None, name: str) -> None:
+    """All their policies are the same; an open kind of liveliness is what DDS starts from."""
+    qos = pytest.importorskip("rclpy.qos")
+    preset = getattr(qos, f"qos_profile_{name}")
+    own = policies(profile)
+    liveliness = "automatic" if preset.liveliness.name == "SYSTEM_DEFAULT" else "?"
+    assert (own.reliability, own.durability) == (
+        preset.reliability.name.lower(),
+        preset.durability.name.lower(),
+    )
+    assert own.liveliness in (liveliness, SYSTEM_DEFAULT)
+    assert (own.deadline or 0, own.lease or 0, own.lifespan or 0) == (
+        preset.deadline.nanoseconds,
+        preset.liveliness_lease_duration.nanoseconds,
+        preset.lifespan.nanoseconds,
+    )
+    if preset.history.name == "KEEP_LAST":
+        assert own.depth == preset.depth
+
+
+def test_what_a_profile_states_goes_before_its_preset() -> None:
+    """The other policies stay those of the preset."""
+    own = policies(QosProfile(preset="sensor_data", reliability="reliable", deadline_ns=5))
+    assert own == Policies(depth=5, deadline=5)
+
+
+PINS = [
+    # pin, publisher, subscription: what of each is wrong
+    (QosProfile(reliability="reliable"), None, ("", "")),
+    (QosProfile(reliability="best_effort"), None, ("", "more")),
+    (QosProfile(reliability="reliable"), QosProfile(reliability="best_effort"), ("less", "less")),
+    (QosProfile(durability="transient_local"), None, ("less", "less")),
+    (QosProfile(durability="volatile"), QosProfile(durability="transient_local"), ("", "more")),
+    (QosProfile(deadline_ns=100), None, ("less", "less")),
+    (QosProfile(deadline_ns=100), QosProfile(deadline_ns=50), ("", "more")),
+    (QosProfile(deadline_ns=100), QosProfile(deadline_ns=100), ("", "")),
+    (QosProfile(deadline_ns=100), QosProfile(deadline_ns=200), ("less", "less")),
+    (QosProfile(lease_ns=100), QosProfile(lease_ns=200), ("less", "less")),
+    (QosProfile(lease_ns=100), QosProfile(lease_ns=50), ("", "more")),
+    (QosProfile(liveliness="manual_by_topic"), None, ("less", "less")),
+    (QosProfile(liveliness="automatic"), QosProfile(liveliness="manual_by_topic"), ("", "more")),
+    (QosProfile(depth=10), None, ("", "")),
+    (QosProfile(depth=11), None, ("less", "less")),
+    (QosProfile(depth=11), QosProfile(keep_all=True), ("", "")),
+    (QosProfile(keep_all=True), QosProfile(depth=1000), ("less", "less")),
+    (QosProfile(lifespan_ns=100), None, ("less", "")),
+    (QosProfile(lifespan_ns=100), QosProfile(lifespan_ns=101), ("less", "")),
+    (QosProfile(lifespan_ns=100), QosProfile(lifespan_ns=99), ("", "")),
+    (QosProfile(preset="sensor_data"), QosProfile(preset="sensor_data"), ("", "")),
+    (QosProfile(preset="sensor_data"), None, ("", "more")),
+    (QosProfile(preset="system_default", depth=3), None, ("", "")),
+]
+
+
+@pytest.mark.parametrize(("pin", "profile", "wrong"), PINS)
+def test_pins(pin: QosProfile, profile: QosProfile | None, wrong: tuple[str, str]) -> None:
+    """A publisher offers at least what is pinned, a subscription asks for exactly that."""
+    found = (publisher_violations(pin, profile), subscription_violations(pin, profile))
+    assert wrong == tuple(
+        "".join("more" if each.excess else "less" for each in violations) for violations in found
+    )
+    assert all(each.certain for each in (*found[0], *found[1]))
+    assert [each for each in found[1] if each.excess] == list(excess(pin, profile))
+
+
+def test_an_open_policy_violates_no_pin_for_certain() -> None:
+    """The middleware decides it."""
+    open_profile = QosProfile(preset="system_default")
+    for pin in (QosProfile(reliability="reliable"), QosProfile(depth=3)):
+        assert [each.certain for each in publisher_violations(pin, open_profile)] == [False]
+    (found,) = subscription_violations(QosProfile(reliability="best_effort"), open_profile)
+    assert (found.excess, found.certain) == (True, False)
+
+
+def test_default_ends_match() -> None:
+    """Nothing is missing between two ends that say nothing."""
+    assert shortfalls(DEFAULT, DEFAULT) == ()
+
+
+@pytest.mark.parametrize(
+    ("nanoseconds", "text"),
+    [(1, "1 ns"), (1500, "1500 ns"), (100 * MS, "100 ms"), (60_000 * MS, "1 min")],
+)
+def test_durations_read_as_written(nanoseconds: int, text: str) -> None:
+    """The greatest unit without a fraction is used."""
+    assert duration_text(nanoseconds) == text

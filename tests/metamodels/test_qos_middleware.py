@@ -1,0 +1,162 @@
+"""Which ends match: held against the middleware itself, for every pair of profiles.
+
+All policies on which a connection depends are combined: reliability, durability and liveliness in
+both kinds, deadline and lease as none, one second and two, so that what is offered is none,
+shorter, equal and longer than what is requested. That is 72 profiles for each end, and all their
+pairs. ``system_default`` is not among them: each middleware chooses what it becomes.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from deros.metamodels.qos import Policies, shortfalls
+from tests.support.ros import LIMIT, Peer
+
+pytestmark = pytest.mark.ros
+
+SECOND = 10**9
+TIMES = (None, SECOND, 2 * SECOND)
+PROFILES = [
+    Policies(reliability, durability, deadline, liveliness, lease)
+    for reliability, durability, deadline, liveliness, lease in itertools.product(
+        ("best_effort", "reliable"),
+        ("volatile", "transient_local"),
+        TIMES,
+        ("automatic", "manual_by_topic"),
+        TIMES,
+    )
+]
+
+
+def profile(each: Policies) -> Any:
+    """Return the profile of rclpy."""
+    from rclpy.duration import Duration
+    from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
+
+    return QoSProfile(
+        depth=1,
+        reliability=ReliabilityPolicy[each.reliability.upper()],
+        durability=DurabilityPolicy[each.durability.upper()],
+        liveliness=LivelinessPolicy[each.liveliness.upper()],
+        deadline=Duration(nanoseconds=each.deadline or 0),
+        liveliness_lease_duration=Duration(nanoseconds=each.lease or 0),
+    )
+
+
+@pytest.fixture
+def other_peer(ros_peer: Peer, ros_env: dict[str, str]) -> Iterator[Peer]:
+    """Give a second participant, which the first one has to discover."""
+    del ros_peer  # it has confined this process to the loopback
+    peer = Peer(int(ros_env["ROS_DOMAIN_ID"]), "other_peer")
+    yield peer
+    peer.close()
+
+
+class Asking:
+    """The subscriptions of one topic, each with a profile of its own, and what they are told."""
+
+    def __init__(self, peer: Peer, topic: str) -> None:
+        from rclpy.event_handler import SubscriptionEventCallbacks
+        from std_msgs.msg import Empty
+
+        self._peer = peer
+        self.matched = [0] * len(PROFILES)
+        self.refused = [0] * len(PROFILES)
+
+        def note(index: int) -> Any:
+            def matched(event: Any) -> None:
+                self.matched[index] = event.total_count
+
+            def refused(event: Any) -> None:
+                self.refused[index] = event.total_count
+
+            return SubscriptionEventCallbacks(
+                matched=matched, incompatible_qos=refused, use_default_callbacks=False
+            )
+
+        self._subscriptions = [
+            peer.node.create_subscription(
+                Empty, topic, lambda _: None, profile(each), event_callbacks=note(index)
+            )
+            for index, each in enumerate(PROFILES)
+        ]
+
+    def verdicts(self) -> list[bool]:
+        """Return whether the topic's one publisher is connected with each subscription."""
+        self._peer.until(lambda: all(map(int.__add__, self.matched, self.refused)), limit=2 * LIMIT)
+        assert {*map(int.__add__, self.matched, self.refused)} == {1}
+        return [bool(matched) for matched in self.matched]
+
+    def close(self) -> None:
+        """Destroy the subscriptions."""
+        for each in self._subscriptions:
+            self._peer.node.destroy_subscription(each)
+
+
+def test_every_pair_is_judged_as_the_middleware_does(ros_peer: Peer, other_peer: Peer) -> None:
+    """A subscription hears of the publisher that it matches, or that it does not."""
+    from std_msgs.msg import Empty
+
+    compared = 0
+    for number, offered in enumerate(PROFILES):
+        topic = f"pair_{number}"
+        publisher = other_peer.node.create_publisher(Empty, topic, profile(offered))
+        asking = Asking(ros_peer, topic)
+        expected = [not shortfalls(offered, requested) for requested in PROFILES]
+        assert asking.verdicts() == expected, offered
+        compared += len(expected)
+        asking.close()
+        other_peer.node.destroy_publisher(publisher)
+    print(f"{compared} pairs of profiles compared with the middleware")
+    assert compared == len(PROFILES) ** 2 == 5184
+
+
+SERVICES = [
+    Policies(reliability, durability, deadline, "automatic", lease)
+    for reliability, durability, deadline, lease in itertools.product(
+        ("best_effort", "reliable"), ("volatile", "transient_local"), TIMES[:2], TIMES[:2]
+    )
+]
+
+
+def test_clients_and_servers_match_in_both_directions(ros_peer: Peer, other_peer: Peer) -> None:
+    """A client finds its server if what either offers is enough for what the other requests."""
+    compared = 0
+    for number, served in enumerate(SERVICES):
+        expected = [
+            not shortfalls(served, each) and not shortfalls(each, served) for each in SERVICES
+        ]
+        found = clients_of(ros_peer, other_peer, f"pair_{number}", served, sum(expected))
+        assert found == expected, served
+        compared += len(found)
+    print(f"{compared} pairs of services compared with the middleware")
+
+
+def clients_of(peer: Peer, other_peer: Peer, name: str, served: Policies, ready: int) -> list[bool]:
+    """Return whether clients of every profile find a server, of which some are to be ready."""
+    from std_srvs.srv import Trigger
+
+    def answer(_: Any, response: Any) -> Any:
+        return response
+
+    def create_client(each: Policies) -> Any:
+        return peer.node.create_client(Trigger, name, qos_profile=profile(each))
+
+    clients = [create_client(each) for each in SERVICES]
+    server = other_peer.node.create_service(Trigger, name, answer, qos_profile=profile(served))
+    # A last client with the server's own profile shows when the server has been found: the others,
+    # which are older, have been matched by then, or never will be.
+    clients.append(create_client(served))
+    peer.until(clients[-1].service_is_ready)
+    other_peer.until(lambda: other_peer.node.count_clients(name) == len(clients))
+    peer.until(lambda: sum(each.service_is_ready() for each in clients[:-1]) >= ready)
+    found = [each.service_is_ready() for each in clients[:-1]]
+    for client in clients:
+        peer.node.destroy_client(client)
+    other_peer.node.destroy_service(server)
+    return found
