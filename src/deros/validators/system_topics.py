@@ -9,16 +9,20 @@ from typing import TYPE_CHECKING
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, Span, report
+from deros.interfaces.names import did_you_mean
 from deros.metamodels.flatten import FlatSystem, FlatTopic, resolve_name
 from deros.metamodels.node import PortKind
 from deros.validators.graph import End, Vertex, channels, publishers, subscribers
-from deros.validators.hints import NameIndex
 from deros.validators.rules_ends import RulesEnds
+from deros.validators.topic_partners import Partners, Robots
 
 if TYPE_CHECKING:
     import networkx as nx
 
     from deros.interfaces.types import InterfaceType
+
+_COMPARED = 20
+"""So many topics of a type that nobody subscribes to are looked at to find one for another."""
 
 _SEEKS_A_PARTNER = {
     PortKind.PUBLISHER: "publisher",
@@ -73,16 +77,15 @@ def check_topics(
     for channel in found:
         yield from _types(channel)
     topics = [channel for channel in found if channel.vertex[0] == "topic"]
-    pairs = [
-        (fed, read)
-        for fed, read in _misspelt_pairs(topics)
-        if (fed.name, read.name) not in rules.gated  # it is a gate that joins them
-    ]
+    partners = Partners((each for each in topics if each.sources or each.sinks), Robots(flat.nodes))
+    pairs = _misspelt(topics, partners, rules)
     topics = [channel for channel in topics if not _ends_in_rules(channel, rules)]
-    misspelt = {channel.name for pair in pairs for channel in pair}
-    for fed, read in pairs:
-        yield _misspelling(fed, read)
-    yield from _missing_ends(topics, misspelt)
+    misspelt = {read.name for read, _ in pairs}
+    for read, matches in pairs:
+        yield _misspelling(read, matches)
+        if not matches[0].sinks:
+            misspelt.add(matches[0].name)
+    yield from _missing_ends(topics, misspelt, partners)
     for channel in found:
         if channel.vertex[0] != "topic":
             yield from _missing_server(channel)
@@ -171,12 +174,14 @@ def _types(channel: _Channel) -> Iterator[Diagnostic]:
 # Missing ends -----------------------------------------------------------------------------------
 
 
-def _missing_ends(topics: Iterable[_Channel], misspelt: set[str]) -> Iterator[Diagnostic]:
+def _missing_ends(
+    topics: Iterable[_Channel], misspelt: set[str], partners: Partners[_Channel]
+) -> Iterator[Diagnostic]:
     lonely = [t for t in topics if t.declared is not None and not t.open and t.name not in misspelt]
-    fed: dict[InterfaceType, str] = {}
+    fed: dict[InterfaceType, list[_Channel]] = defaultdict(list)
     for topic in lonely:
-        if topic.sources and not topic.sinks:
-            fed.setdefault(topic.type, topic.name)
+        if topic.sources and not topic.sinks and len(fed[topic.type]) < _COMPARED:
+            fed[topic.type].append(topic)
     for topic in lonely:
         if not topic.sources and not topic.sinks:
             yield report(
@@ -186,14 +191,14 @@ def _missing_ends(topics: Iterable[_Channel], misspelt: set[str]) -> Iterator[Di
                 hint="remove the declaration, or connect ports to it",
             )
         elif not topic.sources:
-            other = fed.get(topic.type)
+            other = next((t for t in fed[topic.type] if partners.can_join(t, topic)), None)
             yield _one_sided(
                 codes.NO_PUBLISHER,
                 f"nobody publishes '{topic.name}', "
                 f"which {_names(topic.sinks)} subscribe{_s(topic.sinks)} to",
                 topic,
                 topic.sinks,
-                f"'{other}' has the same type and nobody subscribes to it; " if other else "",
+                f"'{other.name}' has the same type and nobody subscribes to it; " if other else "",
             )
         elif not topic.sinks:
             yield _one_sided(
@@ -202,8 +207,15 @@ def _missing_ends(topics: Iterable[_Channel], misspelt: set[str]) -> Iterator[Di
                 f"publish{'es' if len(topic.sources) == 1 else ''}",
                 topic,
                 topic.sources,
-                "",
+                _subscribed_instead(topic, partners),
             )
+
+
+def _subscribed_instead(topic: _Channel, partners: Partners[_Channel]) -> str:
+    """Return the beginning of a hint that names the topics that a published one may have to be."""
+    matches = partners.read_for(topic, lambda read: not read.undeclared)
+    hint = did_you_mean(each.name for each in matches)
+    return f"{hint} There are subscriptions of its type; " if hint else ""
 
 
 def _one_sided(code: Code, message: str, topic: _Channel, ends: list[End], hint: str) -> Diagnostic:
@@ -247,39 +259,47 @@ def _missing_server(channel: _Channel) -> Iterator[Diagnostic]:
 # Misspellings -----------------------------------------------------------------------------------
 
 
-def _misspelt_pairs(topics: Iterable[_Channel]) -> list[tuple[_Channel, _Channel]]:
-    """Pair topics that are only published with ones of the same type that are only subscribed.
+def _misspelt(
+    topics: Iterable[_Channel], partners: Partners[_Channel], rules: RulesEnds
+) -> list[tuple[_Channel, list[_Channel]]]:
+    """Pair topics that are only subscribed with the published ones that they probably are.
 
-    Two belong together when their names nearly match: then it is likelier that one name is wrong
-    than that two connections are missing. That a safety rule reads one of them makes it no better.
+    Where names of one type nearly match, it is likelier that one of them is wrong than that a
+    connection is missing. That a safety rule reads one of them makes it no better; what the safety
+    node or a gate publishes, or a gate joins, lacks nothing.
     """
-    fed: dict[InterfaceType, dict[str, _Channel]] = defaultdict(dict)
-    read: dict[InterfaceType, dict[str, _Channel]] = defaultdict(dict)
-    for topic in topics:
-        if topic.open or topic.undeclared or bool(topic.sources) == bool(topic.sinks):
+    found = []
+    for read in topics:
+        if read.open or read.undeclared or read.sources or not read.sinks:
             continue
-        (fed if topic.sources else read)[topic.type][topic.name] = topic
-    pairs: list[tuple[_Channel, _Channel]] = []
-    for kind, readers in read.items():
-        candidates = fed.get(kind, {})
-        index = NameIndex(candidates)
-        taken: set[str] = set()
-        for name, reader in readers.items():
-            for match in index.near(name):
-                if match not in taken:
-                    taken.add(match)
-                    pairs.append((candidates[match], reader))
-                    break
-    return pairs
+        if read.name in rules.fed:
+            continue
+
+        def allow(fed: _Channel, read: _Channel = read) -> bool:
+            return not fed.undeclared and (fed.name, read.name) not in rules.gated
+
+        matches = partners.fed_for(read, allow)
+        if matches:
+            found.append((read, matches))
+    return found
 
 
-def _misspelling(fed: _Channel, read: _Channel) -> Diagnostic:
+def _misspelling(read: _Channel, matches: list[_Channel]) -> Diagnostic:
+    fed = matches[0]
+    *others, last = [f"'{each.name}'" for each in matches]
+    names = f"{', '.join(others)} or {last}" if others else last
+    kind = fed.type.short
+    if fed.sinks:
+        message = f"nobody publishes '{read.name}', but '{fed.name}' with its type, {kind}"
+        hint = f"connect {_names(read.sinks)} to {names}"
+    else:
+        message = f"'{read.name}' is only subscribed and '{fed.name}' only published, both {kind}"
+        hint = f"connect {_names(read.sinks)} to {names}, or the other way round"
     return report(
         codes.LIKELY_MISSPELLING,
-        f"'{read.name}' is only subscribed and '{fed.name}' only published, "
-        f"both {fed.type.short}: probably one topic",
+        f"{message}: probably one topic",
         read.span,
-        hint=f"connect {_names(read.sinks)} to '{fed.name}', or the other way round",
+        hint=hint,
         related=(
             Related(fed.span, f"'{fed.name}'"),
             Related(fed.sources[0].span, f"published by {fed.sources[0].name}"),

@@ -1,0 +1,99 @@
+"""Which topic was probably meant: names of public ROS systems, and what must not be advised."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from deros.validators.topic_likeness import LIKELY, LikelyTopics, is_mistyped, likeness
+
+# Subscribed, published with the same type, and what is advised, best first. Names are those of
+# TurtleBot3, Nav2, Husky and Jackal, RealSense, ZED, Velodyne and Ouster drivers, u-blox and
+# Microstrain drivers, imu_tools, imu_compass, robot_localization, slam_toolbox, and MoveIt.
+PAIRS: list[tuple[str, list[str], list[str]]] = [
+    ("/imu/data_compass", ["/imu/data", "/imu/data/bias"], ["/imu/data"]),
+    (
+        "/imu/data",
+        ["/imu/data_raw", "/imu/mag", "/ekf/imu/data"],
+        ["/ekf/imu/data", "/imu/data_raw"],
+    ),
+    ("/imu", ["/imu/data", "/imu_raw", "/vectornav/imu"], ["/vectornav/imu", "/imu_raw"]),
+    ("/scan", ["/front/scan", "/scan_filtered"], ["/front/scan", "/scan_filtered"]),
+    ("/front/scan", ["/rear/scan", "/scan"], ["/scan"]),
+    ("/scan_fornt", ["/scan_front", "/scan_rear"], ["/scan_front"]),
+    (
+        "/odom",
+        ["/husky_velocity_controller/odom", "/odometry/filtered"],
+        ["/husky_velocity_controller/odom"],
+    ),
+    ("/odometry", ["/odom"], ["/odom"]),
+    ("/odometry/filtered", ["/odometry/gps", "/odometry/filtered_map"], ["/odometry/filtered_map"]),
+    ("/cmd_vel", ["/cmd_vel_nav", "/cmd_vel_smoothed"], ["/cmd_vel_nav", "/cmd_vel_smoothed"]),
+    ("/cmd_vel_nav", ["/cmd_vel_teleop", "/cmd_vel_joy"], []),
+    ("/cmd_vel_unstamped", ["/diff_drive/cmd_vel_unstamped"], ["/diff_drive/cmd_vel_unstamped"]),
+    ("/command_velocity", ["/cmd_vel", "/cmd_pose"], ["/cmd_vel"]),
+    ("/joint_state", ["/joint_states", "/joint_commands"], ["/joint_states"]),
+    ("/initial_pose", ["/initialpose", "/goal_pose", "/amcl_pose"], ["/initialpose"]),
+    ("/camera/image_raw", ["/camera/color/image_raw"], ["/camera/color/image_raw"]),
+    ("/camera/left/image_raw", ["/camera/right/image_raw"], []),
+    ("/camera1/image_raw", ["/camera2/image_raw"], []),
+    ("/camera/color/camera_info", ["/camera/depth/camera_info"], []),
+    ("/depth/points", ["/camera/depth/points"], ["/camera/depth/points"]),
+    ("/velodyne_points", ["/velodyne/points", "/ouster/points"], ["/velodyne/points"]),
+    ("/cloud", ["/velodyne_points", "/points"], ["/points", "/velodyne_points"]),
+    ("/gps/fix", ["/ublox_gps_node/fix", "/fix"], ["/fix", "/ublox_gps_node/fix"]),
+    ("/local_costmap/costmap", ["/global_costmap/costmap"], []),
+    ("/plan", ["/local_plan", "/received_global_plan"], ["/local_plan"]),
+    ("/battery_state", ["/battery/state", "/batt_state"], ["/batt_state", "/battery/state"]),
+    ("/robot1/odom", ["/robot2/odom"], []),
+    ("/rear/points", ["/near/points"], []),
+    ("/scanFront", ["/scan_front"], ["/scan_front"]),
+    ("/fmInformation/scan_front", ["/fmInformaton/scan_front"], ["/fmInformaton/scan_front"]),
+]
+
+
+@pytest.mark.parametrize(("wanted", "published", "advice"), PAIRS)
+def test_advice(wanted: str, published: list[str], advice: list[str]) -> None:
+    """The right partner comes first; of what is something else, nothing is said."""
+    assert LikelyTopics(published).best(wanted, lambda _: 0.0) == advice
+
+
+@pytest.mark.parametrize(("wanted", "published", "_"), PAIRS)
+def test_likeness_has_no_direction(wanted: str, published: list[str], _: list[str]) -> None:
+    """Whichever of two names is the wrong one."""
+    for name in published:
+        assert likeness(wanted, name) == pytest.approx(likeness(name, wanted))
+
+
+def test_no_more_than_three_are_named() -> None:
+    """A reader looks at three."""
+    names = [f"/{place}/scan" for place in ("a", "b", "c", "d")]
+    assert len(LikelyTopics(names).best("/scan", lambda _: 0.0)) == 3
+
+
+def test_what_speaks_against_a_candidate_keeps_it_out() -> None:
+    """It takes no place of another."""
+    names = ["/front/scan", "/scan_filtered"]
+    found = LikelyTopics(names).best("/scan", lambda name: None if name in names[:1] else 0.0)
+    assert found == names[1:]
+
+
+def test_words_of_their_own_are_not_mistyped() -> None:
+    """The distance of letters alone says nothing."""
+    assert not is_mistyped("rear", "near")
+    assert not is_mistyped("1", "2")
+    assert is_mistyped("fornt", "front")
+    assert is_mistyped("odmo", "odom")
+
+
+def test_many_candidates_are_found_by_what_they_share() -> None:
+    """Ten thousand names of one kind are not compared one by one."""
+    names = [f"/cart_{n}/stage_{m}" for n in range(1000) for m in range(9)]
+    likely = LikelyTopics([*names, "/cart_7/braking", "/scan_front"])
+    begun = time.process_time()
+    for n in range(1000):
+        assert likely.best(f"/cart_{n}/brakign", lambda _: 0.0) == (["/cart_7/braking"] * (n == 7))
+    assert likely.best("/scan_fornt", lambda _: 0.0) == ["/scan_front"]
+    assert time.process_time() - begun < 2.0
+    assert likeness("/cart_7/brakign", "/cart_7/braking") > LIKELY
