@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
 from deros.interfaces.fields import FieldPath, format_path
+from deros.interfaces.standard_topics import standard_topic
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.flatten import FlatPort, FlatTopic, UntypedWiring, flatten
 from deros.metamodels.node import PortKind
@@ -40,8 +41,10 @@ class KnownTopic:
 
     @property
     def external(self) -> bool:
-        """Whether the topic is fed or read from outside the model."""
-        return any(each.declaration.external for each in self.declarations)
+        """Whether the topic is fed or read from outside the model, or by libraries and tools."""
+        if any(each.declaration.external for each in self.declarations):
+            return True
+        return standard_topic(self.name, self.type) is not None
 
     @property
     def offers(self) -> Offers:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.names import check_topic_name
+from deros.interfaces.standard_topics import standard_topic
 from deros.metamodels.common import Value
 from deros.metamodels.flatten import FlatNode, FlatSystem, is_topic_parameter, resolve_name
 from deros.metamodels.node import NodeType, Parameter, ParameterType, PortKind
@@ -165,7 +166,9 @@ def _wirings(
             yield from _conflict(node, parameter, wiring)
         if port is None or port.kind in _TOPIC_KINDS:
             target = resolve_name(wiring.target, node.namespace, instance.name)
-            if target not in declared:
+            kind = port.type if port is not None else None
+            is_standard = standard_topic(target, kind) or standard_topic(target, None)
+            if target not in declared and not is_standard:
                 yield report(
                     codes.UNKNOWN_TOPIC,
                     f"no topic '{target}' is declared",

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, Span, report
 from deros.interfaces.names import did_you_mean
+from deros.interfaces.standard_topics import is_shown_only, standard_topic, wrong_type
 from deros.metamodels.flatten import FlatSystem, FlatTopic, resolve_name
 from deros.metamodels.node import PortKind
-from deros.validators.graph import End, Vertex, channels, publishers, subscribers
+from deros.validators.graph import CHANNEL, End, Vertex, channels, publishers, subscribers
 from deros.validators.rules_ends import RulesEnds
 from deros.validators.topic_partners import Partners, Robots
 
@@ -74,9 +75,13 @@ def check_topics(
     """
     guessed = _targets_of_unknown_ports(flat)
     found = [_channel(graph, vertex, guessed) for vertex in channels(graph)]
+    types = {each.name: each.type for each in found if each.sources or each.sinks}
+    topics: list[_Channel] = []
     for channel in found:
-        yield from _types(channel)
-    topics = [channel for channel in found if channel.vertex[0] == "topic"]
+        unusual = list(_unusual_types(channel, types)) if channel.vertex[0] == "topic" else []
+        yield from unusual or _types(channel)
+        if channel.vertex[0] == "topic" and not unusual:
+            topics.append(channel)
     partners = Partners((each for each in topics if each.sources or each.sinks), Robots(flat.nodes))
     pairs = _misspelt(topics, partners, rules)
     topics = [channel for channel in topics if not _ends_in_rules(channel, rules)]
@@ -98,14 +103,22 @@ def _channel(graph: nx.MultiDiGraph[Vertex], vertex: Vertex, guessed: set[str]) 
     if vertex[0] != "topic":
         # A service has no declaration of its own; an external topic of its name speaks for it.
         declared = graph.nodes.get(("topic", vertex[1]), {}).get("topic")
+    sources, sinks = publishers(graph, vertex), subscribers(graph, vertex)
     is_open = (
         (declared is not None and declared.declaration.external)
         or bool(attributes.get("untyped"))
         or vertex[1] in guessed
+        or (vertex[0] == "topic" and _is_standard(vertex[1], declared, [*sources, *sinks]))
     )
-    return _Channel(
-        vertex, declared, publishers(graph, vertex), subscribers(graph, vertex), is_open
-    )
+    return _Channel(vertex, declared, sources, sinks, is_open)
+
+
+def _is_standard(name: str, declared: FlatTopic | None, ends: list[End]) -> bool:
+    """Tell whether a topic has ends in libraries, tools or hands, which no model describes."""
+    kind = declared.declaration.type if declared is not None else None
+    if kind is None and ends:
+        kind = ends[0].type
+    return standard_topic(name, kind) is not None
 
 
 def _targets_of_unknown_ports(flat: FlatSystem) -> set[str]:
@@ -171,6 +184,25 @@ def _types(channel: _Channel) -> Iterator[Diagnostic]:
             )
 
 
+def _unusual_types(channel: _Channel, types: Mapping[str, InterfaceType]) -> Iterator[Diagnostic]:
+    """Find a standard topic of another type; a pin goes first where no library relies on it."""
+    pinned = channel.declared.declaration if channel.declared is not None else None
+    places = [(end.type, end.span, f"{end.name} has") for end in (*channel.sources, *channel.sinks)]
+    if pinned is not None and pinned.type is not None and pinned.type_span is not None:
+        places.insert(0, (pinned.type, pinned.type_span, "the pin is"))
+    for kind, span, who in places:
+        entry = wrong_type(channel.name, kind, types.get)
+        if entry is None or (pinned is not None and pinned.type == kind and not entry.fixed):
+            continue
+        usual = " or ".join(sorted(entry.types)).replace("/", ".")
+        yield report(
+            codes.STANDARD_TOPIC_TYPE,
+            f"'{channel.name}' is {usual} in every ROS 2 system, but {who} {kind.short}",
+            span,
+            f"use {usual}, or another name: {entry.why}",
+        )
+
+
 # Missing ends -----------------------------------------------------------------------------------
 
 
@@ -200,7 +232,7 @@ def _missing_ends(
                 topic.sinks,
                 f"'{other.name}' has the same type and nobody subscribes to it; " if other else "",
             )
-        elif not topic.sinks:
+        elif not topic.sinks and not is_shown_only(topic.type):
             yield _one_sided(
                 codes.NO_SUBSCRIBER,
                 f"nobody subscribes to '{topic.name}', which {_names(topic.sources)} "
@@ -316,6 +348,9 @@ def _unwired(flat: FlatSystem, by_vertex: dict[Vertex, _Channel]) -> Iterator[Di
         for port in node.ports:
             if port.wiring is not None or port.port.kind not in _SEEKS_A_PARTNER:
                 continue
+            is_topic = CHANNEL[port.port.kind] == "topic"
+            if is_topic and standard_topic(port.topic, port.port.type) is not None:
+                continue  # its other ends are in libraries and tools
             word = _SEEKS_A_PARTNER[port.port.kind]
             yield report(
                 codes.UNWIRED_PORT,
