@@ -1,0 +1,113 @@
+"""Topics whose other ends no model describes: never dangling, and of their usual type."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from deros.diagnostics import Diagnostic
+from deros.interfaces import standard_topics
+from deros.interfaces.standard_topics import standard_topic
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.load import Repository
+from deros.validators.check import check
+
+TABLE = Path(standard_topics.__file__).with_name("standard_topics.json")
+
+
+def _type(text: str) -> InterfaceType:
+    package, name = text.replace("/", ".").split(".")
+    return InterfaceType(package, "msg", name)
+
+
+def _check(folder: Path, ports: str, system: str = "") -> list[Diagnostic]:
+    (folder / "user.rnd").write_text(f"node user : demo {ports}\n")
+    path = folder / "demo.system"
+    path.write_text(f'system Demo\nimports import "user.rnd"\n{system or "node user : user"}\n')
+    repository = Repository()
+    return check([repository.load(path)], repository, InterfaceStore())
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("/tf", "tf2_msgs.TFMessage"),
+        ("/tf_static", "tf2_msgs.TFMessage"),
+        ("/robot1/tf", "tf2_msgs.TFMessage"),
+        ("/clock", "rosgraph_msgs.Clock"),
+        ("/rosout", "rcl_interfaces.Log"),
+        ("/parameter_events", "rcl_interfaces.ParameterEvent"),
+        ("/diagnostics", "diagnostic_msgs.DiagnosticArray"),
+        ("/robot_description", "std_msgs.String"),
+        ("/lidar/transition_event", "lifecycle_msgs.TransitionEvent"),
+        ("/dock/_action/status", "action_msgs.GoalStatusArray"),
+        ("/dock/_action/feedback", "example_interfaces.Int32"),
+        ("/camera/image_raw/compressed", "sensor_msgs.CompressedImage"),
+        ("/camera/image_raw/compressedDepth", "sensor_msgs.CompressedImage"),
+        ("/global_costmap/costmap_updates", "map_msgs.OccupancyGridUpdate"),
+        ("/points/draco", "point_cloud_interfaces.CompressedPointCloud2"),
+        ("/goal_pose", "geometry_msgs.PoseStamped"),
+        ("/bond", "bond.Status"),
+    ],
+)
+@pytest.mark.parametrize("section", ["publishes", "subscribes"])
+def test_they_are_external(tmp_path: Path, name: str, kind: str, section: str) -> None:
+    """Declared or not, connected or not, either end may be there alone."""
+    missing = {"DRS101", "DRS102"}  # some of the packages are no part of this environment
+    port = f"{section} topic {name} : {kind}"
+    wired = f"node user : user wirings connect {name} to {name}"
+    for system in ("", wired, f"topics topic {name}\n{wired}"):
+        found = {each.code.name for each in _check(tmp_path, port, system)}
+        assert found <= missing, system
+
+
+def test_a_topic_of_another_type_is_not_one_of_them(tmp_path: Path) -> None:
+    """A namespace may have a topic of that name that is its own."""
+    found = _check(tmp_path, "publishes topic /air/tf : std_msgs.Bool")
+    assert [each.code.name for each in found] == ["DRS213"]
+
+
+@pytest.mark.parametrize("name", ["/tf", "/clock", "/rosout", "/parameter_events"])
+def test_a_wrong_type_is_an_error(tmp_path: Path, name: str) -> None:
+    """It is the only finding, whatever the system says of the topic."""
+    port = f"publishes topic {name} : std_msgs.String"
+    wired = f"node user : user wirings connect {name} to {name}"
+    for system in ("", wired, f"topics external topic {name}\n{wired}"):
+        found = [each.code.name for each in _check(tmp_path, port, system)]
+        assert [code for code in found if code != "DRS213"] == ["DRS232"], system
+    pinned = f"topics topic {name} : std_msgs.String\n{wired}"
+    found = [each.code.name for each in _check(tmp_path, port, pinned)]
+    assert found == ["DRS232", "DRS232"]
+
+
+def test_a_pin_goes_before_a_convention(tmp_path: Path) -> None:
+    """No client library relies on the type of /diagnostics."""
+    port = "publishes topic /diagnostics : std_msgs.String"
+    system = "topics external topic /diagnostics : std_msgs.String\n"
+    system += "node user : user wirings connect /diagnostics to /diagnostics"
+    assert _check(tmp_path, port, system) == []
+    assert [each.code.name for each in _check(tmp_path, port)] == ["DRS213", "DRS232"]
+
+
+def test_markers_need_no_reader(tmp_path: Path) -> None:
+    """They are for tools; somebody has to publish them, though."""
+    kind = "visualization_msgs.MarkerArray"
+    wired = "topics topic /markers\nnode user : user wirings connect m to /markers"
+    assert _check(tmp_path, f"publishes topic m : {kind}", wired) == []
+    found = _check(tmp_path, f"subscribes topic m : {kind}", wired)
+    assert [each.code.name for each in found] == ["DRS210"]
+
+
+def test_each_entry_says_why() -> None:
+    """And names types as they are written."""
+    table = json.loads(TABLE.read_text(encoding="utf-8"))
+    for entry in (*table["topics"], *table["derived"]):
+        assert len(entry["why"]) > 20
+        assert all(kind.count("/") == 1 for kind in entry["types"])
+        if "name" in entry and entry["types"]:
+            found = standard_topic(entry["name"], _type(entry["types"][0]))
+            assert found is not None
+            assert found.why == entry["why"]

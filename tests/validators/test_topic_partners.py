@@ -1,0 +1,118 @@
+"""Topics that lack an end: which others are proposed, and which never are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.diagnostics import Diagnostic
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.validators.check import check
+
+IMU = """\
+node driver : demo publishes topic data : sensor_msgs.Imu topic bias : sensor_msgs.Imu
+node compass : demo subscribes topic in : sensor_msgs.Imu
+node filter : demo subscribes topic in : sensor_msgs.Imu publishes topic out : sensor_msgs.Imu
+node text : demo publishes topic out : std_msgs.String
+"""
+
+
+def _check(folder: Path, system: str) -> list[Diagnostic]:
+    for line in IMU.splitlines():
+        name = line.split()[1]
+        (folder / f"{name}.rnd").write_text(f"{line}\n")
+    path = folder / "demo.system"
+    path.write_text(f'system Demo\nimports import "*.rnd"\n{system}')
+    repository = Repository()
+    return check([repository.load(path)], repository, InterfaceStore((), prefixes=()))
+
+
+def _likely(findings: list[Diagnostic]) -> list[Diagnostic]:
+    return [each for each in findings if each.code.name == "DRS214"]
+
+
+def test_the_right_partner_is_proposed_though_others_read_it(tmp_path: Path) -> None:
+    """The topic that was meant may be in use already; a free one of another word is not it."""
+    (finding,) = _likely(
+        _check(
+            tmp_path,
+            """\
+topics topic /imu/data topic /imu/data/bias topic /imu/data_compass
+node driver : driver wirings connect data to /imu/data connect bias to /imu/data/bias
+node filter : compass wirings connect in to /imu/data
+node compass : compass wirings connect in to /imu/data_compass
+""",
+        )
+    )
+    assert finding.message.startswith("nobody publishes '/imu/data_compass', but '/imu/data'")
+    assert finding.hint == "connect /compass to '/imu/data'"
+
+
+def test_up_to_three_are_named_best_first(tmp_path: Path) -> None:
+    """One that nobody reads comes before one as likely that has its readers."""
+    (finding,) = _likely(
+        _check(
+            tmp_path,
+            """\
+topics topic /imu_a topic /a/imu topic /b/imu topic /imu external topic /bias
+node a : driver wirings connect data to /imu_a connect bias to /a/imu
+node b : driver wirings connect data to /b/imu connect bias to /bias
+node r : compass wirings connect in to /a/imu
+node s : compass wirings connect in to /imu
+""",
+        )
+    )
+    assert finding.hint == "connect /s to '/b/imu', '/a/imu' or '/imu_a', or the other way round"
+
+
+def test_two_ends_of_one_node_are_two_topics(tmp_path: Path) -> None:
+    """What a filter reads is not what it publishes, however alike the names are."""
+    system = """\
+topics topic /scan topic /scan_filtered
+node filter : filter wirings connect in to /scan connect out to /scan_filtered
+"""
+    findings = _check(tmp_path, system)
+    assert [each.code.name for each in findings] == ["DRS210", "DRS211"]
+    assert all("/scan" not in each.hint for each in findings)
+
+
+@pytest.mark.parametrize("left", ["left", "robot1/base"])
+@pytest.mark.parametrize("right", ["right", "robot2/base"])
+def test_two_robots_have_topics_of_their_own(tmp_path: Path, left: str, right: str) -> None:
+    """A reader of one is not joined with a publisher of the other."""
+    system = f"""\
+topics topic /{left}/imu topic /{right}/imu external topic /bias
+subsystem left namespace /{left} {{ node driver : driver
+  wirings connect data to imu connect bias to /bias }}
+subsystem right namespace /{right} {{
+  node driver : driver wirings connect data to /bias connect bias to /bias
+  node compass : compass wirings connect in to imu }}
+"""
+    findings = _check(tmp_path, system)
+    assert sorted(each.code.name for each in findings) == ["DRS210", "DRS211"]
+    assert all("imu" not in each.hint for each in findings)
+
+
+def test_another_type_is_another_topic(tmp_path: Path) -> None:
+    """A connection would be an error."""
+    system = """\
+topics topic /imu/data topic /imu/dta
+node text : text wirings connect out to /imu/data
+node compass : compass wirings connect in to /imu/dta
+"""
+    assert _likely(_check(tmp_path, system)) == []
+
+
+def test_a_publisher_that_nobody_hears_is_shown_the_topic_with_readers(tmp_path: Path) -> None:
+    """A controller that publishes past its drive is not just unread."""
+    system = """\
+topics topic /imu/data topic /imu/dta external topic /bias
+node good : driver wirings connect data to /imu/data connect bias to /bias
+node reader : compass wirings connect in to /imu/data
+node wrong : driver wirings connect data to /imu/dta connect bias to /bias
+"""
+    (finding,) = _check(tmp_path, system)
+    assert finding.code.name == "DRS211"
+    assert finding.hint.startswith("did you mean '/imu/data'?")
