@@ -34,6 +34,11 @@ NAME_TOO_LONG = _declare(7, "name too long")
 FILE_TOO_LARGE = _declare(8, "file too large")
 FORBIDDEN_CHARACTER = _declare(9, "character that no text may hold")
 
+# Allowances and baselines
+BAD_ALLOWANCE = _declare(20, "allowance that cannot be read", _W)
+NOT_ALLOWABLE = _declare(21, "allowance of a finding that cannot be allowed", _W)
+UNUSED_ALLOWANCE = _declare(22, "allowance that is not needed", _W)
+
 # Node descriptions
 UNKNOWN_PACKAGE = _declare(101, "unknown interface package")
 UNKNOWN_TYPE = _declare(102, "unknown message, service or action type")
@@ -150,3 +155,15 @@ UNREAD_TRACE_TOPIC = _declare(505, "topic of a trace that the rules do not read"
 
 MENDED_AFTER_GENERATION = frozenset({GATE_BYPASSED, GATE_NOT_IN_SYSTEM})
 """Errors of a system that a gate is not wired into yet: its node has to be generated before."""
+
+OF_MODELS = frozenset(
+    code for code in ALL_CODES.values() if not code.name.startswith(("DRS02", "DRS4", "DRS5"))
+)
+"""Findings about what a model says, not about generated files, traces or how deros is used."""
+
+SLUGS: dict[str, Code] = {
+    name.lower().replace("_", "-"): code
+    for name, code in list(globals().items())
+    if isinstance(code, Code)
+}
+"""The codes by a name that says what they are about: ``no-timeout`` is DRS317."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from deros.diagnostics import Diagnostic
+    from deros.validators.allowances import Allowed
 
 FORMATS = ("text", "json", "sarif", "github")
 
@@ -30,6 +32,7 @@ FORMATS = ("text", "json", "sarif", "github")
     show_default=True,
     help="How to report findings.",
 )
+@click.option("--show-allowed", is_flag=True, help="Report what the models allow, too.")
 @interfaces_option
 @click.pass_context
 def check(
@@ -37,6 +40,7 @@ def check(
     files: tuple[str, ...],
     strict: bool,
     output_format: str,
+    show_allowed: bool,
     interfaces: tuple[Path, ...],
 ) -> None:
     """Check models and report every finding.
@@ -46,9 +50,9 @@ def check(
     something was (warnings count under --strict), 2 if a file cannot be read.
     """
     with without_collector():
-        findings, count = find(files, interfaces)
-    report(findings, count, output_format)
-    ctx.exit(exit_code(findings, strict=strict))
+        found = find(files, interfaces)
+    report(found, output_format, show_allowed=show_allowed)
+    ctx.exit(exit_code(found.findings, strict=strict))
 
 
 @contextlib.contextmanager
@@ -67,28 +71,38 @@ def without_collector() -> Iterator[None]:
             gc.enable()
 
 
-def find(files: Sequence[str], interfaces: Sequence[Path]) -> tuple[list[Diagnostic], int]:
-    """Return the findings of the files and their imports, and how many files that were."""
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What a run of the checks found, in how many files."""
+
+    findings: Sequence[Diagnostic]
+    allowed: Sequence[Allowed]
+    files: int
+
+
+def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
+    """Check the files and their imports."""
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
-    from deros.validators.check import check as check_loaded
+    from deros.validators.check import check_all
 
     repository = Repository()
     named = [repository.load(path) for path in files]
-    findings = check_loaded(named, repository, InterfaceStore(interfaces))
-    return findings, len(repository.files)
+    checked = check_all(named, repository, InterfaceStore(interfaces))
+    return Found(checked.findings, checked.allowed, len(repository.files))
 
 
-def report(findings: Sequence[Diagnostic], files: int, output_format: str) -> None:
+def report(found: Found, output_format: str, *, show_allowed: bool = False) -> None:
     """Write the findings to standard output; text closes with a count."""
     from deros.cli import formats, render
 
+    shown = found.allowed if show_allowed else ()
     if output_format == "json":
-        click.echo(formats.render_json(findings), nl=False)
+        click.echo(formats.render_json(found.findings, shown), nl=False)
     elif output_format == "sarif":
-        click.echo(formats.render_sarif(findings), nl=False)
+        click.echo(formats.render_sarif(found.findings, found.allowed), nl=False)
     elif output_format == "github":
-        click.echo(formats.render_github(findings), nl=False)
+        click.echo(formats.render_github(found.findings), nl=False)
     else:
-        render.print_text(findings)
-        click.echo(render.summary(findings, files))
+        render.print_text(found.findings, allowed=shown)
+        click.echo(render.summary(found.findings, found.files, len(found.allowed)))

@@ -10,14 +10,20 @@ from urllib.parse import quote
 from deros import __version__
 from deros.codes import ALL_CODES
 from deros.diagnostics import Diagnostic, Severity, Span, encodable
+from deros.validators.allowances import Allowance, Allowed
 
 _SARIF_LEVEL = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 _GITHUB_COMMAND = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 
 
-def render_json(diagnostics: Sequence[Diagnostic]) -> str:
-    """Return an array of flat objects; lines and columns count from 1, ends are exclusive."""
-    return json.dumps([_json_object(d) for d in diagnostics], indent=2, ensure_ascii=False) + "\n"
+def render_json(diagnostics: Sequence[Diagnostic], allowed: Sequence[Allowed] = ()) -> str:
+    """Return an array of flat objects; lines and columns count from 1, ends are exclusive.
+
+    Those of ``allowed`` come last and give the reason under ``allowed``.
+    """
+    objects = [_json_object(d) for d in diagnostics]
+    objects += [{**_json_object(each.finding), "allowed": each.by.reason} for each in allowed]
+    return json.dumps(objects, indent=2, ensure_ascii=False) + "\n"
 
 
 def _json_object(diagnostic: Diagnostic) -> dict[str, Any]:
@@ -35,9 +41,9 @@ def _json_object(diagnostic: Diagnostic) -> dict[str, Any]:
     }
 
 
-def render_sarif(diagnostics: Sequence[Diagnostic]) -> str:
+def render_sarif(diagnostics: Sequence[Diagnostic], allowed: Sequence[Allowed] = ()) -> str:
     """Return a log of the Static Analysis Results Interchange Format, version 2.1.0 (OASIS)."""
-    used = sorted({d.code.name for d in diagnostics})
+    used = sorted({d.code.name for d in (*diagnostics, *(each.finding for each in allowed))})
     index = {name: position for position, name in enumerate(used)}
     log = {
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
@@ -52,7 +58,10 @@ def render_sarif(diagnostics: Sequence[Diagnostic]) -> str:
                     }
                 },
                 "columnKind": "unicodeCodePoints",
-                "results": [_sarif_result(d, index[d.code.name]) for d in diagnostics],
+                "results": [
+                    *(_sarif_result(d, index[d.code.name]) for d in diagnostics),
+                    *(_sarif_suppressed(each, index[each.finding.code.name]) for each in allowed),
+                ],
             }
         ],
     }
@@ -89,6 +98,16 @@ def _sarif_result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
             for position, related in enumerate(diagnostic.related)
         ]
     return result
+
+
+def _sarif_suppressed(allowed: Allowed, rule_index: int) -> dict[str, Any]:
+    suppression = {
+        "kind": "inSource" if isinstance(allowed.by, Allowance) else "external",
+        "status": "accepted",
+        "justification": encodable(allowed.by.reason),
+        "location": {"physicalLocation": _sarif_location(allowed.by.span)},
+    }
+    return {**_sarif_result(allowed.finding, rule_index), "suppressions": [suppression]}
 
 
 def _sarif_location(span: Span) -> dict[str, Any]:

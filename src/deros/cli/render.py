@@ -10,9 +10,12 @@ import sys
 import unicodedata
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from deros.diagnostics import Diagnostic, Severity, Span
+
+if TYPE_CHECKING:
+    from deros.validators.allowances import Allowed
 
 Piece = tuple[str, str]
 """A piece of text and its style, a name that rich knows; ``""`` for none."""
@@ -26,27 +29,35 @@ _WIDEST = 160
 """Longer lines are cut around the place that is meant."""
 
 
-def render_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """Return all diagnostics as plain text, each ended by a newline."""
-    return "".join(text for d in diagnostics for text, _ in _pieces(d))
+def render_text(diagnostics: Iterable[Diagnostic], allowed: Iterable[Allowed] = ()) -> str:
+    """Return all diagnostics as plain text, each ended by a newline; those allowed come last."""
+    return "".join(text for entry in _entries(diagnostics, allowed) for text, _ in entry)
 
 
-def print_text(diagnostics: Sequence[Diagnostic], stream: TextIO | None = None) -> None:
+def print_text(
+    diagnostics: Sequence[Diagnostic],
+    stream: TextIO | None = None,
+    allowed: Sequence[Allowed] = (),
+) -> None:
     """Write diagnostics to ``stream`` (standard output), coloured if it is a terminal."""
     out = stream if stream is not None else sys.stdout
     if not (out.isatty() and not os.environ.get("NO_COLOR")):
-        out.write(render_text(diagnostics))
+        out.write(render_text(diagnostics, allowed))
         return
     from rich.console import Console
     from rich.text import Text
 
     console = Console(file=out, soft_wrap=True, highlight=False, emoji=False, markup=False)
-    for diagnostic in diagnostics:
-        console.print(Text.assemble(*_pieces(diagnostic)), end="")
+    for entry in _entries(diagnostics, allowed):
+        console.print(Text.assemble(*entry), end="")
 
 
-def summary(diagnostics: Iterable[Diagnostic], files: int) -> str:
-    """Return the closing line, as ``2 errors and 1 warning in 3 files``."""
+def summary(diagnostics: Iterable[Diagnostic], files: int, allowed: int = 0) -> str:
+    """Return the closing line, as ``2 errors and 1 warning in 3 files, 4 allowed``."""
+    return _found(diagnostics, files) + (f", {allowed} allowed" if allowed else "")
+
+
+def _found(diagnostics: Iterable[Diagnostic], files: int) -> str:
     count = Counter(d.severity for d in diagnostics)
     found = [
         _counted(count[severity], word)
@@ -65,6 +76,15 @@ def summary(diagnostics: Iterable[Diagnostic], files: int) -> str:
 
 def _counted(number: int, word: str) -> str:
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
+
+
+def _entries(
+    diagnostics: Iterable[Diagnostic], allowed: Iterable[Allowed]
+) -> Iterator[Iterable[Piece]]:
+    yield from map(_pieces, diagnostics)
+    for each in allowed:
+        why = f"    = allowed at {_place(each.by.span)}: "
+        yield (*_pieces(each.finding), (why, "cyan"), (f"{_printable(each.by.reason)}\n", ""))
 
 
 def _pieces(diagnostic: Diagnostic) -> Iterator[Piece]:

@@ -60,7 +60,7 @@ def _check(file_name: str) -> None:
     from deros.cli.options import in_the_way_of_generating
     from deros.diagnostics import has_errors
 
-    findings, _ = find([file_name], ())
+    findings = find([file_name], ()).findings
     command = click.get_current_context(silent=True)
     generates = command is not None and command.info_name == "generate"
     if has_errors(in_the_way_of_generating(findings, file_name) if generates else findings):

@@ -57,6 +57,20 @@ def folder_levels(parent: str, parts: Sequence[str]) -> list[list[str]]:
     return levels
 
 
+def path_matches(path: PurePath, pattern: str) -> bool:
+    """Tell whether a relative path matches a pattern, in which ``**`` is any number of folders."""
+    return _parts_match(path.parts, PurePath(pattern).parts)
+
+
+def _parts_match(parts: Sequence[str], patterns: Sequence[str]) -> bool:
+    if not patterns:
+        return not parts
+    first, *others = patterns
+    if first == "**":
+        return not others or any(_parts_match(parts[n:], others) for n in range(len(parts) + 1))
+    return bool(parts) and fnmatchcase(parts[0], first) and _parts_match(parts[1:], others)
+
+
 def _within(folders: Iterable[str], part: str) -> Iterator[str]:
     for folder in folders:
         if not glob.has_magic(part):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import re
 import unicodedata
+from collections.abc import Iterator
 from pathlib import Path
 
 from deros import codes
@@ -119,6 +120,13 @@ def prepare(source: SourceFile) -> str:
     prepared = "".join(pieces)
     _check_words(source, prepared)
     return prepared
+
+
+def comments(source: SourceFile) -> Iterator[Span]:
+    """Yield the place of each closed comment in a text, as :func:`prepare` finds them."""
+    for found in _SPECIAL.finditer(source.text):
+        if found.lastgroup == "comment":
+            yield Span(source, found.start(), found.end())
 
 
 def _check_words(source: SourceFile, text: str) -> None:

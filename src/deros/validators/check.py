@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from deros.diagnostics import Diagnostic, in_file_order
 from deros.interfaces.store import InterfaceStore
@@ -10,15 +11,42 @@ from deros.metamodels.load import LoadedFile, Repository
 from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
+from deros.validators.allowances import Allowed, ProjectAllowance, sort_out
+
+
+class Checked(NamedTuple):
+    """What a run found, and what of it the models allow."""
+
+    findings: list[Diagnostic]
+    allowed: list[Allowed]
 
 
 def check(
-    named: Sequence[LoadedFile], repository: Repository, store: InterfaceStore
+    named: Sequence[LoadedFile],
+    repository: Repository,
+    store: InterfaceStore,
+    project: Sequence[ProjectAllowance] = (),
 ) -> list[Diagnostic]:
+    """Return the findings of :func:`check_all` that are not allowed."""
+    return check_all(named, repository, store, project).findings
+
+
+def check_all(
+    named: Sequence[LoadedFile],
+    repository: Repository,
+    store: InterfaceStore,
+    project: Sequence[ProjectAllowance] = (),
+) -> Checked:
     """Return the findings of the files in ``named`` and of their imports, in file order.
 
     A system that was named, or that rules use, is checked as a whole; one that only another system
     imports is checked as it is written, because the importing system may feed its topics.
+
+    Args:
+        named: the files that the user named.
+        repository: where they were loaded, with all that they import.
+        store: the definitions of messages.
+        project: what the project's file allows.
     """
     loaded = list({id(each): each for each in (*named, *repository.files)}.values())
     named_files = {id(each) for each in named}
@@ -29,12 +57,14 @@ def check(
         watchers = watching.get(id(each.model), [])
         whole = id(each) in named_files or bool(watchers)
         findings.extend(_check_model(each.model, whole, watchers, store))
-    return in_file_order(findings)
+    sorted_out = sort_out(in_file_order(findings), loaded, named, project)
+    return Checked(in_file_order(sorted_out.findings), list(sorted_out.allowed))
 
 
 def check_file(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
     """Return the findings of one file by itself, in file order, without those of its imports."""
-    return in_file_order([*loaded.diagnostics, *_check_model(loaded.model, False, [], store)])
+    findings = in_file_order([*loaded.diagnostics, *_check_model(loaded.model, False, [], store)])
+    return list(sort_out(findings, [loaded], ()).findings)
 
 
 def _watching_rules(loaded: Iterable[LoadedFile]) -> dict[int, list[Rules]]:

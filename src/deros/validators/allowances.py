@@ -1,0 +1,261 @@
+"""Findings that the author of a model allows, each with the reason beside it.
+
+A comment ``// deros: allow DRS210 the driver is started by hand`` at the end of a line silences the
+findings of that code on that line. A comment that stands alone holds for the next line that is
+neither empty nor a comment. Errors cannot be allowed: what generates and starts relies on there
+being none. A project allows findings by code and path, see :class:`ProjectAllowance`.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Severity, SourceFile, Span, report
+from deros.metamodels.globbing import path_matches
+from deros.metamodels.load import LoadedFile
+from deros.metamodels.reading import comments
+from deros.validators.hints import did_you_mean
+
+_MARK = re.compile(r"(?://+|/\*+)\s*(deros\s*:)\s*")
+_WORD = re.compile(r"[^\s,:]+")
+_CODE = re.compile(r"(?i)DRS[-_]?\d+")
+_SEPARATOR = re.compile(r"\s*,\s*|\s+(?=(?i:DRS[-_]?\d))")
+_FILLING = " \t\r\n:;,.-*/\N{EN DASH}\N{EM DASH}"
+_USAGE = "write '// deros: allow CODE reason'"
+
+ABOUT_ALLOWANCES = frozenset({codes.BAD_ALLOWANCE, codes.NOT_ALLOWABLE, codes.UNUSED_ALLOWANCE})
+"""What is wrong with an allowance is mended there, not allowed by another one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Allowance:
+    """One code that a comment allows on one line.
+
+    Attributes:
+        code: the name of the code.
+        line: the line whose findings it silences, from 1.
+        reason: why, as the comment says.
+        span: the code in the comment.
+    """
+
+    code: str
+    line: int
+    reason: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ProjectAllowance:
+    """One code that a project allows in all files of a pattern.
+
+    Attributes:
+        code: the name of the code.
+        pattern: the files, relative to ``root``: ``vendor/**`` or ``models/arm.system``.
+        reason: why.
+        root: the folder of the project's file, absolute.
+        span: the entry in the project's file.
+    """
+
+    code: str
+    pattern: str
+    reason: str
+    root: Path
+    span: Span
+
+    def covers(self, finding: Diagnostic) -> bool:
+        """Tell whether a finding is of this code and in a file of the pattern."""
+        return finding.code.name == self.code and self.names(finding.span.file)
+
+    def names(self, file: str) -> bool:
+        """Tell whether a file is one of the pattern."""
+        path = Path(file).absolute()
+        root = self.root
+        if not path.is_relative_to(root):
+            path, root = path.resolve(), root.resolve()
+        return path.is_relative_to(root) and path_matches(path.relative_to(root), self.pattern)
+
+
+@dataclass(frozen=True, slots=True)
+class Allowed:
+    """A finding that is allowed, and by what."""
+
+    finding: Diagnostic
+    by: Allowance | ProjectAllowance
+
+
+@dataclass(frozen=True, slots=True)
+class Sorted:
+    """The findings that stand, and those that are allowed."""
+
+    findings: tuple[Diagnostic, ...]
+    allowed: tuple[Allowed, ...]
+
+
+def sort_out(
+    findings: Iterable[Diagnostic],
+    loaded: Iterable[LoadedFile],
+    judged: Iterable[LoadedFile],
+    project: Sequence[ProjectAllowance] = (),
+) -> Sorted:
+    """Split findings into those that stand and those that are allowed, judging the allowances.
+
+    Args:
+        findings: all findings of a run.
+        loaded: its files.
+        judged: those of them that were checked as the user named them. Only in these an allowance
+            may be called unnecessary: a file that another one imports is checked in part.
+        project: what the project's file allows.
+    """
+    standing: list[Diagnostic] = []
+    allowed: list[Allowed] = []
+    said: list[Diagnostic] = []
+    given: dict[tuple[SourceFile, int, str], Allowance] = {}
+    for each in loaded:
+        if each.source is not None:
+            allowances, wrong = read_allowances(each.source)
+            said += wrong
+            given |= {(each.source, one.line, one.code): one for one in allowances}
+    needed: set[Span] = set()
+    broken = False
+    for finding in findings:
+        broken = broken or finding.is_error
+        by = _allowance_of(finding, given, project)
+        if by is None:
+            standing.append(finding)
+        else:
+            allowed.append(Allowed(finding, by))
+            needed.add(by.span)
+    if not broken:  # an error may be the reason why another finding has not come up
+        sources = {each.source for each in judged}
+        unneeded = [a for a in given.values() if a.span not in needed and a.span.source in sources]
+        said += map(_unneeded, unneeded)
+    return Sorted((*standing, *said), tuple(allowed))
+
+
+def _allowance_of(
+    finding: Diagnostic,
+    given: dict[tuple[SourceFile, int, str], Allowance],
+    project: Sequence[ProjectAllowance],
+) -> Allowance | ProjectAllowance | None:
+    if finding.is_error or (not given and not project):
+        return None
+    span = finding.span
+    beside = given.get((span.source, span.line, finding.code.name)) if given else None
+    return beside or next((each for each in project if each.covers(finding)), None)
+
+
+def _unneeded(allowance: Allowance) -> Diagnostic:
+    message = f"line {allowance.line} has no finding {allowance.code} to allow"
+    return report(codes.UNUSED_ALLOWANCE, message, allowance.span, f"remove {allowance.code}")
+
+
+# Reading comments --------------------------------------------------------------------------------
+
+
+def read_allowances(source: SourceFile) -> tuple[list[Allowance], list[Diagnostic]]:
+    """Return the allowances in the comments of a text, and what is wrong with them."""
+    if _MARK.search(source.text) is None:
+        return [], []
+    every = list(comments(source))
+    ours = [(span, mark) for span in every if (mark := _MARK.match(span.text))]
+    allowances: list[Allowance] = []
+    wrong: list[Diagnostic] = []
+    code = _lines_of_code(every) if ours else []
+    for span, mark in ours:
+        following = bisect_left(code, span.line)
+        line = code[following] if following < len(code) else span.line
+        for result in _read(Span(source, span.start + mark.end(), _end(span)), line):
+            if isinstance(result, Allowance):
+                allowances.append(result)
+            else:
+                wrong.append(result)
+    return allowances, wrong
+
+
+def _end(comment: Span) -> int:
+    """Return where the words of a comment end."""
+    return comment.end - (2 if comment.text.startswith("/*") else 0)
+
+
+def _read(rest: Span, line: int) -> Iterator[Allowance | Diagnostic]:
+    """Read what follows ``deros:`` in a comment."""
+    source, text = rest.source, rest.text
+    verb = _WORD.match(text)
+    if verb is None or verb[0] != "allow":
+        place = Span(source, rest.start, rest.start + (verb.end() if verb else 0))
+        hint = did_you_mean(verb[0], ["allow"], _USAGE) if verb else _USAGE
+        message = "a comment that begins 'deros:' is an allowance"
+        yield report(codes.BAD_ALLOWANCE, message, place, hint)
+        return
+    named, at = _named_codes(rest, verb.end())
+    if not named:
+        message = "an allowance names the code of the finding"
+        yield report(codes.BAD_ALLOWANCE, message, _first(rest, verb.end()), _USAGE)
+        return
+    reason = " ".join(text[at:].strip(_FILLING).split())
+    if not re.search(r"\w", reason):
+        message = "an allowance gives the reason why the finding may stand"
+        hint = f"write '// deros: allow {named[0].text} reason'"
+        yield report(codes.BAD_ALLOWANCE, message, Span(source, named[0].start, rest.end), hint)
+        return
+    for span in named:
+        wrong = not_allowable(span.text, span)
+        yield wrong if wrong is not None else Allowance(span.text, line, reason, span)
+
+
+def _named_codes(rest: Span, at: int) -> tuple[list[Span], int]:
+    """Return the places of the codes that follow, and where they end."""
+    named: list[Span] = []
+    text = rest.text
+    at += len(text[at:]) - len(text[at:].lstrip())
+    while (word := _WORD.match(text, at)) and _names_a_code(word[0]):
+        named.append(Span(rest.source, rest.start + at, rest.start + word.end()))
+        at = word.end()
+        following = _SEPARATOR.match(text, at)
+        if following is None:
+            break
+        at = following.end()
+    return named, at
+
+
+def _names_a_code(word: str) -> bool:
+    return word in codes.SLUGS or _CODE.fullmatch(word) is not None
+
+
+def not_allowable(name: str, span: Span) -> Diagnostic | None:
+    """Return the finding about a code that cannot be allowed in a model, or ``None``."""
+    code = codes.ALL_CODES.get(name)
+    if code is None:
+        near = did_you_mean(name.upper().replace("-", "").replace("_", ""), codes.ALL_CODES)
+        hint = f"its code is {codes.SLUGS[name].name}" if name in codes.SLUGS else near
+        return report(codes.NOT_ALLOWABLE, f"there is no finding {name}", span, hint)
+    if code.severity is Severity.ERROR:
+        hint = "correct what it reports"
+        message = f"{name} ({code.title}) is an error, and errors cannot be allowed"
+        return report(codes.NOT_ALLOWABLE, message, span, hint)
+    if code in ABOUT_ALLOWANCES or code not in codes.OF_MODELS:
+        message = f"{name} ({code.title}) is not reported for what a model says"
+        return report(codes.NOT_ALLOWABLE, message, span, "remove the allowance")
+    return None
+
+
+def _first(rest: Span, at: int) -> Span:
+    word = _WORD.search(rest.text, at)
+    start, end = (word.start(), word.end()) if word else (at, at)
+    return Span(rest.source, rest.start + start, rest.start + end)
+
+
+def _lines_of_code(comments_of_file: Sequence[Span]) -> list[int]:
+    """Return the lines that hold anything but blanks and comments."""
+    source = comments_of_file[0].source
+    pieces, done = [], 0
+    for span in comments_of_file:
+        pieces += [source.text[done : span.start], "\n" * span.text.count("\n")]
+        done = span.end
+    text = "".join([*pieces, source.text[done:]])
+    return [number for number, line in enumerate(text.split("\n"), start=1) if line.strip()]

@@ -1,0 +1,190 @@
+"""Allowances: which findings a comment in a model silences, and what is said of the comment."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.codes import ALL_CODES
+from deros.diagnostics import Severity, SourceFile, Span, report
+from deros.validators.allowances import ProjectAllowance, not_allowable, read_allowances
+from tests.support.cli import deros
+
+MODELS = {
+    "units.rnd": (
+        "node units : demo\npublishes\n  {before}\n"
+        "  topic imu : sensor_msgs.Imu {{ angular_velocity.x [m] }}{same}\n",
+        "DRS111",
+    ),
+    "lone.system": ("system Lone\ntopics\n  {before}\n  topic /odom{same}\n", "DRS212"),
+    "rules.deros": (
+        "{before}\nconst unused = 1{same}\n",
+        "DRS313",
+    ),
+}
+
+
+@pytest.fixture(autouse=True)
+def _in_own_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def _codes(*arguments: str) -> list[str]:
+    return [d["code"] for d in json.loads(deros("check", "--format", "json", *arguments).out)]
+
+
+def _write(name: str, before: str = "", same: str = "") -> str:
+    text, code = MODELS[name]
+    Path(name).write_text(text.format(before=before, same=same))
+    return code
+
+
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize(
+    ("before", "same"),
+    [
+        ("", "  // deros: allow {code} known"),
+        ("", "  /* deros: allow {code} known */"),
+        ("// deros: allow {code} known", ""),
+        ("//deros:allow {code}: known\n\n// and a remark", ""),
+        ("/* deros: allow {code}\n   known for long\n*/", ""),
+        ("// deros: allow {code}, DRS211 known", ""),
+    ],
+)
+def test_an_allowance_silences_its_line(name: str, before: str, same: str) -> None:
+    """Beside the line or alone above it, in each language, a comment silences the finding."""
+    code = _write(name)
+    assert code in _codes(name)
+    _write(name, before.format(code=code), same.format(code=code))
+    assert code not in _codes(name)
+
+
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize(
+    "before",
+    [
+        "// deros: allow {code} known\n  /* another */ // line",
+        "/* // deros: allow {code} in a comment that does not begin so */",
+        "// see deros: allow {code} known",
+    ],
+)
+def test_only_a_comment_that_begins_so_is_an_allowance(name: str, before: str) -> None:
+    """Words elsewhere in a comment allow nothing; comments between the two do not matter."""
+    code = _write(name, before.format(code="DRS222"))
+    assert code in _codes(name)
+
+
+def test_a_text_of_the_model_is_no_comment() -> None:
+    """What stands in quotes is no allowance."""
+    Path("text.system").write_text(
+        'system Text "// deros: allow DRS212 known"\ntopics\n  topic /a "// deros: allow DRS212 x"\n'
+    )
+    assert _codes("text.system") == ["DRS212"]
+
+
+def test_an_error_is_never_silenced() -> None:
+    """The error stays, and the allowance is a finding."""
+    Path("bad.rnd").write_text(
+        "node bad : demo\nparameters\n  name a : int = 0.5  // deros: allow DRS103 known\n"
+    )
+    assert _codes("bad.rnd") == ["DRS103", "DRS021"]
+    assert deros("check", "bad.rnd").code == 1
+
+
+@pytest.mark.parametrize("code", ALL_CODES.values(), ids=str)
+def test_what_may_be_allowed(code: codes.Code) -> None:
+    """No error may be allowed, nor a finding about allowances themselves."""
+    found = not_allowable(code.name, Span(SourceFile("x.rnd", ""), 0, 0))
+    allowable = code.severity is not Severity.ERROR and code in codes.OF_MODELS
+    assert (found is None) == allowable
+
+
+def test_an_unneeded_allowance_is_a_finding_of_named_files_alone() -> None:
+    """An importing system may make a finding go away that the imported file has by itself."""
+    Path("source.rnd").write_text("node source : demo\npublishes\n  topic out : std_msgs.Bool\n")
+    Path("sink.rnd").write_text("node sink : demo\nsubscribes\n  topic in : std_msgs.Bool\n")
+    Path("part.system").write_text(
+        'system Part\nimports import "sink.rnd"\ntopics\n'
+        "  topic /x  // deros: allow DRS210 fed by the whole\n"
+        "node sink : sink wirings connect in to /x\n"
+    )
+    Path("whole.system").write_text(
+        'system Whole\nimports import "part.system" import "source.rnd"\ntopics topic /x\n'
+        "subsystem part : Part\nnode source : source wirings connect out to /x\n"
+    )
+    assert _codes("part.system") == []
+    assert _codes("whole.system") == []
+    assert _codes("whole.system", "part.system") == []
+    Path("sink.rnd").write_text("node sink : demo\npublishes\n  topic in : std_msgs.Bool\n")
+    assert "DRS022" in _codes("part.system")
+
+
+def test_nothing_is_called_unneeded_where_an_error_may_hide_it() -> None:
+    """Behind an error some checks do not run, so their findings may come back."""
+    Path("bad.system").write_text(
+        'system Bad\nimports import "nowhere.rnd"\ntopics\n'
+        "  topic /x  // deros: allow DRS210 fed by hand\nnode a : b wirings connect i to /x\n"
+    )
+    assert "DRS022" not in _codes("bad.system")
+
+
+def test_what_is_allowed_is_counted_and_shown_on_demand() -> None:
+    """The last line counts it; ``--show-allowed`` adds finding and reason, in text and JSON."""
+    _write("lone.system", same="  // deros: allow DRS212 filled by hand")
+    brief = deros("check", "--strict", "lone.system")
+    assert (brief.code, brief.out) == (0, "1 file checked, no findings, 1 allowed\n")
+    shown = deros("check", "--strict", "--show-allowed", "lone.system")
+    assert shown.code == 0
+    assert "warning[DRS212]" in shown.out
+    assert "    = allowed at lone.system:4:32: filled by hand\n" in shown.out
+    listed = json.loads(
+        deros("check", "--show-allowed", "--format", "json", "lone.system").out
+    )
+    assert [(each["code"], each["allowed"]) for each in listed] == [("DRS212", "filled by hand")]
+
+
+def test_sarif_lists_what_is_allowed_as_suppressed() -> None:
+    """A result with ``suppressions`` says where and why (SARIF 2.1.0, 3.27.23 and 3.35)."""
+    _write("lone.system", same="  // deros: allow DRS212 filled by hand")
+    log = json.loads(deros("check", "--format", "sarif", "lone.system").out)
+    (result,) = log["runs"][0]["results"]
+    (suppression,) = result["suppressions"]
+    assert (suppression["kind"], suppression["justification"]) == ("inSource", "filled by hand")
+    assert suppression["location"]["physicalLocation"]["region"]["startLine"] == 4
+
+
+def test_annotations_leave_out_what_is_allowed() -> None:
+    """GitHub shows no annotation for it."""
+    _write("lone.system", same="  // deros: allow DRS212 filled by hand")
+    assert deros("check", "--format", "github", "lone.system").out == ""
+
+
+def test_generating_is_silent_about_what_is_allowed() -> None:
+    """The commands that check before they work honour allowances, too."""
+    for same, shown in (("", True), ("  // deros: allow DRS212 filled by hand", False)):
+        _write("lone.system", same=same)
+        outcome = deros("generate", "lone.system", "--target", "launch", "-o", "out")
+        assert outcome.code == 0
+        assert ("DRS212" in outcome.err) is shown
+
+
+@pytest.mark.parametrize(
+    ("pattern", "matches"),
+    [("a/*.system", True), ("**", True), ("**/x.system", True), ("a", False), ("*", False)],
+)
+def test_patterns_of_a_project(tmp_path: Path, pattern: str, matches: bool) -> None:
+    """A pattern names files relative to the project; ``**`` is any number of folders."""
+    source = SourceFile("a/x.system", "topic")
+    finding = report(codes.UNUSED_TOPIC, "unused", Span(source, 0, 5))
+    span = Span(SourceFile("deros.toml", ""), 0, 0)
+    allowance = ProjectAllowance("DRS212", pattern, "known", tmp_path, span)
+    assert allowance.covers(finding) is matches
+
+
+def test_a_large_file_without_allowances_costs_one_search() -> None:
+    """Comments are looked at only where there is a comment for deros."""
+    source = SourceFile("x.rnd", "// a comment\n" * 10)
+    assert read_allowances(source) == ([], [])
