@@ -140,9 +140,7 @@ def test_what_is_allowed_is_counted_and_shown_on_demand() -> None:
     assert shown.code == 0
     assert "warning[DRS212]" in shown.out
     assert "    = allowed at lone.system:4:32: filled by hand\n" in shown.out
-    listed = json.loads(
-        deros("check", "--show-allowed", "--format", "json", "lone.system").out
-    )
+    listed = json.loads(deros("check", "--show-allowed", "--format", "json", "lone.system").out)
     assert [(each["code"], each["allowed"]) for each in listed] == [("DRS212", "filled by hand")]
 
 
