@@ -38,6 +38,8 @@ FORBIDDEN_CHARACTER = _declare(9, "character that no text may hold")
 BAD_ALLOWANCE = _declare(20, "allowance that cannot be read", _W)
 NOT_ALLOWABLE = _declare(21, "allowance of a finding that cannot be allowed", _W)
 UNUSED_ALLOWANCE = _declare(22, "allowance that is not needed", _W)
+ABSENT_FINDING = _declare(23, "finding of the baseline that does not occur any more", _I)
+UNUSABLE_BASELINE = _declare(24, "baseline that cannot be used")
 
 # Node descriptions
 UNKNOWN_PACKAGE = _declare(101, "unknown interface package")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from deros.cli.options import exit_code, interfaces_option
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from deros.cli.baseline import Compared
     from deros.diagnostics import Diagnostic
     from deros.validators.allowances import Allowed
 
@@ -33,6 +34,13 @@ FORMATS = ("text", "json", "sarif", "github")
     help="How to report findings.",
 )
 @click.option("--show-allowed", is_flag=True, help="Report what the models allow, too.")
+@click.option(
+    "--baseline",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Report only what this file does not list, and what it lists and is no more.",
+)
+@click.option("--write-baseline", is_flag=True, help="Write what is found to --baseline FILE.")
 @interfaces_option
 @click.pass_context
 def check(
@@ -41,6 +49,8 @@ def check(
     strict: bool,
     output_format: str,
     show_allowed: bool,
+    baseline: Path | None,
+    write_baseline: bool,
     interfaces: tuple[Path, ...],
 ) -> None:
     """Check models and report every finding.
@@ -49,8 +59,12 @@ def check(
     (*.deros). What they import is checked with them. Exits with 0 if nothing was found, 1 if
     something was (warnings count under --strict), 2 if a file cannot be read.
     """
+    if write_baseline and baseline is None:
+        raise click.UsageError("--write-baseline needs --baseline FILE")
     with without_collector():
         found = find(files, interfaces)
+    if baseline is not None:
+        found = _compared(found, files, baseline, write=write_baseline)
     report(found, output_format, show_allowed=show_allowed)
     ctx.exit(exit_code(found.findings, strict=strict))
 
@@ -73,11 +87,37 @@ def without_collector() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a run of the checks found, in how many files."""
+    """What a run of the checks found, in how many files.
+
+    Attributes:
+        findings: what is to be reported.
+        allowed: what the models allow.
+        files: how many files were checked.
+        compared: the same findings against a baseline, if there is one.
+    """
 
     findings: Sequence[Diagnostic]
     allowed: Sequence[Allowed]
     files: int
+    compared: Compared | None = None
+
+
+def _compared(found: Found, named: Sequence[str], path: Path, *, write: bool) -> Found:
+    """Leave out what the baseline in ``path`` lists, which is written before if so asked."""
+    from deros.cli import baseline
+
+    try:
+        if write:
+            count = baseline.write(path, found.findings, named)
+            click.echo(
+                f"wrote {count} {'finding' if count == 1 else 'findings'} to {path}", err=True
+            )
+        listed = baseline.read(path)
+    except baseline.Unusable as unusable:
+        return replace(found, findings=(*found.findings, unusable.diagnostic))
+    compared = baseline.compare(found.findings, listed, named)
+    gone = tuple(baseline.absent(each, listed) for each in compared.absent)
+    return replace(found, findings=(*compared.new, *gone), compared=compared)
 
 
 def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
@@ -100,9 +140,10 @@ def report(found: Found, output_format: str, *, show_allowed: bool = False) -> N
     if output_format == "json":
         click.echo(formats.render_json(found.findings, shown), nl=False)
     elif output_format == "sarif":
-        click.echo(formats.render_sarif(found.findings, found.allowed), nl=False)
+        click.echo(formats.render_sarif(found.findings, found.allowed, found.compared), nl=False)
     elif output_format == "github":
         click.echo(formats.render_github(found.findings), nl=False)
     else:
         render.print_text(found.findings, allowed=shown)
-        click.echo(render.summary(found.findings, found.files, len(found.allowed)))
+        known = len(found.compared.known) if found.compared else 0
+        click.echo(render.summary(found.findings, found.files, len(found.allowed), known))

@@ -8,8 +8,9 @@ from typing import Any
 from urllib.parse import quote
 
 from deros import __version__
-from deros.codes import ALL_CODES
-from deros.diagnostics import Diagnostic, Severity, Span, encodable
+from deros.cli.baseline import Compared, Entry, fingerprints
+from deros.codes import ABSENT_FINDING, ALL_CODES
+from deros.diagnostics import Diagnostic, Severity, Span, encodable, in_file_order
 from deros.validators.allowances import Allowance, Allowed
 
 _SARIF_LEVEL = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
@@ -41,10 +42,29 @@ def _json_object(diagnostic: Diagnostic) -> dict[str, Any]:
     }
 
 
-def render_sarif(diagnostics: Sequence[Diagnostic], allowed: Sequence[Allowed] = ()) -> str:
-    """Return a log of the Static Analysis Results Interchange Format, version 2.1.0 (OASIS)."""
-    used = sorted({d.code.name for d in (*diagnostics, *(each.finding for each in allowed))})
-    index = {name: position for position, name in enumerate(used)}
+def render_sarif(
+    diagnostics: Sequence[Diagnostic],
+    allowed: Sequence[Allowed] = (),
+    compared: Compared | None = None,
+) -> str:
+    """Return a log of the Static Analysis Results Interchange Format, version 2.1.0 (OASIS).
+
+    Compared with a baseline, it has what is known as well, and tells the two apart.
+    """
+    known = set(compared.known) if compared is not None else set()
+    # What is absent has results of its own.
+    every = [each for each in diagnostics if each.code is not ABSENT_FINDING]
+    if known:
+        every = in_file_order(known.union(every))
+    absent = compared.absent if compared is not None else ()
+    used = {d.code.name for d in (*every, *(each.finding for each in allowed))}
+    used |= {entry.code for entry in absent if entry.code in ALL_CODES}
+    index = {name: position for position, name in enumerate(sorted(used))}
+    results = [_sarif_result(d, index[d.code.name]) for d in every]
+    for result, finding, fingerprint in zip(results, every, fingerprints(every), strict=True):
+        result["partialFingerprints"] = {"deros/v1": fingerprint}
+        if compared is not None:
+            result["baselineState"] = "unchanged" if finding in known else "new"
     log = {
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
         "version": "2.1.0",
@@ -54,13 +74,14 @@ def render_sarif(diagnostics: Sequence[Diagnostic], allowed: Sequence[Allowed] =
                     "driver": {
                         "name": "deros",
                         "version": __version__,
-                        "rules": [_sarif_rule(name) for name in used],
+                        "rules": [_sarif_rule(name) for name in sorted(used)],
                     }
                 },
                 "columnKind": "unicodeCodePoints",
                 "results": [
-                    *(_sarif_result(d, index[d.code.name]) for d in diagnostics),
+                    *results,
                     *(_sarif_suppressed(each, index[each.finding.code.name]) for each in allowed),
+                    *(_sarif_absent(each) for each in absent),
                 ],
             }
         ],
@@ -108,6 +129,16 @@ def _sarif_suppressed(allowed: Allowed, rule_index: int) -> dict[str, Any]:
         "location": {"physicalLocation": _sarif_location(allowed.by.span)},
     }
     return {**_sarif_result(allowed.finding, rule_index), "suppressions": [suppression]}
+
+
+def _sarif_absent(entry: Entry) -> dict[str, Any]:
+    return {
+        "ruleId": entry.code,
+        "message": {"text": entry.message},
+        "locations": [{"physicalLocation": {"artifactLocation": {"uri": quote(entry.file)}}}],
+        "partialFingerprints": {"deros/v1": entry.fingerprint},
+        "baselineState": "absent",
+    }
 
 
 def _sarif_location(span: Span) -> dict[str, Any]:

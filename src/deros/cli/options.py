@@ -16,7 +16,13 @@ FINDINGS = 1
 UNUSABLE = 2
 
 _UNREADABLE = frozenset(
-    {codes.UNREADABLE_FILE, codes.NOT_UTF8, codes.UNKNOWN_LANGUAGE, codes.FILE_TOO_LARGE}
+    {
+        codes.UNREADABLE_FILE,
+        codes.NOT_UTF8,
+        codes.UNKNOWN_LANGUAGE,
+        codes.FILE_TOO_LARGE,
+        codes.UNUSABLE_BASELINE,
+    }
 )
 
 Command = TypeVar("Command", bound=Callable[..., Any])

@@ -52,9 +52,10 @@ def print_text(
         console.print(Text.assemble(*entry), end="")
 
 
-def summary(diagnostics: Iterable[Diagnostic], files: int, allowed: int = 0) -> str:
+def summary(diagnostics: Iterable[Diagnostic], files: int, allowed: int = 0, known: int = 0) -> str:
     """Return the closing line, as ``2 errors and 1 warning in 3 files, 4 allowed``."""
-    return _found(diagnostics, files) + (f", {allowed} allowed" if allowed else "")
+    more = f", {allowed} allowed" if allowed else ""
+    return _found(diagnostics, files) + more + (f", {known} in the baseline" if known else "")
 
 
 def _found(diagnostics: Iterable[Diagnostic], files: int) -> str:
