@@ -60,7 +60,7 @@ def test_one_more_of_equal_findings_is_new() -> None:
     """Equal findings count: of three where two were listed, one is new."""
     rules = "const a = 1  /* deros: allow */\n"
     Path("r.deros").write_text(rules * 2)
-    before = [d for d in json.loads(deros("check", "--format", "json", "r.deros").out)]
+    before = json.loads(deros("check", "--format", "json", "r.deros").out)
     equal = [d for d in before if d["code"] == "DRS020"]
     assert len(equal) == 2
     Path("r.deros").write_text("const a = 1  /* deros: allow */\n/* deros: allow */\n")

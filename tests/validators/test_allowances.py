@@ -9,7 +9,7 @@ import pytest
 
 from deros import codes
 from deros.codes import ALL_CODES
-from deros.diagnostics import Severity, SourceFile, Span, report
+from deros.diagnostics import Code, Severity, SourceFile, Span, report
 from deros.validators.allowances import ProjectAllowance, not_allowable, read_allowances
 from tests.support.cli import deros
 
@@ -80,7 +80,7 @@ def test_only_a_comment_that_begins_so_is_an_allowance(name: str, before: str) -
 def test_a_text_of_the_model_is_no_comment() -> None:
     """What stands in quotes is no allowance."""
     Path("text.system").write_text(
-        'system Text "// deros: allow DRS212 known"\ntopics\n  topic /a "// deros: allow DRS212 x"\n'
+        'system Text "// deros: allow DRS212"\ntopics\n  topic /a "// deros: allow DRS212 x"\n'
     )
     assert _codes("text.system") == ["DRS212"]
 
@@ -95,7 +95,7 @@ def test_an_error_is_never_silenced() -> None:
 
 
 @pytest.mark.parametrize("code", ALL_CODES.values(), ids=str)
-def test_what_may_be_allowed(code: codes.Code) -> None:
+def test_what_may_be_allowed(code: Code) -> None:
     """No error may be allowed, nor a finding about allowances themselves."""
     found = not_allowable(code.name, Span(SourceFile("x.rnd", ""), 0, 0))
     allowable = code.severity is not Severity.ERROR and code in codes.OF_MODELS
