@@ -27,6 +27,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
+_PAGES = "docs/diagnostics/"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 _FLOOR = re.compile(r">=\s*(?P<version>[0-9][0-9.]*)")
 _PYTHON = re.compile(r"Programming Language :: Python :: (?P<version>3\.\d+)")
@@ -123,7 +124,10 @@ def build(folder: Path) -> tuple[Path, Path]:
     _run([sys.executable, "-m", "build", "--outdir", folder, REPOSITORY], cwd=folder)
     (sdist,) = folder.glob("*.tar.gz")
     (wheel,) = folder.glob("*.whl")
-    tracked = _run(["git", "ls-files"], cwd=REPOSITORY).splitlines()
+    names = _run(["git", "ls-files"], cwd=REPOSITORY).splitlines()
+    # What a link leads to is packed in its place.
+    tracked = [name for name in names if not (REPOSITORY / name).is_symlink()]
+    tracked += [f"src/deros/pages/{Path(name).name}" for name in names if name.startswith(_PAGES)]
     with tarfile.open(sdist) as archive:
         in_sdist = [name.partition("/")[2] for name in archive.getnames()]
     in_wheel = [f"src/{name}" for name in zipfile.ZipFile(wheel).namelist()]
@@ -203,6 +207,7 @@ def _commands(folder: Path) -> Iterator[tuple[str, ...]]:
     examples = folder / "examples"
     shutil.copytree(REPOSITORY / "examples", examples)
     yield "deros", "--version"
+    yield "deros", "explain", "no-timeout"
     yield "textx", "list-generators"
     for rules in sorted(examples.glob("*/*.deros")):
         yield "deros", "check", str(rules)

@@ -24,6 +24,7 @@ BROKEN_PIPE = 141
 COMMANDS: dict[str, tuple[str, str]] = {
     "check": ("deros.cli.check:check", "Check models and report every finding."),
     "cmake-dir": ("deros.cli.cmake_dir:cmake_dir", "Print the folder for CMake's deros_DIR."),
+    "explain": ("deros.cli.explain:explain", "Explain a finding by its code."),
     "generate": ("deros.cli.generate:generate", "Generate code, launch files or parameters."),
     "graph": ("deros.cli.graph:graph", "Show who talks to whom in a system."),
     "new": ("deros.cli.new:new", "Start a new model that checks clean."),
@@ -92,6 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 
 def run(arguments: list[str]) -> int:
     """Run the command that ``arguments`` name and return the exit code."""
+    out = sys.stdout
     try:
         result = deros.main(arguments, prog_name="deros", standalone_mode=False)
         return result if isinstance(result, int) else 0
@@ -104,8 +106,14 @@ def run(arguments: list[str]) -> int:
     except (click.Abort, KeyboardInterrupt):
         sys.stderr.write("\nderos: interrupted\n")
         return INTERRUPTED
-    except (BrokenPipeError, SystemExit):  # click turns the one into the other
+    except BrokenPipeError:
         return _reader_gone()
+    except SystemExit as ended:
+        if (
+            sys.stdout is not out
+        ):  # click turns a closed pipe into an exit, and replaces both streams
+            return _reader_gone()
+        return ended.code if isinstance(ended.code, int) else int(ended.code is not None)
     except Exception as error:  # the last resort: whatever it is, it is our bug
         return _bug(error, debug="--debug" in arguments)
 

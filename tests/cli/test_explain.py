@@ -1,0 +1,115 @@
+"""``deros explain``: the page of a code, by its number or its name."""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from deros.cli import explain
+from deros.codes import ALL_CODES, SLUGS
+from tests.support.cli import deros
+
+DEROS = Path(sys.executable).with_name("deros")
+
+
+@pytest.mark.parametrize("name", ALL_CODES)
+def test_every_code_is_explained(name: str) -> None:
+    """The page of each code is part of the package."""
+    assert deros("explain", name).out.startswith(f"# {name}: {ALL_CODES[name].title}\n")
+
+
+@pytest.mark.parametrize("word", ["DRS317", "drs317", "317", "DRS-317", "no-timeout", "NO_TIMEOUT"])
+def test_a_code_has_several_names(word: str) -> None:
+    """A number, a code in any case, or the name."""
+    assert deros("explain", word).out.startswith("# DRS317: ")
+
+
+def test_every_code_has_one_name() -> None:
+    """Names are unique and are no numbers."""
+    assert set(SLUGS.values()) == set(ALL_CODES.values())
+    assert len(SLUGS) == len(ALL_CODES)
+
+
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        ("DRS999", "did you mean 'DRS"),
+        ("no-timeot", "did you mean 'no-timeout'"),
+        ("xyzzy", "'deros explain' lists them all"),
+        ("", "'deros explain' lists them all"),
+    ],
+)
+def test_unknown_codes_give_near_ones(word: str, hint: str) -> None:
+    """The exit code is that of a mistake on the command line."""
+    outcome = deros("explain", word)
+    assert (outcome.code, outcome.out) == (2, "")
+    assert hint in outcome.err
+
+
+def test_several_codes_and_all() -> None:
+    """Pages follow one another; without a code all are listed."""
+    both = deros("explain", "DRS317", "DRS210").out
+    assert both.index("# DRS317") < both.index("# DRS210")
+    listing = deros("explain").out.splitlines()
+    assert len(listing) == len(ALL_CODES)
+    assert any(line.split()[:2] == ["DRS317", "no-timeout"] for line in listing)
+
+
+class _Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize("colour", [True, False])
+def test_a_terminal_gets_it_laid_out(monkeypatch: pytest.MonkeyPatch, colour: bool) -> None:
+    """Headings and links are not shown as Markdown there; NO_COLOR is honoured."""
+    terminal = _Terminal()
+    monkeypatch.setattr(sys, "stdout", terminal)
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    if not colour:
+        monkeypatch.setenv("NO_COLOR", "1")
+    explain.show("# Title\n\nSee [this](that.md#there) `code`.\n\n```rossystem\n[a](b)\n```\n")
+    text = terminal.getvalue()
+    assert "that.md" not in text
+    assert "[a](b)" in text
+    assert "# Title" not in text
+    assert (";36" in text) is colour
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_each_shell_gets_a_completion_script(shell: str) -> None:
+    """The command that the documentation names prints a script and succeeds."""
+    environment = {**os.environ, "_DEROS_COMPLETE": f"{shell}_source"}
+    done = subprocess.run([DEROS], env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "_DEROS_COMPLETE" in done.stdout
+    documentation = Path(__file__).resolve().parents[2] / "docs" / "command-line.md"
+    assert f"_DEROS_COMPLETE={shell}_source deros" in documentation.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("deros ch", "plain,check"),
+        ("deros check --bas", "plain,--baseline"),
+        ("deros explain no-time", "plain,no-timeout"),
+        ("deros explain DRS31", "plain,DRS317"),
+    ],
+)
+def test_completion_knows_commands_options_and_codes(words: str, expected: str) -> None:
+    """What bash asks for is answered, with exit code 0."""
+    environment = {
+        **os.environ,
+        "_DEROS_COMPLETE": "bash_complete",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(len(words.split()) - 1),
+    }
+    done = subprocess.run([DEROS], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert expected in done.stdout.splitlines()
