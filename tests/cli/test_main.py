@@ -69,6 +69,12 @@ def test_usage_errors_exit_with_2(arguments: list[str]) -> None:
     assert outcome.out == ""
 
 
+def test_a_wrong_argument_of_the_script_exits_with_2(tmp_path: Path) -> None:
+    """What a command hands on to a parser of its own ends as any other mistake there does."""
+    (tmp_path / "empty.system").write_text("system Empty\n")
+    assert deros("up", tmp_path / "empty.system", "--", "--nope").code == 2
+
+
 def test_a_bug_of_ours_is_called_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """An unforeseen exception ends in one line and exit code 2; ``--debug`` adds the traceback."""
 
