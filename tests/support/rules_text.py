@@ -31,7 +31,7 @@ def rules_text(program: ir.Program) -> str:
     lines += [writer.action(each) for each in program.actions]
     lines += [writer.input(each) for each in program.inputs]
     lines.append("entity entity {")
-    lines += [f"  {each.name}: {writer.condition(each.condition)};" for each in program.rules]
+    lines += [f"  {writer.rule(each)};" for each in program.rules]
     lines.append("}")
     lines += [writer.behaviour(each) for each in program.behaviours]
     return "\n".join(lines) + "\n"
@@ -51,6 +51,10 @@ class _Writer:
     def input(self, each: ir.Input) -> str:
         timeout = "" if each.timeout_ns is None else f" timeout {each.timeout_ns} ns"
         return f"input {each.name} = topic {each.topic}{_path(each.path)}{timeout}"
+
+    def rule(self, rule: ir.Rule) -> str:
+        failsafe = "failsafe " if isinstance(rule.condition, ir.Failsafe) else ""
+        return f"{failsafe}{rule.name}: {self.condition(rule.condition)}"
 
     def behaviour(self, behaviour: ir.Behaviour) -> str:
         body = [
@@ -76,6 +80,13 @@ class _Writer:
                 return f"{self.value(condition.operand)} in {opening}{bounds}{closing}"
             case ir.Missing():
                 return f"{self._program.inputs[condition.input].name}.missing()"
+            case ir.Unknown():
+                asked = self._program.inputs[condition.input].name
+                if condition.operand is not None:
+                    asked = self.value(condition.operand)
+                return f"{asked}.unknown()"
+            case ir.Failsafe():
+                return self.condition(condition.operand)
             case ir.Age():
                 name = self._program.inputs[condition.input].name
                 return f"{name}.age() {condition.operator} {condition.bound_ns} ns"

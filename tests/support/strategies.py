@@ -268,9 +268,11 @@ class _Drawing:
     def atom(self) -> ir.Condition:
         """Draw a condition on an input."""
         index = self.draw(st.integers(0, len(self.inputs) - 1))
-        choice = self.draw(st.integers(0, 9))
+        choice = self.draw(st.integers(0, 11))
         if choice == 0 and self.inputs[index].timeout_ns is not None:
             return ir.Missing(index)
+        if choice > 9 and self.inputs[index].timeout_ns is not None:
+            return self.unknown(index)
         if choice == 1:
             operator = self.draw(orders if self.writable else operators)
             return ir.Age(index, operator, self.draw(st.integers(-1 + self.writable, 10)))
@@ -299,6 +301,12 @@ class _Drawing:
             lower = ir.Const(self.draw(st.sampled_from(NUMBERS[:4])))
             upper = ir.Const(self.draw(st.sampled_from(NUMBERS[4:])))
         return ir.Within(self.number(index), lower, upper, *closed)
+
+    def unknown(self, index: int) -> ir.Condition:
+        """Draw the question whether an input, or a function of it, is unknown."""
+        value = self.number(index) if index in self.numeric() else None
+        asked = isinstance(value, ir.Apply) and self.draw(st.integers(0, 3))
+        return ir.Unknown(index, value if asked else None)  # type: ignore[arg-type]
 
     def integer(self, index: int) -> ir.Condition:
         """Draw a condition on an integer as it is built: with integers, which stand on the right.
@@ -338,6 +346,10 @@ class _Drawing:
     def rule(self) -> ir.Rule:
         index = self.rules
         condition = self.condition(self.draw(st.integers(0, 3)), self.atom)
+        inputs = tuple(sorted(walk.inputs_read(condition, self.leaves)))
+        timed = all(self.inputs[each].timeout_ns is not None for each in inputs)
+        if inputs and timed and self.draw(st.booleans()):
+            condition = ir.Failsafe(condition, inputs)
         self.rules += 1
         return ir.Rule(index, "entity", f"rule_{index}", condition, span(10 + index))
 
@@ -409,7 +421,8 @@ def _as_built(program: ir.Program) -> ir.Program:
     conditions = tuple(walk.conditions(program))
     values = walk.values(conditions)
     read = {program.leaves[value.leaf].input for value in values if isinstance(value, ir.Read)}
-    used = read | {each.input for each in conditions if isinstance(each, ir.Missing | ir.Age)}
+    asked = ir.Missing | ir.Unknown | ir.Age
+    used = read | {each.input for each in conditions if isinstance(each, asked)}
     inputs = []
     for each in program.inputs:
         leaves = each.leaves if each.index in read or each.path else ()

@@ -168,6 +168,7 @@ class RulesConverter(Converter):
                 self._condition(rule.condition),
                 self.span(rule),
                 self.text(rule.description),
+                bool(rule.failsafe),
             )
             for rule in found.rules
         )

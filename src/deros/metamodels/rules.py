@@ -117,7 +117,7 @@ class Membership:
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """A term that stands alone as a condition: a boolean field, ``missing()``, ``true``.
+    """A term that stands alone as a condition: a boolean field, ``missing()``, ``unknown()``.
 
     In the condition of a behaviour, ``entity.rule`` is such a term too: a :class:`NamePath`.
     """
@@ -231,12 +231,16 @@ class Input:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """``NAME: CONDITION;`` inside an entity."""
+    """``[failsafe] NAME: CONDITION;`` inside an entity.
+
+    A ``failsafe`` one counts as true for the behaviours where it is unknown.
+    """
 
     name: Name
     condition: Condition
     span: Span = field(compare=False, repr=False)
     description: str = ""
+    failsafe: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels import rules
 from deros.metamodels.common import Name
-from deros.monitor import ir
+from deros.monitor import ir, walk
 from deros.monitor.actions import Actions
 from deros.monitor.comparisons import Comparisons
 from deros.monitor.conditions import Conditions
@@ -65,6 +65,7 @@ class _Builder:
         self._program = program
         self.scope = Scope(program, store)
         terms = Terms(self.scope, [each.name.text for each in program.entities])
+        self._terms = terms
         for name in self.scope.constants:
             terms.constant(name)
         self.comparisons = Comparisons(self.scope, terms)
@@ -107,10 +108,24 @@ class _Builder:
             known = self._rule_index.setdefault(name, {})
             for rule in entity.rules:
                 known.setdefault(rule.name.text, index)
-                condition = self._conditions.of_rule(rule.condition)
+                condition = self._condition(rule)
                 if condition is not None:
                     yield ir.Rule(index, name, rule.name.text, condition, rule.span)
                 index += 1
+
+    def _condition(self, rule: rules.Rule) -> ir.Condition | None:
+        condition = self._conditions.of_rule(rule.condition)
+        if condition is None or not rule.failsafe:
+            return condition
+        inputs = tuple(sorted(walk.inputs_read(condition, self.scope.leaves)))
+        if not inputs:
+            return condition  # it is never unknown
+        timed = True
+        for index in inputs:
+            owner = self.scope.used_inputs[index]
+            without = f"'{owner.name}' has no timeout, so no silence of it makes the rule unknown"
+            timed &= self._terms.has_timeout(owner, without, rule.name.span)
+        return ir.Failsafe(condition, inputs) if timed else None
 
     def _verdict(self, term: rules.NamePath) -> ir.RuleRef | None:
         """Resolve ``entity.rule``."""

@@ -21,6 +21,7 @@ from deros.monitor.resolved import (
     Quantity,
     Resolved,
     ResolvedComparison,
+    UnknownOf,
     Value,
     family,
     family_of,
@@ -72,8 +73,8 @@ class Comparisons:
         match operand:
             case None:
                 return None
-            case MissingOf():
-                return ir.Missing(self._scope.use(operand.input))
+            case MissingOf() | UnknownOf():
+                return self._state_of(operand)
             case Value() if family(operand.type) == "boolean":
                 return ir.Truth(operand.expression)
             case Plain(value=bool(value)):
@@ -83,6 +84,12 @@ class Comparisons:
         hint = f"compare it: '{written} > ...'" if not isinstance(operand, Part) else ""
         self._scope.fault(codes.WRONG_OPERAND, message, truth.span, hint)
         return None
+
+    def _state_of(self, asked: MissingOf | UnknownOf) -> ir.Missing | ir.Unknown:
+        index = self._scope.use(asked.input)
+        if isinstance(asked, MissingOf):
+            return ir.Missing(index)
+        return ir.Unknown(index, asked.function)
 
     # Comparisons --------------------------------------------------------------------------------
 
@@ -102,9 +109,9 @@ class Comparisons:
         match first, second:
             case (AgeOf(), _) | (_, AgeOf()):
                 return self._age(node, (left, first), operator, (right, second))
-            case (MissingOf(), Plain(value=bool(value))) if operator in _EQUALITY:
-                missing = ir.Missing(self._scope.use(first.input))
-                return missing if value is (operator == "=") else ir.Not(missing)
+            case (MissingOf() | UnknownOf(), Plain(value=bool(value))) if operator in _EQUALITY:
+                asked = self._state_of(first)
+                return asked if value is (operator == "=") else ir.Not(asked)
             case (Value(), Value()):
                 return self._between_values(node, first, operator, second)
             case (Value(), Quantity() | Plain() | MessageConstant()):
@@ -254,7 +261,7 @@ class Comparisons:
             return None
         if isinstance(operand, AgeOf):
             return self._age_within(node, operand, lower, upper)
-        if isinstance(operand, (Part, MissingOf)):
+        if isinstance(operand, (Part, MissingOf, UnknownOf)):
             self._no_value(operand, node.operand.span)
             return None
         if not isinstance(operand, Value):

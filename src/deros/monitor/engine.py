@@ -105,7 +105,7 @@ class Engine:
     def waiting(self) -> bool:
         """Whether an input with a timeout waits for its first message and is not missing yet."""
         return any(
-            each.timeout_ns is not None and state.counted_ns is None and not state.missing
+            each.timeout_ns is not None and state.awaited
             for each, state in zip(self._program.inputs, self._state.inputs, strict=True)
         )
 
@@ -218,7 +218,7 @@ class Engine:
             return
         state = self._state.inputs[each.index]
         state.base_ns = state.counted_ns = t_ns
-        state.missing = False
+        state.missing, state.known = False, True
         for function in self._functions_of(each):
             if function.state is not None:
                 self._follow(function, function.state, t_ns)

@@ -17,6 +17,7 @@ from deros.monitor.ir import (
     Compare,
     Condition,
     Const,
+    Failsafe,
     For,
     Missing,
     Not,
@@ -26,6 +27,7 @@ from deros.monitor.ir import (
     RuleRef,
     Scale,
     Truth,
+    Unknown,
     ValueExpression,
     Within,
 )
@@ -87,6 +89,8 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             return _within(condition, state)
         case Missing():
             return state.inputs[condition.input].missing
+        case Unknown():
+            return _is_unknown(condition, state)
         case Age():
             counted_ns = state.inputs[condition.input].counted_ns
             if counted_ns is None:
@@ -103,8 +107,20 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             return _any(verdicts)
         case For():
             return _lasting(condition, state, t_ns)
+        case Failsafe():
+            verdict = evaluate_condition(condition.operand, state, t_ns)
+            awaited = any(state.inputs[index].awaited for index in condition.inputs)
+            return True if verdict is None and not awaited else verdict
         case RuleRef():
             return state.verdicts[condition.rule]
+
+
+def _is_unknown(condition: Unknown, state: State) -> bool:
+    if state.inputs[condition.input].awaited:
+        return False
+    if condition.operand is None:
+        return not state.inputs[condition.input].known
+    return evaluate_value(condition.operand, state) is None
 
 
 def _within(condition: Within, state: State) -> Verdict:

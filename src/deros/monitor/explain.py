@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 from deros.monitor import walk
-from deros.monitor.evaluate import evaluate_value
+from deros.monitor.evaluate import evaluate_condition, evaluate_value
 from deros.monitor.ir import (
     Age,
     Apply,
@@ -18,13 +18,14 @@ from deros.monitor.ir import (
     Rule,
     Scalar,
     Scale,
+    Unknown,
     ValueExpression,
 )
 from deros.monitor.state import State
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
-Term = Read | Apply | Missing | Age
+Term = Read | Apply | Missing | Unknown | Age
 """What a rule reads: a field, a function of fields, or a question about messages as such."""
 
 
@@ -71,9 +72,10 @@ def terms(condition: Condition) -> tuple[Term, ...]:
     """Return what a condition reads, in the order written, each once."""
     found: dict[Term, None] = {}
     for part in walk.parts(condition):
-        if isinstance(part, Missing | Age):
+        if isinstance(part, Missing | Unknown | Age):
             found[_plain(part)] = None
-        found.update(dict.fromkeys(walk.terminals(part)))
+        else:
+            found.update(dict.fromkeys(walk.terminals(part)))
     return tuple(found)
 
 
@@ -82,6 +84,10 @@ def term_name(program: Program, term: Term) -> str:
     match term:
         case Missing():
             return f"{program.inputs[term.input].name}.missing()"
+        case Unknown():
+            if term.operand is None:
+                return f"{program.inputs[term.input].name}.unknown()"
+            return f"{_function_name(program, term.operand)}.unknown()"
         case Age():
             return f"{program.inputs[term.input].name}.age()"
         case Read():
@@ -90,7 +96,7 @@ def term_name(program: Program, term: Term) -> str:
             return _function_name(program, term)
 
 
-def _plain(term: Missing | Age) -> Term:
+def _plain(term: Missing | Unknown | Age) -> Term:
     """Return the term without what it is compared with, so that equal terms are equal."""
     return Age(term.input, "=", 0) if isinstance(term, Age) else term
 
@@ -125,8 +131,8 @@ def _operand_name(program: Program, value: ValueExpression) -> str:
 
 def _value(term: Term, state: State, t_ns: int) -> Scalar | None:
     match term:
-        case Missing():
-            return state.inputs[term.input].missing
+        case Missing() | Unknown():
+            return evaluate_condition(term, state, t_ns)
         case Age():
             counted_ns = state.inputs[term.input].counted_ns
             return None if counted_ns is None else (t_ns - counted_ns) / 1e9

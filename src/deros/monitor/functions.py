@@ -34,6 +34,7 @@ class Argument(enum.Enum):
     ARRAY = "an array"
     SCAN = "a laser scan"
     INPUT = "an input"
+    ANY = "an input or a function of one"
 
 
 class Result(enum.Enum):
@@ -235,6 +236,7 @@ _ROWS = (
     ),
     Function("age", Argument.INPUT, Result.DURATION, UnitRule.FIXED, unit="s"),
     Function("missing", Argument.INPUT, Result.BOOLEAN, UnitRule.NONE),
+    Function("unknown", Argument.ANY, Result.BOOLEAN, UnitRule.NONE),
 )
 
 FUNCTIONS: Mapping[str, Function] = {row.name: row for row in _ROWS}

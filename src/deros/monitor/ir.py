@@ -46,7 +46,9 @@ class Input:
 
     It is unknown until the first message, after ``timeout_ns`` without one, and as soon as a
     message carries a NaN (or an index that its array does not have) in a leaf with
-    ``nan_is_unknown``; such a message does not count for the timeout.
+    ``nan_is_unknown``; such a message does not count for the timeout. One with a timeout is
+    *awaited* from the start, or from a backward step of the clock, until its first message that
+    counts, or until it is missing.
     """
 
     index: int
@@ -140,6 +142,19 @@ class Missing:
 
 
 @dataclass(frozen=True, slots=True)
+class Unknown:
+    """Whether a value is unknown, for whatever reason; never itself unknown.
+
+    It is that of a function of an input or, without ``operand``, of the input itself. While the
+    input is awaited (see :class:`Input`) it is false: then nothing is late yet. The input has a
+    timeout.
+    """
+
+    input: int
+    operand: Apply | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Age:
     """The time since an input's last counted message, compared with a constant.
 
@@ -189,13 +204,38 @@ class For:
 
 
 @dataclass(frozen=True, slots=True)
+class Failsafe:
+    """The condition of a rule that counts as true where it is unknown.
+
+    ``inputs`` are those whose values or ages it reads, each with a timeout. While one of them is
+    awaited (see :class:`Input`), the whole stays unknown as its operand is.
+    """
+
+    operand: Condition
+    inputs: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class RuleRef:
     """The verdict of an entity's rule, in the condition of a behaviour."""
 
     rule: int
 
 
-Condition = Truth | Compare | Within | Missing | Age | Not | And | Or | For | RuleRef
+Condition = (
+    Truth
+    | Compare
+    | Within
+    | Missing
+    | Unknown
+    | Age
+    | Not
+    | And
+    | Or
+    | For
+    | Failsafe
+    | RuleRef
+)
 
 
 # The program ------------------------------------------------------------------------------------

@@ -132,10 +132,18 @@ class MissingOf:
     input: DeclaredInput
 
 
+@dataclass(frozen=True, slots=True)
+class UnknownOf:
+    """``unknown()`` of an input or, with ``function``, of that function of it."""
+
+    input: DeclaredInput
+    function: ir.Apply | None
+
+
 Fixed = Quantity | Plain | MessageConstant
 """What is known before the monitor runs."""
 
-Resolved = Fixed | Part | Value | AgeOf | MissingOf
+Resolved = Fixed | Part | Value | AgeOf | MissingOf | UnknownOf
 
 
 @dataclass(frozen=True, slots=True)

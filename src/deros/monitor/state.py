@@ -22,11 +22,18 @@ class InputState:
         base_ns: from when its timeout counts: the last counted message, the start or a clock step.
         counted_ns: the time of the last message that counted; ``None`` before the first.
         missing: whether the timeout has passed since ``base_ns``.
+        known: whether it has a value.
     """
 
     base_ns: int
     counted_ns: int | None = None
     missing: bool = False
+    known: bool = False
+
+    @property
+    def awaited(self) -> bool:
+        """Whether it waits for its first message that counts, and is not missing yet."""
+        return self.counted_ns is None and not self.missing
 
 
 @dataclass(slots=True)
@@ -74,5 +81,6 @@ class State:
 
     def make_unknown(self, index: int) -> None:
         """Make one input unknown; its age and its timeout are no values and go on."""
+        self.inputs[index].known = False
         for leaf in self._program.inputs[index].leaves:
             self.values[leaf] = None

@@ -26,6 +26,7 @@ from deros.monitor.resolved import (
     Plain,
     Quantity,
     Resolved,
+    UnknownOf,
     Value,
     family,
     is_written_whole,
@@ -195,6 +196,8 @@ class Terms:
             return None
         if row.argument is Argument.INPUT:
             return self._of_input(call, row, operand)
+        if row.argument is Argument.ANY:
+            return self._of_any(call, row, operand)
         if row.argument is Argument.NUMBER:
             if isinstance(operand, Value) and family(operand.type) == "number":
                 return self._of_number(row, operand)
@@ -282,15 +285,31 @@ class Terms:
             self._watch(operand)
         if row.result is Result.DURATION:
             return AgeOf(owner)
-        if owner.timeout_ns is None:
-            self._scope.fault(
-                codes.MISSING_NEEDS_TIMEOUT,
-                f"'{owner.name}' has no timeout, so it is never missing",
-                call.span,
-                "declare it with one: 'input NAME = topic ... timeout 0.5 sec'",
-            )
+        never = f"'{owner.name}' has no timeout, so it is never missing"
+        return MissingOf(owner) if self.has_timeout(owner, never, call.span) else None
+
+    def _of_any(self, call: rules.Call, row: Function, operand: Resolved) -> UnknownOf | None:
+        if not isinstance(operand, (Value, Part)):
+            self._misapplied(call, row, operand)
             return None
-        return MissingOf(owner)
+        function = None
+        if isinstance(operand, Part):
+            self._watch(operand)
+        elif isinstance(operand.expression, ir.Apply):
+            function = operand.expression
+        owner = operand.input
+        never = f"'{owner.name}' has no timeout, so its silence does not make it unknown"
+        if not self.has_timeout(owner, never, call.span):
+            return None
+        return UnknownOf(owner, function)
+
+    def has_timeout(self, owner: DeclaredInput, without: str, span: Span) -> bool:
+        """Tell whether an input has a timeout; report ``without`` where it has none."""
+        if owner.timeout_ns is not None:
+            return True
+        hint = "declare it with one: 'input NAME = topic ... timeout 0.5 sec'"
+        self._scope.fault(codes.MISSING_NEEDS_TIMEOUT, without, span, hint)
+        return False
 
     def _watch(self, part: Part) -> None:
         """Read every floating-point number of a part: a NaN there is a sensor that has no value.
@@ -385,7 +404,7 @@ def describe(found: Resolved) -> str:
             return f"an array ({_short(kind)})" if kind.is_array else f"a {_short(kind)}"
         case AgeOf():
             return "an age"
-        case MissingOf():
+        case MissingOf() | UnknownOf():
             return "a condition"
 
 

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from deros.monitor.ir import (
+    Age,
     And,
     Apply,
     Behaviour,
     Compare,
     Condition,
+    Failsafe,
     For,
+    Leaf,
     Not,
     Or,
     Program,
     Read,
     Scale,
     Truth,
+    Unknown,
     ValueExpression,
     Within,
 )
@@ -60,7 +64,7 @@ def conditions(program: Program) -> Iterator[Condition]:
 def parts(condition: Condition) -> Iterator[Condition]:
     """Yield a condition's operands, theirs first, and then the condition itself."""
     match condition:
-        case Not(operand=operand) | For(operand=operand):
+        case Not(operand=operand) | For(operand=operand) | Failsafe(operand=operand):
             yield from parts(operand)
         case And(operands=operands) | Or(operands=operands):
             for operand in operands:
@@ -76,6 +80,8 @@ def values(conditions: Iterable[Condition]) -> Iterator[ValueExpression]:
         match condition:
             case Truth(operand=operand):
                 yield from terms(operand)
+            case Unknown(operand=function) if function is not None:
+                yield from terms(function)
             case Compare(left=left, right=right):
                 yield from terms(left)
                 yield from terms(right)
@@ -105,6 +111,18 @@ def leaves(value: ValueExpression) -> Iterator[int]:
     for term in terms(value):
         if isinstance(term, Read):
             yield term.leaf
+
+
+def inputs_read(condition: Condition, leaves: Sequence[Leaf]) -> set[int]:
+    """Return the inputs whose values or ages a condition reads: those that can make it unknown."""
+    asked = [part for part in parts(condition) if not isinstance(part, Unknown)]
+    found = {part.input for part in asked if isinstance(part, Age)}
+    for value in values(asked):
+        if isinstance(value, Apply):
+            found.add(value.input)
+        elif isinstance(value, Read):
+            found.add(leaves[value.leaf].input)
+    return found
 
 
 def terminals(condition: Condition) -> list[Read | Apply]:

@@ -17,6 +17,7 @@ from deros.monitor.ir import (
     Compare,
     Condition,
     Const,
+    Failsafe,
     For,
     Missing,
     Not,
@@ -27,6 +28,7 @@ from deros.monitor.ir import (
     RuleRef,
     Scale,
     Truth,
+    Unknown,
     ValueExpression,
     Within,
 )
@@ -88,6 +90,10 @@ class Conditions:
                 return Call(
                     "truth_of", ("true", f"m->{self._layout.inputs[condition.input].missing}")
                 )
+            case Unknown():
+                known = f"(!m->{known_of(self._layout, condition)})"
+                come = f"({self._has_come(condition.input)})"
+                return Call("truth_of", ("true", Infix("&&", (known, come))))
             case Age():
                 fields = self._layout.inputs[condition.input]
                 age = f"(m->now - m->{fields.base})"
@@ -102,8 +108,21 @@ class Conditions:
             case For():
                 timed = condition.index in self._layout.since
                 return self.interval(condition) if timed else self.verdict(condition.operand)
+            case Failsafe():
+                return self._failsafe(condition)
             case RuleRef():
                 return f"m->{self._layout.verdicts[condition.rule]}"
+
+    def _failsafe(self, condition: Failsafe) -> Expression:
+        come = [self._has_come(index) for index in condition.inputs]
+        due = come if len(come) == 1 else [f"({each})" for each in come]
+        operand = self.verdict(condition.operand)
+        return Call("failsafe", (operand, Infix("&&", tuple(due))))
+
+    def _has_come(self, index: int) -> str:
+        """Return whether an input is not awaited: it has come, or is missing."""
+        fields = self._layout.inputs[index]
+        return f"m->{fields.came} || m->{fields.missing}"
 
     def _nested(self, function: str, operands: Sequence[Condition]) -> Expression:
         """Return a call of two halves: compilers do not take calls nested too deeply."""
@@ -187,6 +206,13 @@ class Conditions:
         assert isinstance(constant, Const)
         place = term.texts.index(str(constant.value)) + 1
         return f"m->{term.name} {SYMBOLS[operator]} {place}U"
+
+
+def known_of(layout: Layout, condition: Unknown) -> str:
+    """Return the field that tells whether what a condition asks for is known."""
+    if condition.operand is None:
+        return layout.inputs[condition.input].known
+    return layout.terms[condition.operand].known
 
 
 @dataclass(frozen=True, slots=True)

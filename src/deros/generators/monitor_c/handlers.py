@@ -332,7 +332,10 @@ class _Writer:
         if not fields.base:
             return
         yield f"  m->{fields.base} = m->now;"
-        yield f"  m->{fields.came} = true;"
+        if fields.awaits:
+            yield from _news(fields.came, "true")
+        else:
+            yield f"  m->{fields.came} = true;"
         if fields.missing:
             yield from _news(fields.missing, "false")
         waits = [each.timeout_ns] if each.timeout_ns is not None else []

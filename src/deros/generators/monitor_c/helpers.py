@@ -125,6 +125,19 @@ static @_verdict either(@_verdict a, @_verdict b)
 }
 """
 
+_FAILSAFE = """\
+/* A rule that counts as true where it is unknown, but for what is unknown since the start. */
+/*@ requires is_verdict(operand);
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> operand == $_TRUE || (operand == $_UNKNOWN && due != 0);
+    ensures \\result == $_FALSE <==> operand == $_FALSE; */
+static @_verdict failsafe(@_verdict operand, bool due)
+{
+  return ((operand == $_UNKNOWN) && due) ? $_TRUE : operand;
+}
+"""
+
 _LASTING = """\
 /* 'for': true once the operand has been true without a break for so long, since *since. */
 /*@ requires \\valid(since) && \\valid(due) && \\separated(since, due);
@@ -277,6 +290,7 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     yield "negated", _NEGATED
     yield "both", _BOTH
     yield "either", _EITHER
+    yield "failsafe", _FAILSAFE
     yield "lasting", _LASTING
     yield "turned", _TURNED
 

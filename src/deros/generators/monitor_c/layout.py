@@ -19,12 +19,14 @@ from deros.monitor.ir import (
     Compare,
     Condition,
     Const,
+    Failsafe,
     For,
     Operator,
     Program,
     Read,
     Scale,
     Truth,
+    Unknown,
     ValueExpression,
     Within,
 )
@@ -77,16 +79,19 @@ class InputFields:
     """What is remembered of an input; the names are empty where nothing asks for it.
 
     Attributes:
-        known: whether what conditions read of it without a function is known.
+        known: whether it has a value, if conditions read it without a function or ask whether
+            it is unknown.
         base: from when its timeout counts, and its age if it ``came``.
         came: whether a message has counted since the start or the last step of the clock.
         missing: whether its timeout has passed.
+        awaits: whether verdicts depend on its having come or gone missing.
     """
 
     known: str
     base: str
     came: str
     missing: str
+    awaits: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +174,8 @@ def lay_out(program: Program) -> Layout:
     for condition in walk.conditions(program):
         _name_finding(condition, layout)
     for each in program.inputs:
-        if layout.terms_of(each.index) or layout.memories_of(each.index):
+        terms = layout.terms_of(each.index) or layout.memories_of(each.index)
+        if terms or layout.inputs[each.index].known:
             layout.forgets[each.index] = layout.names.new("forget", each.name)
         if each.timeout_ns is not None:
             layout.expires[each.index] = layout.names.new("expire", each.name)
@@ -187,6 +193,8 @@ def compared(condition: Condition) -> list[ValueExpression]:
             found = [left, right]
         case Within(operand=operand, lower=lower, upper=upper):
             found = [operand, lower, upper]
+        case Unknown(operand=Apply() as function):
+            found = [function]
         case _:
             found = []
     return [value for value in found if not isinstance(value, Const)]
@@ -258,6 +266,12 @@ def _name_inputs(program: Program, layout: Layout) -> None:
         for value in compared(condition)
         if isinstance(value, Read)
     }
+    read |= {
+        each.input
+        for each in walk.conditions(program)
+        if isinstance(each, Unknown) and each.operand is None
+    }
+    awaited = _awaited(program)
     for each in program.inputs:
         timed = each.timeout_ns is not None
         new = layout.names.new
@@ -266,7 +280,19 @@ def _name_inputs(program: Program, layout: Layout) -> None:
             base=new(each.name, "base") if timed or each.index in asked else "",
             came=new(each.name, "came") if timed or each.index in asked else "",
             missing=new(each.name, "missing") if timed else "",
+            awaits=each.index in awaited,
         )
+
+
+def _awaited(program: Program) -> set[int]:
+    """Return the inputs of which a condition asks whether they are awaited."""
+    found: set[int] = set()
+    for condition in walk.conditions(program):
+        if isinstance(condition, Unknown):
+            found.add(condition.input)
+        elif isinstance(condition, Failsafe):
+            found.update(condition.inputs)
+    return found
 
 
 def _name_term(program: Program, value: ValueExpression, layout: Layout, span: Span) -> None:
@@ -298,7 +324,7 @@ def _name_finding(condition: Condition, layout: Layout) -> None:
     values = compared(condition)
     terms = tuple(dict.fromkeys(layout.terms[value] for value in values))
     floats = any(term.type == "double" for term in terms)
-    if condition in layout.findings or isinstance(condition, Truth) or not floats:
+    if condition in layout.findings or isinstance(condition, Truth | Unknown) or not floats:
         return
     match condition:
         case Within(operand=operand):

@@ -7,7 +7,7 @@ instead, and the two are proved to agree.
 
 from __future__ import annotations
 
-from deros.generators.monitor_c.expressions import SYMBOLS, number
+from deros.generators.monitor_c.expressions import SYMBOLS, known_of, number
 from deros.generators.monitor_c.layout import Layout, compared
 from deros.monitor.ir import (
     Age,
@@ -15,6 +15,7 @@ from deros.monitor.ir import (
     Compare,
     Condition,
     Const,
+    Failsafe,
     For,
     Missing,
     Not,
@@ -22,6 +23,7 @@ from deros.monitor.ir import (
     Or,
     RuleRef,
     Truth,
+    Unknown,
     ValueExpression,
     Within,
 )
@@ -51,6 +53,9 @@ class Meaning:
                 return f"({self._known(condition)} && {self._holds(condition)})"
             case Missing():
                 return f"m->{self._layout.inputs[condition.input].missing} != 0"
+            case Unknown():
+                known = known_of(self._layout, condition)
+                return f"(m->{known} == 0 && {self._has_come(condition.input)})"
             case Age():
                 return f"({self._came(condition)} && {self._age(condition)})"
             case Not():
@@ -63,6 +68,10 @@ class Meaning:
                 if condition.index not in self._layout.since:
                     return self.true(condition.operand)
                 return f"({self.runs(condition)} && {self.lasted(condition)})"
+            case Failsafe():
+                come = [self._has_come(index) for index in condition.inputs]
+                due = _joined(" && ", [f"!({self.false(condition.operand)})", *come])
+                return f"({self.true(condition.operand)} || {due})"
             case RuleRef():
                 verdict = self._layout.verdicts[condition.rule]
                 return f"m->{verdict} == {self._layout.macro}_TRUE"
@@ -76,6 +85,9 @@ class Meaning:
                 return f"({self._known(condition)} && !{self._holds(condition)})"
             case Missing():
                 return f"m->{self._layout.inputs[condition.input].missing} == 0"
+            case Unknown():
+                known = known_of(self._layout, condition)
+                return f"(m->{known} != 0 || !{self._has_come(condition.input)})"
             case Age():
                 return f"({self._came(condition)} && !{self._age(condition)})"
             case Not():
@@ -89,9 +101,16 @@ class Meaning:
                 if condition.index not in self._layout.since:
                     return false
                 return f"({false} || ({self.runs(condition)} && !{self.lasted(condition)}))"
+            case Failsafe():
+                return self.false(condition.operand)
             case RuleRef():
                 verdict = self._layout.verdicts[condition.rule]
                 return f"m->{verdict} == {self._layout.macro}_FALSE"
+
+    def _has_come(self, index: int) -> str:
+        """Return when an input is not awaited: it has come, or is missing."""
+        fields = self._layout.inputs[index]
+        return f"(m->{fields.came} != 0 || m->{fields.missing} != 0)"
 
     def runs(self, condition: For) -> str:
         """Return when an interval is running, which it must exactly while its operand is true.

@@ -142,7 +142,8 @@ class MessageContracts:
         contract = Contract(["\\valid(m)", all_of(own), *self._arrays(handler)])
         contract.assigns += [f"m->{name}" for name in changed]
         contract.ensures.append(all_of(own))
-        contract.ensures += self._news(handler, [*flags, *stored])
+        awaited = [each.came for each in fields if each.awaits]
+        contract.ensures += self._news(handler, [*flags, *awaited, *stored])
         for each in map(self._program.inputs.__getitem__, handler.inputs):
             contract.ensures += self._effect(each, handler)
         if bases:

@@ -14,7 +14,7 @@ from deros.generators.monitor_c.refusals import refuse
 from deros.generators.monitor_c.source import comment
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
-from deros.monitor.ir import Age, Condition, For, Missing, Program
+from deros.monitor.ir import Age, Condition, For, Missing, Program, Unknown
 
 
 @dataclass(frozen=True, slots=True)
@@ -310,6 +310,8 @@ def _verdict_fields(program: Program, layout: Layout) -> Iterator[Field]:
 def _forgets(program: Program, layout: Layout) -> Iterator[Forget]:
     for index, function in layout.forgets.items():
         known = dict.fromkeys(term.known for term in layout.terms_of(index))
+        if layout.inputs[index].known:
+            known[layout.inputs[index].known] = None
         last = tuple(each.last for each in layout.memories_of(index).values())
         yield Forget(function, program.inputs[index].name, tuple(known), last)
 
@@ -356,7 +358,7 @@ def inputs_of(program: Program, condition: Condition) -> set[int]:
     """Return the inputs that a rule's condition depends on."""
     found: set[int] = set()
     for part in walk.parts(condition):
-        if isinstance(part, Missing | Age):
+        if isinstance(part, Missing | Unknown | Age):
             found.add(part.input)
         found |= {input_of(program, value) for value in compared(part)}
     return found

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from deros.generators.monitor_python.layout import Layout
-from deros.generators.monitor_python.logic import Atom, Logic, all_of, any_of
+from deros.generators.monitor_python.logic import Atom, Logic, NoneOf, all_of, any_of
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
 from deros.monitor.evaluate import COMPARE
 from deros.monitor.functions import FUNCTIONS, Result
@@ -21,6 +21,7 @@ from deros.monitor.ir import (
     Compare,
     Condition,
     Const,
+    Failsafe,
     For,
     Missing,
     Not,
@@ -32,6 +33,7 @@ from deros.monitor.ir import (
     Scalar,
     Scale,
     Truth,
+    Unknown,
     ValueExpression,
     Within,
 )
@@ -65,6 +67,8 @@ class Conditions:
                 return self._within(condition)
             case Missing():
                 return Atom(self._layout.missing[condition.input])
+            case Unknown():
+                return self._is_unknown(condition)
             case Age():
                 return self._age(condition, condition.operator)
             case Not():
@@ -75,6 +79,10 @@ class Conditions:
                 return any_of(self.true(each) for each in condition.operands)
             case For():
                 return Atom(f"t >= {self._layout.dues[condition.index]}")
+            case Failsafe():
+                unknown = [NoneOf(self.false(condition.operand))]
+                expected = [self._is_not_awaited(index) for index in condition.inputs]
+                return any_of((self.true(condition.operand), all_of([*unknown, *expected])))
             case RuleRef():
                 return Atom(self._layout.verdicts[condition.rule])
 
@@ -90,6 +98,8 @@ class Conditions:
                 return self._outside(condition)
             case Missing():
                 return Atom(f"not {self._layout.missing[condition.input]}")
+            case Unknown():
+                return self._is_not_unknown(condition)
             case Age():
                 return self._age(condition, _OPPOSITE[condition.operator])
             case Not():
@@ -101,8 +111,39 @@ class Conditions:
             case For():
                 waiting = Atom(f"t < {self._layout.dues[condition.index]} < NEVER")
                 return any_of((waiting, self.false(condition.operand)))
+            case Failsafe():
+                return self.false(condition.operand)
             case RuleRef():
                 return Atom(f"{self._layout.verdicts[condition.rule]} is False")
+
+    # Unknown ------------------------------------------------------------------------------------
+
+    def _is_unknown(self, condition: Unknown) -> Logic:
+        """Return the question whether a value is unknown: it is missing, or came without one."""
+        silent, missing = self._silence(condition.input)
+        if condition.operand is None:
+            unknown = f"not {self._layout.known[condition.input]}"
+        else:
+            value = self.value(condition.operand)
+            unknown = f"{value} != {value}"  # NaN differs from itself
+        return any_of((Atom(missing), all_of((Atom(f"not {silent}"), Atom(unknown)))))
+
+    def _is_not_unknown(self, condition: Unknown) -> Logic:
+        silent, missing = self._silence(condition.input)
+        if condition.operand is None:
+            known = self._layout.known[condition.input]
+        else:
+            value = self.value(condition.operand)
+            known = f"{value} == {value}"
+        return all_of((Atom(f"not {missing}"), any_of((Atom(silent), Atom(known)))))
+
+    def _silence(self, index: int) -> tuple[str, str]:
+        return self._layout.silent[index], self._layout.missing[index]
+
+    def _is_not_awaited(self, index: int) -> Logic:
+        """Return the question whether an input has come, or is missing."""
+        silent, missing = self._layout.silent[index], self._layout.missing[index]
+        return any_of((Atom(f"not {silent}"), Atom(missing)))
 
     # Comparisons --------------------------------------------------------------------------------
 

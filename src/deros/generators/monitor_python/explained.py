@@ -8,7 +8,7 @@ from deros.generators.monitor_python.layout import Layout
 from deros.generators.monitor_python.logic import Atom, all_of, any_of, lay_out, lay_out_call
 from deros.monitor import walk
 from deros.monitor.explain import Term, one_line, term_name, terms
-from deros.monitor.ir import Age, Missing, Program, RuleRef
+from deros.monitor.ir import Age, Missing, Program, RuleRef, Unknown
 
 
 def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -55,6 +55,13 @@ def _value(term: Term, layout: Layout) -> str:
     match term:
         case Missing():
             return f"self._{layout.missing[term.input]}"
+        case Unknown():
+            known = layout.known.get(term.input, "")
+            if term.operand is not None:
+                value = f"self._{layout.values[term.operand].name}"
+                known = f"{value} == {value}"
+            silent, missing = layout.silent[term.input], layout.missing[term.input]
+            return f"self._{missing} or not (self._{silent} or {known})"
         case Age():
             return f"(self._now - self._{layout.counted[term.input]}) / 1e9"
         case _:

@@ -243,6 +243,8 @@ class _Writer:
             for value, slot in layout.values.items()
             if input_of(self._program, value) == index
         ]
+        if index in layout.known:
+            slots.append((f"self._{layout.known[index]}", "True"))
         if each.timeout_ns is not None:
             statements += self._heard(each, each.timeout_ns, bool(slots))
         lines = [f"{' ' * indent}{statement}" for statement in statements]
@@ -270,10 +272,10 @@ class _Writer:
         if not slots or not self._tells_news:
             return stores
         if self._counts_news:
-            test: Logic = any_of(Atom(f"{local} != {attribute}") for attribute, local in slots)
+            test: Logic = any_of(_is_new(attribute, local) for attribute, local in slots)
             inner = [*stores, f"{blank}{_FRESH}"]
             return [*lay_out(indent, "if ", test, ":"), *(f"    {line}" for line in inner)]
-        test = all_of(Atom(f"{local} == {attribute}") for attribute, local in slots)
+        test = all_of(_is_old(attribute, local) for attribute, local in slots)
         return [*lay_out(indent, "if ", test, ":"), f"{blank}    return", *stores]
 
     def _local(self, value: ValueExpression) -> str:
@@ -322,6 +324,14 @@ def _lay_out_length(indent: int, parts: Sequence[str]) -> list[str]:
     first, *rest = squares
     lines = [f"{blank}    {first}", *(f"{blank}    + {square}" for square in rest)]
     return [f"{blank}length = math.sqrt(", *lines, f"{blank})"]
+
+
+def _is_new(attribute: str, local: str) -> Logic:
+    return Atom(f"not {attribute}" if local == "True" else f"{local} != {attribute}")
+
+
+def _is_old(attribute: str, local: str) -> Logic:
+    return Atom(attribute if local == "True" else f"{local} == {attribute}")
 
 
 def _call_at(wait_ns: int) -> list[str]:

@@ -17,6 +17,7 @@ from deros.monitor.ir import (
     Program,
     Read,
     RuleRef,
+    Unknown,
     ValueExpression,
 )
 
@@ -46,6 +47,7 @@ class Layout:
         silent: of such an input, whether it waits for its first message, or for the first after its
             timeout.
         missing: of such an input, whether its timeout has passed.
+        known: of an input whose unknown() is asked for, whether it has a value.
         counted: of an input that an ``age()`` asks for, when its last counted message came.
         dues: of each ``For``, when it becomes true.
         verdicts: of each rule.
@@ -64,6 +66,7 @@ class Layout:
     heard: dict[int, str] = field(default_factory=dict)
     silent: dict[int, str] = field(default_factory=dict)
     missing: dict[int, str] = field(default_factory=dict)
+    known: dict[int, str] = field(default_factory=dict)
     counted: dict[int, str] = field(default_factory=dict)
     dues: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
@@ -108,12 +111,19 @@ def input_of(program: Program, value: ValueExpression) -> int:
 
 
 def _name_inputs(program: Program, layout: Layout) -> None:
+    asked = {
+        each.input
+        for each in walk.conditions(program)
+        if isinstance(each, Unknown) and each.operand is None
+    }
     for each in program.inputs:
         if each.timeout_ns is not None:
             layout.heard[each.index] = layout.names.new(each.name, "heard")
             layout.silent[each.index] = layout.names.new(each.name, "silent")
             layout.missing[each.index] = layout.names.new(each.name, "missing")
-        if slots_of(layout, program, each.index):
+        if each.index in asked:
+            layout.known[each.index] = layout.names.new(each.name, "known")
+        if each.index in asked or slots_of(layout, program, each.index):
             layout.forget[each.index] = layout.names.new("forget", each.name)
     for condition in walk.conditions(program):
         if isinstance(condition, Age) and condition.input not in layout.counted:

@@ -34,7 +34,14 @@ class AnyOf:
     operands: tuple[Logic, ...]
 
 
-Logic = Atom | AllOf | AnyOf
+@dataclass(frozen=True, slots=True)
+class NoneOf:
+    """``not`` of its operand."""
+
+    operand: Logic
+
+
+Logic = Atom | AllOf | AnyOf | NoneOf
 
 
 def all_of(operands: Iterable[Logic]) -> Logic:
@@ -57,6 +64,8 @@ def text(logic: Logic) -> str:
     """Return the expression in one line."""
     if isinstance(logic, Atom):
         return logic.text
+    if isinstance(logic, NoneOf):
+        return f"not ({text(logic.operand)})"
     parts = [text(each) for each in logic.operands]
     if isinstance(logic, AllOf):
         inner = zip(parts, logic.operands, strict=True)
@@ -73,6 +82,8 @@ def lay_out(indent: int, before: str, logic: Logic, after: str = "") -> list[str
     line = f"{blank}{before}{text(logic)}{after}"
     if len(line) <= MAX_LINE or isinstance(logic, Atom):
         return [line]
+    if isinstance(logic, NoneOf):
+        return lay_out(indent, f"{before}not ", logic.operand, after)
     return [f"{blank}{before}(", *_operands(indent + 4, logic), f"{blank}){after}"]
 
 
@@ -87,8 +98,10 @@ def _operands(indent: int, logic: AllOf | AnyOf) -> list[str]:
 def _operand(indent: int, before: str, logic: Logic) -> list[str]:
     blank = " " * indent
     line = f"{blank}{before}{text(logic)}"
-    if isinstance(logic, Atom) or (isinstance(logic, AllOf) and len(line) <= MAX_LINE):
+    if isinstance(logic, Atom) or (not isinstance(logic, AnyOf) and len(line) <= MAX_LINE):
         return [line]
+    if isinstance(logic, NoneOf):
+        return _operand(indent, f"{before}not ", logic.operand)
     line = f"{blank}{before}({text(logic)})"
     if len(line) <= MAX_LINE:
         return [line]

@@ -9,7 +9,7 @@ from deros.generators.monitor_python.layout import Layout, input_of
 from deros.generators.monitor_python.logic import lay_out
 from deros.generators.monitor_python.source import comment
 from deros.monitor import walk
-from deros.monitor.ir import Age, Condition, For, Missing, Program, Rule
+from deros.monitor.ir import Age, Condition, Failsafe, For, Missing, Program, Rule, Unknown
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ def _topics(program: Program, condition: Condition) -> tuple[str, ...]:
 def _inputs(program: Program, condition: Condition) -> set[int]:
     found: set[int] = set()
     for part in walk.parts(condition):
-        if isinstance(part, Missing | Age):
+        if isinstance(part, Missing | Unknown | Age):
             found.add(part.input)
         found |= {input_of(program, value) for value in walk.terminals(part)}
     return found
@@ -89,9 +89,21 @@ def _remembered(layout: Layout, rules: list[Rule]) -> list[str]:
                 names[layout.missing[part.input]] = None
             elif isinstance(part, Age):
                 names[layout.counted[part.input]] = None
+            elif isinstance(part, Unknown):
+                names.update(dict.fromkeys(_awaited(layout, part.input)))
+                if part.operand is None:
+                    names[layout.known[part.input]] = None
+            elif isinstance(part, Failsafe):
+                for index in part.inputs:
+                    names.update(dict.fromkeys(_awaited(layout, index)))
             for value in walk.terminals(part):
                 names[layout.values[value].name] = None
     return list(names)
+
+
+def _awaited(layout: Layout, index: int) -> tuple[str, str]:
+    """Return the names that tell whether an input is awaited."""
+    return layout.silent[index], layout.missing[index]
 
 
 def interval_lines(conditions: Conditions, layout: Layout, condition: Condition) -> list[str]:

@@ -201,6 +201,8 @@ def _forgets(program: Program, layout: Layout) -> tuple[Forget, ...]:
     found: list[Forget] = []
     for index, method in layout.forget.items():
         unknown = [(slot.name, slot.unknown) for slot in slots_of(layout, program, index)]
+        if index in layout.known:
+            unknown.append((layout.known[index], "False"))
         for value, (last, _) in layout.last.items():
             if isinstance(value, Apply) and value.input == index:
                 unknown.append((last, "NAN"))

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.generators.cpp_source import Call, Expression, Text, cpp_double, cpp_string
+from deros.generators.monitor_c.expressions import known_of
 from deros.generators.monitor_c.layout import Layout
 from deros.generators.monitor_c.layout import Term as Field
 from deros.monitor.explain import Term, one_line, term_name, terms
-from deros.monitor.ir import Age, Missing, Program, Rule, Scale
+from deros.monitor.ir import Age, Missing, Program, Rule, Scale, Unknown
 
 
 def explained_rules(program: Program, layout: Layout) -> Iterator[Expression]:
@@ -32,6 +33,10 @@ def _value(layout: Layout, term: Term) -> str:
     match term:
         case Missing():
             return f"runtime::value_of(true, m.{layout.inputs[term.input].missing})"
+        case Unknown():
+            fields, known = layout.inputs[term.input], known_of(layout, term)
+            unknown = f"(m.{fields.came} || m.{fields.missing}) && !m.{known}"
+            return f"runtime::value_of(true, {unknown})"
         case Age():
             fields = layout.inputs[term.input]
             return f"runtime::value_of(m.{fields.came}, runtime::seconds(m.now - m.{fields.base}))"
