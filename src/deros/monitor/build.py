@@ -20,7 +20,7 @@ from deros.monitor.actions import Actions
 from deros.monitor.comparisons import Comparisons
 from deros.monitor.conditions import Conditions
 from deros.monitor.gates import Gates
-from deros.monitor.resolved import ResolvedComparison
+from deros.monitor.resolved import AppliedFunction, ResolvedComparison
 from deros.monitor.scope import Scope
 from deros.monitor.terms import Terms
 from deros.monitor.topics import SystemTopics
@@ -35,6 +35,7 @@ class BuildResult:
             loaded, among the diagnostics of the loader.
         diagnostics: in the order found.
         comparisons: the comparisons that could be resolved, for further checks.
+        functions: the functions of messages and arrays that could be resolved, likewise.
         topics: what the used systems tell of their topics.
     """
 
@@ -42,6 +43,7 @@ class BuildResult:
     diagnostics: tuple[Diagnostic, ...]
     comparisons: tuple[ResolvedComparison, ...]
     topics: SystemTopics
+    functions: tuple[AppliedFunction, ...] = ()
 
 
 def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
@@ -55,6 +57,7 @@ def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
         tuple(scope.diagnostics),
         tuple(builder.comparisons.found),
         scope.topics,
+        tuple(builder.terms.functions),
     )
 
 
@@ -64,8 +67,7 @@ class _Builder:
     def __init__(self, program: rules.Rules, store: InterfaceStore) -> None:
         self._program = program
         self.scope = Scope(program, store)
-        terms = Terms(self.scope, [each.name.text for each in program.entities])
-        self._terms = terms
+        self.terms = terms = Terms(self.scope, [each.name.text for each in program.entities])
         for name in self.scope.constants:
             terms.constant(name)
         self.comparisons = Comparisons(self.scope, terms)
@@ -124,7 +126,7 @@ class _Builder:
         for index in inputs:
             owner = self.scope.used_inputs[index]
             without = f"'{owner.name}' has no timeout, so no silence of it makes the rule unknown"
-            timed &= self._terms.has_timeout(owner, without, rule.name.span)
+            timed &= self.terms.has_timeout(owner, without, rule.name.span)
         return ir.Failsafe(condition, inputs) if timed else None
 
     def _verdict(self, term: rules.NamePath) -> ir.RuleRef | None:

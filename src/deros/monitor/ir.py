@@ -223,18 +223,7 @@ class RuleRef:
 
 
 Condition = (
-    Truth
-    | Compare
-    | Within
-    | Missing
-    | Unknown
-    | Age
-    | Not
-    | And
-    | Or
-    | For
-    | Failsafe
-    | RuleRef
+    Truth | Compare | Within | Missing | Unknown | Age | Not | And | Or | For | Failsafe | RuleRef
 )
 
 

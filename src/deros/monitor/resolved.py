@@ -163,6 +163,21 @@ class ResolvedComparison:
     exact: bool
 
 
+@dataclass(frozen=True, slots=True)
+class AppliedFunction:
+    """A function of a message or of an array, where it is written.
+
+    Attributes:
+        expression: what the monitor computes.
+        type: of what it is applied to.
+        span: of the whole call.
+    """
+
+    expression: ir.Apply
+    type: FieldType
+    span: Span = field(compare=False, repr=False)
+
+
 def family(kind: FieldType) -> str:
     """Return what a single value is compared as: ``number``, ``boolean`` or ``text``."""
     if kind.base in STRING_TYPES:

@@ -19,6 +19,7 @@ from deros.monitor.bounds import rounded, type_bounds
 from deros.monitor.functions import FUNCTIONS, Argument, Function, Result, UnitRule
 from deros.monitor.resolved import (
     AgeOf,
+    AppliedFunction,
     DeclaredInput,
     MessageConstant,
     MissingOf,
@@ -47,6 +48,8 @@ class Terms:
         self._open_constants: set[str] = set()
         self._constant_depth = 0
         self._states = 0
+        self.functions: list[AppliedFunction] = []
+        """The functions of messages and arrays, as they were met."""
 
     def resolve(
         self, term: rules.Term, message: MessageDefinition | None = None
@@ -202,7 +205,10 @@ class Terms:
             if isinstance(operand, Value) and family(operand.type) == "number":
                 return self._of_number(row, operand)
         elif isinstance(operand, Part) and shapes.fits(self._scope.store, row, operand.type):
-            return self._of_part(row, operand, parameters)
+            found = self._of_part(row, operand, parameters)
+            assert isinstance(found.expression, ir.Apply)
+            self.functions.append(AppliedFunction(found.expression, operand.type, call.span))
+            return found
         self._misapplied(call, row, operand)
         return None
 

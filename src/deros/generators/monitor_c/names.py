@@ -19,8 +19,8 @@ throw true try typeid typename using virtual wchar_t xor xor_eq"""
 _STANDARD = """assert errno main NULL NAN INFINITY INT64_MAX INT64_C abs fabs hypot sqrt atan2 asin
 fmod fmin fmax index time signal"""
 _OURS = """m t now due owner started count verdict condition held rises changed done grace
-enabled value both either negated truth_of failsafe lasting earlier ahead is_number bounded arrive step_back
-reach_deadline catch_up earliest judge_all evaluate act restart
+enabled value both either negated truth_of failsafe lasting earlier ahead is_number bounded arrive
+step_back reach_deadline catch_up earliest judge_all evaluate act restart
 clear pass move_to rate emitted after follows same"""
 
 RESERVED = frozenset(f"{_C} {_CPP} {_STANDARD} {_OURS}".split())

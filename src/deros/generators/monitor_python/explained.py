@@ -56,8 +56,9 @@ def _value(term: Term, layout: Layout) -> str:
         case Missing():
             return f"self._{layout.missing[term.input]}"
         case Unknown():
-            known = layout.known.get(term.input, "")
-            if term.operand is not None:
+            if term.operand is None:
+                known = f"self._{layout.known[term.input]}"
+            else:
                 value = f"self._{layout.values[term.operand].name}"
                 known = f"{value} == {value}"
             silent, missing = layout.silent[term.input], layout.missing[term.input]

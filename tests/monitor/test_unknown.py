@@ -1,0 +1,182 @@
+"""What is unknown, and what failsafe rules make of it: at the start, with a grace, in reports."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+
+from deros.generators.monitor_python.run import GeneratedMonitor
+from deros.monitor import ir
+from deros.monitor.engine import Engine
+from deros.monitor.state import LeafValue
+from tests.support.rules import condition, findings, program
+
+MS = 10**6
+SCAN = "input scan = topic /scan timeout 500 ms"
+RULES = f"""
+action stop publishes true on /stop : std_msgs.Bool latched;
+{SCAN}
+entity lidar {{
+  failsafe near: scan.nearest(-30 deg, 30 deg) < 0.4 m;
+  silent: scan.unknown();
+  blind: scan.nearest(-30 deg, 30 deg).unknown();
+}}
+if lidar.near then {{ stop; }};
+"""
+
+monitors = pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
+Monitor = Callable[..., Engine]
+
+
+def _scan(ahead: float) -> dict[int, LeafValue]:
+    """Return a scan of three beams, of which the middle one is in the sector."""
+    return {0: [2.0, ahead, 2.0], 1: -1.0, 2: 1.0, 3: 0.125, 4: 10.0}
+
+
+def _verdicts(engine: Engine) -> list[bool | None]:
+    """Return how ``near`` counts, and what the two forms of ``unknown()`` give."""
+    return [each.value for each in engine.explain()]
+
+
+@monitors
+def test_the_timeline_of_the_documentation(monitor: Monitor) -> None:
+    """Within the grace nothing is unknown yet; afterwards every way of being blind acts at once."""
+    engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
+    engine.advance(1799 * MS)
+    assert engine.waiting
+    assert engine.events == []
+    assert engine.next_deadline == 2500 * MS
+    engine.message(1800 * MS, "/scan", _scan(2.0))
+    assert not engine.waiting
+    assert _verdicts(engine) == [False, False, False]
+    engine.message(1900 * MS, "/scan", _scan(0.0))
+    assert _verdicts(engine) == [True, False, True]
+    assert engine.events[-1].t_ns == 1900 * MS
+    engine.message(2000 * MS, "/scan", _scan(2.0))
+    assert _verdicts(engine) == [False, False, False]
+    engine.advance(2500 * MS)
+    assert _verdicts(engine) == [True, True, True]
+    assert [each.t_ns for each in engine.events] == [1900 * MS, 2500 * MS]
+
+
+@monitors
+def test_a_sensor_that_never_comes_acts_when_grace_and_timeout_have_passed(
+    monitor: Monitor,
+) -> None:
+    """That is when the input is missing, not earlier."""
+    engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
+    engine.advance(3000 * MS)
+    assert [each.t_ns for each in engine.events] == [2500 * MS]
+
+
+@monitors
+@pytest.mark.parametrize("ahead", [0.0, 0.03, math.nan])
+def test_a_first_scan_that_is_blind_acts_within_the_grace(monitor: Monitor, ahead: float) -> None:
+    """The sensor has spoken, so nothing is awaited any more."""
+    engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
+    engine.message(100 * MS, "/scan", _scan(ahead))
+    assert [each.t_ns for each in engine.events] == [100 * MS]
+
+
+@monitors
+def test_no_reset_while_blind_or_awaited(monitor: Monitor) -> None:
+    """A latched stop of an earlier run stays until the sector is known to be free."""
+    engine = monitor(program(RULES), 0, grace_ns=2000 * MS, latched={"stop"})
+    engine.advance(10 * MS)
+    assert not engine.reset(20 * MS)
+    engine.message(100 * MS, "/scan", _scan(0.0))
+    assert not engine.reset(110 * MS)
+    refused = [each for each in engine.events if each.kind == "refused"][-1]
+    assert (refused.holding, refused.unknown) == (("behaviour_1",), ())
+    engine.message(200 * MS, "/scan", _scan(2.0))
+    assert engine.reset(210 * MS)
+
+
+@monitors
+def test_a_backward_step_of_the_clock_is_a_start_without_grace(monitor: Monitor) -> None:
+    """All inputs are awaited again, until the timeout passes in the new time."""
+    engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
+    engine.message(3000 * MS, "/scan", _scan(2.0))
+    engine.advance(1000 * MS)
+    assert _verdicts(engine) == [None, False, False]
+    engine.advance(1500 * MS)
+    assert _verdicts(engine) == [True, True, True]
+
+
+@monitors
+def test_the_report_says_what_was_unknown(monitor: Monitor) -> None:
+    """The state of a failsafe rule that acts shows the value that it lacks."""
+    engine = monitor(program(RULES), 0)
+    engine.message(100 * MS, "/scan", _scan(0.0))
+    near, silent, blind = engine.explain()
+    assert near.value is True
+    assert near.text.startswith("failsafe near:")
+    assert near.reads == (("scan.nearest(-0.523599, 0.523599)", None),)
+    assert silent.reads == (("scan.unknown()", False),)
+    assert blind.reads == (("scan.nearest(-0.523599, 0.523599).unknown()", True),)
+
+
+def test_what_unknown_is_of() -> None:
+    """A field is the input; a function of one stands for itself, whatever it is a function of."""
+    declared = "input v = topic /odom timeout 1 sec"
+    assert condition("v.unknown()", declared) == ir.Unknown(0)
+    assert condition("v.twist.twist.linear.x.unknown()", declared) == ir.Unknown(0)
+    assert condition("v.twist.twist.linear.unknown() = false", declared) == ir.Not(ir.Unknown(0))
+    size = ir.Apply("abs", (ir.Read(0),), 0)
+    assert condition("v.twist.twist.linear.x.abs().unknown()", declared) == ir.Unknown(0, size)
+
+
+def test_a_failsafe_rule_names_the_inputs_that_can_make_it_unknown() -> None:
+    """Inputs of which it asks only whether they are missing or unknown are none of them."""
+    built = program(
+        "input v = topic /odom.twist.twist.linear.x timeout 1 sec\n"
+        "input w = topic /speed.data timeout 1 sec\n"
+        "entity e { failsafe r: w.missing() or v > 1; failsafe s: w.unknown(); }"
+    )
+    assert built.rules[0].condition == ir.Failsafe(
+        ir.Or((ir.Missing(0), ir.Compare(ir.Read(1), ">", ir.Const(1.0)))), (1,)
+    )
+    assert built.rules[1].condition == ir.Unknown(0)
+
+
+@pytest.mark.parametrize(
+    ("rule", "name", "failsafe"),
+    [
+        ("failsafe: v > 1", "failsafe", False),
+        ('failsafe "text": v > 1', "failsafe", False),
+        ("failsafe failsafe: v > 1", "failsafe", True),
+        ('failsafe r "text": v > 1', "r", True),
+        ("failsafe // so\n r: v > 1", "r", True),
+        ("failsafe /* so */ : v > 1", "failsafe", False),
+    ],
+)
+def test_failsafe_is_no_reserved_word(rule: str, name: str, failsafe: bool) -> None:
+    """A rule may be called so, and be one."""
+    built = program(f"input v = topic /speed.data timeout 1 sec entity e {{ {rule}; }}").rules[0]
+    assert (built.name, isinstance(built.condition, ir.Failsafe)) == (name, failsafe)
+
+
+@pytest.mark.parametrize(
+    ("rule", "place"),
+    [
+        ("failsafe r: v > 1", "r"),
+        ("r: v.unknown()", "v.unknown()"),
+        ("r: v.rate().unknown()", "v.rate().unknown()"),
+        ("failsafe r: v.age() > 1 sec", "r"),
+    ],
+)
+def test_both_need_a_timeout(rule: str, place: str) -> None:
+    """Silence would not make the value unknown otherwise, and nothing would end the waiting."""
+    found = findings(f"input v = topic /speed.data entity e {{ {rule}; }}")
+    assert ("DRS319", place) in [each[:2] for each in found]
+
+
+@pytest.mark.parametrize(
+    "rule", ["scan.age().unknown()", "scan.missing().unknown()", "limit.unknown()"]
+)
+def test_unknown_is_asked_of_what_is_read(rule: str) -> None:
+    """Not of an age, a condition or a constant."""
+    found = findings(f"const limit = 1\n{SCAN} entity e {{ r: {rule}; }}")
+    assert "DRS304" in [each[0] for each in found]
