@@ -119,6 +119,28 @@ def test_a_robot_that_drives_by_the_rules_is_let_drive() -> None:
     assert (verdict.broken, verdict.violations, verdict.moved) == ([], [], True)
 
 
+def test_a_robot_that_moves_again_by_itself_is_found() -> None:
+    """It stood for a second, and nobody has commanded zero meanwhile."""
+    stood: Value = lambda now: 0.0 if 2.0 <= now < 3.0 else 0.4  # noqa: E731
+    pedal: Value = lambda now: 0.0 if 1.9 <= now < 3.0 else 0.27  # noqa: E731
+    moves = {"passed": stood, "passed_arrives": stood, "pedal": pedal}
+    verdict = judge(robot(**moves))
+    assert duties(verdict) == {"gate"}
+    assert "nobody has commanded zero" in verdict.violations[0].reason
+    assert not judge(robot(**moves, command=stood)).violations
+
+
+def test_a_robot_that_moves_again_without_a_reset_is_found() -> None:
+    """The heartbeat was lost, and the controller's zero does not make up for the reset."""
+    stood: Value = lambda now: 0.0 if 2.0 <= now < 3.5 else 0.4  # noqa: E731
+    pedal: Value = lambda now: 0.0 if 1.9 <= now < 3.5 else 0.27  # noqa: E731
+    beats: Value = lambda now: None if 2.0 < now < 3.0 else round(now * 10) + 100  # noqa: E731
+    moves = {"passed": stood, "passed_arrives": stood, "pedal": pedal, "command": stood}
+    verdict = judge(robot(**moves, beat_arrives=beats))
+    assert duties(verdict) == {"gate"}
+    assert "nobody has reset it" in verdict.violations[0].reason
+
+
 @pytest.mark.parametrize(
     ("name", "broken", "rule", "due"),
     [
@@ -207,9 +229,9 @@ def test_a_heartbeat_that_begins_anew_is_a_new_life() -> None:
         beat_arrives=lambda now: restarted(now) if not 2.0 < now < 3.0 else None,
         says_stop=lambda now: 1.1 <= now < 2.5,
         stop_arrives=lambda now: 1.1 <= now < 2.5,
-        passed=lambda now: 0.0 if 1.1 <= now < 3.2 else 0.4,
-        passed_arrives=lambda now: 0.0 if 1.1 <= now < 3.2 else 0.4,
-        pedal=lambda now: 0.0 if 1.1 <= now < 3.2 else 0.27,
+        passed=after(1.1, 0.0, 0.4),
+        passed_arrives=after(1.1, 0.0, 0.4),
+        pedal=after(1.1, 0.0, 0.27),
     )
     assert judge(seen).violations == []
 

@@ -94,6 +94,8 @@ def prepare(stage: Stage, driving: bool) -> None:
     stage.wait("a safety node that knows whom it hears", _knows_its_inputs, 60.0)
     stage.wait("a robot that stands free", _stands_free)
     _reset_actions(stage)
+    if driving:
+        _reset_gate(stage)
     stage.turn_key(True)
     stage.wait("the engine to run", lambda s: s.engine_running is True)
     stage.turn_key(False)
@@ -101,7 +103,7 @@ def prepare(stage: Stage, driving: bool) -> None:
     stage.switch_mode(AUTOMATIC)
     stage.wait("automatic mode", lambda s: s.mode == AUTOMATIC)
     if driving:
-        # After a crash of the safety node, the gate waits until its publishers are forgotten: 20 s.
+        # In manual mode the mission has commanded zero, which the gate waits for after its reset.
         stage.wait("the mission to drive", _drives, 60.0)
 
 
@@ -130,10 +132,23 @@ def _reset_actions(stage: Stage) -> None:
         _await_reports(stage, LEARN)
         stage.switch_mode(MANUAL)
         _await_reports(stage, MANUAL)
-        granted = stage.state.motor_stop is False or stage.reset_safety()
+        granted = stage.state.motor_stop is False or stage.reset("safety")
         if granted and stage.watch(lambda: _is_reset(stage.state), 1.0):
             return
     raise OverdueError("the safety node did not let its actions be reset")
+
+
+def _reset_gate(stage: Stage) -> None:
+    """Reset the gate, which holds the robot since its start, or since the safety node was lost.
+
+    After a crash of the safety node, it refuses that until the dead one is forgotten: 20 s.
+    """
+    patience_ends = time.monotonic() + 60.0
+    while time.monotonic() < patience_ends:
+        if stage.reset("gate"):
+            return
+        stage.watch(lambda: False, 0.5)
+    raise OverdueError("the gate did not let itself be reset")
 
 
 def _is_reset(state: RobotState) -> bool:

@@ -121,7 +121,9 @@ class Stage:
         for topic, kind, values in _WATCHED:
             receive = self._receiver(values) if self._pace is None else self._stepper(values)
             self._node.create_subscription(kind, topic, receive, 50)
-        self._reset = self._node.create_client(Trigger, "/safety/reset")
+        self._resets = {
+            node: self._node.create_client(Trigger, f"/{node}/reset") for node in ("safety", "gate")
+        }
         # The events executor is several times faster, but cannot hand over time stamps.
         executor = EventsExecutor if simulated else SingleThreadedExecutor
         self._executor = executor(context=self._context)
@@ -287,17 +289,18 @@ class Stage:
         """Kill the process of the safety node, as a crash would."""
         os.kill(self._safety_node(), signal.SIGKILL)
 
-    def reset_safety(self, within: float = 20.0) -> bool:
-        """Call the safety node's reset service once; return whether it was granted.
+    def reset(self, node: str, within: float = 20.0) -> bool:
+        """Call the reset service of the safety node or of the gate; return whether it was granted.
 
         Raises:
             OverdueError: if there is no such service or no answer in time.
         """
-        if not self._reset.wait_for_service(timeout_sec=within):
-            raise OverdueError(f"waited {within:g} s for the service /safety/reset")
+        client = self._resets[node]
+        if not client.wait_for_service(timeout_sec=within):
+            raise OverdueError(f"waited {within:g} s for the service /{node}/reset")
         answered = threading.Event()
-        future = self._reset.call_async(Trigger.Request())
+        future = client.call_async(Trigger.Request())
         future.add_done_callback(lambda _: answered.set())
         if not answered.wait(within):
-            raise OverdueError(f"waited {within:g} s for an answer of /safety/reset")
+            raise OverdueError(f"waited {within:g} s for an answer of /{node}/reset")
         return bool(future.result().success)

@@ -56,7 +56,7 @@ class Bench:
     disk: Disk
     intruders: list[subprocess.Popen[str]] = field(default_factory=list)
     _levers: dict[str, Any] = field(default_factory=dict)
-    _reset: Any = None
+    _resets: dict[str, Any] = field(default_factory=dict)
 
     def process_of(self, node: str) -> int:
         """Return the process of a node, once it runs."""
@@ -80,16 +80,17 @@ class Bench:
             message.data = value
         self._levers[topic].publish(message)
 
-    def reset(self, limit: float = 5.0) -> bool:
-        """Call the safety node's reset service; return whether it was granted."""
+    def reset(self, domain: str = SAFETY, limit: float = 5.0) -> bool:
+        """Call the reset service of the safety node, or the gate; return whether it was granted."""
         from std_srvs.srv import Trigger
 
-        if self._reset is None:
-            self._reset = self.proxy.nodes[SAFETY].create_client(Trigger, "/safety/reset")
-        if not self._reset.service_is_ready():
+        if domain not in self._resets:
+            node = self.proxy.nodes[domain]
+            self._resets[domain] = node.create_client(Trigger, f"/{domain}/reset")
+        if not self._resets[domain].service_is_ready():
             return False
         answered = threading.Event()
-        future = self._reset.call_async(Trigger.Request())
+        future = self._resets[domain].call_async(Trigger.Request())
         future.add_done_callback(lambda _: answered.set())
         return answered.wait(limit) and bool(future.result().success)
 

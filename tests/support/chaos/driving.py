@@ -48,6 +48,7 @@ def _prepare(bench: Bench) -> None:
         lambda: bench.fresh("arrived", GATE, HEARTBEAT.name, since),
     )
     _take_over(bench)
+    _reset_gate(bench)
     bench.pull("/panel/ignition", "std_msgs/Bool", True)
     bench.until("the engine", lambda: bench.value("sent", PLANT, "/plc/engine_running") is True)
     bench.pull("/panel/ignition", "std_msgs/Bool", False)
@@ -72,6 +73,15 @@ def _take_over(bench: Bench) -> None:
         if bench.record.until(lambda: _is_free(bench), 1.0):
             return
     raise NotReadyError("the safety node did not let its actions be reset")
+
+
+def _reset_gate(bench: Bench) -> None:
+    """Reset the gate, which holds the robot since its start, or since a loss of the heartbeat."""
+    end = time.monotonic() + 40.0
+    while not bench.reset(GATE):
+        if time.monotonic() > end:
+            raise NotReadyError("the gate did not let itself be reset")
+        time.sleep(0.2)  # it asks a person to try again, and nothing tells when
 
 
 def _switch_to(bench: Bench, mode: int) -> None:

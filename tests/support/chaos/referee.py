@@ -8,7 +8,9 @@ be vouched for by a chain of fresh messages through all of them:
 * the safety node, while it beats, says that it stops the robot, from when a rule is known to be
   broken until the reset; what it says of a rule while it does not beat, nobody may rely on;
 * the gate lets a command through while the heartbeat that has arrived counts on, the last state
-  that has arrived is not a stop, and a command has arrived, each within its loss time;
+  that has arrived is not a stop, and a command has arrived, each within its loss time; after a zero
+  it lets nothing through before a zero command has arrived, and after a lost heartbeat nothing at
+  all, since nobody resets it within a round;
 * the arbiter, the actuator's own part, moves the pedal while a command is fresh.
 
 What is latched, the engine's stop, outlives any restart, and nobody resets it within a round.
@@ -145,6 +147,7 @@ class Referee:
         self._known_slow = self._truths("arrived", GATE, LOW_SPEED)
         self._lives = list(self._find_lives())
         self._fresh_beats = list(self._find_fresh_beats())
+        self._losses = list(self._find_losses())
         self._manual = [
             message.time
             for message in of_topic(self._messages, "arrived", SAFETY, "/plc/mode")
@@ -236,12 +239,20 @@ class Referee:
         commands = [
             message.time for message in of_topic(self._messages, "arrived", GATE, COMMAND.name)
         ]
+        zeros = [
+            message.time
+            for message in of_topic(self._messages, "arrived", GATE, COMMAND.name)
+            if not _speed(message)
+        ]
         seen: set[str] = set()
+        standing: float | None = None  # since when
         for message in of_topic(self._messages, "sent", GATE, LET_THROUGH.name):
             speed = _speed(message)
+            stood, standing = standing, None if speed else standing or message.time
             if message.time < self._begin or not speed:
                 continue
             reason = self._unfounded(message.time, speed, commands)
+            reason = reason or self._unmeant(message.time, speed, stood, zeros)
             kind = reason.partition(",")[0]
             if reason and kind not in seen:
                 seen.add(kind)
@@ -262,6 +273,26 @@ class Referee:
         if slow is not None and now - slow > margin and abs(speed) > CRAWL + 1e-6:
             return f"it passes {speed:.2f} m/s, {now - slow:.2f} s after the limit has arrived"
         return ""
+
+    def _unmeant(
+        self, now: float, speed: float, stood: float | None, zeros: Sequence[float]
+    ) -> str:
+        """Return why the gate must not let the robot move again, or nothing."""
+        lost = next((time for time in self._losses if self._begin <= time < now), None)
+        if lost is not None:
+            at = lost - self._begin
+            return f"nobody has reset it, and it passes {speed:.2f} m/s: lost at {at:.2f} s"
+        if stood is not None and _last(zeros, now) < stood - MARGIN_GATE:
+            at = stood - self._begin
+            return f"nobody has commanded zero, and it passes {speed:.2f} m/s: stood at {at:.2f} s"
+        return ""
+
+    def _find_losses(self) -> Iterator[float]:
+        """Give when the gate has certainly been without a heartbeat for too long."""
+        for before, beat in pairwise(self._fresh_beats):
+            limit = LOST_HEARTBEAT + MARGIN_GATE + self._held_up(before, beat)
+            if beat - before > limit:
+                yield before + limit
 
     def _find_fresh_beats(self) -> Iterator[float]:
         """Give when a heartbeat has arrived at the gate that no earlier one of its life equals."""

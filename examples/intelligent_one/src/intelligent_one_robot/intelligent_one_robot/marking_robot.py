@@ -13,6 +13,9 @@ from sensor_msgs.msg import Imu
 CRUISING, RACING = 0.4, 0.7
 """Speeds in m/s: as planned, and with the fault."""
 
+PAUSE = 1.0
+"""Time in s for which it stands before each attempt to set off, and for which it tries."""
+
 LEANING = math.radians(14.0)
 """Roll, in rad, with the fault."""
 
@@ -24,8 +27,10 @@ class MarkingRobot(MarkingRobotBase):
         """Stand until there is a command."""
         super().__init__()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._started = self._now()
         self._set_off: float | None = None
         self._driving = False
+        self._stopped = False
 
     def on_command(self, msg: Twist) -> None:
         """Drive or stand."""
@@ -35,12 +40,13 @@ class MarkingRobot(MarkingRobotBase):
             self.get_logger().info(f'driving at {CRUISING} m/s')
         if self._driving and not driving:
             self.get_logger().warning('stopped by the gate')
+            self._stopped = True  # for good: the route is begun anew by whoever starts the robot
         self._driving = driving
 
     def on_cycle(self) -> None:
         """Go on along the route, and measure speed and attitude."""
         wish = Twist()
-        wish.linear.x = CRUISING
+        wish.linear.x = self._wished_speed()
         self.publish_wish(wish)
         since = self._set_off
         faulty = since is not None and self._now() - since >= self.parameters.fault_after
@@ -55,6 +61,13 @@ class MarkingRobot(MarkingRobotBase):
         imu = Imu()
         imu.orientation.x, imu.orientation.w = math.sin(roll / 2), math.cos(roll / 2)
         self.publish_imu(imu)
+
+    def _wished_speed(self) -> float:
+        """Return zero after a stop, and before each attempt to set off: the gate waits for that."""
+        if self._stopped:
+            return 0.0
+        stands = self._set_off is None and (self._now() - self._started) % (2 * PAUSE) < PAUSE
+        return 0.0 if stands else CRUISING
 
     def _now(self) -> float:
         return float(self._steady.now().nanoseconds) / 1e9
