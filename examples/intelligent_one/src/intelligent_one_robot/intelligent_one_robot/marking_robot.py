@@ -63,7 +63,7 @@ class MarkingRobot(MarkingRobotBase):
         self.publish_imu(imu)
 
     def _wished_speed(self) -> float:
-        """Return zero after a stop, and before each attempt to set off: the gate waits for that."""
+        """Return zero after a stop and before each attempt to set off: the gate waits for it."""
         if self._stopped:
             return 0.0
         stands = self._set_off is None and (self._now() - self._started) % (2 * PAUSE) < PAUSE
