@@ -11,6 +11,7 @@ from deros.interfaces.names import (
     check_node_name,
     check_package_name,
     check_parameter_name,
+    check_timer_name,
     check_topic_name,
     did_you_mean,
     near,
@@ -126,15 +127,24 @@ def test_refused_package_names(name: str) -> None:
     assert check_package_name(name)
 
 
-@pytest.mark.parametrize("name", ["", "a b", "a..b", ".a", "a.1", "a-b"])
+@pytest.mark.parametrize("name", ["", "a b", "a..b", ".a", "a.", "a:b", "ü", "a" * 2000])
 def test_refused_parameter_names(name: str) -> None:
-    """Names that a parameter file or the command line cannot give have a reason."""
+    """Names that some tool of ROS 2 cannot handle have a reason."""
     assert check_parameter_name(name)
 
 
-def test_nested_parameter_names_pass() -> None:
-    """Parts are joined by dots."""
-    assert check_parameter_name("pid.gains.p") is None
+@pytest.mark.parametrize(
+    "name", ["pid.gains.p", "qos_overrides./tf.publisher.depth", "a-b", "3d", "/", "a.1", "x/"]
+)
+def test_parameter_names_that_pass(name: str) -> None:
+    """Letters, digits, ``_ . / -``, in parts that are joined by dots."""
+    assert check_parameter_name(name) is None
+
+
+@pytest.mark.parametrize(("name", "passes"), [("tick", True), ("2nd", False), ("a.b", False)])
+def test_timer_names(name: str, passes: bool) -> None:
+    """A timer's name becomes part of a method's name."""
+    assert (check_timer_name(name) is None) is passes
 
 
 @pytest.mark.parametrize("name", ["/", "/a/b", "front", "a/b"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from deros import codes
@@ -235,3 +237,99 @@ def test_both_of_two_sections_count() -> None:
     )
     assert isinstance(loaded.model, NodeType)
     assert [p.name for p in loaded.model.parameters] == ["x", "y"]
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("a.b", "a.b"),
+        ("qos_overrides./tf.publisher.depth", "qos_overrides./tf.publisher.depth"),
+        ("max-age", "max-age"),
+        ("/x", "/x"),
+        ('"3d"', "3d"),
+        ('"a//b"', "a//b"),
+        ("gains.<joints>.p", "gains.<joints>.p"),
+        ("<joints>", "<joints>"),
+    ],
+)
+def test_names_of_parameters(text: str, name: str) -> None:
+    """They stand in quotes where a comment or a number would be read else."""
+    node = _node(f"parameters name {text} : double publishes topic t : std_msgs.Bool via {text}")
+    assert [each.name for each in node.parameters] == [name]
+    assert [port.via for port in node.ports] == [name]
+
+
+@pytest.mark.parametrize(
+    ("text", "lower", "upper", "lower_closed", "upper_closed"),
+    [
+        (">= 0", 0, math.inf, True, True),
+        ("> 0", 0, math.inf, False, True),
+        ("<= -1.5", -math.inf, -1.5, True, True),
+        ("< 1e3", -math.inf, 1000, True, False),
+        ("> 0 [m] < 2 read_only", 0, 2, False, False),
+        ("< 2 > 0", 0, 2, False, False),
+    ],
+)
+def test_bounds(
+    text: str, lower: float, upper: float, lower_closed: bool, upper_closed: bool
+) -> None:
+    """A bound of one side leaves the other side open to infinity; two make a range."""
+    parameter = _parameter(f"double = 0.5 {text}")
+    assert parameter.interval == Interval(lower, upper, lower_closed, upper_closed)
+    assert parameter.default == 0.5
+
+
+def test_a_side_has_one_bound() -> None:
+    """A second bound of a side is reported; a range bounds both."""
+    for text in ("> 0 >= 1", "in [0, 1] < 5", "< 5 in [0, 1]"):
+        ((code, _),) = _findings(f"parameters name x : double {text}")
+        assert code is codes.DUPLICATE_SECTION
+
+
+def test_sizes_and_elements() -> None:
+    """Sizes, uniqueness and the user's own functions, each named with its place."""
+    text = 'not_empty unique min_size 1 max_size 3 custom "a::b" custom "c::d::e" "The joints"'
+    parameter = _parameter(f'string[] = ["x"] {text}')
+    assert (parameter.min_size, parameter.max_size, parameter.size) == (1, 3, None)
+    assert parameter.not_empty
+    assert parameter.unique
+    assert [(each.text, each.span.text) for each in parameter.custom] == [
+        ("a::b", '"a::b"'),
+        ("c::d::e", '"c::d::e"'),
+    ]
+    assert parameter.description == "The joints"
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "-inf", "+inf"])
+def test_doubles_that_are_no_numbers(text: str) -> None:
+    """They are written as Python and C++ do, alone or in arrays."""
+    assert repr(_parameter(f"double = {text}").default) == repr(float(text))
+    assert repr(_parameter(f"double[] = [{text}, 1]").default) == repr((float(text), 1.0))
+    assert [
+        name for _, name in _findings("parameters name nan : double = inf name inf : int")
+    ] == []
+
+
+def test_one_name_for_ports_of_all_kinds() -> None:
+    """A wiring means all of them, or those of one kind; an exact name goes before a like one."""
+    node = _node(
+        "publishes topic /x : std_msgs.Bool topic y : std_msgs.Bool subscribes topic x :"
+        " std_msgs.Bool topic /y : std_msgs.Bool services service z : std_srvs.Trigger"
+        " clients client z : std_srvs.Trigger"
+    )
+    assert [port.kind.word for port in node.ports_named("z")] == ["service", "client"]
+    assert [port.name for port in node.ports_named("x")] == ["x"]
+    assert [port.name for port in node.ports_named("x", PortKind.PUBLISHER)] == ["/x"]
+    assert node.ports_named("z", PortKind.PUBLISHER) == ()
+
+
+def test_entries_of_a_list() -> None:
+    """A parameter knows its name for an entry, and the entry of a name."""
+    node = _node("parameters name joints : string[] name gains.<joints>.p : double")
+    gains = node.parameters[1]
+    assert gains.keys == ("joints",)
+    assert gains.name_for("elbow") == "gains.elbow.p"
+    assert gains.entry_of("gains.left.elbow.p") == "left.elbow"
+    assert [gains.entry_of(name) for name in ("gains.p", "gains..p", "x.a.p")] == [None] * 3
+    assert node.parameter_for("gains.a.p") is gains
+    assert node.parameter_for("gains.a.i") is None

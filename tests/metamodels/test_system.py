@@ -11,6 +11,7 @@ from deros.diagnostics import Code
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import QosProfile
 from deros.metamodels.load import LoadedFile, Repository
+from deros.metamodels.node import PortKind
 from deros.metamodels.system import NodeInstance, Respawn, Subsystem, System
 
 NODE = """\
@@ -172,3 +173,45 @@ def test_a_used_system_has_no_parts_of_its_own(tmp_path: Path) -> None:
     text = 'system S imports import "arm.system" subsystem a : Arm { topics topic /x }'
     (found,) = Repository().load_text(tmp_path / "s.system", text).diagnostics
     assert (found.code, found.span.text) == (codes.SYNTAX_ERROR, "a")
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "port", "target"),
+    [
+        ("publisher image to /x", PortKind.PUBLISHER, "image", "/x"),
+        ("subscriber /image to ~/x", PortKind.SUBSCRIPTION, "/image", "~/x"),
+        ("service a to b", PortKind.SERVICE, "a", "b"),
+        ("client\n/* c */ a // d\n to b", PortKind.CLIENT, "a", "b"),
+        ("action a to b", PortKind.ACTION, "a", "b"),
+        ("action_client a to b", PortKind.ACTION_CLIENT, "a", "b"),
+        ('publisher "image" to /x', PortKind.PUBLISHER, "image", "/x"),
+        ("publisher publisher to /x", PortKind.PUBLISHER, "publisher", "/x"),
+        ("publisher to /x", None, "publisher", "/x"),
+        ("action to action", None, "action", "action"),
+        ("client to to", None, "client", "to"),
+        ("publisher/image to /x", None, "publisher/image", "/x"),
+        ("mode.topic to /x", None, "mode.topic", "/x"),
+        ('"3d.topic" to /x', None, "3d.topic", "/x"),
+    ],
+)
+def test_a_kind_may_stand_before_a_port(
+    folder: Path, text: str, kind: PortKind | None, port: str, target: str
+) -> None:
+    """A port may all the same be called as a kind is; names may stand in quotes."""
+    (wiring,) = _node(folder, f"wirings connect {text}").wirings
+    assert (wiring.kind, wiring.port, wiring.target) == (kind, port, target)
+
+
+def test_settings_of_any_name_and_number(folder: Path) -> None:
+    """What a node description may call its parameters, a system may set; to NaN, too."""
+    node = _node(
+        folder,
+        "parameters param qos_overrides./tf.publisher.depth = 3 param a-b = [nan, -inf]"
+        ' param "3d" = inf param rate = nan',
+    )
+    assert [(each.name, repr(each.value)) for each in node.parameters] == [
+        ("qos_overrides./tf.publisher.depth", "3"),
+        ("a-b", "(nan, -inf)"),
+        ("3d", "inf"),
+        ("rate", "nan"),
+    ]

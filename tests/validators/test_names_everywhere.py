@@ -134,7 +134,7 @@ REFERENCES = {
 """Places where only what is declared elsewhere can be named: anything else is unknown."""
 
 _ATTRIBUTE = re.compile(
-    r"(\w+)[*+?]?=(?:GraphName\b|MarkedGraphName\b|Name\b|DottedName\b|TermName\b|\[\w+:Name\])"
+    r"(\w+)[*+?]?=(?:GraphName\b|MarkedGraphName\b|Name\b|RosParameterName\b|PortName\b|TermName\b|\[\w+:Name\])"
 )
 
 

@@ -17,6 +17,8 @@ _NODE_LIMIT = 255
 _TOPIC_LIMIT = 245  # 255 of a full name, less the prefix that DDS adds
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_]")
 _FORBIDDEN_IN_PATH = re.compile(r"[^A-Za-z0-9_/]")
+_FORBIDDEN_IN_PARAMETER = re.compile(r"[^A-Za-z0-9_./-]")
+_PARAMETER_LIMIT = 1024
 _CLOSE = 0.6
 _COMPARED_CLOSELY = 100
 _FORBIDDEN_IN_PROGRAM = re.compile(r"[^A-Za-z0-9_.+-]")
@@ -161,17 +163,27 @@ def check_package_name(name: str) -> str | None:
 
 
 def check_parameter_name(name: str) -> str | None:
-    """Say why a parameter's name (parts joined by ``.``) is refused, or return ``None``."""
+    """Say why a parameter's name (parts joined by ``.``) is refused, or return ``None``.
+
+    ROS 2 gives nodes any name from a parameter file; these are the characters that all its tools
+    take.
+    """
     if not name:
         return "is empty"
-    for part in name.split("."):
-        if not part:
-            return "has an empty part"
-        if found := _FORBIDDEN.search(part):
-            return f"contains '{found[0]}'; a parameter name has only letters, digits, '_' and '.'"
-        if part[0].isdigit():
-            return f"has a part that starts with a digit ('{part}')"
+    if found := _FORBIDDEN_IN_PARAMETER.search(name):
+        return (
+            f"contains '{found[0]}'; a parameter name has only letters, digits, '_', '.', '/', '-'"
+        )
+    if not all(name.split(".")):
+        return "has an empty part"
+    if len(name) > _PARAMETER_LIMIT:
+        return f"is longer than {_PARAMETER_LIMIT} characters"
     return None
+
+
+def check_timer_name(name: str) -> str | None:
+    """Say why a timer's name, which becomes part of a method's, is refused, or return ``None``."""
+    return "starts with a digit" if name[:1].isdigit() else check_identifier(name)
 
 
 def check_program_name(name: str) -> str | None:

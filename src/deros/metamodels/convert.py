@@ -25,6 +25,7 @@ _INTEGER = re.compile(r"[+-]?\d+\Z")
 _EXPONENT = re.compile(r"[eE]([+-]?\d+)\Z")
 _MOST_DIGITS = 400
 _GREATEST_COUNT = 2**31 - 1
+_LONGEST_S = 2**31 - 1  # of DDS; rmw would shorten what is longer
 _TIME_UNITS = UnitRegistry()
 _KINDS: dict[str, InterfaceKind] = {"msg": "msg", "srv": "srv", "action": "action"}
 
@@ -53,6 +54,10 @@ class Converter:
     def name(self, token: Token) -> Name:
         """Return a token as a name with its place."""
         return Name(str(token), self.token_span(token))
+
+    def written(self, token: Token) -> str:
+        """Return a name that may stand in quotes."""
+        return self.text(token) if token[0] == '"' else str(token)
 
     # Texts, numbers, values ------------------------------------------------------------------
 
@@ -104,6 +109,8 @@ class Converter:
             return self.text(token)
         if token == "true" or token == "false":
             return token == "true"
+        if token[-1].isalpha():
+            return float(token)  # nan, inf, -inf
         value = self.decimal(token)
         return int(value) if _INTEGER.match(token) else float(value)
 
@@ -158,8 +165,34 @@ class Converter:
             return 0
         return duration
 
+    def effective_ns(self, found: Any, what: str, zero: str) -> int:
+        """Return a duration that ROS 2 has to keep; one that it cannot is reported.
+
+        Args:
+            found: the duration.
+            what: what it is, for the message.
+            zero: what ROS 2 makes of no time at all.
+        """
+        before = len(self.diagnostics)
+        duration = self.duration_ns(found)
+        if len(self.diagnostics) > before:
+            return duration
+        if duration == 0:
+            message = f"{what} of 0 is none: {zero}"
+            hint = "give a longer time, or leave it out"
+            self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found), hint)
+        self.check_longest(duration, what, found)
+        return duration
+
+    def check_longest(self, duration_ns: int, what: str, found: Any) -> None:
+        """Report a duration that is longer than ROS 2 can keep."""
+        if duration_ns > _LONGEST_S * 10**9:
+            message = f"{what} is longer than the {_LONGEST_S} seconds that the middleware knows"
+            self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found))
+
     def qos(self, found: Any) -> QosProfile:
         """Return a QoS profile; a policy given twice is reported, the first one counts."""
+        before = len(self.diagnostics)
         settings: dict[str, Any] = {}
         for policy in found.policies:
             for field, value in self._policy(policy):
@@ -167,6 +200,11 @@ class Converter:
                     message = f"the QoS policy '{field.removesuffix('_ns')}' is given twice"
                     self.report(codes.DUPLICATE_SECTION, message, self.span(policy))
                 settings.setdefault(field, value)
+        empty = settings.get("depth") == 0 and "keep_all" not in settings
+        if empty and len(self.diagnostics) == before:
+            message = "a depth of 0 keeps no message: ROS 2 takes it for the middleware's own"
+            hint = "the least is 'depth 1'; 'keep_all' keeps as many as there is room for"
+            self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found), hint)
         return QosProfile(**settings, span=self.span(found))
 
     def _policy(self, policy: Any) -> list[tuple[str, Any]]:
@@ -174,11 +212,13 @@ class Converter:
         if kind == "QosDepth":
             return [("depth", self.integer(policy.depth))]
         if kind == "QosTime":
-            return [(f"{policy.policy}_ns", self.duration_ns(policy.time))]
+            what, zero = f"a {policy.policy}", f"ROS 2 takes it for no {policy.policy}"
+            return [(f"{policy.policy}_ns", self.effective_ns(policy.time, what, zero))]
         if kind == "QosLiveliness":
             settings: list[tuple[str, Any]] = [("liveliness", str(policy.kind))]
             if policy.lease is not None:
-                settings.append(("lease_ns", self.duration_ns(policy.lease)))
+                what, zero = "a lease", "ROS 2 takes it for a lease without end"
+                settings.append(("lease_ns", self.effective_ns(policy.lease, what, zero)))
             return settings
         word = str(policy.word)
         if word == "keep_all":

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from deros import codes
 from deros.diagnostics import Span
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import InterfaceKind
-from deros.metamodels.common import Scalar, Value
+from deros.metamodels.common import Interval, Name, Scalar, Value
 from deros.metamodels.convert import Converter, Sections
 from deros.metamodels.node import (
     FieldUnit,
@@ -39,12 +40,18 @@ _WORDS = {
     "Within": "in",
     "OneOf": "one_of",
     "Size": "size",
+    "MinSize": "min_size",
+    "MaxSize": "max_size",
+    "NotEmpty": "not_empty",
+    "Unique": "unique",
     "ReadOnly": "read_only",
     "Description": "description",
     "Via": "via",
     "Qos": "qos",
     "FieldUnits": "field units",
 }
+
+_UNBOUNDED = Interval(-math.inf, math.inf)
 
 
 def as_double(value: Value, kind: ParameterType) -> Value:
@@ -109,35 +116,61 @@ class NodeConverter(Converter):
         attributes = Sections(self)
         for attribute in found.attributes:
             what = type(attribute).__name__
-            if not attributes.once(_WORDS[what], self.span(attribute)):
-                continue
-            if what == "ParameterUnit":
-                settings |= {
-                    "unit": self.unit(attribute.unit),
-                    "unit_span": self.token_span(attribute.unit),
-                }
-            elif what == "Within":
-                settings |= {
-                    "interval": self.interval(attribute.interval),
-                    "interval_span": self.span(attribute.interval),
-                }
-            elif what == "OneOf":
-                settings["choices"] = self._choices(attribute.values, kind)
-            elif what == "Size":
-                settings["size"] = self.integer(attribute.size)
-            elif what == "ReadOnly":
-                settings["read_only"] = True
-            else:
-                settings["description"] = self.text(attribute.text)
+            if what in ("Within", "Bound"):
+                self._bounds(attribute, attributes, settings)
+            elif what == "Custom":
+                function = Name(self.text(attribute.function), self.token_span(attribute.function))
+                settings["custom"] = (*settings.get("custom", ()), function)
+            elif attributes.once(_WORDS[what], self.span(attribute)):
+                settings |= self._attribute(attribute, kind)
         default = None if found.default is None else as_double(self.value(found.default), kind)
         return Parameter(
-            str(found.name),
+            self.written(found.name),
             kind,
             default,
             self.span(found),
             self.token_span(found.name),
             **settings,
         )
+
+    def _attribute(self, attribute: Any, kind: ParameterType) -> dict[str, Any]:
+        what = type(attribute).__name__
+        if what == "ParameterUnit":
+            return {
+                "unit": self.unit(attribute.unit),
+                "unit_span": self.token_span(attribute.unit),
+            }
+        if what == "OneOf":
+            return {"choices": self._choices(attribute.values, kind)}
+        if what in ("Size", "MinSize", "MaxSize"):
+            return {_WORDS[what]: self.integer(attribute.size)}
+        if what in ("NotEmpty", "Unique", "ReadOnly"):
+            return {_WORDS[what]: True}
+        return {"description": self.text(attribute.text)}
+
+    def _bounds(self, attribute: Any, given: Sections, settings: dict[str, Any]) -> None:
+        """Join a range, or a bound of one side, with the bound of the other side."""
+        known: Interval = settings.get("interval", _UNBOUNDED)
+        span = self.span(attribute)
+        if type(attribute).__name__ == "Within":
+            span = self.span(attribute.interval)
+            if not given.once("lower bound", span) or not given.once("upper bound", span):
+                return
+            bounds = self.interval(attribute.interval)
+        else:
+            operator, value = str(attribute.operator), float(self.decimal(attribute.value))
+            closed = operator.endswith("=")
+            if operator[0] == ">":
+                if not given.once("lower bound", span):
+                    return
+                bounds = Interval(value, known.upper, closed, known.upper_closed)
+            else:
+                if not given.once("upper bound", span):
+                    return
+                bounds = Interval(known.lower, value, known.lower_closed, closed)
+        first: Span = settings.get("interval_span", span)
+        settings["interval"] = bounds
+        settings["interval_span"] = Span(self.source, first.start, span.end)
 
     def _parameter_type(self, found: Any) -> ParameterType:
         text = "".join(found.type.split())
@@ -167,7 +200,7 @@ class NodeConverter(Converter):
                 settings["units"] = tuple(map(self._field_unit, attribute.fields))
             elif what == "Via":
                 settings |= {
-                    "via": str(attribute.parameter),
+                    "via": self.written(attribute.parameter),
                     "via_span": self.token_span(attribute.parameter),
                 }
             elif what == "Qos":
@@ -198,6 +231,7 @@ class NodeConverter(Converter):
         if period == 0 and len(self.diagnostics) == before:
             message = "a timer's period is longer than nothing"
             self.report(codes.BAD_DURATION, message, self.span(found.period))
+        self.check_longest(period, "a period", found.period)
         return Timer(
             str(found.name),
             period,

@@ -11,7 +11,7 @@ from deros.interfaces.names import did_you_mean, near
 from deros.metamodels.common import QosProfile
 from deros.metamodels.convert import Converter, Sections
 from deros.metamodels.convert_node import as_double
-from deros.metamodels.node import NodeType
+from deros.metamodels.node import KINDS_BY_WORD, NodeType
 from deros.metamodels.qos import pinned_policies
 from deros.metamodels.system import (
     Import,
@@ -160,9 +160,10 @@ class SystemConverter(Converter):
 
     def _setting(self, found: Any, node_type: NodeType | None) -> ParameterSetting:
         value = self.value(found.value)
-        parameter = node_type.parameter(found.name) if node_type is not None else None
+        name = self.written(found.name)
+        parameter = node_type.parameter_for(name) if node_type is not None else None
         return ParameterSetting(
-            str(found.name),
+            name,
             value if parameter is None else as_double(value, parameter.type),
             self.span(found),
             self.token_span(found.name),
@@ -171,11 +172,12 @@ class SystemConverter(Converter):
 
     def _wiring(self, found: Any) -> Wiring:
         return Wiring(
-            str(found.port),
+            self.written(found.port),
             str(found.target),
             self.span(found),
             self.token_span(found.port),
             self.token_span(found.target),
+            None if found.kind is None else KINDS_BY_WORD[found.kind],
         )
 
     def _modifiers(self, modifiers: Any) -> dict[str, Any]:
@@ -192,6 +194,8 @@ class SystemConverter(Converter):
                 }
             elif what == "respawn":
                 delay = 0 if modifier.delay is None else self.duration_ns(modifier.delay)
+                if modifier.delay is not None:
+                    self.check_longest(delay, "a delay", modifier.delay)
                 most = None if modifier.max is None else self.integer(modifier.max)
                 settings["respawn"] = Respawn(delay, most)
             elif what == "log_level":

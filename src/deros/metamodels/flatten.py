@@ -12,7 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from deros.metamodels.common import Value
-from deros.metamodels.node import NodeType, ParameterType, Port
+from deros.metamodels.node import NodeType, ParameterType, Port, PortKind
+from deros.metamodels.remapping import remappings, wired_ends
 from deros.metamodels.system import NodeInstance, Subsystem, System, Topic, Wiring
 
 
@@ -30,12 +31,15 @@ class FlatPort:
     """A port of a node at run time.
 
     ``topic`` is the graph name it ends on. Without a ``wiring`` that is its own name, because ROS 2
-    lets an unwired port talk there all the same.
+    lets an unwired port talk there all the same. ``requested`` is the full name that the node's
+    code asks for; where ``sets_parameter``, the wiring has told it the topic.
     """
 
     port: Port
     topic: str
     wiring: Wiring | None
+    requested: str
+    sets_parameter: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +58,8 @@ class FlatNode:
         path: the subsystems that hold it, outermost first.
         parameters: what the system sets, wirings through parameters included.
         remappings: pairs of a port's own name and the graph name it is connected to, one for each
-            name. A port ``via`` a parameter has none: its wiring sets the parameter.
+            name, or one for topics and one for services where these go elsewhere. A port ``via`` a
+            parameter has none: its wiring sets the parameter.
     """
 
     instance: NodeInstance
@@ -129,37 +134,31 @@ def _flat_node(instance: NodeInstance, namespace: str, path: tuple[str, ...]) ->
 
     node_type = instance.type
     settings: dict[str, Value] = {p.name: p.value for p in instance.parameters}
-    by_port: dict[str, Wiring] = {}
+    by_port: dict[tuple[PortKind, str], Wiring] = {}
     by_parameter: dict[str, Wiring] = {}
-    for wiring in instance.wirings:
-        parameter = None
-        port = node_type.port(wiring.port) if node_type else None
-        if port is not None:
-            by_port.setdefault(port.name, wiring)
-            parameter = port.via
-        elif node_type is not None:
-            parameter = wiring.port
-        if parameter and node_type and is_topic_parameter(node_type, parameter):
-            by_parameter.setdefault(parameter, wiring)
+    for wiring in instance.wirings if node_type else ():
+        assert node_type is not None
+        for port, parameter in wired_ends(node_type, wiring):
+            if port is not None:
+                by_port.setdefault((port.kind, port.name), wiring)
+            if parameter and is_topic_parameter(node_type, parameter):
+                by_parameter.setdefault(parameter, wiring)
     # The wiring wins over a `param` for the same parameter; contradicting it is reported elsewhere.
     settings.update((name, full(wiring.target)) for name, wiring in by_parameter.items())
 
     flat_ports: list[FlatPort] = []
-    remappings: dict[str, str] = {}
     claimed: set[str] = set()
     for port in node_type.ports if node_type else ():
         found = by_parameter.get(port.via) if port.via is not None else None
         if found is not None and port.via is not None:
             claimed.add(port.via)
-        else:
-            found = by_port.get(port.name)
-            if found is not None:
-                remappings[port.name] = full(found.target)
-        if found is not None:
             topic = full(found.target)
-        else:
-            topic = full(_default_topic(port, node_type, settings))
-        flat_ports.append(FlatPort(port, topic, found))
+            flat_ports.append(FlatPort(port, topic, found, topic, sets_parameter=True))
+            continue
+        requested = full(_default_topic(port, node_type, settings))
+        found = by_port.get((port.kind, port.name))
+        topic = requested if found is None else full(found.target)
+        flat_ports.append(FlatPort(port, topic, found, requested))
     untyped = tuple(
         UntypedWiring(wiring, full(wiring.target))
         for name, wiring in by_parameter.items()
@@ -174,7 +173,7 @@ def _flat_node(instance: NodeInstance, namespace: str, path: tuple[str, ...]) ->
         tuple(flat_ports),
         untyped,
         tuple(settings.items()),
-        tuple(remappings.items()),
+        remappings(flat_ports),
     )
 
 

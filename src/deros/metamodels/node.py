@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import enum
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.common import Interval, QosProfile, Value
+from deros.metamodels.common import Interval, Name, QosProfile, Value
+
+_PLACEHOLDER = re.compile(r"<([^<>]*)>")
 
 
 class ParameterType(enum.Enum):
@@ -40,10 +43,33 @@ class PortKind(enum.Enum):
     ACTION = "actions"
     ACTION_CLIENT = "action_clients"
 
+    @property
+    def word(self) -> str:
+        """The word that stands for the kind before a port's name in a wiring."""
+        return _KIND_WORDS[self]
+
+
+_KIND_WORDS = {
+    PortKind.PUBLISHER: "publisher",
+    PortKind.SUBSCRIPTION: "subscriber",
+    PortKind.SERVICE: "service",
+    PortKind.CLIENT: "client",
+    PortKind.ACTION: "action",
+    PortKind.ACTION_CLIENT: "action_client",
+}
+KINDS_BY_WORD = {word: kind for kind, word in _KIND_WORDS.items()}
+
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One declared parameter, its default and its constraints."""
+    """One declared parameter, its default and its constraints.
+
+    Attributes:
+        interval: the range of a number, or of each element; a bound that is not given is infinite.
+        choices: the allowed values, or those of each element.
+        size, min_size, max_size: numbers of elements, or of a text's characters.
+        custom: functions of the user's, ``ns::function``, that check the value further.
+    """
 
     name: str
     type: ParameterType
@@ -57,8 +83,34 @@ class Parameter:
     interval_span: Span | None = field(default=None, compare=False, repr=False)
     choices: tuple[Value, ...] | None = None
     size: int | None = None
+    min_size: int | None = None
+    max_size: int | None = None
+    not_empty: bool = False
+    unique: bool = False
+    custom: tuple[Name, ...] = ()
     read_only: bool = False
     description: str = ""
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The parameters whose entries it is declared for: ``joints`` of ``gains.<joints>.p``."""
+        return tuple(_PLACEHOLDER.findall(self.name)) if "<" in self.name else ()
+
+    @property
+    def least_size(self) -> int:
+        """The fewest elements, or characters, that the constraints allow."""
+        return max(self.size or 0, self.min_size or 0, int(self.not_empty))
+
+    def name_for(self, entry: str) -> str:
+        """Return the name that the parameter has for one entry of its key."""
+        return _PLACEHOLDER.sub(lambda _: entry, self.name, 1)
+
+    def entry_of(self, name: str) -> str | None:
+        """Return the entry for which the parameter is called ``name``; ``None`` for no entry."""
+        before, opening, rest = self.name.partition("<")
+        after = rest.partition(">")[2]
+        entry = name.removeprefix(before).removesuffix(after)
+        return entry if opening and entry and f"{before}{entry}{after}" == name else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,15 +178,31 @@ class NodeType:
         """Return the parameter called ``name``, or ``None``."""
         return next((p for p in self.parameters if p.name == name), None)
 
+    def parameter_for(self, name: str) -> Parameter | None:
+        """Return the parameter that declares ``name``, by itself or for an entry, or ``None``."""
+        found = self.parameter(name)
+        if found is not None:
+            return found
+        return next((p for p in self.parameters if p.keys and p.entry_of(name)), None)
+
     def ports_of(self, kind: PortKind) -> Iterator[Port]:
         """Yield the ports of one kind, in the order written."""
         return (port for port in self.ports if port.kind is kind)
 
-    def port(self, name: str) -> Port | None:
-        """Return the port that a wiring means by ``name``: with or without its leading ``/``.
+    def ports_named(self, name: str, kind: PortKind | None = None) -> tuple[Port, ...]:
+        """Return the ports that a wiring means by ``name``: with or without its leading ``/``.
 
-        A port of exactly that name comes first, because ``x`` and ``/x`` are two names to ROS 2.
+        Ports of exactly that name are meant alone, because ``x`` and ``/x`` are two names to ROS 2.
+        One name may have a port of each kind; ``kind`` leaves the others out.
         """
         wanted = name.removeprefix("/")
-        alike = [port for port in self.ports if port.name.removeprefix("/") == wanted]
-        return next((port for port in alike if port.name == name), alike[0] if alike else None)
+        alike = tuple(
+            port
+            for port in self.ports
+            if port.name.removeprefix("/") == wanted and (kind is None or port.kind is kind)
+        )
+        return tuple(port for port in alike if port.name == name) or alike
+
+    def port(self, name: str, kind: PortKind | None = None) -> Port | None:
+        """Return the first port that a wiring means by ``name``, see :meth:`ports_named`."""
+        return next(iter(self.ports_named(name, kind)), None)

@@ -15,7 +15,10 @@ from deros.interfaces.names import did_you_mean, near
 
 _WORDS = {
     "Name": "a name",
-    "DottedName": "a name",
+    "RosParameterName": "a parameter's name",
+    "PortKindName": "a kind of port such as publisher",
+    "PortName": "a port",
+    "BoundOperator": "a bound such as >= 0",
     "TermName": "a name",
     "GraphName": "a topic name",
     "MarkedGraphName": "a topic name",

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import QosProfile, Value
-from deros.metamodels.node import NodeType
+from deros.metamodels.node import NodeType, PortKind
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,13 +50,17 @@ class ParameterSetting:
 
 @dataclass(frozen=True, slots=True)
 class Wiring:
-    """``connect PORT to TOPIC``: the port, or string parameter, and the graph name, as written."""
+    """``connect PORT to TOPIC``: the port, or string parameter, and the graph name, as written.
+
+    ``kind`` says which of the ports of that name is meant; without it, all are.
+    """
 
     port: str
     target: str
     span: Span = field(compare=False, repr=False)
     port_span: Span = field(compare=False, repr=False)
     target_span: Span = field(compare=False, repr=False)
+    kind: PortKind | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -88,8 +88,14 @@ class End:
 
     @property
     def name(self) -> str:
-        """Node and port for messages, as ``/base/odometry (odom)``."""
-        return f"{self.node.full_name} ({self.port.port.name})"
+        """Node and port for messages, as ``/base/odometry (odom)``.
+
+        Where the node has ports of several kinds of that name, the kind is said, too.
+        """
+        port = self.port.port
+        alike = sum(other.port.name == port.name for other in self.node.ports)
+        kind = f"{port.kind.word} " if alike > 1 else ""
+        return f"{self.node.full_name} ({kind}{port.name})"
 
     @property
     def qos(self) -> QosProfile | None:

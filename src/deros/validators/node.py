@@ -14,6 +14,7 @@ from deros.interfaces.names import (
     check_package_name,
     check_parameter_name,
     check_program_name,
+    check_timer_name,
     check_topic_name,
 )
 from deros.interfaces.store import InterfaceStore
@@ -21,7 +22,15 @@ from deros.interfaces.units import UnitRegistry
 from deros.metamodels.node import FieldUnit, NodeType, Parameter, ParameterType, Port, PortKind
 from deros.validators.hints import did_you_mean
 from deros.validators.interfaces import type_finding
-from deros.validators.values import constraint_fault, is_numeric, type_fault
+from deros.validators.values import (
+    constraint_fault,
+    entry_faults,
+    is_numeric,
+    outside,
+    show,
+    show_interval,
+    type_fault,
+)
 
 
 def check_node(node: NodeType, store: InterfaceStore) -> Iterator[Diagnostic]:
@@ -32,11 +41,12 @@ def check_node(node: NodeType, store: InterfaceStore) -> Iterator[Diagnostic]:
     yield from _program(node)
     yield from _duplicates(node)
     for parameter in node.parameters:
-        yield from _parameter(parameter, units)
+        yield from _parameter(node, parameter, units)
+        yield from _key(node, parameter)
     for port in node.ports:
         yield from _port(node, port, store, units)
     for timer in node.timers:
-        yield from _refused(check_parameter_name(timer.name), timer.name, timer.name_span)
+        yield from _refused(check_timer_name(timer.name), timer.name, timer.name_span)
 
 
 def _refused(fault: str | None, name: str, span: Span) -> Iterator[Diagnostic]:
@@ -59,15 +69,14 @@ def _program(node: NodeType) -> Iterator[Diagnostic]:
 
 
 def _duplicates(node: NodeType) -> Iterator[Diagnostic]:
-    """Names must differ among parameters, among timers, and among ports (whatever their kind).
-
-    One topic may be both published and subscribed by a node; a wiring could not tell the two apart,
-    so it has to be named apart in the description.
-    """
+    """Names must differ among parameters, among timers, and among the ports of one kind."""
     for word, declared in (
         ("parameter", [(p.name, p.name_span) for p in node.parameters]),
-        ("port", [(p.name.removeprefix("/"), p.name_span) for p in node.ports]),
         ("timer", [(t.name, t.name_span) for t in node.timers]),
+        *(
+            (kind.word, [(p.name.removeprefix("/"), p.name_span) for p in node.ports_of(kind)])
+            for kind in PortKind
+        ),
     ):
         seen: dict[str, Span] = {}
         for name, span in declared:
@@ -77,9 +86,7 @@ def _duplicates(node: NodeType) -> Iterator[Diagnostic]:
                     codes.DUPLICATE_NAME,
                     f"{word} '{name}' is declared twice",
                     span,
-                    hint="rename one of the two: wirings know a port by its name alone"
-                    if word == "port"
-                    else "keep one of the two",
+                    hint="keep one of the two",
                     related=(Related(first, "the first declaration"),),
                 )
 
@@ -87,8 +94,9 @@ def _duplicates(node: NodeType) -> Iterator[Diagnostic]:
 # Parameters -------------------------------------------------------------------------------------
 
 
-def _parameter(parameter: Parameter, units: UnitRegistry) -> Iterator[Diagnostic]:
-    yield from _refused(check_parameter_name(parameter.name), parameter.name, parameter.name_span)
+def _parameter(node: NodeType, parameter: Parameter, units: UnitRegistry) -> Iterator[Diagnostic]:
+    name = re.sub(r"<[^<>]*>", "x", parameter.name)
+    yield from _refused(check_parameter_name(name), parameter.name, parameter.name_span)
     if parameter.unit is not None and units.parse(parameter.unit) is None:
         yield _unknown_unit(units, parameter.unit, parameter.unit_span or parameter.span)
     faults = list(_constraints(parameter))
@@ -105,39 +113,109 @@ def _parameter(parameter: Parameter, units: UnitRegistry) -> Iterator[Diagnostic
         )
     elif not faults and (fault := constraint_fault(parameter, parameter.default)) is not None:
         yield report(codes.DEFAULT_OUT_OF_RANGE, f"default of '{parameter.name}': {fault}", span)
+    for fault in entry_faults(node, parameter, parameter.default):
+        yield report(codes.DEFAULT_OUT_OF_RANGE, f"default of '{parameter.name}': {fault}", span)
+
+
+def _key(node: NodeType, parameter: Parameter) -> Iterator[Diagnostic]:
+    """Check what a parameter of the form ``gains.<joints>.p`` is declared for each entry of."""
+    if len(parameter.keys) > 1:
+        yield report(
+            codes.UNKNOWN_KEY_PARAMETER,
+            f"'{parameter.name}' has more than one '<…>'",
+            parameter.name_span,
+            "a parameter is declared for the entries of one list",
+        )
+        return
+    for key in parameter.keys:
+        of = node.parameter(key)
+        if of is not None and of.type is ParameterType.STRING_ARRAY and not of.keys:
+            continue
+        lists = [p.name for p in node.parameters if p.type is ParameterType.STRING_ARRAY]
+        fault = "is not declared" if of is None else f"is {of.type.value}"
+        yield report(
+            codes.UNKNOWN_KEY_PARAMETER,
+            f"'{parameter.name}' is for each entry of '{key}', which {fault}",
+            parameter.name_span,
+            hint=did_you_mean(key, lists, f"declare it: 'name {key or 'joints'} : string[]'"),
+        )
 
 
 def _constraints(parameter: Parameter) -> Iterator[Diagnostic]:
-    kind = parameter.type
-    fault: str | None = None
     span = parameter.interval_span or parameter.span
-    if parameter.interval is not None:
-        if not is_numeric(kind):
-            fault = f"a range says nothing of {kind.value}; use 'one_of' for a choice of values"
-        elif parameter.interval.lower > parameter.interval.upper:
-            fault = (
-                f"the range runs from {parameter.interval.lower} down to {parameter.interval.upper}"
+    for fault in _range_faults(parameter):
+        yield _bad_constraint(parameter, fault, span)
+    for fault in _size_faults(parameter):
+        yield _bad_constraint(parameter, fault, parameter.span)
+    if parameter.unit is not None and not is_numeric(parameter.type):
+        fault = f"{parameter.type.value} has no unit"
+        yield _bad_constraint(parameter, fault, parameter.unit_span or parameter.span)
+    for fault in _choice_faults(parameter):
+        yield _bad_constraint(parameter, f"'one_of' {fault}", parameter.span)
+    for function in parameter.custom:
+        if _FUNCTION.fullmatch(function.text) is None:
+            yield report(
+                codes.BAD_CUSTOM_FUNCTION,
+                f"constraint of '{parameter.name}': '{function.text}' names no function",
+                function.span,
+                'a function of yours is named with its namespace: custom "limits::is_even"',
             )
-        if fault is not None:
-            yield _bad_constraint(parameter, fault, span)
-    if parameter.size is not None and not kind.is_array:
-        yield _bad_constraint(
-            parameter, f"'size' is for lists, and {kind.value} is none", parameter.span
-        )
-    if parameter.unit is not None and not is_numeric(kind):
-        yield _bad_constraint(
-            parameter, f"{kind.value} has no unit", parameter.unit_span or parameter.span
-        )
-    if parameter.choices is not None:
-        element = _ELEMENT.get(kind, kind)
-        for choice in parameter.choices:
-            wrong = type_fault(kind if isinstance(choice, tuple) else element, choice)
-            if wrong is not None:
-                yield _bad_constraint(parameter, f"'one_of': {wrong}", parameter.span)
-        if not parameter.choices:
-            yield _bad_constraint(parameter, "'one_of' leaves no value", parameter.span)
 
 
+def _range_faults(parameter: Parameter) -> Iterator[str]:
+    interval, kind = parameter.interval, parameter.type
+    if interval is None:
+        return
+    if not is_numeric(kind):
+        yield f"a range says nothing of {kind.value}; use 'one_of' for a choice of values"
+    elif interval.lower > interval.upper:
+        yield f"the range runs from {interval.lower} down to {interval.upper}"
+    elif interval.lower == interval.upper and interval.lower not in interval:
+        yield f"no number is in {show_interval(parameter)}"
+
+
+def _size_faults(parameter: Parameter) -> Iterator[str]:
+    """Find sizes of what has none, and sizes that exclude each other."""
+    kind = parameter.type
+    has_size = kind.is_array or kind is ParameterType.STRING
+    sizes = {
+        "size": parameter.size,
+        "min_size": parameter.min_size,
+        "max_size": parameter.max_size,
+        "not_empty": parameter.not_empty or None,
+    }
+    stated = [word for word, value in sizes.items() if value is not None]
+    if not has_size:
+        for word in stated:
+            yield f"'{word}' is for lists and texts, and {kind.value} is neither"
+    if parameter.unique and not kind.is_array:
+        yield f"'unique' is for lists, and {kind.value} is none"
+    most = [each for each in (parameter.size, parameter.max_size) if each is not None]
+    if has_size and most and parameter.least_size > min(most):
+        yield f"{', '.join(map(repr, stated))} exclude each other: no size is left"
+
+
+def _choice_faults(parameter: Parameter) -> Iterator[str]:
+    if parameter.choices is None:
+        return
+    if not parameter.choices:
+        yield "leaves no value"
+    element = _ELEMENT.get(parameter.type, parameter.type)
+    for choice in parameter.choices:
+        wrong = type_fault(element, choice)
+        if wrong is not None:
+            yield f"has a value of another type: {wrong}"
+        elif choice != choice:  # only nan is
+            yield "has nan, which equals no value"
+        elif (
+            parameter.interval is not None
+            and not isinstance(choice, (str, tuple))
+            and choice not in parameter.interval
+        ):
+            yield f"has {show(choice)}, which is {outside(parameter)}"
+
+
+_FUNCTION = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)+", re.ASCII)
 _ELEMENT = {
     ParameterType.BYTE_ARRAY: ParameterType.INTEGER,
     ParameterType.BOOL_ARRAY: ParameterType.BOOL,

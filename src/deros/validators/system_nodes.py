@@ -6,14 +6,15 @@ from collections.abc import Iterator, Mapping
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
-from deros.interfaces.names import check_topic_name
+from deros.interfaces.names import check_parameter_name, check_topic_name
 from deros.interfaces.standard_topics import standard_topic
 from deros.metamodels.common import Value
 from deros.metamodels.flatten import FlatNode, FlatSystem, is_topic_parameter, resolve_name
-from deros.metamodels.node import NodeType, Parameter, ParameterType, PortKind
+from deros.metamodels.node import NodeType, Parameter, ParameterType, Port, PortKind
+from deros.metamodels.remapping import wired_apart, wired_ends
 from deros.metamodels.system import NodeInstance, ParameterSetting, Wiring
 from deros.validators.hints import NameIndex, did_you_mean, one_of
-from deros.validators.values import constraint_fault, type_fault
+from deros.validators.values import constraint_fault, entry_faults, type_fault
 
 _TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
 
@@ -50,17 +51,24 @@ def _settings(node: FlatNode) -> Iterator[Diagnostic]:
                 related=(Related(first.span, "the first value"),),
             )
         if node.type is not None:
-            yield from _setting(node.type, setting)
+            yield from _setting(node, node.type, setting)
             yield from _topic_setting(node.type, setting)
     if node.type is not None and node.type.parameters:
         yield from _without_value(node, node.type)
 
 
-def _setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[Diagnostic]:
-    parameter = node_type.parameter(setting.name)
+def _setting(
+    node: FlatNode, node_type: NodeType, setting: ParameterSetting
+) -> Iterator[Diagnostic]:
+    parameter = node_type.parameter_for(setting.name)
     if parameter is None:
         kind = BUILT_IN_PARAMETERS.get(setting.name)
-        if kind is None and not setting.name.startswith("qos_overrides."):
+        if kind is None and setting.name.startswith("qos_overrides."):
+            fault = check_parameter_name(setting.name)
+            if fault is not None:
+                message = f"ROS 2 refuses the name '{setting.name}': it {fault}"
+                yield report(codes.INVALID_SYSTEM_NAME, message, setting.name_span)
+        elif kind is None:
             names = [p.name for p in node_type.parameters]
             yield report(
                 codes.UNKNOWN_PARAMETER,
@@ -76,7 +84,32 @@ def _setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[Diagnos
                 setting.value_span,
             )
         return
-    yield from _value(parameter, setting)
+    yield from _value(node_type, parameter, setting)
+    if parameter.keys and parameter.name != setting.name:
+        yield from _entry(node, parameter, setting)
+
+
+def _entry(node: FlatNode, parameter: Parameter, setting: ParameterSetting) -> Iterator[Diagnostic]:
+    """Check that the list has the entry that a parameter such as ``gains.elbow.p`` belongs to."""
+    entries = _entries(node, parameter)
+    entry = parameter.entry_of(setting.name)
+    if entries is not None and entry is not None and entry not in entries:
+        listed = did_you_mean(entry, entries, one_of(entries, "its entries"))
+        yield report(
+            codes.UNKNOWN_ENTRY,
+            f"'{setting.name}' is for the entry '{entry}', which '{parameter.keys[0]}' of"
+            f" '{node.instance.name}' does not have: the node ignores the value",
+            setting.name_span,
+            hint=listed or f'the list is empty: add "{entry}" to it',
+            related=(Related(parameter.span, "declared here"),),
+        )
+
+
+def _entries(node: FlatNode, parameter: Parameter) -> list[str] | None:
+    """Return the entries that a parameter is declared for; ``None`` if they are not known."""
+    key = node.type.parameter(parameter.keys[0]) if node.type is not None else None
+    value = dict(node.parameters).get(parameter.keys[0], key.default if key else None)
+    return [each for each in value if isinstance(each, str)] if isinstance(value, tuple) else None
 
 
 def _topic_setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[Diagnostic]:
@@ -91,23 +124,26 @@ def _topic_setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[D
             yield report(codes.INVALID_SYSTEM_NAME, message, setting.value_span)
 
 
-def _value(parameter: Parameter, setting: ParameterSetting) -> Iterator[Diagnostic]:
+def _value(
+    node_type: NodeType, parameter: Parameter, setting: ParameterSetting
+) -> Iterator[Diagnostic]:
     place = (Related(parameter.span, "declared here"),)
     fault = type_fault(parameter.type, setting.value)
     if fault is not None:
         yield report(
             codes.WRONG_PARAMETER_VALUE,
-            f"parameter '{parameter.name}' is {parameter.type.value}: {fault}",
+            f"parameter '{setting.name}' is {parameter.type.value}: {fault}",
             setting.value_span,
             hint=_value_hint(parameter.type, setting.value),
             related=place,
         )
         return
     fault = constraint_fault(parameter, setting.value)
+    fault = fault or next(entry_faults(node_type, parameter, setting.value), None)
     if fault is not None:
         yield report(
             codes.PARAMETER_OUT_OF_RANGE,
-            f"value of parameter '{parameter.name}': {fault}",
+            f"value of parameter '{setting.name}': {fault}",
             setting.value_span,
             related=place,
         )
@@ -127,15 +163,21 @@ def _value_hint(kind: ParameterType, value: Value) -> str:
 def _without_value(node: FlatNode, node_type: NodeType) -> Iterator[Diagnostic]:
     given = {name for name, _ in node.parameters}
     for parameter in node_type.parameters:
-        if parameter.default is None and parameter.name not in given:
-            yield report(
-                codes.PARAMETER_WITHOUT_VALUE,
-                f"parameter '{parameter.name}' of '{node.instance.name}' has neither a default "
-                "nor a value",
-                node.instance.name_span,
-                hint=f"add 'param {parameter.name} = …' to the node",
-                related=(Related(parameter.span, "declared here without a default"),),
-            )
+        if parameter.default is not None:
+            continue
+        names = [parameter.name]
+        if parameter.keys:
+            names = [parameter.name_for(entry) for entry in _entries(node, parameter) or ()]
+        for name in dict.fromkeys(names):
+            if name not in given:
+                yield report(
+                    codes.PARAMETER_WITHOUT_VALUE,
+                    f"parameter '{name}' of '{node.instance.name}' has neither a default nor a"
+                    " value",
+                    node.instance.name_span,
+                    hint=f"add 'param {name} = …' to the node",
+                    related=(Related(parameter.span, "declared here without a default"),),
+                )
 
 
 # Wirings ----------------------------------------------------------------------------------------
@@ -147,26 +189,21 @@ def _wirings(
     instance, node_type = node.instance, node.type
     if node_type is None:
         return
-    seen: dict[str, Wiring] = {}
+    seen: dict[tuple[PortKind | None, str], Wiring] = {}
     for wiring in instance.wirings:
-        first = seen.setdefault(wiring.port.removeprefix("/"), wiring)
-        if first is not wiring:
-            yield report(
-                codes.DUPLICATE_SETTING,
-                f"'{wiring.port}' of '{instance.name}' is connected twice",
-                wiring.port_span,
-                hint="a port has one topic; remove one of the two connections",
-                related=(Related(first.span, "the first connection"),),
-            )
-        port = node_type.port(wiring.port)
-        parameter = wiring.port if port is None else port.via
-        if port is None and not is_topic_parameter(node_type, wiring.port):
+        ends = wired_ends(node_type, wiring)
+        yield from _connected_twice(instance, wiring, ends, seen)
+        for port, parameter in ends:
+            if parameter is not None and (port or is_topic_parameter(node_type, parameter)):
+                yield from _conflict(node, parameter, wiring)
+        ports = [port for port, _ in ends if port is not None]
+        if not ports and (
+            wiring.kind is not None or not is_topic_parameter(node_type, wiring.port)
+        ):
             yield _unknown_port(instance, node_type, wiring)
-        elif parameter is not None:
-            yield from _conflict(node, parameter, wiring)
-        if port is None or port.kind in _TOPIC_KINDS:
+        if not ports or any(port.kind in _TOPIC_KINDS for port in ports):
             target = resolve_name(wiring.target, node.namespace, instance.name)
-            kind = port.type if port is not None else None
+            kind = next((port.type for port in ports if port.kind in _TOPIC_KINDS), None)
             is_standard = standard_topic(target, kind) or standard_topic(target, None)
             if target not in declared and not is_standard:
                 yield report(
@@ -177,6 +214,7 @@ def _wirings(
                         target, f"declare it: 'topic {wiring.target}' under 'topics'"
                     ),
                 )
+    yield from wired_apart(node)
     for untyped in node.untyped:
         yield report(
             codes.UNTYPED_WIRING,
@@ -188,9 +226,45 @@ def _wirings(
         )
 
 
+def _connected_twice(
+    instance: NodeInstance,
+    wiring: Wiring,
+    ends: list[tuple[Port | None, str | None]],
+    seen: dict[tuple[PortKind | None, str], Wiring],
+) -> Iterator[Diagnostic]:
+    """Find a port, or a name that no port has, that an earlier connection has already."""
+    keys: list[tuple[PortKind | None, str]]
+    keys = [(port.kind, port.name) for port, _ in ends if port is not None]
+    for key in keys or [(wiring.kind, wiring.port.removeprefix("/"))]:
+        first = seen.setdefault(key, wiring)
+        if first is not wiring:
+            name = f"{key[0].word} '{key[1]}'" if key[0] is not None else f"'{wiring.port}'"
+            plain = wiring.kind is None and first.kind is None
+            yield report(
+                codes.DUPLICATE_SETTING,
+                f"{name if not plain else repr(wiring.port)} of '{instance.name}' is connected"
+                " twice",
+                wiring.port_span,
+                hint="a port has one topic; remove one of the two connections",
+                related=(Related(first.span, "the first connection"),),
+            )
+            return
+
+
 def _unknown_port(instance: NodeInstance, node_type: NodeType, wiring: Wiring) -> Diagnostic:
     parameter = node_type.parameter(wiring.port)
-    if parameter is not None:
+    others = node_type.ports_named(wiring.port)
+    if wiring.kind is not None:
+        words = " and ".join(port.kind.word for port in others)
+        message = f"node type '{node_type.name}' has no {wiring.kind.word} '{wiring.port}'"
+        related = Related(node_type.name_span, f"the type of '{instance.name}'")
+        names = [port.name for port in node_type.ports_of(wiring.kind)]
+        hint = (
+            f"it has the {words} '{wiring.port}'"
+            if others
+            else did_you_mean(wiring.port, names, one_of(names, "its ports of that kind"))
+        )
+    elif parameter is not None:
         message = (
             f"parameter '{parameter.name}' is {parameter.type.value} and cannot hold a topic's name"
         )

@@ -11,7 +11,7 @@ from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, Span, report
 from deros.interfaces.names import did_you_mean
 from deros.interfaces.standard_topics import is_shown_only, standard_topic, wrong_type
-from deros.metamodels.flatten import FlatSystem, FlatTopic, resolve_name
+from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, FlatTopic, resolve_name
 from deros.metamodels.node import PortKind
 from deros.validators.graph import CHANNEL, End, Vertex, channels, publishers, subscribers
 from deros.validators.rules_ends import RulesEnds
@@ -356,9 +356,15 @@ def _unwired(flat: FlatSystem, by_vertex: dict[Vertex, _Channel]) -> Iterator[Di
                 codes.UNWIRED_PORT,
                 f"{word} '{port.port.name}' of '{node.instance.name}' is not connected",
                 node.instance.name_span,
-                hint=_unwired_hint(port.port.name, port.topic, word, by_vertex),
+                hint=_unwired_hint(_in_wirings(node, port), port.topic, word, by_vertex),
                 related=(Related(port.port.span, f"the {word} is declared here"),),
             )
+
+
+def _in_wirings(node: FlatNode, port: FlatPort) -> str:
+    """Return how a ``connect`` names a port: with its kind where others have its name."""
+    alike = sum(other.port.name == port.port.name for other in node.ports)
+    return f"{port.port.kind.word} {port.port.name}" if alike > 1 else port.port.name
 
 
 def _unwired_hint(name: str, topic: str, word: str, by_vertex: dict[Vertex, _Channel]) -> str:

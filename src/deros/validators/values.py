@@ -5,10 +5,13 @@ Shared by the defaults of node descriptions and the ``param`` lines of system de
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
+from itertools import combinations
 
+from deros.interfaces.names import check_parameter_name
 from deros.metamodels.common import Scalar, Value
-from deros.metamodels.node import Parameter, ParameterType
+from deros.metamodels.node import NodeType, Parameter, ParameterType
 
 _INT64 = range(-(2**63), 2**63)
 
@@ -79,16 +82,57 @@ def type_fault(kind: ParameterType, value: Value) -> str | None:
 def constraint_fault(parameter: Parameter, value: Value) -> str | None:
     """Return why ``value``, of the right type, breaks the parameter's constraints, or ``None``."""
     elements = value if isinstance(value, tuple) else (value,)
-    if parameter.size is not None and len(elements) != parameter.size:
-        return f"{len(elements)} elements where the declaration says size {parameter.size}"
+    fault = _size_fault(parameter, value)
+    if fault is not None:
+        return fault
+    if parameter.unique:
+        twice = next((one for one, other in combinations(elements, 2) if one == other), None)
+        if twice is not None:
+            return f"{show(twice)} comes twice where the declaration says unique"
     if parameter.interval is not None and is_numeric(parameter.type):
         for element in elements:
             if not isinstance(element, str) and element not in parameter.interval:
-                return f"{show(element)} is outside {show_interval(parameter)}"
+                return f"{show(element)} is {outside(parameter)}"
     if parameter.choices is not None:
-        for element in () if value in parameter.choices else elements:
+        for element in elements:
             if element not in parameter.choices:
                 return f"{show(element)} is none of {', '.join(map(show, parameter.choices))}"
+    return None
+
+
+def entry_faults(node: NodeType, key: Parameter, value: Value) -> Iterator[str]:
+    """Yield why entries of a list cannot name the parameters that are declared for each of them."""
+    declared = [parameter for parameter in node.parameters if parameter.keys == (key.name,)]
+    if not declared or not isinstance(value, tuple):
+        return
+    entries = [entry for entry in value if isinstance(entry, str)]
+    twice = sorted({entry for entry in entries if entries.count(entry) > 1})
+    for entry in twice:
+        yield f"the entry {show(entry)} comes twice, and names '{declared[0].name_for(entry)}'"
+    for entry in dict.fromkeys(entries):
+        for parameter in declared:
+            name = parameter.name_for(entry)
+            why = check_parameter_name(name)
+            if why is not None:
+                yield f"the entry {show(entry)} names the parameter '{name}', which {why}"
+            elif node.parameter(name) is not None:
+                yield f"the entry {show(entry)} names the parameter '{name}', which is another one"
+
+
+def _size_fault(parameter: Parameter, value: Value) -> str | None:
+    """Compare the number of elements of a list, or of characters of a text, with what it may be."""
+    if not isinstance(value, (tuple, str)):
+        return None
+    size = len(value)
+    has = f"{size} {'elements' if isinstance(value, tuple) else 'characters'}"
+    if parameter.size is not None and size != parameter.size:
+        return f"{has} where the declaration says size {parameter.size}"
+    if parameter.not_empty and not size:
+        return "it is empty where the declaration says not_empty"
+    if parameter.min_size is not None and size < parameter.min_size:
+        return f"{has} where the declaration says min_size {parameter.min_size}"
+    if parameter.max_size is not None and size > parameter.max_size:
+        return f"{has} where the declaration says max_size {parameter.max_size}"
     return None
 
 
@@ -103,10 +147,22 @@ def show(value: Value) -> str:
     return repr(value)
 
 
-def show_interval(parameter: Parameter) -> str:
-    """Spell the range of a parameter, as ``[0.1, 2.0]``."""
+def outside(parameter: Parameter) -> str:
+    """Say what a number is that lies out of the range of a parameter."""
     interval = parameter.interval
     assert interval is not None
+    one_sided = math.isinf(interval.lower) or math.isinf(interval.upper)
+    return f"{'not' if one_sided else 'outside'} {show_interval(parameter)}"
+
+
+def show_interval(parameter: Parameter) -> str:
+    """Spell the range of a parameter, as ``[0.1, 2.0]`` or ``>= 0.1``."""
+    interval = parameter.interval
+    assert interval is not None
+    if math.isinf(interval.upper):
+        return f"{'>=' if interval.lower_closed else '>'} {interval.lower}"
+    if math.isinf(interval.lower):
+        return f"{'<=' if interval.upper_closed else '<'} {interval.upper}"
     left = "[" if interval.lower_closed else "("
     right = "]" if interval.upper_closed else ")"
     return f"{left}{interval.lower}, {interval.upper}{right}"

@@ -71,6 +71,42 @@ def test_every_node_is_told_its_names_parameters_remappings_and_log_level(start:
     ]
 
 
+def test_what_no_command_line_can_name_is_in_a_file(start: Start) -> None:
+    """The command line of rcl takes no name with '-', or with a part that starts with a digit."""
+    node = """
+        node listener : demo
+          executable "arguments"
+        parameters
+          name rate : double = 1.0
+          name qos_overrides./tf.publisher.depth : int = 1
+          name max-age : double = 1.0
+          name "3d.on" : bool = false
+    """
+    members = """
+        node ears : listener
+        parameters
+          param qos_overrides./tf.publisher.depth = 7
+          param max-age = inf
+          param "3d.on" = true
+          param rate = nan
+    """
+    run = start(members, nodes=node)
+    assert run.end() == 0
+    told = next(line for line in run.lines if line.startswith("[ears] "))
+    arguments = json.loads(told.removeprefix("[ears] "))
+    file = Path(arguments.pop())
+    assert arguments == [
+        *("--ros-args", "-r", "__node:=ears", "-r", "__ns:=/"),
+        *("-p", "qos_overrides./tf.publisher.depth:=7", "-p", "rate:=.nan", "--params-file"),
+    ]
+    assert not file.parent.exists()
+    shown = start(members, "--dry-run", nodes=node)
+    assert shown.end() == 0
+    assert shown.lines[1].endswith(
+        """ <(echo '{/**: {ros__parameters: {"max-age": .inf, "3d.on": true}}}')"""
+    )
+
+
 def test_all_missing_programs_are_named_before_anything_starts(start: Start) -> None:
     """Two of three programs are missing: both are named, the third is not started."""
     nodes = "node ghost : demo --- node stranger : elsewhere"

@@ -13,15 +13,14 @@ from deros.generators.names import Emitted, check_collisions
 from deros.generators.protocol import GenerationError
 from deros.metamodels.common import Value
 from deros.metamodels.flatten import FlatNode, flatten, resolve_name
-from deros.metamodels.node import NodeType, Parameter, ParameterType, PortKind
+from deros.metamodels.node import NodeType, Parameter, ParameterType
+from deros.metamodels.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
 from deros.metamodels.system import NodeInstance, Subsystem, System
 
 NANOSECONDS = 1_000_000_000
 
-ACTION_PARTS = ("send_goal", "cancel_goal", "get_result", "feedback", "status")
+ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
 """Services and topics that an action consists of (ROS 2 design, "Actions")."""
-
-ACTION_KINDS = (PortKind.ACTION, PortKind.ACTION_CLIENT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +29,8 @@ class NodeView:
 
     Attributes:
         parameters: what the system sets, each value of the type that the node declares.
-        remappings: pairs of a name in the node's code and a graph name, only where they differ.
+        remappings: pairs of a name in the node's code and a graph name, only where they differ;
+            the first may start with ``rostopic://`` or ``rosservice://``.
         respawn_delay: seconds until it is started again; ``None``: it is not.
         respawn_max: how often that is done; ``None``: without limit.
     """
@@ -135,7 +135,7 @@ def _node(node: FlatNode, node_type: NodeType) -> NodeView:
         executable=node_type.executable_name,
         lifecycle=node_type.lifecycle,
         parameters=tuple(_parameters(node, node_type)),
-        remappings=tuple(_remappings(node, node_type)),
+        remappings=tuple(_remappings(node)),
         log_level=instance.log_level,
         respawn_delay=respawn.delay_ns / NANOSECONDS if respawn else None,
         respawn_max=respawn.max_restarts if respawn else None,
@@ -145,7 +145,7 @@ def _node(node: FlatNode, node_type: NodeType) -> NodeView:
 
 def _parameters(node: FlatNode, node_type: NodeType) -> Iterator[tuple[str, Value]]:
     for name, value in node.parameters:
-        declared = node_type.parameter(name)
+        declared = node_type.parameter_for(name)
         if not _is_default_that_has_no_spelling(declared, value):
             yield name, _as_declared(value, declared)
 
@@ -161,17 +161,18 @@ def _as_declared(value: Value, declared: Parameter | None) -> Value:
     return value
 
 
-def _remappings(node: FlatNode, node_type: NodeType) -> Iterator[tuple[str, str]]:
+def _remappings(node: FlatNode) -> Iterator[tuple[str, str]]:
     """Yield the remappings, those of an action with all its parts.
 
     rcl learned to remap an action's own name only after Jazzy; there its parts have to be remapped.
     """
-    actions = {port.name for port in node_type.ports if port.kind in ACTION_KINDS}
-    for name, target in node.remappings:
+    actions = {port.port.name for port in node.ports if port.port.kind in ACTION_KINDS}
+    for source, target in node.remappings:
+        scheme, _, name = source.rpartition("://")
         if resolve_name(name, node.namespace, node.instance.name) == target:
             continue
-        yield name, target
-        if name in actions:
+        yield source, target
+        if name in actions and scheme != "rosservice":
             for part in ACTION_PARTS:
                 yield f"{name}/_action/{part}", f"{target}/_action/{part}"
 
@@ -201,9 +202,10 @@ def _unsupported(node: FlatNode) -> Iterator[Diagnostic]:
         message = f"unknown node type '{instance.type_name}'"
         yield report(codes.UNKNOWN_NODE_TYPE, message, instance.type_span)
         return
+    yield from wired_apart(node)
     spans = {setting.name: setting.value_span for setting in instance.parameters}
     for name, value in node.parameters:
-        declared = node.type.parameter(name)
+        declared = node.type.parameter_for(name)
         if _has_spelling(declared, value) or _is_default_that_has_no_spelling(declared, value):
             continue
         span: Span = spans.get(name, instance.name_span)

@@ -14,7 +14,7 @@ from deros.metamodels.system import System
 
 Tree = dict[str, "Tree | _Leaf"]
 _INDENT = "  "
-_PLAIN_KEY = re.compile(r"/?[A-Za-z_][\w./]*", re.ASCII)
+_PLAIN_KEY = re.compile(r"/?[A-Za-z_][\w./-]*", re.ASCII)
 _YAML_WORDS = frozenset(("true", "false", "yes", "no", "on", "off", "y", "n", "null"))
 
 

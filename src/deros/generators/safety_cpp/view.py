@@ -194,7 +194,8 @@ def safety_view(
     actions = tuple(_action(each, program, monitor, described.get(each.name, "")) for each in code)
     _check_names(actions, code, node)
     taken = tuple(node.ports_of(PortKind.SUBSCRIPTION))
-    bound = [port for port in node.ports if bound_actions(program, port.name)]
+    published = node.ports_of(PortKind.PUBLISHER)
+    bound = [port for port in published if bound_actions(program, port.name)]
     stem = cpp_identifier(python.name)
     diagnostics = next(port for port in node.ports if port.type == DIAGNOSTICS_TYPE)
     return SafetyView(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterator
 
 from deros.metamodels.common import Interval, QosProfile, Scalar, Value
@@ -15,6 +17,7 @@ _KEYWORDS = {
     PortKind.ACTION: "action",
     PortKind.ACTION_CLIENT: "action",
 }
+_PLAIN = re.compile(r"(?:[A-Za-z_/]|<[\w./-]*>)(?:[\w./-]|<[\w./-]*>)*", re.ASCII)
 _ESCAPES = {code: f"\\u{code:04x}" for code in (*range(0x20), 0x7F, 0x85, 0x2028, 0x2029)}
 _ESCAPES |= {
     ord("\n"): "\\n",
@@ -52,18 +55,28 @@ def _lines(node: NodeType) -> Iterator[str]:
 
 
 def _parameter(parameter: Parameter) -> str:
-    head = f"name {parameter.name} : {parameter.type.value}"
+    head = f"name {_parameter_name(parameter.name)} : {parameter.type.value}"
     if parameter.default is not None:
         head += f" = {_value(parameter.default)}"
     return _joined(
         head,
         f"[{parameter.unit}]" if parameter.unit is not None else "",
-        f"in {_interval(parameter.interval)}" if parameter.interval is not None else "",
+        _interval(parameter.interval) if parameter.interval is not None else "",
         f"one_of {_value(parameter.choices)}" if parameter.choices is not None else "",
         f"size {parameter.size}" if parameter.size is not None else "",
+        f"min_size {parameter.min_size}" if parameter.min_size is not None else "",
+        f"max_size {parameter.max_size}" if parameter.max_size is not None else "",
+        "not_empty" if parameter.not_empty else "",
+        "unique" if parameter.unique else "",
+        *(f"custom {_text(function.text, always=True)}" for function in parameter.custom),
         "read_only" if parameter.read_only else "",
         _text(parameter.description),
     )
+
+
+def _parameter_name(name: str) -> str:
+    """Return a parameter's name, in quotes where it would not be read as one without."""
+    return name if _PLAIN.fullmatch(name) and "//" not in name else _text(name, always=True)
 
 
 def _port(port: Port) -> str:
@@ -71,7 +84,7 @@ def _port(port: Port) -> str:
     return _joined(
         f"{_KEYWORDS[port.kind]} {port.name} : {port.type.short}",
         f"{{ {units} }}" if units else "",
-        f"via {port.via}" if port.via is not None else "",
+        f"via {_parameter_name(port.via)}" if port.via is not None else "",
         _qos(port.qos) if port.qos is not None else "",
         _text(port.description),
     )
@@ -101,7 +114,11 @@ def _timer(timer: Timer) -> str:
 def _interval(interval: Interval) -> str:
     opening = "[" if interval.lower_closed else "("
     closing = "]" if interval.upper_closed else ")"
-    return f"{opening}{interval.lower!r}, {interval.upper!r}{closing}"
+    if math.isinf(interval.upper):
+        return f"{'>=' if interval.lower_closed else '>'} {interval.lower!r}"
+    if math.isinf(interval.lower):
+        return f"{'<=' if interval.upper_closed else '<'} {interval.upper!r}"
+    return f"in {opening}{interval.lower!r}, {interval.upper!r}{closing}"
 
 
 def _value(value: Value | tuple[Value, ...]) -> str:

@@ -66,7 +66,7 @@ def safety_node(
 
 
 def _check_ends(program: Program) -> None:
-    """Refuse a topic with both ends in this node: a node description names its ports apart."""
+    """Refuse a topic with both ends in this node: its own state would come back as an input."""
     watched = {each.topic: each.span for each in reversed(program.inputs)}
     found = [
         report(

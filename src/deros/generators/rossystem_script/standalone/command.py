@@ -9,8 +9,9 @@ import os
 from pathlib import Path
 import shlex
 import sys
+import tempfile
 
-from .command_line import command_line
+from .command_line import command_line, parameter_file
 from .node import Node
 from .process import Process
 from .programs import Programs
@@ -51,15 +52,24 @@ def main(
         return 2
     if options.dry_run:
         return 0
-    labels = _labels(chosen)
-    processes = [
-        Process(node, label, command_line(node, start))
-        for node, label, start in zip(chosen, labels, found, strict=True)
-        if start is not None
-    ]
-    environment = programs.environment()
-    patience, keep_going = options.stop_timeout, options.keep_going
-    return Supervisor(system, processes, environment, patience, keep_going).run()
+    with tempfile.TemporaryDirectory(prefix='deros-') as folder:
+        processes = []
+        for node, label, start in zip(chosen, _labels(chosen), found, strict=True):
+            if start is not None:
+                file = _write_parameters(node, Path(folder, f'{len(processes)}.yaml'))
+                processes.append(Process(node, label, command_line(node, start, file)))
+        environment = programs.environment()
+        patience, keep_going = options.stop_timeout, options.keep_going
+        return Supervisor(system, processes, environment, patience, keep_going).run()
+
+
+def _write_parameters(node: Node, file: Path) -> str | None:
+    """Write the parameters that no command line can name; return the file, None without any."""
+    text = parameter_file(node)
+    if text is None:
+        return None
+    file.write_text(text, encoding='utf-8')
+    return str(file)
 
 
 def _parser(system: str, program: str | None) -> argparse.ArgumentParser:
@@ -133,7 +143,9 @@ def _print_commands(nodes: Sequence[Node], found: Sequence[list[str] | None]) ->
     for node, start in zip(nodes, found, strict=True):
         print(f'# {node.full_name}' + (f' ({node.subsystem})' if node.subsystem else ''))
         unknown = ['ros2', 'run', node.package, node.executable]
-        print(shlex.join(command_line(node, start or unknown)))
+        line = shlex.join(command_line(node, start or unknown))
+        text = parameter_file(node)
+        print(line if text is None else f'{line} --params-file <(echo {shlex.quote(text)})')
 
 
 def _not_found(nodes: Sequence[Node]) -> str:

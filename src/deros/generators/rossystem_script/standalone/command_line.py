@@ -41,11 +41,33 @@ def _yaml_string(value: str) -> str:
     return '"' + _TO_ESCAPE.sub(escape, value) + '"'
 
 
-def command_line(node: Node, program: Sequence[str]) -> list[str]:
-    """Return the command that runs a node, as a shell would take it apart."""
+# What the command line of rcl reads as a parameter's name; a file may hold any other name, too.
+_WORD = r'(?!__)[A-Za-z_]\w*'
+_NAME_FOR_COMMAND_LINE = re.compile(rf'/?{_WORD}(?:(?:/|\./?){_WORD})*', re.ASCII)
+
+
+def parameter_file(node: Node) -> str | None:
+    """Return the file with the parameters that no command line can name; None without any."""
+    values = [
+        f'{_yaml_string(name)}: {yaml(value)}'
+        for name, value in node.parameters.items()
+        if not _NAME_FOR_COMMAND_LINE.fullmatch(name)
+    ]
+    return f'{{/**: {{ros__parameters: {{{", ".join(values)}}}}}}}' if values else None
+
+
+def command_line(node: Node, program: Sequence[str], file: str | None = None) -> list[str]:
+    """
+    Return the command that runs a node, as a shell would take it apart.
+
+    The file holds what parameter_file() returns.
+    """
     line = [*program, '--ros-args', '-r', f'__node:={node.name}', '-r', f'__ns:={node.namespace}']
     for name, value in node.parameters.items():
-        line += ['-p', f'{name}:={yaml(value)}']
+        if _NAME_FOR_COMMAND_LINE.fullmatch(name):
+            line += ['-p', f'{name}:={yaml(value)}']
+    if file is not None:
+        line += ['--params-file', file]
     for port, target in node.remappings.items():
         line += ['-r', f'{port}:={target}']
     if node.log_level is not None:

@@ -1,0 +1,155 @@
+"""Ports of one name: which remapping rules they need, and which wirings no rule can make."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.generators.rossystem.view import ACTION_PARTS, system_view
+from deros.metamodels.flatten import FlatNode, flatten
+from deros.metamodels.node import PortKind
+from deros.metamodels.remapping import wired_apart
+from tests.support.systems import load_text
+
+SLAM = """
+    node slam : mapping
+    parameters
+      name map_topic : string = "map"
+    publishes
+      topic map : nav_msgs.OccupancyGrid
+      topic tiles : nav_msgs.OccupancyGrid via map_topic
+    subscribes
+      topic map : nav_msgs.OccupancyGrid
+    services
+      service map : nav_msgs.GetMap
+    clients
+      client map : nav_msgs.GetMap
+      client dock : std_srvs.Trigger
+    actions
+      action dock : nav2_msgs.NavigateToPose
+    action_clients
+      action dock : nav2_msgs.NavigateToPose
+"""
+
+
+def node(folder: Path, wirings: str, head: str = "slam : slam") -> FlatNode:
+    """Flatten a system of one node, which is wired so."""
+    text = f'system Test imports import "*.rnd" node {head} wirings {wirings}'
+    (only,) = flatten(load_text(folder, text, slam=SLAM)).nodes
+    return only
+
+
+def names(flat: FlatNode) -> dict[tuple[PortKind, str], str]:
+    """Return where each port ends."""
+    return {(port.port.kind, port.port.name): port.topic for port in flat.ports}
+
+
+def refused(flat: FlatNode) -> list[str]:
+    """Return what is reported, and check that it is DRS120."""
+    found = list(wired_apart(flat))
+    assert {each.code for each in found} <= {codes.WIRED_APART}
+    return [each.message for each in found]
+
+
+def test_a_name_alone_means_the_ports_of_all_kinds(tmp_path: Path) -> None:
+    """Publisher, subscription, service and client move together, by one rule."""
+    flat = node(tmp_path, "connect map to /world connect tiles to /tiles")
+    ends = names(flat)
+    kinds = (PortKind.PUBLISHER, PortKind.SUBSCRIPTION, PortKind.SERVICE, PortKind.CLIENT)
+    assert [ends[kind, "map"] for kind in kinds] == ["/world"] * 4
+    assert flat.remappings == (("map", "/world"),)
+    assert refused(flat) == []
+
+
+def test_topics_and_services_of_one_name_part_by_scheme(tmp_path: Path) -> None:
+    """Rules for topics alone and for services alone exist; each is used where it has to be."""
+    flat = node(
+        tmp_path,
+        "connect publisher map to /world connect subscriber map to /world"
+        " connect service map to /get connect client map to /get connect tiles to /tiles",
+    )
+    assert flat.remappings == (("rostopic://map", "/world"), ("rosservice://map", "/get"))
+    assert refused(flat) == []
+
+
+def test_an_unwired_service_is_not_moved_with_the_topic_of_its_name(tmp_path: Path) -> None:
+    """A rule without a scheme would take it along."""
+    flat = node(
+        tmp_path,
+        "connect publisher map to /world connect subscriber map to /world connect tiles to /tiles",
+    )
+    assert flat.remappings == (("rostopic://map", "/world"),)
+    assert names(flat)[PortKind.SERVICE, "map"] == "/map"
+
+
+@pytest.mark.parametrize(
+    ("wirings", "message"),
+    [
+        (
+            "connect publisher map to /a connect subscriber map to /b connect tiles to /t",
+            "publisher 'map' and subscriber 'map' of 'slam' cannot be on '/a' and '/b'",
+        ),
+        (
+            "connect publisher map to /a connect tiles to /t",
+            "publisher 'map' and subscriber 'map' of 'slam' cannot be on '/a' and '/map'",
+        ),
+        (
+            "connect service map to /a connect client map to /b",
+            "service 'map' and client 'map' of 'slam' cannot be on '/a' and '/b'",
+        ),
+        (
+            "connect map to /a",  # the parameter's default is the very name
+            "publisher 'map' and publisher 'tiles' of 'slam' cannot be on '/a' and '/map'",
+        ),
+        (
+            "connect action dock to /a connect action_client dock to /b",
+            "action 'dock' and action_client 'dock' of 'slam' cannot be on '/a' and '/b'",
+        ),
+        (
+            "connect map to /a connect tiles to /map",  # the parameter gives a name that is moved
+            "publisher 'map' and publisher 'tiles' of 'slam' cannot be on '/a' and '/map'",
+        ),
+    ],
+)
+def test_what_no_rule_can_part_is_reported(tmp_path: Path, wirings: str, message: str) -> None:
+    """Two ends of one name, wired or not, cannot be on two topics."""
+    found = refused(node(tmp_path, wirings))
+    assert len(found) == 1
+    assert found[0].startswith(message)
+
+
+def test_names_are_compared_as_they_resolve(tmp_path: Path) -> None:
+    """``map`` and ``/map`` are one name to a node in the root namespace alone."""
+    other = SLAM.replace("topic map : nav_msgs.OccupancyGrid\n    services", "topic /map"
+                         " : nav_msgs.OccupancyGrid\n    services")  # fmt: skip
+    text = 'system Test imports import "*.rnd" node slam : slam NS wirings connect tiles to /t'
+    text += " connect publisher map to /a"
+    for namespace, expected in (("", 1), ("namespace /x", 0)):
+        system = load_text(tmp_path, text.replace("NS", namespace), slam=other)
+        assert len(refused(flatten(system).nodes[0])) == expected
+
+
+def test_ports_that_share_a_parameter_have_one_name(tmp_path: Path) -> None:
+    """The second of two wirings through one parameter has no effect, so it is an error."""
+    two = SLAM.replace("topic map : nav_msgs.OccupancyGrid\n    services", "topic seen"
+                       " : nav_msgs.OccupancyGrid via map_topic\n    services")  # fmt: skip
+    text = 'system Test imports import "*.rnd" node slam : slam wirings connect tiles to /t'
+    system = load_text(tmp_path, f"{text} connect seen to /u", slam=two)
+    (message,) = refused(flatten(system).nodes[0])
+    assert message.startswith("'seen' and 'tiles' of 'slam' both take their names from parameter")
+
+
+def test_an_action_and_a_service_of_one_name_part(tmp_path: Path) -> None:
+    """The action's own rule is for topics, its parts keep the names that they have in any case."""
+    wirings = (
+        "connect action dock to /a connect action_client dock to /a connect client dock to /b"
+        " connect map to /map connect tiles to /t"
+    )
+    text = f'system Test imports import "*.rnd" node slam : slam wirings {wirings}'
+    (view,) = system_view(load_text(tmp_path, text, slam=SLAM)).nodes
+    parts = [(f"dock/_action/{part}", f"/a/_action/{part}") for part in ACTION_PARTS]
+    assert sorted(view.remappings) == sorted(
+        [("rostopic://dock", "/a"), *parts, ("rosservice://dock", "/b")]
+    )
