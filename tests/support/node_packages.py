@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import os
+import re
 import subprocess
 import sys
 from abc import ABC, abstractmethod
@@ -41,7 +42,7 @@ def model_of(path: Path) -> tuple[NodeType, Context]:
 
 
 class NodePackages(ABC):
-    """Four packages or more, with handlers that do the same in each language.
+    """Five packages or more, with handlers that do the same in each language.
 
     Attributes:
         install: the install space.
@@ -75,7 +76,7 @@ class NodePackages(ABC):
 
 def _write(generate: GenerateFunction, folder: Path, *others: Path) -> None:
     """Write the packages of the models that both languages have, and of further ones."""
-    names = ("odometry_node", "valve", "talker", "counter")
+    names = ("odometry_node", "valve", "talker", "counter", "mapper")
     for path in (*(MODELS / f"{name}.rnd" for name in names), *others):
         model, context = model_of(path)
         write(generate(model, context, {}), folder)
@@ -135,6 +136,40 @@ _PYTHON_ON_ASK = """
         future = self.send_count(Fibonacci.Goal(order=msg.data), feedback)
         future.add_done_callback(accepted)
 """
+_PYTHON_ON_MAP = """
+    def on_map(self, msg: String) -> None:
+        if msg.data == 'ping':
+            self.publish_map(String(data='pong'))
+"""
+_PYTHON_HANDLE_MAP = """
+    def handle_map(
+        self,
+        request: Trigger.Request,
+        response: Trigger.Response,
+    ) -> Trigger.Response:
+        now = self.parameters
+        texts = [f'{now.range_max:g}', f'{now.offset:g}', *(f'{x:g}' for x in now.corners)]
+        texts += [f'{joint}={now.gains[joint].p:g}' for joint in sorted(now.gains)]
+        texts += [f'{joint}:{len(now.limits[joint])}' for joint in sorted(now.limits)]
+        response.message = ' '.join([*texts, f'{now.max_age_tf:g}', str(int(now._3d))])
+        return response
+"""
+_PYTHON_CHECKS = {
+    "limits": """
+from rclpy.parameter import Parameter
+
+
+def is_even(parameter: Parameter) -> str:
+    return 'must be even' if parameter.value % 2 else ''
+""",
+    "checks": """
+from rclpy.parameter import Parameter
+
+
+def small(parameter: Parameter) -> str:
+    return 'must be small' if parameter.value > 100 else ''
+""",
+}
 
 
 class PythonPackages(NodePackages):
@@ -156,6 +191,11 @@ class PythonPackages(NodePackages):
         _replace_method(counting / "counter.py", "on_release", _PYTHON_ON_RELEASE)
         _replace_method(counting / "counter.py", "execute_count", _PYTHON_EXECUTE_COUNT)
         _replace_method(counting / "asker.py", "on_ask", _PYTHON_ON_ASK)
+        mapping = source / "mapping/mapping"
+        _replace_method(mapping / "mapper.py", "on_map", _PYTHON_ON_MAP)
+        _replace_method(mapping / "mapper.py", "handle_map", _PYTHON_HANDLE_MAP)
+        for module, text in _PYTHON_CHECKS.items():
+            (mapping / f"{module}.py").write_text(text)
         env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
         colcon = str(Path(sys.executable).with_name("colcon"))
         command = [colcon, "--log-base", "log", "build", "--executor", "sequential"]
@@ -163,7 +203,7 @@ class PythonPackages(NodePackages):
             command, cwd=workspace, env=env, capture_output=True, text=True, check=False
         )
         assert done.returncode == 0, done.stdout + done.stderr
-        assert "4 packages finished" in done.stdout
+        assert "5 packages finished" in done.stdout
         self.install = workspace / "install"
 
     def command(
@@ -247,6 +287,29 @@ _CPP_ON_ASK = """
   goal.order = msg.data;
   send_count(goal, options);
 """
+_CPP_ON_MAP = """
+  if (msg.data == "ping") {
+    std_msgs::msg::String answer;
+    answer.data = "pong";
+    publish_map(answer);
+  }
+"""
+_CPP_HANDLE_MAP = """
+  const auto now = parameters();
+  std::ostringstream text;
+  text << now->range_max << " " << now->offset;
+  for (const double x : now->corners) {
+    text << " " << x;
+  }
+  for (const auto & [joint, gains] : now->gains) {
+    text << " " << joint << "=" << gains.p;
+  }
+  for (const auto & [joint, limits] : now->limits) {
+    text << " " << joint << ":" << limits.size();
+  }
+  text << " " << now->max_age_tf << " " << now->x3d;
+  response.message = text.str();
+"""
 
 
 class CppPackages(NodePackages):
@@ -278,6 +341,16 @@ class CppPackages(NodePackages):
         fill_in(counting / "src/counter.cpp", "on_release", _CPP_ON_RELEASE)
         fill_in(counting / "src/counter.cpp", "execute_count", _CPP_EXECUTE_COUNT)
         fill_in(counting / "src/asker.cpp", "on_ask", _CPP_ON_ASK)
+        mapper = source / "mapping/src/mapper.cpp"
+        fill_in(mapper, "on_map", _CPP_ON_MAP)
+        fill_in(mapper, "handle_map", _CPP_HANDLE_MAP)
+        insert(mapper, "#include", "#include <sstream>\n")
+        for name, condition in (("limits", "% 2 != 0"), ("checks", "> 100")):
+            path = source / f"mapping/src/{name}.cpp"
+            text = path.read_text().replace("/*parameter*/", "parameter")
+            word = "even" if name == "limits" else "small"
+            code = f'return parameter.as_int() {condition} ? "must be {word}" : "";'
+            path.write_text(re.sub(r"return [^;]*;", code, text))
         self.install = colcon_build(source)
 
     def command(

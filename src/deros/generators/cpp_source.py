@@ -309,7 +309,7 @@ def summary(text: str, otherwise: str) -> str:
 
 
 _HEADERS = {
-    "algorithm": r"std::(all_of|find|find_if|max|min|sort)\b",
+    "algorithm": r"std::(all_of|count_if|find|find_if|max|min|sort)\b",
     "array": r"std::array\b",
     "atomic": r"std::atomic",
     "chrono": r"std::chrono",
@@ -318,11 +318,14 @@ _HEADERS = {
     "exception": r"std::exception(_ptr)?\b",
     "functional": r"std::(function|hash|less)\b",
     "future": r"std::(shared_)?future\b",
+    "iterator": r"std::next\b",
     "limits": r"std::numeric_limits",
     "list": r"std::list\b",
+    "map": r"std::map\b",
     "memory": r"std::(make_shared|make_unique|shared_ptr|unique_ptr|weak_ptr)\b",
     "mutex": r"std::(lock_guard|mutex|unique_lock)\b",
     "optional": r"std::(nullopt|optional)\b",
+    "set": r"std::set\b",
     "string": r"std::(string|to_string)\b",
     "type_traits": r"std::is_same\b",
     "utility": r"std::(exchange|move|pair|swap)\b",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from deros.generators.names import Emitted, check_collisions
+from deros.generators.parameter_maps import emitted_fields, emitted_members, parameter_maps
 from deros.generators.python_source import sentence
 from deros.metamodels.node import NodeType, Parameter, Port, PortKind, Timer
 
@@ -23,10 +24,11 @@ _METHODS = {
     PortKind.PUBLISHER: ("publish_{}",),
     PortKind.SUBSCRIPTION: ("on_{}",),
     PortKind.SERVICE: ("handle_{}",),
-    PortKind.CLIENT: ("call_{}", "client_{}"),
+    PortKind.CLIENT: ("call_{}",),
     PortKind.ACTION: ("accept_{}", "execute_{}", "cancel_{}"),
-    PortKind.ACTION_CLIENT: ("send_{}", "client_{}"),
+    PortKind.ACTION_CLIENT: ("send_{}",),
 }
+_HANDLES = (PortKind.CLIENT, PortKind.ACTION_CLIENT)
 _UNITS_OF_TIME = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
 
 PortT = TypeVar("PortT")
@@ -93,13 +95,18 @@ def check_names(
         GenerationError: at the second of two ports, timers or parameters.
     """
     check_collisions(_methods(model, identifier, hooks), f"the methods of class {class_name}")
-    check_collisions(
-        (
-            Emitted(identifier(p.name), f"parameter {p.name!r}", p.name_span)
-            for p in model.parameters
-        ),
-        f"the {parameters}",
-    )
+    check_collisions(emitted_fields(model, identifier), f"the {parameters}")
+    maps = parameter_maps(model)
+    for each in maps:
+        check_collisions(emitted_members(each, identifier), f"the values of {each.shown!r}")
+    structs = [
+        Emitted(each.struct, f"the map {each.shown!r}", each.parameters[0].name_span)
+        for each in maps
+        if each.struct is not None
+    ]
+    if structs:
+        taken = [Emitted("Parameters", "the structure of all parameters", model.name_span)]
+        check_collisions([*taken, *structs], f"the types of class {class_name}")
 
 
 def _methods(
@@ -109,12 +116,27 @@ def _methods(
     for hook in (*_HOOKS, *hooks, *(_LIFECYCLE_HOOKS if model.lifecycle else ())):
         yield Emitted(hook, f"the hook {hook!r}", model.name_span)
     for port in model.ports:
+        origin = f"{port.kind.word} {port.name!r}"
         for method in _METHODS[port.kind]:
             name = method.format(identifier(port.name))
-            yield Emitted(name, f"port {port.name!r}", port.name_span)
+            yield Emitted(name, origin, port.name_span)
+        if port.kind in _HANDLES:
+            yield Emitted(f"{handle(port, model, identifier)}", origin, port.name_span)
     for timer in model.timers:
         name = f"on_{identifier(timer.name)}"
         yield Emitted(name, f"timer {timer.name!r}", timer.name_span)
+
+
+def handle(port: Port, model: NodeType, identifier: Callable[[str], str]) -> str:
+    """Return the name of the attribute with the client of a service, or of an action.
+
+    Both are ``client_<name>``; the client of an action is ``action_client_<name>`` where the node
+    has a client of a service whose name becomes the same.
+    """
+    name = identifier(port.name)
+    services = {identifier(each.name) for each in model.ports_of(PortKind.CLIENT)}
+    is_second = port.kind is PortKind.ACTION_CLIENT and name in services
+    return f"{'action_' if is_second else ''}client_{name}"
 
 
 # Text ---------------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.common import Interval, Name, QosProfile, Value
+from deros.metamodels.common import Interval, Name, QosProfile, Scalar, Value
 
 _PLACEHOLDER = re.compile(r"<([^<>]*)>")
 
@@ -81,7 +81,7 @@ class Parameter:
     unit_span: Span | None = field(default=None, compare=False, repr=False)
     interval: Interval | None = None
     interval_span: Span | None = field(default=None, compare=False, repr=False)
-    choices: tuple[Value, ...] | None = None
+    choices: tuple[Scalar, ...] | None = None
     size: int | None = None
     min_size: int | None = None
     max_size: int | None = None

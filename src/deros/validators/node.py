@@ -209,7 +209,7 @@ def _choice_faults(parameter: Parameter) -> Iterator[str]:
             yield "has nan, which equals no value"
         elif (
             parameter.interval is not None
-            and not isinstance(choice, (str, tuple))
+            and not isinstance(choice, str)
             and choice not in parameter.interval
         ):
             yield f"has {show(choice)}, which is {outside(parameter)}"

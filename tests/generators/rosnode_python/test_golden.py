@@ -24,7 +24,7 @@ from deros.metamodels.node import NodeType
 from tests.support.golden import Golden
 
 MODELS = Path(__file__).resolve().parent / "models"
-NAMES = ["odometry_node", "valve", "dock", "talker", "counter"]
+NAMES = ["odometry_node", "valve", "dock", "talker", "counter", "mapper"]
 COPYRIGHT = {"copyright": "2026 Jane Doe", "maintainer": "Jane Doe <jane@example.org>"}
 
 

@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 
+from deros.generators.protocol import Context
+from deros.generators.rossystem_params.generate import generate as generate_params
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
 from tests.support.cpp import needs_rclcpp
-from tests.support.node_packages import CppPackages, NodePackages, PythonPackages, Start
+from tests.support.node_packages import MODELS, CppPackages, NodePackages, PythonPackages, Start
 from tests.support.ros import LIMIT, Peer, read_line, set_parameter, stop
+from tests.support.systems import load_text
 
 pytestmark = pytest.mark.ros
 
@@ -269,3 +276,119 @@ def test_a_goal_runs_beside_the_other_handlers(
         for process in (counter, asker):
             code, output = stop(process, signal.SIGINT)
             assert (code, "Traceback" in output) == (0, False), output
+
+
+# Ports of one name, parameters of every kind ------------------------------------------------------
+
+
+def shown_by(peer: Peer, service: str) -> list[str]:
+    """Return what the mapper says of its parameters."""
+    from std_srvs.srv import Trigger
+
+    client = peer.node.create_client(Trigger, service)
+    words = str(peer.call(client, Trigger.Request()).message).split()
+    peer.node.destroy_client(client)
+    return words
+
+
+def test_a_node_publishes_and_subscribes_one_name(start: Start, ros_peer: Peer) -> None:
+    """Both ends move with a topic's remapping, server and client with a service's own."""
+    from std_msgs.msg import String
+
+    received: list[str] = []
+    ros_peer.node.create_subscription(String, "/world", lambda m: received.append(m.data), 10)
+    publisher = ros_peer.node.create_publisher(String, "/world", 10)
+    rules = ("-r", "rostopic://map:=/world", "-r", "rosservice://map:=/show")
+    with start("mapping", "mapper", "--ros-args", "-p", "needed:=1.0", *rules):
+        ros_peer.until(lambda: ros_peer.node.count_subscribers("/world") == 2)
+        ros_peer.until(lambda: publisher.get_subscription_count() == 2)
+        publisher.publish(String(data="ping"))
+        ros_peer.until(lambda: "pong" in received)
+        assert shown_by(ros_peer, "/show")
+        clients = dict(ros_peer.node.get_client_names_and_types_by_node("mapper", "/"))
+        assert {"/show", "/count", "/count/_action/send_goal"} <= clients.keys()
+        assert not ros_peer.node.count_publishers("/map")
+
+
+def test_nan_infinity_and_odd_names_arrive_from_a_systems_parameter_file(
+    start: Start, ros_peer: Peer, tmp_path: Path
+) -> None:
+    """What ``param`` says is what the node has; what it does not say is the default."""
+    system = """
+        system Test imports import "*.rnd" topics topic /map
+        node mapper : mapper
+        parameters
+          param offset = -inf
+          param corners = [nan, inf, -1]
+          param joints = ["wrist", "elbow"]
+          param gains.wrist.p = inf
+          param limits.elbow = [1, 2]
+          param max-age./tf = -2
+          param "3d" = false
+          param needed = nan
+        wirings connect map to /map
+    """
+    made = load_text(tmp_path, system, mapper=(MODELS / "mapper.rnd").read_text())
+    file = tmp_path / "test.params.yaml"
+    context = Context(InterfaceStore(), Repository())
+    file.write_text(generate_params(made, context, {})[file.name].text)
+    with start("mapping", "mapper", "--ros-args", "--params-file", str(file)):
+        words = shown_by(ros_peer, "/map")
+    expected = "inf -inf nan inf -1 elbow=1 wrist=inf elbow:2 wrist:0 -2 0"
+    assert words == expected.split()
+
+
+CONSTRAINTS: list[tuple[str, list[Any], str, list[Any]]] = [
+    ("range.max", [0.0, float("nan"), -1.0], "range.max must be > 0.0", [1e-9, float("inf")]),
+    ("corners", [[1.0]], "must have at least 2 elements", [[float("nan")] * 2]),
+    ("corners", [[1.0] * 5], "must have at most 4 elements", [[1.0] * 4]),
+    ("label", [""], "must not be empty", ["a"]),
+    ("label", ["abcde", "öööö!"], "must have at most 4 characters", ["öööö"]),
+    ("code", ["a", "abc", "ö"], "must have 2 characters", ["öä"]),
+    ("levels", [[1, 2, 1]], "must have no element twice", [[3, 4]]),
+    ("levels", [[6]], "must have all elements <= 5", [[5, -6]]),
+    ("shares", [[0.5, 0.1, 0.5]], "must have no element twice", [[0.5, 0.1]]),
+    ("shares", [[1.0], [float("nan")]], "must have all elements < 1.0", [[float("-inf")]]),
+    ("teeth", [7], "teeth must be even", [8]),
+    ("teeth", [102], "teeth must be small", [100]),
+    ("teeth", [2], "", [4]),
+    ("max-age./tf", [1.5, float("nan"), float("inf")], "must be < 1.5", [1.4999999, -1.0]),
+    ("gains.elbow.p", [-1e-9, float("nan")], "gains.elbow.p must be >= 0.0", [0.0]),
+    ("limits.elbow", [[1.0] * 3], "must have at most 2 elements", [[1.0, 2.0]]),
+    ("joints", [["wrist"]], "read-only", []),
+]
+"""Parameter, values that are refused, the reason, and values that are not."""
+
+
+def test_each_constraint_is_enforced(start: Start, ros_peer: Peer) -> None:
+    """A change is refused with the reason, and made where nothing speaks against it."""
+    with start("mapping", "mapper", "--ros-args", "-p", "needed:=1.0"):
+        for parameter, refused, reason, accepted in CONSTRAINTS:
+            for value in refused:
+                (result,) = set_parameter(ros_peer, "mapper", **{parameter: value})
+                assert not result.successful, (parameter, value)
+                assert reason in result.reason or "range" in result.reason
+            for value in accepted:
+                (result,) = set_parameter(ros_peer, "mapper", **{parameter: value})
+                assert result.successful, (parameter, value, result.reason)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        ((), "needed"),
+        (("needed:=1.0", 'label:=""'), "label"),
+        (("needed:=1.0", "teeth:=13"), "teeth"),
+        (("needed:=1.0", "gains.elbow.p:=-1.0"), "gains.elbow.p"),
+        (("needed:=1.0", "joints:=[shoulder, knee]"), "joints"),
+    ],
+)
+def test_a_bad_value_at_the_start_ends_it(
+    start: Start, arguments: tuple[str, ...], named: str
+) -> None:
+    """The program fails, and names the parameter."""
+    given = [word for argument in arguments for word in ("-p", argument)]
+    with start("mapping", "mapper", "--ros-args", *given) as process:
+        output = process.communicate(timeout=LIMIT)[0]
+    assert process.returncode != 0
+    assert named in output

@@ -9,6 +9,7 @@ from deros import codes
 from deros.diagnostics import report
 from deros.generators import python_source
 from deros.generators.cpp_source import (
+    Text,
     arguments,
     call,
     comment,
@@ -25,7 +26,13 @@ from deros.generators.cpp_source import (
 from deros.generators.node_package import maintainer, nodes_beside, refuse_legacy, unsupported
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.rosnode_cpp.includes import base_header, base_source, user_header
-from deros.generators.rosnode_cpp.view import NodeView, PackageView, Provided, package_view
+from deros.generators.rosnode_cpp.view import (
+    NodeView,
+    PackageView,
+    Provided,
+    custom_stem,
+    package_view,
+)
 from deros.generators.templates import environment
 from deros.metamodels.node import NodeType
 
@@ -78,6 +85,7 @@ def package_files(
     }
     for node in package.nodes:
         files |= _node_files(package, node)
+    files |= _custom_files(package)
     for name in sorted({name for node in package.nodes for name in node.runtime}):
         files |= _runtime_files(root, name, holder)
     return files
@@ -95,6 +103,30 @@ def _runtime_files(package: str, name: str, holder: str) -> dict[str, File]:
         path: File(licensed(runtime_in_package(text, package), holder))
         for path, text in texts.items()
     }
+
+
+def _custom_files(package: PackageView) -> dict[str, File]:
+    """Return headers and sources of the user's functions that check parameters."""
+    scopes: dict[str, dict[str, None]] = {}
+    for node in package.nodes:
+        for scope, functions in node.custom:
+            scopes.setdefault(scope, {}).update(dict.fromkeys(functions))
+    files: dict[str, File] = {}
+    for scope, names_of_functions in scopes.items():
+        stem = custom_stem(scope)
+        names: dict[str, object] = {
+            "package": package,
+            "scope": scope,
+            "stem": stem,
+            "functions": tuple(names_of_functions),
+            "guard": f"{package.name}__{stem}_hpp_".upper(),
+            "mark": "//",
+        }
+        header = mark_long_lines(_render("custom.hpp", **names))
+        files[f"{package.name}/include/{package.name}/{stem}.hpp"] = File(header)
+        source = mark_long_lines(_render("custom.cpp", **names))
+        files[f"{package.name}/src/{stem}.cpp"] = File(source, Owner.USER)
+    return files
 
 
 def _node_files(package: PackageView, node: NodeView) -> dict[str, File]:
@@ -152,6 +184,7 @@ def _render(template: str, **names: object) -> str:
         pursue=_pursue,
         statement=statement,
         string=cpp_string,
+        text=Text,
     )
 
 
@@ -170,6 +203,7 @@ def _shared(template: str, package: PackageView, node: NodeView) -> str:
         "name": node.name,
         "lifecycle": node.lifecycle,
         "parameters": node.file_parameters,
+        "maps": node.file_maps,
         "configured": any(p.yaml is not None for p in node.file_parameters),
     }
     text = loaded.render(package=package, node=shown)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deros.generators.rosnode_cpp.view import NodeView
+from deros.generators.rosnode_cpp.view import NodeView, custom_stem
 
 _DESCRIPTOR = "rcl_interfaces/msg/parameter_descriptor.hpp"
 _RESULT = "rcl_interfaces/msg/set_parameters_result.hpp"
@@ -29,10 +29,11 @@ def base_source(package: str, node: NodeView) -> list[str]:
     headers = list(node.provided.includes) if node.provided else []
     if node.lifecycle:
         headers.append(f"{package}/runtime/managed_node.hpp")
-    if any(parameter.described for parameter in node.parameters):
+    if any(parameter.described for parameter in node.declared):
         headers.append(_DESCRIPTOR)
     if node.checked:
         headers.append(_RESULT)
+    headers += (f"{package}/{custom_stem(scope)}.hpp" for scope, _ in node.custom)
     return headers
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from deros.generators.cpp_source import (
     Call,
+    Chain,
     Expression,
     Items,
     Text,
@@ -15,13 +17,15 @@ from deros.generators.cpp_source import (
     cpp_int64,
     cpp_string,
 )
-from deros.generators.rosnode_python.parameters import ParameterView as SharedView
-from deros.generators.rosnode_python.parameters import (
-    describe,
-    integer_bounds,
-    interval_text,
-    parameter_views,
+from deros.generators.parameter_maps import (
+    ParameterMap,
+    list_names,
+    parameter_maps,
+    plain_parameters,
 )
+from deros.generators.parameter_requirements import Check as Kind
+from deros.generators.parameter_requirements import integer_bounds, requirements
+from deros.generators.rosnode_python.parameters import comment, custom_texts, describe
 from deros.metamodels.common import Interval, Scalar, Value
 from deros.metamodels.node import NodeType, Parameter, ParameterType
 
@@ -47,6 +51,13 @@ _READERS = {
     ParameterType.DOUBLE_ARRAY: "as_double_array",
     ParameterType.STRING_ARRAY: "as_string_array",
 }
+_ELEMENTS = {
+    ParameterType.BYTE_ARRAY: ParameterType.INTEGER,
+    ParameterType.BOOL_ARRAY: ParameterType.BOOL,
+    ParameterType.INTEGER_ARRAY: ParameterType.INTEGER,
+    ParameterType.DOUBLE_ARRAY: ParameterType.DOUBLE,
+    ParameterType.STRING_ARRAY: ParameterType.STRING,
+}
 _INTEGERS = (ParameterType.INTEGER, ParameterType.INTEGER_ARRAY)
 
 
@@ -58,11 +69,13 @@ class Check:
         prepared: what the condition needs, as head and value of a statement; empty for nothing.
         violated: the condition under which the value is refused.
         requirement: what the check asks for.
+        helper: the function that the condition calls, one of ``helpers.hpp.j2``.
     """
 
     prepared: tuple[str, Expression] | None
     violated: str
     requirement: Text
+    helper: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +83,9 @@ class ParameterView:
     """One parameter as the templates need it.
 
     Attributes:
-        literal: its name as a C++ text.
+        literal: the expression of its name; in a map, that for an ``entry``.
+        pattern: its name as the model has it, as a C++ text.
+        custom: the functions of the user's that check it.
         field: its name in the typed structure.
         default: the initialiser of the field; ``{}`` where the model gives no default.
         declared: the second argument of ``declare_parameter``.
@@ -82,6 +97,7 @@ class ParameterView:
 
     name: str
     literal: str
+    pattern: str
     field: str
     type: str
     default: str
@@ -91,49 +107,92 @@ class ParameterView:
     described: tuple[tuple[str, Expression], ...]
     reader: str
     checks: tuple[Check, ...]
+    custom: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MapView:
+    """The parameters of a map as the templates need them.
+
+    Attributes:
+        field: its name in the typed structure.
+        struct: the type of its values, ``None`` where these are values of a parameter.
+        shown: what it is for, ``gains.<joints>``.
+        entries: the expression of the entries of its list.
+        members: its parameters; their ``field`` is that of ``struct``.
+    """
+
+    field: str
+    struct: str | None
+    key: str
+    shown: str
+    entries: str
+    members: tuple[ParameterView, ...]
+
+    @property
+    def type(self) -> str:
+        """The type of the field."""
+        return f"std::map<std::string, {self.struct or self.members[0].type}>"
+
+    @property
+    def equal(self) -> Chain:
+        """The comparison of two values."""
+        fields = [parameter.field for parameter in self.members]
+        return Chain("", tuple(f"{name} == other.{name}" for name in fields), " && ")
 
 
 def cpp_parameter_views(model: NodeType) -> tuple[ParameterView, ...]:
-    """Return the views of all parameters, in the order written."""
-    shared = parameter_views(model)
-    topic_names = {port.via for port in model.ports if port.via is not None}
-    return tuple(
-        _view(parameter, other, parameter.read_only or parameter.name in topic_names)
-        for parameter, other in zip(model.parameters, shared, strict=True)
+    """Return the views of the parameters that are declared once, in the order written."""
+    fixed = {port.via for port in model.ports if port.via is not None} | list_names(model)
+    return tuple(_view(p, p.read_only or p.name in fixed) for p in plain_parameters(model))
+
+
+def cpp_map_views(model: NodeType) -> tuple[MapView, ...]:
+    """Return the views of the parameters that are declared for each entry of a list."""
+    return tuple(_map_view(each) for each in parameter_maps(model))
+
+
+def _map_view(each: ParameterMap) -> MapView:
+    members = tuple(
+        replace(_view(p, p.read_only), field=cpp_identifier(each.member(p) or "value"))
+        for p in each.parameters
     )
+    entries = f"get_parameter({cpp_string(each.key)}).as_string_array()"
+    return MapView(cpp_identifier(each.name), each.struct, each.key, each.shown, entries, members)
 
 
-def _view(parameter: Parameter, shared: SharedView, read_only: bool) -> ParameterView:
+def _name(parameter: Parameter) -> str:
+    """Return the expression of a parameter's name; in a map, that for an ``entry``."""
+    if not parameter.keys:
+        return cpp_string(parameter.name)
+    before, _, rest = parameter.name.partition("<")
+    after = rest.partition(">")[2]
+    parts = [cpp_string(before) if before else "", "entry", cpp_string(after) if after else ""]
+    return " + ".join(filter(None, parts))
+
+
+def _view(parameter: Parameter, read_only: bool) -> ParameterView:
     kind = parameter.type
-    literal = cpp_string(parameter.name)
-    requirements = tuple(constraint.requirement for constraint in shared.constraints)
-    checks = [
-        Check(prepared, violated, Text(requirement))
-        for (prepared, violated), requirement in zip(
-            _violations(parameter), requirements, strict=True
-        )
-    ]
-    if parameter.interval is not None and kind is ParameterType.DOUBLE:
-        # The range in the descriptor says the same, but rclcpp lets NaN and infinity pass it.
-        violated = f"!({_within(parameter.interval, kind, 'value')})"
-        text = f"must lie in {interval_text(parameter.interval, kind)}"
-        if text not in requirements:
-            checks.append(Check(None, violated, Text(text)))
+    required = requirements(parameter)
+    stated = (*(each.text for each in required if each.stated), *custom_texts(parameter))
     declared: Expression = f"rclcpp::ParameterType::PARAMETER_{kind.name}"
     if parameter.default is not None:
         declared = Call("rclcpp::ParameterValue", (_typed(parameter.default, kind),))
+    name = _name(parameter)
     return ParameterView(
         name=parameter.name,
-        literal=literal,
+        literal=name,
+        pattern=cpp_string(parameter.name),
         field=cpp_identifier(parameter.name),
         type=_TYPES[kind],
         default=_initialiser(parameter),
         declared=declared,
-        reading=f"get_parameter({literal}).{_READERS[kind]}()",
-        comment=" ".join(shared.comment),
-        described=tuple(_described(parameter, requirements, read_only)),
+        reading=f"get_parameter({name}).{_READERS[kind]}()",
+        comment=comment(parameter, read_only),
+        described=tuple(_described(parameter, stated, read_only)),
         reader=_READERS[kind],
-        checks=tuple(checks),
+        checks=tuple(_check(each.check, each.text, parameter) for each in required),
+        custom=tuple(function.text for function in parameter.custom),
     )
 
 
@@ -199,33 +258,55 @@ def _described(
     yield f"{name}[0].to_value =", high
 
 
-def _violations(parameter: Parameter) -> Iterator[tuple[tuple[str, Expression] | None, str]]:
-    """Yield what refuses a value, in the order of the Python target's requirements."""
+def _check(kind: Kind, text: str, parameter: Parameter) -> Check:
+    """Return the check that refuses a value, as the Python target's requirement does."""
+    size = "value.size()" if parameter.type.is_array else "characters(value)"
+    helper = None if parameter.type.is_array else "characters"
+    least = max(parameter.min_size or 0, int(parameter.not_empty))
+    if kind is Kind.MIN_SIZE and least == 1:
+        return Check(None, "value.empty()", Text(text))
+    sizes = {Kind.SIZE: f"!= {parameter.size}", Kind.MIN_SIZE: f"< {least}"}
+    sizes[Kind.MAX_SIZE] = f"> {parameter.max_size}"
+    if kind in sizes:
+        return Check(None, f"{size} {sizes[kind]}", Text(text), helper)
+    if kind is Kind.UNIQUE:
+        return Check(None, "has_twice(value)", Text(text), "has_twice")
+    return _choices(parameter, text) if kind is Kind.CHOICES else _range(parameter, text)
+
+
+def _choices(parameter: Parameter, text: str) -> Check:
     kind = parameter.type
-    if parameter.size is not None:
-        yield None, f"value.size() != {parameter.size}"
-    if parameter.choices is not None:
-        listed = Items(tuple(_typed(choice, kind) for choice in parameter.choices))
-        yield (
-            (f"const std::vector<{_TYPES[kind]}> choices =", listed),
-            "std::find(choices.begin(), choices.end(), value) == choices.end()",
-        )
-    interval = parameter.interval
-    if interval is None:
-        return
+    assert parameter.choices is not None
+    element = _ELEMENTS.get(kind, kind)
+    listed = Items(tuple(_typed(choice, element) for choice in parameter.choices))
+    item = "uint8_t" if kind is ParameterType.BYTE_ARRAY else _TYPES[element]
+    prepared = (f"const std::vector<{item}> choices =", listed)
+    if kind.is_array:
+        return Check(prepared, "!are_among(value, choices)", Text(text), "are_among")
+    violated = "std::find(choices.begin(), choices.end(), value) == choices.end()"
+    return Check(prepared, violated, Text(text))
+
+
+def _range(parameter: Parameter, text: str) -> Check:
+    kind, interval = parameter.type, parameter.interval
+    assert interval is not None
     if kind.is_array:
         item = "int64_t" if kind in _INTEGERS else "double"
         test = f"[]({item} item) {{return {_within(interval, kind, 'item')};}}"
-        yield ("const auto fits =", test), "!std::all_of(value.begin(), value.end(), fits)"
-    elif kind is ParameterType.DOUBLE and not (interval.lower_closed and interval.upper_closed):
-        yield None, f"!({_within(interval, kind, 'value')})"
+        violated = "!std::all_of(value.begin(), value.end(), fits)"
+        return Check(("const auto fits =", test), violated, Text(text))
+    # A range in the descriptor may say the same, but rclcpp lets NaN and infinity pass it.
+    return Check(None, f"!({_within(interval, kind, 'value')})", Text(text))
 
 
 def _within(interval: Interval, kind: ParameterType, value: str) -> str:
+    above = below = "<="
     if kind in _INTEGERS:
         low, high = map(cpp_int64, integer_bounds(interval))
-        return f"{low} <= {value} && {value} <= {high}"
-    low, high = cpp_double(interval.lower), cpp_double(interval.upper)
-    above = "<=" if interval.lower_closed else "<"
-    below = "<=" if interval.upper_closed else "<"
-    return f"{low} {above} {value} && {value} {below} {high}"
+    else:
+        low, high = cpp_double(interval.lower), cpp_double(interval.upper)
+        above = "<=" if interval.lower_closed else "<"
+        below = "<=" if interval.upper_closed else "<"
+    from_below = [] if math.isinf(interval.lower) else [f"{low} {above} {value}"]
+    from_above = [] if math.isinf(interval.upper) else [f"{value} {below} {high}"]
+    return " && ".join([*from_below, *from_above])

@@ -17,15 +17,22 @@ from deros.generators.node_view import (
     NodeBase,
     check_names,
     duration_text,
+    handle,
     port_notes,
     timer_notes,
     topic_parameter,
 )
 from deros.generators.python_source import one_line, sentence
-from deros.generators.rosnode_cpp.parameters import ParameterView, cpp_parameter_views
+from deros.generators.rosnode_cpp.parameters import (
+    MapView,
+    ParameterView,
+    cpp_map_views,
+    cpp_parameter_views,
+)
 from deros.generators.rosnode_cpp.qos import qos_expression
+from deros.generators.rosnode_python.parameters import MapView as FileMap
 from deros.generators.rosnode_python.parameters import ParameterView as FileParameter
-from deros.generators.rosnode_python.parameters import parameter_views
+from deros.generators.rosnode_python.parameters import map_views, parameter_views
 from deros.metamodels.node import NodeType, Port, PortKind
 
 # Other packages, those of interfaces above all, have a variable that lists their targets.
@@ -71,6 +78,7 @@ class PortView:
 
     Attributes:
         identifier: the part of method names that stands for the port.
+        handle: the data member with the client, of a port that is one.
         type: the C++ type of the message, service or action, and ``header`` that defines it.
         topic: C++ expression of the name handed to rclcpp.
         name: the name as a reader sees it.
@@ -80,6 +88,7 @@ class PortView:
     """
 
     identifier: str
+    handle: str
     type: str
     header: str
     topic: str
@@ -124,7 +133,9 @@ class NodeView(NodeBase[PortView, TimerView]):
     default_name: str
     provided: Provided | None
     parameters: tuple[ParameterView, ...]
+    maps: tuple[MapView, ...]
     file_parameters: tuple[FileParameter, ...]
+    file_maps: tuple[FileMap, ...]
 
     @property
     def parent(self) -> str:
@@ -140,12 +151,37 @@ class NodeView(NodeBase[PortView, TimerView]):
     @property
     def checked(self) -> tuple[ParameterView, ...]:
         """The parameters that need more checks than rclcpp makes."""
-        return tuple(p for p in self.parameters if p.checks)
+        return tuple(p for p in self.declared if p.checks or p.custom)
+
+    @property
+    def declared(self) -> tuple[ParameterView, ...]:
+        """All parameters, those of maps last."""
+        return (*self.parameters, *(p for each in self.maps for p in each.members))
+
+    @property
+    def checks_maps(self) -> bool:
+        """Whether a parameter of a map has checks, which are found by what it is declared as."""
+        return any(p.checks or p.custom for each in self.maps for p in each.members)
+
+    @property
+    def helpers(self) -> frozenset[str]:
+        """The functions that the checks call."""
+        return frozenset(c.helper for p in self.checked for c in p.checks if c.helper)
+
+    @property
+    def custom(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """The user's functions that check parameters, by their namespace."""
+        found: dict[str, dict[str, None]] = {}
+        for name in dict.fromkeys(name for p in self.checked for name in p.custom):
+            scope, _, function = name.rpartition("::")
+            found.setdefault(scope, {})[function] = None
+        return tuple((scope, tuple(found[scope])) for scope in sorted(found))
 
     @property
     def equal(self) -> Chain:
         """The comparison of two structures of parameters."""
         fields = [parameter.field for parameter in self.parameters]
+        fields += [each.field for each in self.maps]
         return Chain("", tuple(f"{name} == other.{name}" for name in fields), " && ")
 
     @property
@@ -161,13 +197,19 @@ class NodeView(NodeBase[PortView, TimerView]):
         """The sources of the node's library."""
         own = self.provided.sources if self.provided else (f"src/{self.stem}.cpp",)
         shared = (f"src/runtime/{name}.cpp" for name in self.runtime)
-        return tuple(sorted({f"src/{self.stem}_base.cpp", *own, *shared}))
+        custom = (f"src/{custom_stem(scope)}.cpp" for scope, _ in self.custom)
+        return tuple(sorted({f"src/{self.stem}_base.cpp", *own, *shared, *custom}))
 
     @property
     def program(self) -> tuple[str, ...]:
         """The sources of the node's program."""
         own = self.provided.main if self.provided else ()
         return own or (f"src/{self.stem}_main.cpp",)
+
+
+def custom_stem(scope: str) -> str:
+    """Return what the files with the user's functions of a namespace are named after."""
+    return scope.replace("::", "_")
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,7 +261,8 @@ def package_view(
     nodes = tuple(_node(model, provided.get(model.name)) for model in models)
     package = models[0].package
     pairs = list(zip(models, nodes, strict=True))
-    check_collisions(_files(pairs), f"the sources of package {package}", files=True)
+    emitted = [*_files(pairs), *_custom_files(models)]
+    check_collisions(emitted, f"the sources of package {package}", files=True)
     check_collisions(
         (
             Emitted(name, f"node {model.name!r}", model.name_span)
@@ -244,6 +287,16 @@ def _files(pairs: list[tuple[NodeType, NodeView]]) -> Iterator[Emitted]:
     for model, node in pairs:
         for suffix in ("", "_base", "_main"):
             yield Emitted(f"{node.stem}{suffix}", f"node {model.name!r}", model.name_span)
+
+
+def _custom_files(models: tuple[NodeType, ...]) -> Iterator[Emitted]:
+    found: dict[str, Emitted] = {}
+    for model in models:
+        for function in (each for parameter in model.parameters for each in parameter.custom):
+            stem = custom_stem(function.text.rpartition("::")[0])
+            origin = f"the namespace of {function.text!r}"
+            found.setdefault(stem, Emitted(stem, origin, function.span))
+    yield from found.values()
 
 
 def _needed(node: NodeView) -> tuple[str, ...]:
@@ -280,7 +333,9 @@ def _node(model: NodeType, provided: Provided | None) -> NodeView:
         summary=sentence(model.description) or f"The node {name}.",
         provided=provided,
         parameters=cpp_parameter_views(model),
+        maps=cpp_map_views(model),
         file_parameters=parameter_views(model),
+        file_maps=map_views(model),
         publishers=views[PortKind.PUBLISHER],
         subscriptions=views[PortKind.SUBSCRIPTION],
         services=views[PortKind.SERVICE],
@@ -312,6 +367,7 @@ def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
         topic = f"{field}.empty() ? {topic} : {field}"
     return PortView(
         identifier=cpp_identifier(port.name),
+        handle=f"{handle(port, model, cpp_identifier).rstrip('_')}_",
         type=kind,
         header=cpp_header(port.type),
         topic=topic,

@@ -84,6 +84,9 @@ def package_files(
         if node.parameters:
             config = _render("config.yaml", package=package, node=node)
             files[f"{package.name}/config/{node.name}.yaml"] = File(config)
+    for each in package.custom:
+        text = _render("custom.py", package=package, custom=each)
+        files[f"{root}/{each.module}.py"] = File(text, Owner.USER)
     shared = {GOAL_THREADS for node in package.nodes if node.actions}
     shared |= {MANAGED_NODE for node in package.nodes if node.lifecycle}
     folder = resources.files("deros.generators.rosnode_python.runtime")

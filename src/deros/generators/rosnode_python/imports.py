@@ -20,6 +20,10 @@ def base_imports(package: str, node: NodeView) -> tuple[list[str], list[str]]:
         standard["dataclasses"] = {"dataclass"}
     if node.checked or node.action_clients or node.gated:
         standard["typing"].add("Callable")
+    if node.maps:
+        standard["typing"].add("Mapping")
+    if any("combinations(" in c.condition for p in node.constrained for c in p.constraints):
+        standard["itertools"] = {"combinations"}
 
     rest: dict[str, set[str]] = interface_imports(
         dict(node.interfaces), (kind for kind, _ in node.interfaces)
@@ -37,6 +41,8 @@ def base_imports(package: str, node: NodeView) -> tuple[list[str], list[str]]:
     else:
         add("rclpy.node", "Node")
     _parameter_imports(node, add)
+    for module in sorted({module for p in node.custom for module, _ in p.custom}):
+        add(package, module)
     if node.actions:
         add("rclpy.action", "CancelResponse", "GoalResponse")
         add("rclpy.action.server", "ServerGoalHandle")
@@ -69,11 +75,11 @@ def _parameter_imports(node: NodeView, add: _Adder) -> None:
     if not node.parameters:
         return
     add("rclpy.parameter", "Parameter")
-    if any(p.described for p in node.parameters):
+    if any(p.described for p in node.declared):
         add(
             "rcl_interfaces.msg",
             "ParameterDescriptor",
-            *(r for p in node.parameters for r in p.ranges),
+            *(r for p in node.declared for r in p.ranges),
         )
     if node.checked:
         add("rcl_interfaces.msg", "SetParametersResult")

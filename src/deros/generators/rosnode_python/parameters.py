@@ -3,12 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from deros.generators.names import python_identifier
+from deros.generators.parameter_maps import (
+    ParameterMap,
+    list_names,
+    parameter_maps,
+    plain_parameters,
+)
+from deros.generators.parameter_requirements import (
+    Check,
+    bound,
+    integer_bounds,
+    interval_text,
+    requirements,
+    spelled,
+)
 from deros.generators.python_source import Call, Text, one_line, wrapped
-from deros.metamodels.common import Interval, Scalar, Value
+from deros.metamodels.common import Interval, Name, Scalar
 from deros.metamodels.node import NodeType, Parameter, ParameterType
 
 _PYTHON_TYPES = {
@@ -22,15 +37,20 @@ _PYTHON_TYPES = {
     ParameterType.DOUBLE_ARRAY: "tuple[float, ...]",
     ParameterType.STRING_ARRAY: "tuple[str, ...]",
 }
-_INT64 = (-(2**63), 2**63 - 1)
+_PLAIN_KEY = re.compile(r"[A-Za-z_/][A-Za-z0-9_./-]*")
+_YAML_WORDS = frozenset(("true", "false", "yes", "no", "on", "off", "y", "n", "null"))
 
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """A check that the descriptor cannot state: a condition on ``value``, and what it asks for."""
+    """A check that the client library does not make: a condition on ``value``, what it asks for.
+
+    ``stated`` tells whether the descriptor says so in words.
+    """
 
     condition: str
     requirement: str
+    stated: bool
 
     @property
     def entry(self) -> tuple[str, Text]:
@@ -47,7 +67,9 @@ class ParameterView:
         declaration: the arguments of ``declare_parameter``.
         reading: the argument of ``Parameters`` that reads the value from the node.
         comment: what it is, wrapped, for the structure.
+        custom: module and name of each function of the user's that checks the value.
         ranges: the classes of ranges in its descriptor; ``described`` tells whether it has one.
+        yaml_key: the name in the parameter file.
         yaml: value for the parameter file; ``None`` where there is none to write, and ``yaml_note``
             says why.
     """
@@ -61,15 +83,83 @@ class ParameterView:
     described: bool
     ranges: tuple[str, ...]
     constraints: tuple[Constraint, ...]
+    custom: tuple[tuple[str, str], ...]
     yaml: str | None
+    yaml_key: str
     yaml_note: str
 
 
+@dataclass(frozen=True, slots=True)
+class MapView:
+    """The parameters of a map as the templates need them.
+
+    Attributes:
+        field: its name in the typed structure.
+        struct: the class of its values, ``None`` where these are values of a parameter.
+        shown: what it is for, ``gains.<joints>``.
+        entries: the expression of the entries of its list.
+        members: its parameters; their ``field`` is that of ``struct``.
+        reading: the argument of ``Parameters`` that reads the map from the node.
+    """
+
+    field: str
+    struct: str | None
+    key: str
+    shown: str
+    entries: str | Call
+    members: tuple[ParameterView, ...]
+    reading: str | Call
+
+    @property
+    def python_type(self) -> str:
+        """The type of the field."""
+        return f"Mapping[str, {self.struct or self.members[0].python_type}]"
+
+
 def parameter_views(model: NodeType) -> tuple[ParameterView, ...]:
-    """Return the views of all parameters, in the order written."""
+    """Return the views of the parameters that are declared once, in the order written."""
     # The topic's name is read once, at start: a change later would be a promise nobody keeps.
-    topic_names = {port.via for port in model.ports if port.via is not None}
-    return tuple(_view(p, p.read_only or p.name in topic_names) for p in model.parameters)
+    fixed = {port.via for port in model.ports if port.via is not None} | list_names(model)
+    return tuple(_view(p, p.read_only or p.name in fixed) for p in plain_parameters(model))
+
+
+def map_views(model: NodeType) -> tuple[MapView, ...]:
+    """Return the views of the parameters that are declared for each entry of a list."""
+    return tuple(_map_view(each, model) for each in parameter_maps(model))
+
+
+def _map_view(each: ParameterMap, model: NodeType) -> MapView:
+    key = model.parameter(each.key)
+    assert key is not None
+    members = tuple(
+        replace(_view(p, p.read_only), field=python_identifier(each.member(p) or "value"))
+        for p in each.parameters
+    )
+    value: str | Call = members[0].reading
+    if each.struct is not None:
+        value = Call(each.struct, tuple(_keyword(member) for member in members))
+    entries = Call("dict.fromkeys", (_value(key),))
+    return MapView(
+        field=python_identifier(each.name),
+        struct=each.struct,
+        key=each.key,
+        shown=each.shown,
+        entries=entries,
+        members=members,
+        reading=value,
+    )
+
+
+def _keyword(member: ParameterView) -> str | Call:
+    reading = member.reading
+    if isinstance(reading, str):
+        return f"{member.field}={reading}"
+    return replace(reading, head=f"{member.field}={reading.head}")
+
+
+def _name(parameter: Parameter) -> str:
+    """Return the expression of a parameter's name; in a map, that for an ``entry``."""
+    return f"f{parameter.name_for('{entry}')!r}" if parameter.keys else repr(parameter.name)
 
 
 def _view(parameter: Parameter, read_only: bool) -> ParameterView:
@@ -86,31 +176,42 @@ def _view(parameter: Parameter, read_only: bool) -> ParameterView:
         name=parameter.name,
         field=python_identifier(parameter.name),
         python_type=_PYTHON_TYPES[kind],
-        declaration=(repr(parameter.name), default, *described),
+        declaration=(_name(parameter), default, *described),
         reading=_reading(parameter),
-        comment=tuple(wrapped(_comment(parameter, read_only), indent=6)),
+        comment=tuple(wrapped(comment(parameter, read_only), indent=6)),
         described=bool(descriptor),
         ranges=tuple(
             name
             for name in ("FloatingPointRange", "IntegerRange")
-            if any(isinstance(argument, str) and name in argument for argument in descriptor)
+            if any(isinstance(each, Call) and each.head.endswith(name) for each in descriptor)
         ),
         constraints=constraints,
+        custom=tuple(map(custom_function, parameter.custom)),
         yaml=_yaml(parameter),
+        yaml_key=_yaml_key(parameter.name),
         yaml_note=_yaml_note(parameter),
     )
 
 
+def custom_function(function: Name) -> tuple[str, str]:
+    """Return the module and the name of a function of the user's, ``limits::is_even``."""
+    *scopes, name = function.text.split("::")
+    return python_identifier("_".join(scopes)), python_identifier(name)
+
+
 def _reading(parameter: Parameter) -> str | Call:
-    name = repr(parameter.name)
-    kind = parameter.type
-    value: str | Call = f"self.get_parameter({name}).value"
-    if parameter.default == ():
-        otherwise = f"Parameter({name}, Parameter.Type.{kind.name}, [])"
-        value = Call("self.get_parameter_or", (name, otherwise), ".value")
-    if kind is ParameterType.BYTE_ARRAY:
+    value = _value(parameter)
+    if parameter.type is ParameterType.BYTE_ARRAY:
         return Call("b''.join", (value,))
-    return Call("tuple", (value,)) if kind.is_array else value
+    return Call("tuple", (value,)) if parameter.type.is_array else value
+
+
+def _value(parameter: Parameter) -> str | Call:
+    name = _name(parameter)
+    if parameter.default == ():
+        otherwise = f"Parameter({name}, Parameter.Type.{parameter.type.name}, [])"
+        return Call("self.get_parameter_or", (name, otherwise), ".value")
+    return f"self.get_parameter({name}).value"
 
 
 # Text ---------------------------------------------------------------------------------------------
@@ -123,53 +224,55 @@ def describe(parameter: Parameter) -> str:
     return " ".join(part for part in (text, unit) if part)
 
 
-def _comment(parameter: Parameter, read_only: bool) -> str:
+def comment(parameter: Parameter, read_only: bool) -> str:
+    """Return what a comment says of a parameter: description, unit and constraints."""
     parts = [describe(parameter).removesuffix(".")]
     if parameter.interval is not None:
-        parts.append(f"in {interval_text(parameter.interval, parameter.type)}")
+        text = interval_text(parameter.interval, parameter.type)
+        parts.append(text if text[0] in "<>" else f"in {text}")
     if parameter.choices is not None:
         parts.append(f"one of {_enumeration(parameter)}")
-    if parameter.size is not None:
-        parts.append(f"{parameter.size} elements")
+    parts += _size_comments(parameter)
     if read_only:
         parts.append("fixed at start")
     return "; ".join(part for part in parts if part)
 
 
-def interval_text(interval: Interval, kind: ParameterType) -> str:
-    """Return an interval as the models write it, ``[0.1, 2.0)``."""
-    lower, upper = (_bound(value, kind) for value in (interval.lower, interval.upper))
-    opening = "[" if interval.lower_closed else "("
-    closing = "]" if interval.upper_closed else ")"
-    return f"{opening}{lower}, {upper}{closing}"
-
-
-def _bound(value: float, kind: ParameterType) -> str:
-    integer = kind in (ParameterType.INTEGER, ParameterType.INTEGER_ARRAY)
-    return str(int(value)) if integer and float(value).is_integer() else repr(float(value))
-
-
 def _enumeration(parameter: Parameter) -> str:
-    return ", ".join(_literal(choice, parameter.type) for choice in parameter.choices or ())
+    return ", ".join(spelled(choice, parameter.type) for choice in parameter.choices or ())
+
+
+def _size_comments(parameter: Parameter) -> Iterator[str]:
+    what = "elements" if parameter.type.is_array else "characters"
+    if parameter.size is not None:
+        yield f"{parameter.size} {what}"
+    if parameter.min_size is not None:
+        yield f"at least {parameter.min_size} {what}"
+    if parameter.max_size is not None:
+        yield f"at most {parameter.max_size} {what}"
+    if parameter.not_empty:
+        yield "not empty"
+    if parameter.unique:
+        yield "no element twice"
+    for function in parameter.custom:
+        yield f"checked by {function.text}"
 
 
 # Values -------------------------------------------------------------------------------------------
 
 
-def _literal(value: Value, kind: ParameterType) -> str:
-    """Return the Python literal of a value; sequences as tuples, as in the typed structure."""
-    if isinstance(value, tuple):
-        items = [_scalar(item, kind) for item in value]
-        return f"({', '.join(items)}{',' if len(items) == 1 else ''})"
-    return _scalar(value, kind)
-
-
 def _scalar(value: Scalar, kind: ParameterType) -> str:
     if kind in (ParameterType.DOUBLE, ParameterType.DOUBLE_ARRAY) and not isinstance(value, str):
-        return repr(float(value))
+        return float_literal(value)
     if kind is ParameterType.BYTE_ARRAY and isinstance(value, int):
         return repr(bytes([value & 0xFF]))
     return repr(value)
+
+
+def float_literal(value: float) -> str:
+    """Return an expression for a float, NaN and the infinities included."""
+    text = repr(float(value))
+    return text if math.isfinite(value) else f"float({text!r})"
 
 
 def _default(parameter: Parameter) -> str:
@@ -181,6 +284,9 @@ def _default(parameter: Parameter) -> str:
 
 def _yaml_note(parameter: Parameter) -> str:
     """Say why the parameter file has no value; empty when it has one."""
+    if parameter.keys:
+        by_default = "" if parameter.default is None else f", {_yaml_value(parameter)} by default"
+        return f"for each entry of {parameter.keys[0]}{by_default}"
     if parameter.default is None:
         return "has no default: a value must be given"
     if parameter.default == ():
@@ -191,12 +297,20 @@ def _yaml_note(parameter: Parameter) -> str:
 
 
 def _yaml(parameter: Parameter) -> str | None:
-    if _yaml_note(parameter):
-        return None
+    return None if _yaml_note(parameter) else _yaml_value(parameter)
+
+
+def _yaml_value(parameter: Parameter) -> str:
     if isinstance(parameter.default, tuple):
         return f"[{', '.join(_yaml_scalar(v, parameter.type) for v in parameter.default)}]"
     assert parameter.default is not None
     return _yaml_scalar(parameter.default, parameter.type)
+
+
+def _yaml_key(name: str) -> str:
+    """Return a name as a key, in quotes where YAML could read it as something else."""
+    plain = _PLAIN_KEY.fullmatch(name) and name.lower() not in _YAML_WORDS
+    return name if plain else f'"{name}"'
 
 
 def _yaml_scalar(value: Scalar, kind: ParameterType) -> str:
@@ -204,6 +318,8 @@ def _yaml_scalar(value: Scalar, kind: ParameterType) -> str:
         return f'"{"".join(map(_yaml_character, value))}"'
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, float) and not math.isfinite(value):
+        return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
     return _scalar(value, kind)
 
 
@@ -218,62 +334,67 @@ def _yaml_character(character: str) -> str:
 
 def _descriptor(
     parameter: Parameter, constraints: Sequence[Constraint], read_only: bool
-) -> list[str | Text]:
+) -> list[str | Text | Call]:
     """Return the arguments of the parameter's ``ParameterDescriptor``."""
-    arguments: list[str | Text] = []
+    arguments: list[str | Text | Call] = []
     if text := describe(parameter):
         arguments.append(Text("description=", text))
-    if constraints:
-        text = "; ".join(constraint.requirement for constraint in constraints)
+    text = "; ".join([*(c.requirement for c in constraints if c.stated), *custom_texts(parameter)])
+    if text:
         arguments.append(Text("additional_constraints=", text))
     if read_only:
         arguments.append("read_only=True")
     interval = parameter.interval
     if interval is not None and parameter.type is ParameterType.DOUBLE:
-        bounds = f"from_value={float(interval.lower)!r}, to_value={float(interval.upper)!r}"
-        arguments.append(f"floating_point_range=[FloatingPointRange({bounds})]")
+        lower, upper = float_literal(interval.lower), float_literal(interval.upper)
+        bounds = (f"from_value={lower}", f"to_value={upper}")
+        arguments.append(Call("floating_point_range=[FloatingPointRange", bounds, "]"))
     if interval is not None and parameter.type is ParameterType.INTEGER:
         low, high = integer_bounds(interval)
-        arguments.append(f"integer_range=[IntegerRange(from_value={low}, to_value={high})]")
+        bounds = (f"from_value={low}", f"to_value={high}")
+        arguments.append(Call("integer_range=[IntegerRange", bounds, "]"))
     return arguments
 
 
-def integer_bounds(interval: Interval) -> tuple[int, int]:
-    """Return the least and greatest integer of an interval, which closes its open ends exactly."""
-    low = math.ceil(max(interval.lower, _INT64[0]))
-    high = math.floor(min(interval.upper, _INT64[1]))
-    low += low == interval.lower and not interval.lower_closed
-    high -= high == interval.upper and not interval.upper_closed
-    return max(low, _INT64[0]), min(high, _INT64[1])
+def custom_texts(parameter: Parameter) -> tuple[str, ...]:
+    """Return what the descriptor says of the user's own checks."""
+    return tuple(f"must pass {function.text}" for function in parameter.custom)
 
 
 def _constraints(parameter: Parameter) -> list[Constraint]:
-    found: list[Constraint] = []
-    if parameter.size is not None:
-        elements = "1 element" if parameter.size == 1 else f"{parameter.size} elements"
-        found.append(Constraint(f"len(value) == {parameter.size}", f"must have {elements}"))
-    if parameter.choices is not None:
-        choices = _enumeration(parameter)
-        value = "tuple(value)" if parameter.type.is_array else "value"
+    return [
+        Constraint(_condition(each.check, parameter), each.text, each.stated)
+        for each in requirements(parameter)
+    ]
+
+
+def _condition(check: Check, parameter: Parameter) -> str:
+    """Return the expression that is true of a ``value`` which passes a check."""
+    least = max(parameter.min_size or 0, int(parameter.not_empty))
+    sizes = {Check.SIZE: f"== {parameter.size}", Check.MIN_SIZE: f">= {least}"}
+    sizes[Check.MAX_SIZE] = f"<= {parameter.max_size}"
+    if check in sizes:
+        return f"len(value) {sizes[check]}"
+    if check is Check.UNIQUE:
+        if parameter.type is ParameterType.DOUBLE_ARRAY:  # a set would take one NaN for another
+            return "all(one != other for one, other in combinations(value, 2))"
+        return "len(set(value)) == len(value)"
+    element = "item" if parameter.type.is_array else "value"
+    if check is Check.CHOICES:
+        assert parameter.choices is not None
+        choices = ", ".join(_scalar(choice, parameter.type) for choice in parameter.choices)
         comma = "," if len(parameter.choices) == 1 else ""
-        found.append(Constraint(f"{value} in ({choices}{comma})", f"must be one of {choices}"))
-    if parameter.interval is not None:
-        found.extend(_interval_constraints(parameter.interval, parameter.type))
-    return found
+        condition = f"{element} in ({choices}{comma})"
+    else:
+        assert parameter.interval is not None
+        condition = _within(parameter.interval, parameter.type, element)
+    return f"all({condition} for item in value)" if parameter.type.is_array else condition
 
 
-def _interval_constraints(interval: Interval, kind: ParameterType) -> list[Constraint]:
-    """Return the part of an interval that no range of a descriptor can state.
-
-    The ranges of ``rcl_interfaces`` are closed, and rclpy applies none to arrays.
-    """
-    text = interval_text(interval, kind)
-    lower, upper = (_bound(value, kind) for value in (interval.lower, interval.upper))
+def _within(interval: Interval, kind: ParameterType, value: str) -> str:
+    lower, upper = (bound(each, kind) for each in (interval.lower, interval.upper))
     above = f"{lower} {'<=' if interval.lower_closed else '<'} "
     below = f" {'<=' if interval.upper_closed else '<'} {upper}"
-    if kind.is_array:
-        condition = f"all({above}item{below} for item in value)"
-        return [Constraint(condition, f"must have all elements in {text}")]
-    if kind is ParameterType.INTEGER or (interval.lower_closed and interval.upper_closed):
-        return []
-    return [Constraint(f"{above}value{below}", f"must lie in {text}")]
+    if math.isinf(interval.lower):
+        return f"{value}{below}"
+    return f"{above}{value}" if math.isinf(interval.upper) else f"{above}{value}{below}"

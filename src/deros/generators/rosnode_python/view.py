@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from deros.generators.names import (
@@ -16,12 +16,19 @@ from deros.generators.node_view import (
     NodeBase,
     check_names,
     duration_text,
+    handle,
     port_notes,
     timer_notes,
     topic_parameter,
 )
 from deros.generators.python_source import Call, Text, one_line, sentence, wrapped
-from deros.generators.rosnode_python.parameters import ParameterView, parameter_views
+from deros.generators.rosnode_python.parameters import (
+    MapView,
+    ParameterView,
+    custom_function,
+    map_views,
+    parameter_views,
+)
 from deros.generators.rosnode_python.qos import qos_view
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
@@ -31,6 +38,9 @@ GOAL_THREADS = "goal_threads"
 
 MANAGED_NODE = "managed_node"
 """The module that packages have with managed nodes."""
+
+# Names of the base class's module besides classes; a module of the user's is not called so.
+_MODULES_USED = ("abstractmethod", "combinations", "dataclass", "os", "rclpy", "signal")
 
 _RAW_HOOKS = ("on_named",)
 
@@ -55,6 +65,7 @@ _TAKEN = frozenset(
         "IntegerRange",
         "LivelinessPolicy",
         "ManagedNode",
+        "Mapping",
         "Node",
         "Parameter",
         "ParameterDescriptor",
@@ -77,6 +88,7 @@ class PortView:
 
     Attributes:
         identifier: the part of method names that stands for the port.
+        handle: the attribute with the client, of a port that is one.
         type: the message, service or action class as the module names it.
         topic: Python expression of the name handed to rclpy.
         name: the name as a reader sees it.
@@ -85,6 +97,7 @@ class PortView:
     """
 
     identifier: str
+    handle: str
     type: str
     topic: str
     name: str
@@ -124,6 +137,7 @@ class NodeView(NodeBase[PortView, TimerView]):
     raw: bool
     interfaces: tuple[tuple[InterfaceType, str], ...]
     parameters: tuple[ParameterView, ...]
+    maps: tuple[MapView, ...]
 
     @property
     def base_module(self) -> str:
@@ -136,9 +150,29 @@ class NodeView(NodeBase[PortView, TimerView]):
         return any(p.yaml is not None for p in self.parameters)
 
     @property
-    def checked(self) -> tuple[ParameterView, ...]:
+    def declared(self) -> tuple[ParameterView, ...]:
+        """All parameters, those of maps last."""
+        return (*self.parameters, *(p for each in self.maps for p in each.members))
+
+    @property
+    def constrained(self) -> tuple[ParameterView, ...]:
         """The parameters that need more checks than rclpy makes."""
-        return tuple(p for p in self.parameters if p.constraints)
+        return tuple(p for p in self.declared if p.constraints)
+
+    @property
+    def custom(self) -> tuple[ParameterView, ...]:
+        """The parameters that functions of the user's check."""
+        return tuple(p for p in self.declared if p.custom)
+
+    @property
+    def checked(self) -> bool:
+        """Whether there is anything to check that rclpy does not."""
+        return bool(self.constrained or self.custom)
+
+    @property
+    def checks_maps(self) -> bool:
+        """Whether a parameter of a map has checks, which are found by what it is declared as."""
+        return any(p.constraints or p.custom for each in self.maps for p in each.members)
 
 
 def node_view(model: NodeType, raw: bool = False) -> NodeView:
@@ -150,7 +184,9 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
     class_name = camel_case(model.name)
     hooks = _RAW_HOOKS if raw else ()
     check_names(model, class_name, "class Parameters", python_identifier, hooks)
-    interfaces = _interface_names(model, class_name)
+    maps = map_views(model)
+    own = {each.struct for each in maps if each.struct is not None}
+    interfaces = _interface_names(model, {class_name, f"{class_name}Base", *own})
     views = {
         kind: tuple(_port(p, interfaces, model) for p in model.ports_of(kind)) for kind in PortKind
     }
@@ -164,6 +200,7 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
         summary=sentence(model.description) or f"The node {model.name}.",
         interfaces=tuple(interfaces.items()),
         parameters=parameter_views(model),
+        maps=maps,
         publishers=views[PortKind.PUBLISHER],
         subscriptions=views[PortKind.SUBSCRIPTION],
         services=views[PortKind.SERVICE],
@@ -185,14 +222,14 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
 # Names --------------------------------------------------------------------------------------------
 
 
-def _interface_names(model: NodeType, class_name: str) -> dict[InterfaceType, str]:
+def _interface_names(model: NodeType, own: Collection[str]) -> dict[InterfaceType, str]:
     """Return the name under which each interface type is imported.
 
-    It is the type's own, unless another type or the module itself has that name; then the package
-    stands in front: ``RosgraphMsgsClock``.
+    It is the type's own, unless another type, the module itself or a class of its ``own`` has that
+    name; then the package stands in front: ``RosgraphMsgsClock``.
     """
     types = sorted({port.type for port in model.ports})
-    taken = {*_TAKEN, class_name, f"{class_name}Base"}
+    taken = {*_TAKEN, *own}
     names: dict[InterfaceType, str] = {}
     for kind in types:
         alone = sum(other.name == kind.name for other in types) == 1
@@ -228,6 +265,7 @@ def _port(port: Port, interfaces: Mapping[InterfaceType, str], model: NodeType) 
     qos = qos_view(port.qos)
     return PortView(
         identifier=python_identifier(port.name),
+        handle=handle(port, model, python_identifier),
         type=interfaces[port.type],
         topic=topic,
         name=port.name,
@@ -245,6 +283,53 @@ def _paragraphs(texts: Iterable[str]) -> tuple[tuple[str, ...], ...]:
 
 
 @dataclass(frozen=True, slots=True)
+class CustomView:
+    """A module of the user's functions that check parameters.
+
+    Attributes:
+        functions: for each, its name and what it checks, wrapped for a docstring.
+    """
+
+    module: str
+    functions: tuple[tuple[str, tuple[str, ...]], ...]
+
+
+def _custom_modules(models: Sequence[NodeType]) -> dict[str, Emitted]:
+    """Return the modules of the user's functions, each with where it is first needed.
+
+    Raises:
+        GenerationError: if a module is called as another one that its user imports.
+    """
+    found: dict[str, Emitted] = {}
+    for model in models:
+        for parameter in model.parameters:
+            for function in parameter.custom:
+                module = custom_function(function)[0]
+                origin = f"the namespace of {function.text!r}"
+                found.setdefault(module, Emitted(module, origin, function.span))
+    start = models[0].package_span
+    used = [Emitted(name, f"the module {name!r}", start) for name in _MODULES_USED]
+    check_collisions([*used, *found.values()], "the imports of the base class")
+    return found
+
+
+def _custom_view(module: str, nodes: Sequence[NodeView]) -> CustomView:
+    checks: dict[str, list[str]] = {}
+    for node in nodes:
+        for parameter in node.custom:
+            for where, function in parameter.custom:
+                if where == module:
+                    checks.setdefault(function, []).append(f"{parameter.name} of {node.name}")
+    return CustomView(
+        module,
+        tuple(
+            (name, tuple(wrapped(f"It checks {' and '.join(what)}.", indent=4)))
+            for name, what in checks.items()
+        ),
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class PackageView:
     """The ROS 2 package around one or more nodes.
 
@@ -256,6 +341,7 @@ class PackageView:
 
     name: str
     nodes: tuple[NodeView, ...]
+    custom: tuple[CustomView, ...]
     description: str
     dependencies: tuple[str, ...]
     maintainer: str
@@ -292,14 +378,16 @@ def package_view(
         name = python_identifier(model.name)
         origin = f"node {model.name!r}"
         modules += [Emitted(m, origin, model.name_span) for m in (name, f"{name}_base")]
-    with_actions = [model for model in models if model.ports_of(PortKind.ACTION)]
+    with_actions = [model for model in models if any(model.ports_of(PortKind.ACTION))]
     for model in with_actions[:1]:
         modules.append(Emitted(GOAL_THREADS, "the threads of goals", model.name_span))
     managed = [model for model in models if model.lifecycle]
     for model in managed[:1]:
         modules.append(Emitted(MANAGED_NODE, "the class of managed nodes", model.name_span))
-    check_collisions(modules, f"the modules of package {models[0].package}", files=True)
     nodes = tuple(node_view(model, model.name in raw) for model in models)
+    custom = _custom_modules(models)
+    modules += custom.values()
+    check_collisions(modules, f"the modules of package {models[0].package}", files=True)
     description = " ".join(node.summary for node in nodes)
     needed = {"ament_index_python", "launch", "launch_ros", "rclpy", *needs}
     needed |= {port.type.package for model in models for port in model.ports}
@@ -308,6 +396,7 @@ def package_view(
     return PackageView(
         name=models[0].package,
         nodes=nodes,
+        custom=tuple(_custom_view(module, nodes) for module in custom),
         description=one_line(description),
         dependencies=tuple(sorted(needed)),
         maintainer=maintainer[0],

@@ -53,7 +53,7 @@ def main(
     if options.dry_run:
         return 0
     with tempfile.TemporaryDirectory(prefix='deros-') as folder:
-        processes = []
+        processes: list[Process] = []
         for node, label, start in zip(chosen, _labels(chosen), found, strict=True):
             if start is not None:
                 file = _write_parameters(node, Path(folder, f'{len(processes)}.yaml'))

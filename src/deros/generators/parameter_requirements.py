@@ -1,0 +1,117 @@
+"""What a parameter's constraints ask of its value, in words, whatever the language of the node."""
+
+from __future__ import annotations
+
+import enum
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros.metamodels.common import Interval, Scalar
+from deros.metamodels.node import Parameter, ParameterType
+
+_INT64 = (-(2**63), 2**63 - 1)
+_INTEGERS = (ParameterType.INTEGER, ParameterType.INTEGER_ARRAY)
+_DOUBLES = (ParameterType.DOUBLE, ParameterType.DOUBLE_ARRAY)
+
+
+class Check(enum.Enum):
+    """A check of a value, which each target writes in its own language."""
+
+    SIZE = "size"
+    MIN_SIZE = "min_size"
+    MAX_SIZE = "max_size"
+    UNIQUE = "unique"
+    CHOICES = "choices"
+    RANGE = "range"
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """One check, and what it asks for: ``must have 3 elements``.
+
+    Attributes:
+        stated: whether the parameter's descriptor has to say so in words. Ranges it states itself,
+            if they are closed; client libraries then check them, but not to the last bit.
+    """
+
+    check: Check
+    text: str
+    stated: bool = True
+
+
+def requirements(parameter: Parameter) -> tuple[Requirement, ...]:
+    """Return what a node has to check of a parameter beside its type, in order."""
+    return tuple(_requirements(parameter))
+
+
+def _requirements(parameter: Parameter) -> Iterator[Requirement]:
+    if parameter.size is not None:
+        yield Requirement(Check.SIZE, f"must have {_count(parameter, parameter.size)}")
+    least = max(parameter.min_size or 0, int(parameter.not_empty))
+    if least == 1:
+        yield Requirement(Check.MIN_SIZE, "must not be empty")
+    elif least:
+        yield Requirement(Check.MIN_SIZE, f"must have at least {_count(parameter, least)}")
+    if parameter.max_size is not None:
+        text = f"must have at most {_count(parameter, parameter.max_size)}"
+        yield Requirement(Check.MAX_SIZE, text)
+    if parameter.unique:
+        yield Requirement(Check.UNIQUE, "must have no element twice")
+    if parameter.choices is not None:
+        listed = ", ".join(spelled(choice, parameter.type) for choice in parameter.choices)
+        who = "must have all elements among" if parameter.type.is_array else "must be one of"
+        yield Requirement(Check.CHOICES, f"{who} {listed}")
+    if parameter.interval is not None and parameter.type is not ParameterType.INTEGER:
+        yield _range(parameter.interval, parameter.type)
+
+
+def _count(parameter: Parameter, number: int) -> str:
+    what = "element" if parameter.type.is_array else "character"
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def _range(interval: Interval, kind: ParameterType) -> Requirement:
+    text = interval_text(interval, kind)
+    one_sided = math.isinf(interval.lower) or math.isinf(interval.upper)
+    if kind.is_array:
+        where = text if one_sided else f"in {text}"
+        return Requirement(Check.RANGE, f"must have all elements {where}")
+    closed = interval.lower_closed and interval.upper_closed
+    where = f"be {text}" if one_sided else f"lie in {text}"
+    return Requirement(Check.RANGE, f"must {where}", stated=not closed)
+
+
+def spelled(value: Scalar, kind: ParameterType) -> str:
+    """Return a value as texts for people show it."""
+    if kind in _DOUBLES and not isinstance(value, str):
+        return repr(float(value))
+    if kind is ParameterType.BYTE_ARRAY and isinstance(value, int):
+        return repr(bytes([value & 0xFF]))
+    return repr(value)
+
+
+def interval_text(interval: Interval, kind: ParameterType) -> str:
+    """Return an interval as the models write it, ``[0.1, 2.0)`` or ``>= 0.1``."""
+    lower, upper = (bound(value, kind) for value in (interval.lower, interval.upper))
+    if math.isinf(interval.upper):
+        return f"{'>=' if interval.lower_closed else '>'} {lower}"
+    if math.isinf(interval.lower):
+        return f"{'<=' if interval.upper_closed else '<'} {upper}"
+    opening = "[" if interval.lower_closed else "("
+    closing = "]" if interval.upper_closed else ")"
+    return f"{opening}{lower}, {upper}{closing}"
+
+
+def bound(value: float, kind: ParameterType) -> str:
+    """Return a bound of an interval, of integers without a fraction where it has none."""
+    return str(int(value)) if kind in _INTEGERS and float(value).is_integer() else repr(value)
+
+
+def integer_bounds(interval: Interval) -> tuple[int, int]:
+    """Return the least and greatest integer of an interval, which closes its open ends exactly."""
+    low = math.ceil(max(interval.lower, _INT64[0]))
+    high = math.floor(min(interval.upper, _INT64[1]))
+    low += low == interval.lower and not interval.lower_closed
+    high -= high == interval.upper and not interval.upper_closed
+    return max(low, _INT64[0]), min(high, _INT64[1])
