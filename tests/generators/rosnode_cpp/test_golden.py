@@ -23,7 +23,10 @@ from tests.support.lint import assert_lint_clean
 
 SHARED = Path(__file__).resolve().parents[1] / "rosnode_python/models"
 MODELS = {
-    **{n: SHARED / f"{n}.rnd" for n in ("odometry_node", "valve", "dock", "talker", "counter")},
+    **{
+        n: SHARED / f"{n}.rnd"
+        for n in ("odometry_node", "valve", "dock", "talker", "counter", "mapper")
+    },
     "picky": Path(__file__).resolve().parent / "models/picky.rnd",
 }
 COPYRIGHT = {"copyright": "2026 Jane Doe", "maintainer": "Jane Doe <jane@example.org>"}
