@@ -165,8 +165,8 @@ class Converter:
             return 0
         return duration
 
-    def effective_ns(self, found: Any, what: str, zero: str) -> int:
-        """Return a duration that ROS 2 has to keep; one that it cannot is reported.
+    def effective_ns(self, found: Any, what: str, zero: str) -> int | None:
+        """Return a duration that ROS 2 has to keep, or ``None`` after reporting why it cannot.
 
         Args:
             found: the duration.
@@ -176,13 +176,13 @@ class Converter:
         before = len(self.diagnostics)
         duration = self.duration_ns(found)
         if len(self.diagnostics) > before:
-            return duration
+            return None
         if duration == 0:
             message = f"{what} of 0 is none: {zero}"
             hint = "give a longer time, or leave it out"
             self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found), hint)
         self.check_longest(duration, what, found)
-        return duration
+        return duration if len(self.diagnostics) == before else None
 
     def check_longest(self, duration_ns: int, what: str, found: Any) -> None:
         """Report a duration that is longer than ROS 2 can keep."""
@@ -205,6 +205,7 @@ class Converter:
             message = "a depth of 0 keeps no message: ROS 2 takes it for the middleware's own"
             hint = "the least is 'depth 1'; 'keep_all' keeps as many as there is room for"
             self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found), hint)
+            settings["depth"] = None
         return QosProfile(**settings, span=self.span(found))
 
     def _policy(self, policy: Any) -> list[tuple[str, Any]]:
