@@ -10,7 +10,7 @@ from deros.diagnostics import Span
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.standard_topics import standard_topic
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.flatten import FlatPort, FlatTopic, UntypedWiring, flatten
+from deros.metamodels.flatten import FlatPort, FlatSystem, FlatTopic, UntypedWiring, flatten
 from deros.metamodels.node import PortKind
 from deros.metamodels.safety_qos import Offers
 from deros.metamodels.system import System
@@ -89,12 +89,13 @@ class SystemTopics:
     """The topics of all used systems, by graph name.
 
     ``complete`` is false when a system or a part of one could not be loaded, so that a topic which
-    seems to lack something may well have it.
+    seems to lack something may well have it. ``systems`` are the used systems, flattened.
     """
 
     def __init__(self, systems: Iterable[System], complete: bool = True) -> None:
         """Flatten each system once, however often it is used."""
         self.complete = complete
+        self.systems: list[FlatSystem] = []
         self._topics: dict[str, KnownTopic] = {}
         for system in {id(each): each for each in systems}.values():
             self._add(system)
@@ -134,6 +135,7 @@ class SystemTopics:
             return found.setdefault(name, KnownTopic(name))
 
         flat = flatten(system)
+        self.systems.append(flat)
         for declared in flat.topics:
             topic(declared.name).declarations.append(declared)
         for node in flat.nodes:

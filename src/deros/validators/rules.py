@@ -9,6 +9,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.rules import Rules
 from deros.monitor.build import build
 from deros.validators.rules_gates import check_gates
+from deros.validators.rules_heartbeat import check_input_timeouts
 from deros.validators.rules_ranges import check_ranges
 from deros.validators.rules_timeouts import check_timeouts
 from deros.validators.rules_topics import check_topics
@@ -23,4 +24,5 @@ def check_rules(rules: Rules, store: InterfaceStore) -> Iterator[Diagnostic]:
     yield from check_timeouts(rules)
     yield from check_topics(rules, result.topics)
     yield from check_gates(rules, result)
+    yield from check_input_timeouts(result)
     yield from check_ranges(rules, result.comparisons)

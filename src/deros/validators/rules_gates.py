@@ -10,34 +10,31 @@ from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.interfaces.fields import format_path
 from deros.interfaces.names import did_you_mean, near
 from deros.metamodels.common import Name
-from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, flatten, resolve_name
+from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, resolve_name
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Gate, GateLine, Rules
-from deros.monitor import ir
 from deros.monitor.build import BuildResult
 from deros.monitor.gates import gate_node_name, is_gate_node
 from deros.monitor.topics import KnownTopic, SystemTopics
-
-_FEWEST_BEATS = 2.5
-_SHORTEST_NS = int(_FEWEST_BEATS * 100_000_000)  # at the default `publish_freq` of the safety node
+from deros.validators.rules_heartbeat import check_heartbeats, heartbeat_hint
 
 
 def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
     """Yield the findings about gates in themselves, and in every system that the rules use."""
-    systems = {id(use.system): use.system for use in rules.uses if use.system is not None}
-    flat = [flatten(each) for each in systems.values()] if rules.gates else []
+    flat = result.topics.systems
+    states = {resolve_name(each.binding.topic.text, "/") for each in rules.actions if each.binding}
     for gate in rules.gates:
         yield from _order(gate)
-        yield from _watching(gate)
+        yield from _watching(gate, heartbeat_hint(gate, states, flat))
         for each in flat:
             yield from _wiring(gate, each)
         if result.topics.complete:
             yield from _ends(gate, rules, result.topics)
     if result.program is not None:
         for built in result.program.gates:
-            yield from _hasty(built)
             yield from _resuming(built, rules.gates[built.index], result.program)
             yield from _limits_to_zero(built)
+            yield from check_heartbeats(built, result.program, flat)
 
 
 # Lines ------------------------------------------------------------------------------------------
@@ -69,14 +66,14 @@ def _condition(line: GateLine) -> str:
     return f"'{line.action}'" if line.action else f"a lost {line.lost}"
 
 
-def _watching(gate: Gate) -> Iterator[Diagnostic]:
+def _watching(gate: Gate, hint: str) -> Iterator[Diagnostic]:
     lost = {line.lost for line in gate.lines}
     if "heartbeat" not in lost:
         yield report(
             codes.GATE_WITHOUT_HEARTBEAT,
             f"commands to '{gate.target}' go on unchecked when the safety node dies",
             gate.target.span,
-            "add 'lost heartbeat for 0.3 sec: zero;'",
+            hint,
         )
     if "input" not in lost:
         yield report(
@@ -85,18 +82,6 @@ def _watching(gate: Gate) -> Iterator[Diagnostic]:
             gate.target.span,
             "add 'lost input for 0.5 sec: zero;'",
         )
-
-
-def _hasty(gate: ir.Gate) -> Iterator[Diagnostic]:
-    for line in gate.lines:
-        if line.lost == "heartbeat" and line.lost_ns and line.lost_ns < _SHORTEST_NS:
-            yield report(
-                codes.GATE_HEARTBEAT_TOO_SHORT,
-                f"this is less than {_FEWEST_BEATS} heartbeats, of which there are 10 per second:"
-                " a late one would be taken for a lost one",
-                line.span,
-                "write 0.25 sec or more, and mind 'publish_freq' if you set it",
-            )
 
 
 def _resuming(gate: ir.Gate, written: Gate, program: ir.Program) -> Iterator[Diagnostic]:

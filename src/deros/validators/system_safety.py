@@ -46,7 +46,7 @@ def _publishers(flat: FlatSystem) -> dict[str, list[End]]:
 
 def _seconds(code: Code, topic: str, what: str, publishers: Sequence[End]) -> Iterator[Diagnostic]:
     """Report all publishers of a topic but the safety node, or the first if none is one."""
-    first = next((each for each in publishers if _is_safety_node(each.node)), publishers[0])
+    first = next((each for each in publishers if is_safety_node(each.node)), publishers[0])
     for each in publishers:
         if each is not first:
             yield report(
@@ -63,12 +63,12 @@ def _states(flat: FlatSystem, watchers: Iterable[Rules]) -> set[str]:
     bindings = (action.binding for rules in watchers for action in rules.actions)
     found = {resolve_name(each.topic.text, "/") for each in bindings if each is not None}
     for node in flat.nodes:
-        if _is_safety_node(node):
-            found |= {port.topic for port in node.ports if _is_state(port.port)}
+        if is_safety_node(node):
+            found |= {port.topic for port in node.ports if is_state(port.port)}
     return found
 
 
-def _is_state(port: Port) -> bool:
+def is_state(port: Port) -> bool:
     """Tell whether a port of a safety node publishes the states of actions."""
     qos = port.qos
     is_latched = qos is not None and qos.durability == "transient_local" and qos.depth == 1
@@ -91,10 +91,11 @@ def _heartbeats(flat: FlatSystem) -> set[str]:
 
 def is_of_safety(node: FlatNode) -> bool:
     """Tell whether a node is a generated safety node or a gate."""
-    return _is_safety_node(node) or _is_gate(node)
+    return is_safety_node(node) or _is_gate(node)
 
 
-def _is_safety_node(node: FlatNode) -> bool:
+def is_safety_node(node: FlatNode) -> bool:
+    """Tell whether a node has the heartbeat of a generated safety node."""
     return node.type is not None and any(
         port.kind is PortKind.PUBLISHER
         and port.name == _HEARTBEAT

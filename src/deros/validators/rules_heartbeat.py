@@ -1,0 +1,184 @@
+"""Times in the rules that have to outlast the periods of a safety node, as the systems set them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.metamodels.flatten import FlatNode, FlatSystem
+from deros.metamodels.node import PortKind
+from deros.metamodels.rules import Gate
+from deros.monitor import ir
+from deros.monitor.build import BuildResult
+from deros.monitor.gates import is_gate_node
+from deros.validators.system_safety import is_safety_node, is_state
+
+FEWEST_PERIODS = Fraction(5, 2)
+"""How many periods of what is expected must have passed before its silence means something."""
+
+_DEFAULT_HZ = Fraction(10)  # of every generated safety node
+_HIGHEST_HZ = {"publish_freq": 1000, "diagnostics_freq": 100}
+_HINTED_NS = 300_000_000
+_NS_PER_S = 10**9
+
+
+@dataclass(frozen=True, slots=True)
+class _Pace:
+    """How often a safety node publishes something.
+
+    Attributes:
+        hertz: how often.
+        node: the full name of the node; empty where no system has one, and the default counts.
+        parameter: what sets it.
+        place: where the system sets it, or else the node.
+    """
+
+    hertz: Fraction
+    node: str = ""
+    parameter: str = "publish_freq"
+    place: Span | None = None
+
+    @property
+    def shortest_ns(self) -> int:
+        """The least time in which enough of them must have come."""
+        return math.ceil(FEWEST_PERIODS * _NS_PER_S / self.hertz)
+
+    @property
+    def related(self) -> tuple[Related, ...]:
+        """The place for a finding."""
+        return (Related(self.place, f"its {self.parameter}"),) if self.place is not None else ()
+
+    @property
+    def hz(self) -> str:
+        """The rate as a finding says it."""
+        return f"{float(self.hertz):.6g}"
+
+
+# Gates ------------------------------------------------------------------------------------------
+
+
+def check_heartbeats(
+    gate: ir.Gate, program: ir.Program, systems: Iterable[FlatSystem]
+) -> Iterator[Diagnostic]:
+    """Find lines of a gate that give up a heartbeat after too few periods of it."""
+    paces = _heartbeats(gate.target, _states_of(program), systems)
+    for line in gate.lines:
+        for pace in paces if line.lost == "heartbeat" and line.lost_ns else ():
+            if line.lost_ns is not None and line.lost_ns < pace.shortest_ns:
+                whose = f" of '{pace.node}'" if pace.node else ""
+                yield report(
+                    codes.GATE_HEARTBEAT_TOO_SHORT,
+                    f"this is less than {float(FEWEST_PERIODS)} heartbeats{whose}, of which there"
+                    f" are {pace.hz} per second: a late one would be taken for a lost one",
+                    line.span,
+                    _remedy(pace, line.lost_ns),
+                    pace.related,
+                )
+
+
+def heartbeat_hint(gate: Gate, states: set[str], systems: Iterable[FlatSystem]) -> str:
+    """Return the line that watches the heartbeat, with a time that the systems' paces allow."""
+    needed = (pace.shortest_ns for pace in _heartbeats(gate.target.text, states, systems))
+    return f"add 'lost heartbeat for {_seconds(max(_HINTED_NS, *needed))} sec: zero;'"
+
+
+def _states_of(program: ir.Program) -> set[str]:
+    return {each.binding.topic for each in program.actions if each.binding is not None}
+
+
+def _heartbeats(target: str, states: set[str], systems: Iterable[FlatSystem]) -> list[_Pace]:
+    """Return the heartbeats that the gates to a topic listen to, or else what is usual.
+
+    Where a system has no such gate yet, its heartbeat will be that of the node that publishes the
+    ``states`` of the rules' actions.
+    """
+    found: list[_Pace] = []
+    for flat in systems:
+        listened = {
+            port.topic
+            for node in flat.nodes
+            if node.type is not None and is_gate_node(node.type.name, target)
+            for port in node.ports
+            if port.port.kind is PortKind.SUBSCRIPTION and port.port.name.endswith("/heartbeat")
+        }
+        wanted = listened or states
+        found += [
+            _pace(node, "publish_freq")
+            for node in filter(is_safety_node, flat.nodes)
+            if any(
+                port.port.kind is PortKind.PUBLISHER and port.topic in wanted for port in node.ports
+            )
+        ]
+    return found or [_Pace(_DEFAULT_HZ)]
+
+
+# Inputs -----------------------------------------------------------------------------------------
+
+
+def check_input_timeouts(result: BuildResult) -> Iterator[Diagnostic]:
+    """Find inputs that go missing between two messages of a safety node that lives."""
+    nodes = [node for flat in result.topics.systems for node in flat.nodes if is_safety_node(node)]
+    paces = {topic: pace for node in nodes for topic, pace in _paces(node).items()}
+    for each in result.program.inputs if result.program is not None else ():
+        pace, known = paces.get(each.topic), result.topics.get(each.topic)
+        if pace is None or each.timeout_ns is None or each.timeout_ns >= pace.shortest_ns:
+            continue
+        if known is not None and (known.external or known.untyped or len(known.publishers) > 1):
+            continue  # another publisher may fill the gaps
+        yield report(
+            codes.TIMEOUT_TOO_SHORT,
+            f"the timeout of '{each.name}' is less than {float(FEWEST_PERIODS)} periods of"
+            f" '{pace.node}', which publishes '{each.topic}' at {pace.hz} Hz",
+            each.span,
+            _remedy(pace, each.timeout_ns),
+            pace.related,
+        )
+
+
+def _paces(node: FlatNode) -> dict[str, _Pace]:
+    """Return how often a safety node publishes each of the topics that it repeats."""
+    found: dict[str, _Pace] = {}
+    for port in node.ports:
+        if port.port.kind is not PortKind.PUBLISHER:
+            continue
+        if port.port.name == "~/heartbeat" or is_state(port.port):
+            found[port.topic] = _pace(node, "publish_freq")
+        elif port.port.name.endswith("/diagnostics"):
+            found[port.topic] = _pace(node, "diagnostics_freq")
+    return found
+
+
+# Paces ------------------------------------------------------------------------------------------
+
+
+def _pace(node: FlatNode, parameter: str) -> _Pace:
+    """Return what the system sets, else the default of the node's description."""
+    declared = node.type.parameter(parameter) if node.type is not None else None
+    value = dict(node.parameters).get(parameter, declared.default if declared else None)
+    setting = next((each for each in node.instance.parameters if each.name == parameter), None)
+    hertz = _DEFAULT_HZ  # what no safety node accepts is a finding of its own
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value < math.inf:
+        hertz = Fraction(value)
+    return _Pace(
+        hertz,
+        node.full_name,
+        parameter,
+        setting.span if setting is not None else node.instance.name_span,
+    )
+
+
+def _remedy(pace: _Pace, given_ns: int) -> str:
+    hint = f"write {_seconds(pace.shortest_ns)} sec or more"
+    needed = FEWEST_PERIODS * _NS_PER_S / given_ns
+    if needed > _HIGHEST_HZ[pace.parameter]:
+        return hint
+    whose = f" of '{pace.node}'" if pace.node else " of the safety node"
+    return f"{hint}, or set '{pace.parameter}'{whose} to {math.ceil(needed)}.0 in the system"
+
+
+def _seconds(nanoseconds: int) -> str:
+    return f"{math.ceil(nanoseconds / 1_000_000) / 1000:.9g}"

@@ -1,0 +1,172 @@
+"""Times in the rules against the rates that the system gives its safety nodes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.diagnostics import Diagnostic
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.validators.check import check
+
+SAFETY = """node guard_node : guard
+parameters
+  name publish_freq : double = 10.0 [Hz] in (0.0, 1000.0] read_only
+  name diagnostics_freq : double = 1.0 [Hz] in (0.0, 100.0] read_only
+publishes
+  topic /stop : std_msgs.Bool qos reliable transient_local depth 1
+  topic ~/heartbeat : std_msgs.UInt64 qos reliable depth 1
+  topic /diagnostics : diagnostic_msgs.DiagnosticArray qos reliable depth 10
+subscribes
+  topic /v : std_msgs.Float64
+"""
+GATE = """node cmd_vel_gate : guard
+publishes
+  topic /cmd_vel : geometry_msgs.Twist
+subscribes
+  topic /nav : geometry_msgs.Twist
+  topic /stop : std_msgs.Bool
+  topic guard_node/heartbeat : std_msgs.UInt64
+"""
+RULES = """use "s.system" import S
+action stop publishes true on /stop : std_msgs.Bool latched;
+input v = topic /v.data timeout 1 sec
+entity e { fast: v > 1 or v.missing(); }
+if e.fast then { stop; };
+gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+  stop: zero;
+  lost heartbeat for 0.3 sec: zero;
+  lost input for 0.5 sec: zero;
+}
+"""
+TOPICS = (
+    "  external topic /nav : geometry_msgs.Twist\n  external topic /cmd_vel : geometry_msgs.Twist\n"
+    "  external topic /v : std_msgs.Float64\n  topic /stop\n  external topic /diagnostics\n"
+)
+
+
+@pytest.fixture(autouse=True)
+def _files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("guard.rnd").write_text(SAFETY, encoding="utf-8")
+    Path("gate.rnd").write_text(GATE, encoding="utf-8")
+
+
+def _safety(name: str = "guard", **settings: object) -> str:
+    params = "".join(f"  param {key} = {value}\n" for key, value in settings.items())
+    return (
+        f"node {name} : guard_node\nparameters\n{params}"
+        if settings
+        else f"node {name} : guard_node\n"
+    )
+
+
+def _gate(heartbeat: str = "/guard/heartbeat", name: str = "gate") -> str:
+    return f"node {name} : cmd_vel_gate\nwirings\n  connect guard_node/heartbeat to {heartbeat}\n"
+
+
+def _findings(members: str, rules: str = RULES, topics: str = TOPICS) -> list[Diagnostic]:
+    """Return what the checks say of times that are too short, and of no heartbeat at all."""
+    text = (
+        f'system S\nimports\n  import "guard.rnd"\n  import "gate.rnd"\ntopics\n{topics}{members}'
+    )
+    Path("s.system").write_text(text, encoding="utf-8")
+    Path("s.deros").write_text(rules, encoding="utf-8")
+    repository = Repository()
+    found = check([repository.load("s.deros")], repository, InterfaceStore((), prefixes=()))
+    return [each for each in found if each.code.name in ("DRS343", "DRS345", "DRS363")]
+
+
+def test_default_rate() -> None:
+    """0.3 s are three heartbeats of a node whose rate nobody sets."""
+    assert _findings(_safety() + _gate()) == []
+
+
+def test_rate_that_the_system_lowers() -> None:
+    """Five heartbeats per second: 0.3 s are one and a half of them."""
+    (finding,) = _findings(_safety(publish_freq=5.0) + _gate())
+    assert finding.code.name == "DRS345"
+    assert "heartbeats of '/guard', of which there are 5 per second" in finding.message
+    assert finding.hint == (
+        "write 0.5 sec or more, or set 'publish_freq' of '/guard' to 9.0 in the system"
+    )
+    assert [each.span.text for each in finding.related] == ["param publish_freq = 5.0"]
+
+
+def test_following_the_hint_is_quiet() -> None:
+    """Either half of the hint mends it."""
+    assert _findings(_safety(publish_freq=9.0) + _gate()) == []
+    longer = RULES.replace("for 0.3 sec", "for 0.5 sec")
+    assert _findings(_safety(publish_freq=5.0) + _gate(), longer) == []
+
+
+def test_rate_that_the_system_raises() -> None:
+    """A fast heartbeat may be given up soon."""
+    hasty = RULES.replace("for 0.3 sec", "for 0.05 sec")
+    assert [each.code.name for each in _findings(_safety() + _gate(), hasty)] == ["DRS345"]
+    assert _findings(_safety(publish_freq=50.0) + _gate(), hasty) == []
+
+
+def test_default_of_the_description() -> None:
+    """What the node description says counts where the system sets nothing."""
+    Path("guard.rnd").write_text(SAFETY.replace("= 10.0", "= 4.0"), encoding="utf-8")
+    (finding,) = _findings(_safety() + _gate())
+    assert "4 per second" in finding.message
+    assert [each.span.text for each in finding.related] == ["guard"]
+
+
+def test_each_instance_counts_for_its_own_gate() -> None:
+    """Of two safety nodes, the finding names the one that is too slow."""
+    topics = TOPICS + "  topic /left/guard/heartbeat\n"
+    fine = "subsystem left namespace /left {\n" + _safety() + "}\n"
+    slow = "subsystem right namespace /right {\n" + _safety(publish_freq=2.0) + "}\n"
+    members = fine + slow + _gate("/left/guard/heartbeat") + _gate("/right/guard/heartbeat", "g2")
+    (finding,) = _findings(members, topics=topics)
+    assert "'/right/guard', of which there are 2 per second" in finding.message
+    assert _findings(fine + slow + _gate("/left/guard/heartbeat"), topics=topics) == []
+
+
+def test_gate_that_is_not_wired_yet() -> None:
+    """Its heartbeat will be that of the node that publishes the states of the actions."""
+    (finding,) = _findings(_safety(publish_freq=5.0))
+    assert finding.code.name == "DRS345"
+
+
+def test_hint_for_a_gate_without_heartbeat() -> None:
+    """The line that the hint proposes is long enough for the rate that the system sets."""
+    without = RULES.replace("  lost heartbeat for 0.3 sec: zero;\n", "")
+    (finding,) = _findings(_safety() + _gate(), without)
+    assert finding.hint == "add 'lost heartbeat for 0.3 sec: zero;'"
+    (finding,) = _findings(_safety(publish_freq=2.0) + _gate(), without)
+    assert finding.hint == "add 'lost heartbeat for 1.25 sec: zero;'"
+
+
+def _watching(term: str, timeout: str) -> str:
+    watched = f"input w = topic {term} timeout {timeout}\nentity"
+    return RULES.replace("entity", watched, 1).replace("v > 1 or", "v > 1 or w.missing() or")
+
+
+@pytest.mark.parametrize("topic", ["/other/heartbeat.data", "/other_stop.data"])
+def test_timeout_of_an_input_on_another_safety_node(topic: str) -> None:
+    """Rules that watch a safety node have to wait for its periods as a gate does."""
+    topics = TOPICS + "  topic /other_stop\n"
+    wired = "wirings\n  connect /stop to /other_stop\n"
+    rules = _watching(topic, "0.3 sec")
+    assert _findings(_safety() + _gate() + _safety("other") + wired, rules, topics) == []
+    slow = _safety("other", publish_freq=1.0) + wired
+    (finding,) = _findings(_safety() + _gate() + slow, rules, topics)
+    assert finding.code.name == "DRS363"
+    assert "periods of '/other', which publishes" in finding.message
+    assert finding.hint.startswith("write 2.5 sec or more, or set 'publish_freq' of '/other'")
+
+
+def test_timeout_of_an_input_on_diagnostics() -> None:
+    """They come at a rate of their own; other publishers of the topic may fill the gaps."""
+    topics = TOPICS.replace("external topic /diagnostics", "topic /diagnostics")
+    rules = _watching("/diagnostics.status", "1 sec")
+    (finding,) = _findings(_safety() + _gate(), rules, topics)
+    assert "diagnostics_freq" in finding.hint
+    assert _findings(_safety(diagnostics_freq=3.0) + _gate(), rules, topics) == []
+    assert _findings(_safety() + _gate(), rules, TOPICS) == []
