@@ -147,6 +147,8 @@ GATE_RESUMES_BY_ITSELF = _declare(357, "gate that lets the robot go on by itself
 GATE_LIMIT_UNTIL_RESET = _declare(358, "limit that is to last until a reset")
 GATE_LIMIT_TO_ZERO = _declare(359, "limit that leaves a gate nothing but zero", _I)
 TIMEOUT_TOO_SHORT = _declare(363, "timeout shorter than a safety node's periods", _W)
+SUSPECT_BEARING = _declare(364, "bearing that is probably not what is meant", _W)
+SUSPECT_SECTOR = _declare(365, "sector that is probably not what is meant", _W)
 
 # Generation
 NAME_COLLISION = _declare(401, "two generated names collide")

@@ -13,12 +13,17 @@ action stop;
 input mode = topic /mode.data timeout 1 sec
 input v = topic /speed.data timeout 1 sec
 input q = topic /imu.orientation timeout 1 sec
+input scan = topic /scan timeout 1 sec
+input odom = topic /odom timeout 1 sec
+input joints = topic /joints timeout 1 sec
+input bytes = topic /bytes timeout 1 sec
 """
 
 
 def decided(condition: str) -> list[tuple[str, str]]:
     """Return code and place of what is decided in a condition."""
-    used = " or ".join(["mode > 1", "v > 1", "q.roll() > 1"])
+    inputs = ("mode", "v", "q", "scan", "odom", "joints", "bytes")
+    used = " or ".join(f"{each}.missing()" for each in inputs)
     statements = f"""{DECLARED} entity e {{ r: {condition}; s: {used}; }}
         if e.r or e.s then {{ stop; }};"""
     return [(code, place) for code, place, _ in findings(statements)]
@@ -39,6 +44,20 @@ def decided(condition: str) -> list[tuple[str, str]]:
         "q.roll() > 179 deg",
         "(v > 5 for 1 sec) and v < 3",
         "v > 5 and v.abs() < 3",
+        "scan.nearest(-1.0, 1.0) > 0",
+        "scan.nearest(-1.0, 1.0) <= 0",
+        "scan.nearest(-1.0, 1.0) in (0, 5 m]",
+        "mode.abs() > 254",
+        "mode.rate() < -300",
+        "q.roll().abs() > 179 deg",
+        "odom.pose.pose.position.norm() > 1e300",
+        "v.age() > 0.5 sec",
+        "v.age() in [0.1 sec, 0.5 sec]",
+        "q.roll() > q.tilt()",
+        "q.tilt() > q.roll().abs()",
+        "joints.name.count() > joints.position.count()",
+        "mode < joints.name.count()",
+        "odom.pose.covariance.count() < mode.abs()",
     ],
 )
 def test_open_conditions(condition: str) -> None:
@@ -50,6 +69,40 @@ def test_open_conditions(condition: str) -> None:
     ("condition", "code", "place"),
     [
         ("mode > 255", "DRS308", "mode > 255"),
+        ("scan.nearest(-1.0, 1.0) < -0.4 m", "DRS308", "scan.nearest(-1.0, 1.0) < -0.4 m"),
+        ("scan.nearest(-1.0, 1.0) >= 0 m", "DRS309", "scan.nearest(-1.0, 1.0) >= 0 m"),
+        ("scan.nearest(-1.0, 1.0) in [-2, -1]", "DRS308", "scan.nearest(-1.0, 1.0) in [-2, -1]"),
+        (
+            "scan.nearest(-1.0, 1.0) not in [0, 2] or v > 1 and scan.nearest(-1.0, 1.0) < 0",
+            "DRS308",
+            "scan.nearest(-1.0, 1.0) < 0",
+        ),
+        ("mode.abs() > 255", "DRS308", "mode.abs() > 255"),
+        ("q.pitch().abs() > 91 deg", "DRS308", "q.pitch().abs() > 91 deg"),
+        ("q.tilt().abs() >= 0", "DRS309", "q.tilt().abs() >= 0"),
+        ("joints.name.count().abs() < 0", "DRS308", "joints.name.count().abs() < 0"),
+        ("joints.position.count() > -1", "DRS309", "joints.position.count() > -1"),
+        ("odom.pose.covariance.count() = 35", "DRS308", "odom.pose.covariance.count() = 35"),
+        ("bytes.data.max() > 255", "DRS308", "bytes.data.max() > 255"),
+        ("bytes.data.min() < 0", "DRS308", "bytes.data.min() < 0"),
+        (
+            "odom.pose.pose.position.norm() < -1 m",
+            "DRS308",
+            "odom.pose.pose.position.norm() < -1 m",
+        ),
+        ("v.age() >= 0 sec", "DRS309", "v.age() >= 0 sec"),
+        ("v.age() < 0 sec", "DRS308", "v.age() < 0 sec"),
+        ("v.age() > 2 sec and v.age() < 1 sec", "DRS308", "v.age() > 2 sec and v.age() < 1 sec"),
+        ("v.age() <= 2 sec or v.age() >= 1 sec", "DRS309", "v.age() <= 2 sec or v.age() >= 1 sec"),
+        ("v > v", "DRS308", "v > v"),
+        ("v <= v", "DRS309", "v <= v"),
+        ("q.tilt() < q.tilt()", "DRS308", "q.tilt() < q.tilt()"),
+        (
+            "odom.pose.covariance.count() <= odom.twist.covariance.count()",
+            "DRS309",
+            "odom.pose.covariance.count() <= odom.twist.covariance.count()",
+        ),
+        ("q.roll() > q.pitch() and mode > 255", "DRS308", "mode > 255"),
         ("300 < mode", "DRS308", "300 < mode"),
         ("mode <= 255", "DRS309", "mode <= 255"),
         ("mode in (254.5, 254.9)", "DRS308", "mode in (254.5, 254.9)"),

@@ -13,6 +13,9 @@ from fractions import Fraction
 from deros.interfaces.types import INTEGER_RANGES, FieldType
 from deros.monitor import ir
 
+Ends = tuple[Fraction | float, Fraction | float]
+"""The least and the greatest of some numbers."""
+
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
@@ -25,12 +28,29 @@ class Bounds:
     outside: bool = False
 
 
-def type_bounds(kind: FieldType) -> tuple[Fraction | float, Fraction | float]:
+def type_bounds(kind: FieldType) -> Ends:
     """Return the least and greatest value of a primitive type."""
     if isinstance(kind.base, str) and kind.base in INTEGER_RANGES:
         least, greatest = INTEGER_RANGES[kind.base]
         return Fraction(least), Fraction(greatest)
     return -math.inf, math.inf
+
+
+def bounds_of_absolute(operand: Ends) -> Ends:
+    """Return the least and greatest value that a number within ``operand`` has without its sign."""
+    lower, upper = operand
+    sizes = [each if each >= 0 else -each for each in operand]
+    return (Fraction(0) if lower <= 0 <= upper else min(sizes)), max(sizes)
+
+
+def bounds_of_length(*parts: Ends) -> Ends:
+    """Return the least and greatest length of a vector with its parts within ``parts``."""
+    greatest = [bounds_of_absolute(each)[1] for each in parts]
+    finite = [each for each in greatest if isinstance(each, Fraction)]
+    if len(finite) < len(greatest):
+        return Fraction(0), math.inf
+    # The monitor rounds thrice; the bound must not be below what it can compute.
+    return Fraction(0), Fraction(math.sqrt(sum(each * each for each in finite)) * (1 + 1e-15))
 
 
 def rounded(value: Fraction) -> float:

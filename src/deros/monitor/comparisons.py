@@ -8,9 +8,11 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Span
+from deros.interfaces.types import FieldType
 from deros.metamodels import rules
 from deros.monitor import ir
 from deros.monitor.bounds import Bounds, bounds_of, exact, integer_bound, rounded
+from deros.monitor.functions import FUNCTIONS
 from deros.monitor.resolved import (
     AgeOf,
     Fixed,
@@ -222,7 +224,7 @@ class Comparisons:
             return None
         if kind == "number":
             equality = operator in _EQUALITY
-            self._note(node, left, None, equality, is_float(right.type))
+            self._note(node, left, None, equality, is_float(right.type), (operator, right))
         return ir.Compare(left.expression, operator, self._scaled(right, left))
 
     def _scaled(self, value: Value, wanted: Value) -> ir.ValueExpression:
@@ -241,9 +243,10 @@ class Comparisons:
         bounds: Bounds | None,
         equality: bool,
         other_is_float: bool = False,
+        other: tuple[ir.Operator, Value] | None = None,
     ) -> None:
         floating = is_float(value.type) or other_is_float
-        self.found.append(ResolvedComparison(node, value, bounds, equality and floating))
+        self.found.append(ResolvedComparison(node, value, bounds, equality and floating, other))
 
     # Intervals ----------------------------------------------------------------------------------
 
@@ -352,7 +355,9 @@ class Comparisons:
         bound_ns = self._age_bound(bound, term.span)
         if bound_ns is None:
             return None
-        return ir.Age(self._scope.use(age.input), operator, bound_ns)
+        found = ir.Age(self._scope.use(age.input), operator, bound_ns)
+        self._note_age(node, age, bounds_of(operator, _seconds(bound_ns)))
+        return found
 
     def _age_within(
         self, node: rules.Membership, age: AgeOf, lower: Resolved, upper: Resolved
@@ -364,6 +369,10 @@ class Comparisons:
         if self._is_empty(node, Fraction(least), Fraction(greatest)):
             return None
         owner = self._scope.use(age.input)
+        ends = Bounds(
+            _seconds(least), _seconds(greatest), node.lower_closed, node.upper_closed, node.negated
+        )
+        self._note_age(node, age, ends)
         within = ir.And(
             (
                 ir.Age(owner, ">=" if node.lower_closed else ">", least),
@@ -371,6 +380,16 @@ class Comparisons:
             )
         )
         return ir.Not(within) if node.negated else within
+
+    def _note_age(
+        self, node: rules.Comparison | rules.Membership, age: AgeOf, bounds: Bounds
+    ) -> None:
+        """Let the checks of value ranges know an age as the number of seconds that it is."""
+        row = FUNCTIONS["age"]
+        expression = ir.Apply(row.name, (), self._scope.use(age.input))
+        unit = self._scope.units.parse(row.unit)
+        seconds = Value(expression, FieldType("float64"), unit, age.input, (Fraction(0), math.inf))
+        self._note(node, seconds, bounds, equality=False)
 
     def _age_bound(self, bound: Resolved, span: Span) -> int | None:
         if not isinstance(bound, Quantity):
@@ -383,3 +402,7 @@ class Comparisons:
             self._scope.fault(codes.INCOMPATIBLE_UNITS, message, span)
             return None
         return self._scope.nanoseconds(bound.in_unit(second), span)
+
+
+def _seconds(nanoseconds: int) -> Fraction:
+    return Fraction(nanoseconds, 10**9)

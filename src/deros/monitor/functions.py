@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 from deros.monitor import function_texts as texts
 from deros.monitor import function_values as values
+from deros.monitor.bounds import Ends, bounds_of_absolute, bounds_of_length
 
 
 class Argument(enum.Enum):
@@ -95,6 +96,8 @@ class Function:
             takes the value, the previous value and the nanoseconds between them.
         nan_is_unknown: whether a NaN in the first leaf makes the input unknown.
         bounds: least and greatest result, where the function itself bounds it.
+        bounds_from: of a function whose bounds follow from those of its leaves, how they do.
+        bearings: whether its parameters are the ends of a sector, counter-clockwise.
         guard: what a message must satisfy to count at all.
         python_call: what Python text calls with the arguments in order.
         python: the definition that Python text needs; empty for what Python has built in.
@@ -115,6 +118,8 @@ class Function:
     stateful: bool = False
     nan_is_unknown: bool = True
     bounds: tuple[float, float] = (-math.inf, math.inf)
+    bounds_from: Callable[..., Ends] | None = None
+    bearings: bool = False
     guard: Guard | None = None
     python_call: str = ""
     python: str = ""
@@ -171,6 +176,7 @@ _ROWS = (
         leaves=("x", "y", "z"),
         evaluate=values.norm,
         bounds=(0.0, math.inf),
+        bounds_from=bounds_of_length,
         python_call="vector_norm",
         python=texts.PYTHON["norm"],
         c_call="norm",
@@ -183,6 +189,7 @@ _ROWS = (
         UnitRule.SAME,
         evaluate=values.absolute,
         bounds=(0.0, math.inf),
+        bounds_from=bounds_of_absolute,
         python_call="abs",
         c_call="fabs",
     ),
@@ -221,6 +228,8 @@ _ROWS = (
         parameters=(("start", "rad"), ("end", "rad")),
         evaluate=values.nearest,
         nan_is_unknown=False,
+        bounds=(0.0, math.inf),
+        bearings=True,
         guard=Guard(
             (0, 3),
             values.scan_usable,
@@ -234,7 +243,9 @@ _ROWS = (
         c_call="nearest",
         c=texts.C["nearest"],
     ),
-    Function("age", Argument.INPUT, Result.DURATION, UnitRule.FIXED, unit="s"),
+    Function(
+        "age", Argument.INPUT, Result.DURATION, UnitRule.FIXED, unit="s", bounds=(0.0, math.inf)
+    ),
     Function("missing", Argument.INPUT, Result.BOOLEAN, UnitRule.NONE),
     Function("unknown", Argument.ANY, Result.BOOLEAN, UnitRule.NONE),
 )

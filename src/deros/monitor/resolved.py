@@ -155,12 +155,14 @@ class ResolvedComparison:
         operand: the value on its left side (a constant on the left has been moved to the right).
         bounds: which numbers satisfy it; ``None`` where no constant number decides that.
         exact: whether it asks floating-point values to be equal, or different.
+        other: of a comparison of two values, the operator and the value on the right.
     """
 
     condition: rules.Comparison | rules.Membership = field(compare=False)
     operand: Value
     bounds: Bounds | None
     exact: bool
+    other: tuple[ir.Operator, Value] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,8 @@ from deros.interfaces.units import Unit
 from deros.metamodels import rules
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.monitor import ir, shapes
-from deros.monitor.bounds import rounded, type_bounds
+from deros.monitor.bearings import check_sector
+from deros.monitor.bounds import Ends, rounded, type_bounds
 from deros.monitor.functions import FUNCTIONS, Argument, Function, Result, UnitRule
 from deros.monitor.resolved import (
     AgeOf,
@@ -205,6 +206,8 @@ class Terms:
             if isinstance(operand, Value) and family(operand.type) == "number":
                 return self._of_number(row, operand)
         elif isinstance(operand, Part) and shapes.fits(self._scope.store, row, operand.type):
+            if row.bearings:
+                check_sector(self._scope, call.arguments, parameters)
             found = self._of_part(row, operand, parameters)
             assert isinstance(found.expression, ir.Apply)
             self.functions.append(AppliedFunction(found.expression, operand.type, call.span))
@@ -259,20 +262,20 @@ class Terms:
         self._scope.fault(codes.INCOMPATIBLE_UNITS, message, term.span)
         return False
 
-    def _parameters(self, call: rules.Call, row: Function) -> tuple[ir.Const, ...] | None:
+    def _parameters(self, call: rules.Call, row: Function) -> tuple[Quantity, ...] | None:
         if len(call.arguments) != len(row.parameters):
             names = ", ".join(name for name, _ in row.parameters)
             given = f"{len(call.arguments)} given"
             message = f"'{row.name}({names})' takes {counted(len(row.parameters))}, {given}"
             self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span)
             return None
-        found: list[ir.Const] = []
+        found: list[Quantity] = []
         for argument, (name, unit) in zip(call.arguments, row.parameters, strict=True):
             value = self.resolve(argument)
             wanted = self._scope.units.parse(unit)
             if isinstance(value, Quantity) and wanted is not None:
                 if value.unit is None or self.compatible(value.unit, wanted, argument):
-                    found.append(ir.Const(rounded(value.in_unit(wanted))))
+                    found.append(value)
             elif value is not None:
                 message = f"'{name}' of '{row.name}()' must be a constant number"
                 self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, argument.span)
@@ -343,25 +346,30 @@ class Terms:
         applied = ir.Apply(row.name, (operand.expression,), owner, state)
         kind = _RESULT_TYPES.get(row.result, operand.type)
         unit = self._unit(row, operand.unit)
-        return Value(applied, kind, unit, operand.input, _bounds(row, kind))
+        return Value(applied, kind, unit, operand.input, _bounds(row, kind, operand.bounds))
 
-    def _of_part(self, row: Function, part: Part, parameters: tuple[ir.Const, ...]) -> Value:
+    def _of_part(self, row: Function, part: Part, parameters: tuple[Quantity, ...]) -> Value:
         arguments: list[ir.ValueExpression] = []
+        leaf_bounds: list[Ends] = []
         for name in row.leaves:
             path = (*part.path, name) if name else part.path
             kind = shapes.leaf_type(self._scope.store, part.type, name)
             if kind is None:  # a plane vector has no z
                 arguments.append(ir.Const(0.0))
                 continue
+            leaf_bounds.append(type_bounds(kind))
             # Only the beams of a scan may be NaN; its angles and limits may not.
             nan_is_unknown = row.nan_is_unknown or not kind.is_array
             arguments.append(self._scope.read(part.input, path, kind, nan_is_unknown))
         owner = self._scope.use(part.input)
-        applied = ir.Apply(row.name, (*arguments, *parameters), owner)
+        for parameter, (_, wanted) in zip(parameters, row.parameters, strict=True):
+            exact = parameter.in_unit(self._scope.units.parse(wanted))
+            arguments.append(ir.Const(rounded(exact)))
+        applied = ir.Apply(row.name, tuple(arguments), owner)
         first = (*part.path, row.leaves[0]) if row.leaves[0] else part.path
         unit = self._unit(row, self._scope.unit_of(part.input.topic, part.input.type, first))
         kind = _RESULT_TYPES.get(row.result, part.type.element)
-        bounds = _bounds(row, kind)
+        bounds = _bounds(row, kind, *leaf_bounds)
         if row.argument is Argument.ARRAY and part.type.size is not None:
             least = part.type.size if part.type.array == "fixed" else 0
             bounds = Fraction(least), Fraction(part.type.size)
@@ -379,8 +387,10 @@ class Terms:
                 return self._scope.units.parse("1")
 
 
-def _bounds(row: Function, kind: FieldType) -> tuple[Fraction | float, Fraction | float]:
+def _bounds(row: Function, kind: FieldType, *arguments: Ends) -> Ends:
     """Return what bounds the result: the function where it does, else the type."""
+    if row.bounds_from is not None:
+        return row.bounds_from(*arguments)
     if row.bounds == (-math.inf, math.inf):
         return type_bounds(kind)
     least, greatest = row.bounds

@@ -13,6 +13,7 @@ from deros.metamodels.common import Name
 from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, resolve_name
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Gate, GateLine, Rules
+from deros.monitor import ir
 from deros.monitor.build import BuildResult
 from deros.monitor.gates import gate_node_name, is_gate_node
 from deros.monitor.topics import KnownTopic, SystemTopics

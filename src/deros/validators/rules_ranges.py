@@ -4,20 +4,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from decimal import Decimal
 from fractions import Fraction
 
 from deros import codes
-from deros.diagnostics import Diagnostic, report
-from deros.metamodels.rules import And, Comparison, Condition, For, Membership, Not, Or, Rules
-from deros.monitor.ir import ValueExpression
+from deros.diagnostics import Code, Diagnostic, report
+from deros.interfaces.units import Unit
+from deros.metamodels.rules import (
+    And,
+    Comparison,
+    Condition,
+    For,
+    Membership,
+    NamePath,
+    Negative,
+    Not,
+    Number,
+    Or,
+    Rules,
+    Term,
+)
+from deros.monitor.bounds import Ends
+from deros.monitor.ir import Operator, ValueExpression
 from deros.monitor.resolved import ResolvedComparison, Value
-from deros.validators.rules_numbers import Number, NumberSet
-from deros.validators.rules_walk import rules_of
+from deros.validators.rules_numbers import Number as Bound
+from deros.validators.rules_numbers import NumberSet
+from deros.validators.rules_walk import rules_of, terms_of
+
+_ANGLE = (("rad", Fraction(1)),)
 
 
 def check_ranges(rules: Rules, comparisons: Sequence[ResolvedComparison]) -> Iterator[Diagnostic]:
     """Yield what is never or always true, alone or together, and float equalities."""
-    ranges = _Ranges(comparisons)
+    ranges = _Ranges(rules, comparisons)
     for _, rule in rules_of(rules):
         ranges.solve(rule.condition)
     yield from ranges.findings
@@ -50,8 +69,9 @@ class _Solution:
 class _Ranges:
     """Solves conditions from the inside out, and reports a decided one once, where it is."""
 
-    def __init__(self, comparisons: Sequence[ResolvedComparison]) -> None:
+    def __init__(self, rules: Rules, comparisons: Sequence[ResolvedComparison]) -> None:
         self.findings: list[Diagnostic] = []
+        self._constants = {each.name.text: each.value for each in rules.constants}
         # The models are trees that live as long as this: identity tells equal comparisons apart.
         self._comparisons = {id(each.condition): each for each in comparisons}
 
@@ -74,6 +94,8 @@ class _Ranges:
     def _alone(self, condition: Comparison | Membership) -> _Solution | None:
         comparison = self._comparisons.get(id(condition))
         if comparison is None or comparison.bounds is None:
+            if comparison is not None and comparison.other is not None:
+                self._between(condition, comparison.operand, *comparison.other)
             return None
         bounds = comparison.bounds
         values = NumberSet.between(
@@ -87,6 +109,20 @@ class _Ranges:
             values = values.complement()
         found = _Solution(comparison, NumberSet.between(*comparison.operand.bounds) & values)
         return self._undecided(found, condition, f"'{condition.span.text}'", why, why)
+
+    def _between(self, condition: Condition, left: Value, operator: Operator, right: Value) -> None:
+        """Report a comparison of two values that the bounds of both decide."""
+        if left.expression == right.expression:
+            verdict, why = operator in ("=", "<=", ">="), "both sides are the same value"
+        else:
+            ends = _in_unit(right, left.unit)
+            decided = _decided(operator, left.bounds, ends)
+            if decided is None:
+                return
+            verdict, why = decided, f"{_range_of(left)}, the other one {_span_of(ends, left.unit)}"
+        code, word = (codes.ALWAYS_TRUE, "always") if verdict else (codes.NEVER_TRUE, "never")
+        message = f"'{condition.span.text}' is {word} true: {why}"
+        self.findings.append(report(code, message, condition.span))
 
     def _together(self, condition: And | Or) -> _Solution | None:
         groups: dict[ValueExpression, _Solution] = {}
@@ -126,24 +162,81 @@ class _Ranges:
             satisfying, others = satisfying.of_integers(), others.of_integers()
         if satisfying.is_empty:
             message = f"{what} is never true: {why_never}"
-            self.findings.append(report(codes.NEVER_TRUE, message, condition.span))
+            self.findings.append(self._finding(codes.NEVER_TRUE, message, condition, found))
             return None
         if others.is_empty:
             message = f"{what} is always true: {why_always}"
-            self.findings.append(report(codes.ALWAYS_TRUE, message, condition.span))
+            self.findings.append(self._finding(codes.ALWAYS_TRUE, message, condition, found))
             return None
         return found
 
+    def _finding(
+        self, code: Code, message: str, condition: Condition, found: _Solution
+    ) -> Diagnostic:
+        """Return the finding, with a hint where degrees were probably meant."""
+        unit = found.comparison.operand.unit
+        hint = ""
+        if unit is not None and unit.exponents == _ANGLE and unit.factor == 1:
+            plain = (self._plain(term) for term in terms_of(condition))
+            number = next((each for each in plain if each is not None), None)
+            if number is not None and abs(number) > math.pi:
+                hint = f"a number without a unit is in rad here: write '{number} deg'"
+        return report(code, message, condition.span, hint)
+
+    def _plain(self, term: Term) -> Decimal | None:
+        """Return the number that a term is, or a constant stands for, if it has no unit."""
+        seen: set[str] = set()
+        while isinstance(term, NamePath) and term.name.text in self._constants:
+            if term.path or term.name.text in seen:
+                return None
+            seen.add(term.name.text)
+            term = self._constants[term.name.text]
+        if isinstance(term, Negative):
+            number = self._plain(term.operand)
+            return None if number is None else -number
+        return term.value if isinstance(term, Number) and term.unit is None else None
+
+
+def _in_unit(value: Value, wanted: Unit | None) -> Ends:
+    """Return the bounds of a value in a unit that it converts to."""
+    if value.unit is None or wanted is None:
+        return value.bounds
+    factor = value.unit.factor / wanted.factor
+    offset = (value.unit.offset - wanted.offset) / wanted.factor
+    least, greatest = (
+        each * factor + offset if isinstance(each, Fraction) else each for each in value.bounds
+    )
+    return least, greatest
+
+
+def _decided(operator: Operator, left: Ends, right: Ends) -> bool | None:
+    """Return what a comparison always is for numbers between these ends, if it is always one."""
+    if operator in (">", ">="):
+        left, right = right, left
+        operator = "<" if operator == ">" else "<="
+    apart = left[0] > right[1] or left[1] < right[0]
+    match operator:
+        case "<":
+            return False if left[0] >= right[1] else True if left[1] < right[0] else None
+        case "<=":
+            return False if left[0] > right[1] else True if left[1] <= right[0] else None
+        case _:
+            return (operator == "!=") if apart else None
+
 
 def _range_of(operand: Value) -> str:
-    unit = f" {operand.unit}" if operand.unit and operand.unit.text != "1" else ""
-    least, greatest = operand.bounds
+    return f"the value is {_span_of(operand.bounds, operand.unit)}"
+
+
+def _span_of(ends: Ends, unit: Unit | None) -> str:
+    least, greatest = ends
+    shown = f" {unit}" if unit and unit.text != "1" else ""
     if greatest == math.inf:
-        return f"the value is {_shown(least)}{unit} or more"
-    return f"the value is from {_shown(least)} to {_shown(greatest)}{unit}"
+        return f"{_shown(least)}{shown} or more"
+    return f"from {_shown(least)} to {_shown(greatest)}{shown}"
 
 
-def _shown(number: Number) -> str:
+def _shown(number: Bound) -> str:
     if isinstance(number, Fraction) and number.denominator == 1:
         return str(number)
     return f"{float(number):.6g}"
