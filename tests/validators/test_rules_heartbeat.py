@@ -164,9 +164,12 @@ def test_timeout_of_an_input_on_another_safety_node(topic: str) -> None:
 
 def test_timeout_of_an_input_on_diagnostics() -> None:
     """They come at a rate of their own; other publishers of the topic may fill the gaps."""
-    topics = TOPICS.replace("external topic /diagnostics", "topic /diagnostics")
-    rules = _watching("/diagnostics.status", "1 sec")
-    (finding,) = _findings(_safety() + _gate(), rules, topics)
+    topics = TOPICS + "  topic /state_of_other\n  external topic /other_stop\n"
+    rules = _watching("/state_of_other.status", "1 sec")
+    wired = "wirings\n  connect /diagnostics to /state_of_other\n  connect /stop to /other_stop\n"
+    (finding,) = _findings(_safety() + _gate() + _safety("other") + wired, rules, topics)
     assert "diagnostics_freq" in finding.hint
-    assert _findings(_safety(diagnostics_freq=3.0) + _gate(), rules, topics) == []
-    assert _findings(_safety() + _gate(), rules, TOPICS) == []
+    fast = _safety("other", diagnostics_freq=3.0) + wired
+    assert _findings(_safety() + _gate() + fast, rules, topics) == []
+    fed = topics.replace("topic /state_of_other", "external topic /state_of_other")
+    assert _findings(_safety() + _gate() + _safety("other") + wired, rules, fed) == []
