@@ -8,6 +8,7 @@ objects, and the command line or an editor renders them. The codes are declared 
 from __future__ import annotations
 
 import enum
+import re
 from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -15,6 +16,10 @@ from functools import cached_property
 
 _LONGEST_TEXT = 1000
 _END = 300
+_WORD = re.compile(r"\w+")
+
+ANY_NAME = "*"
+"""Among the lost words of a source: a declaration without a name, which may be of any name."""
 
 
 class Severity(enum.Enum):
@@ -27,11 +32,20 @@ class Severity(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """A kind of finding: its stable name (``DRS201``), a short title and its severity."""
+    """A kind of finding.
+
+    Attributes:
+        name: its stable name, such as ``DRS201``.
+        title: what it is about, in a few words.
+        severity: how bad it is.
+        tells_absence: whether it says that something is missing, which may be in a statement that
+            could not be read.
+    """
 
     name: str
     title: str
     severity: Severity
+    tells_absence: bool = False
 
 
 class SourceFile:
@@ -40,12 +54,27 @@ class SourceFile:
     Identity is what counts: two reads of one path are two sources. Positions in it are character
     offsets; lines and columns (both from 1, columns in characters) are worked out on demand,
     because a model has many more spans than diagnostics.
+
+    Attributes:
+        path: as the user named the file.
+        text: all of it, also what could not be read.
+        lost: the words of the statements that could not be read, see :meth:`mentions_lost`.
     """
 
     def __init__(self, path: str, text: str) -> None:
         """Hold ``text`` read from ``path``."""
         self.path = path
         self.text = text
+        self.lost: frozenset[str] = frozenset()
+
+    def mentions_lost(self, name: str) -> bool:
+        """Tell whether a statement that could not be read mentions ``name``.
+
+        Such a statement may declare the name, use it or connect it: that something seems to be
+        missing there follows from the syntax error alone, and is not reported a second time. Of a
+        graph name its last part counts.
+        """
+        return bool(self.lost) and (last_word(name) in self.lost or ANY_NAME in self.lost)
 
     @cached_property
     def _line_starts(self) -> list[int]:
@@ -120,8 +149,19 @@ class Related:
 
 
 @dataclass(frozen=True, slots=True)
+class Fix:
+    """What the hint of a diagnostic asks for, as an edit: ``text`` in place of ``span``."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding: what is wrong where, what was probably meant, and what to do."""
+    """One finding: what is wrong where, what was probably meant, and what to do.
+
+    Where the hint asks for one certain edit, ``fix`` is that edit, for tools that apply it.
+    """
 
     code: Code
     message: str
@@ -129,6 +169,7 @@ class Diagnostic:
     hint: str = ""
     related: tuple[Related, ...] = ()
     severity: Severity = field(default=Severity.ERROR)
+    fix: Fix | None = None
 
     @property
     def is_error(self) -> bool:
@@ -142,9 +183,16 @@ def report(
     span: Span,
     hint: str = "",
     related: tuple[Related, ...] = (),
+    fix: Fix | None = None,
 ) -> Diagnostic:
     """Make a diagnostic with the severity that its code declares, short enough to be read."""
-    return Diagnostic(code, _readable(message), span, _readable(hint), related, code.severity)
+    return Diagnostic(code, _readable(message), span, _readable(hint), related, code.severity, fix)
+
+
+def last_word(name: str) -> str:
+    """Return the last word of a name: of ``/front/scan`` or ``arm.scan`` it is ``scan``."""
+    words = _WORD.findall(name)
+    return words[-1] if words else name
 
 
 def _readable(text: str) -> str:

@@ -9,7 +9,7 @@ import pytest
 
 from deros import codes
 from deros.cli import formats, render
-from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
+from deros.diagnostics import Diagnostic, Fix, Related, SourceFile, Span, report
 
 SOURCE = SourceFile("models/a b.system", "system Demo\n\tnode café : bäse, 100%\n")
 
@@ -98,6 +98,7 @@ def test_json_objects_have_exactly_the_documented_keys() -> None:
         "code": "DRS203",
         "message": "no import defines 'bäse'",
         "hint": "did you mean 'base'?",
+        "fix": None,
     }
     assert (second["severity"], second["hint"]) == ("warning", "")
     assert json.loads(formats.render_json([])) == []
@@ -141,3 +142,31 @@ def test_github_annotations_are_escaped() -> None:
 def test_summary_counts(findings: list[Diagnostic], expected: str) -> None:
     """The closing line counts what was found, worst first."""
     assert render.summary(findings, 3) == expected
+
+
+def test_a_fix_is_an_edit_for_tools() -> None:
+    """JSON and SARIF give the place and the new text of a fix; text shows its hint alone."""
+    fix = Fix(_span("bäse"), "base")
+    hint = "did you mean 'base'?"
+    finding = report(codes.UNKNOWN_NODE_TYPE, "unknown", _span("bäse"), hint, fix=fix)
+    (found,) = json.loads(formats.render_json([finding]))
+    assert found["fix"] == {
+        "line": 2,
+        "column": 14,
+        "end_line": 2,
+        "end_column": 18,
+        "text": "base",
+    }
+    (result,) = json.loads(formats.render_sarif([finding]))["runs"][0]["results"]
+    (edit,) = result["fixes"]
+    assert edit["description"] == {"text": hint}
+    (change,) = edit["artifactChanges"]
+    assert change["artifactLocation"] == {"uri": "models/a%20b.system"}
+    (replacement,) = change["replacements"]
+    assert replacement["insertedContent"] == {"text": "base"}
+    assert replacement["deletedRegion"] == {
+        "startLine": 2,
+        "startColumn": 14,
+        "endLine": 2,
+        "endColumn": 18,
+    }

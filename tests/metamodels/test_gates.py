@@ -247,7 +247,10 @@ def test_optional_behaviour_needs_a_name() -> None:
     ("text", "message"),
     [
         ("gate a -> b { }", "found '{' where ':' is expected"),
-        ("gate a b : x.Y rate 1 Hz { }", "found 'b' where '->' is expected"),
+        (
+            "gate a b : x.Y rate 1 Hz { lost input for 1 sec: zero; }",
+            "found 'b' where '->' is expected",
+        ),
         ("gate a -> b : x.Y { }", "found '{' where 'rate' is expected"),
         ("gate a -> b : x.Y rate 1 Hz { }", "found '}' where 'lost', a name or 'resume' is"),
         ("gate a -> b : x.Y rate 1 Hz { s: zero until; }", "found ';' where 'reset' or ':' is"),

@@ -10,7 +10,7 @@ from urllib.parse import quote
 from deros import __version__
 from deros.cli.baseline import Compared, Entry, fingerprints
 from deros.codes import ABSENT_FINDING, ALL_CODES
-from deros.diagnostics import Diagnostic, Severity, Span, encodable, in_file_order
+from deros.diagnostics import Diagnostic, Fix, Severity, Span, encodable, in_file_order
 from deros.validators.allowances import Allowance, Allowed
 
 _SARIF_LEVEL = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
@@ -28,7 +28,7 @@ def render_json(diagnostics: Sequence[Diagnostic], allowed: Sequence[Allowed] = 
 
 
 def _json_object(diagnostic: Diagnostic) -> dict[str, Any]:
-    span = diagnostic.span
+    span, fix = diagnostic.span, diagnostic.fix
     return {
         "file": encodable(span.file),
         "line": span.line,
@@ -39,6 +39,15 @@ def _json_object(diagnostic: Diagnostic) -> dict[str, Any]:
         "code": diagnostic.code.name,
         "message": diagnostic.message,
         "hint": diagnostic.hint,
+        "fix": None
+        if fix is None
+        else {
+            "line": fix.span.line,
+            "column": fix.span.column,
+            "end_line": fix.span.end_line,
+            "end_column": fix.span.end_column,
+            "text": fix.text,
+        },
     }
 
 
@@ -118,6 +127,8 @@ def _sarif_result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
             }
             for position, related in enumerate(diagnostic.related)
         ]
+    if diagnostic.fix is not None:
+        result["fixes"] = [_sarif_fix(diagnostic.fix, diagnostic.hint)]
     return result
 
 
@@ -138,6 +149,17 @@ def _sarif_absent(entry: Entry) -> dict[str, Any]:
         "locations": [{"physicalLocation": {"artifactLocation": {"uri": quote(entry.file)}}}],
         "partialFingerprints": {"deros/v1": entry.fingerprint},
         "baselineState": "absent",
+    }
+
+
+def _sarif_fix(fix: Fix, hint: str) -> dict[str, Any]:
+    place = _sarif_location(fix.span)
+    replacement = {"deletedRegion": place["region"], "insertedContent": {"text": fix.text}}
+    return {
+        "description": {"text": hint},
+        "artifactChanges": [
+            {"artifactLocation": place["artifactLocation"], "replacements": [replacement]}
+        ],
     }
 
 

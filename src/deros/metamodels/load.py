@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from textx.exceptions import TextXSyntaxError
-
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
 from deros.metamodels.convert_node import NodeConverter
@@ -20,12 +18,11 @@ from deros.metamodels.convert_rules import RulesConverter
 from deros.metamodels.convert_system import SystemConverter
 from deros.metamodels.imports import find_files, listed_folders, shown_path
 from deros.metamodels.languages import LANGUAGES, Language, language_of, quick_metamodel
-from deros.metamodels.matching import Token
+from deros.metamodels.matching import DoesNotParse, Token
 from deros.metamodels.node import NodeType
 from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, too_deep
 from deros.metamodels.rules import Rules
 from deros.metamodels.scoping import FileIndex, attach_index
-from deros.metamodels.syntax import explain
 from deros.metamodels.system import Import, System
 
 _FRAMES_TO_PARSE = 20_000
@@ -39,7 +36,7 @@ class LoadedFile:
         path: as the user named it, or as the import that led to it resolves.
         language: ``None`` when the suffix belongs to none of the three.
         source: ``None`` when the file could not be read.
-        model: ``None`` when there is a syntax error, or nothing could be read.
+        model: what parses of it; ``None`` when its head does not, or nothing could be read.
         diagnostics: what is wrong with reading, syntax and references of this file alone.
     """
 
@@ -128,9 +125,8 @@ class Repository:
                 model = _LOADERS[language](loading)
         except Unreadable as unreadable:
             return LoadedFile(source.path, language, source, None, (unreadable.diagnostic,))
-        except TextXSyntaxError as error:
-            found = explain(error, source)
-            return LoadedFile(source.path, language, source, None, (found,))
+        except _NoModel:
+            model = None
         return LoadedFile(source.path, language, source, model, tuple(loading.diagnostics))
 
     def find(
@@ -185,6 +181,7 @@ class _Loading:
                 for each in part.imports
             ]
             imports.extend(self._import(each, index, (".rnd", ".system")) for each in statements)
+            index.complete &= not self._source.mentions_lost("import")
             attach_index(model, index)
 
         model = self._parse("rossystem", follow_imports)
@@ -210,10 +207,23 @@ class _Loading:
         return result
 
     def _parse(self, language: Language, before_references: Any = None) -> Any:
+        """Parse the text, if need be without the statements that have syntax errors.
+
+        Raises:
+            _NoModel: not even the head of the file parses.
+        """
         text = prepare(self._source)
-        return quick_metamodel(language).model_from_str(
-            text, pre_ref_resolution_callback=before_references
-        )
+        try:
+            return _model(language, text, before_references)
+        except DoesNotParse:
+            pass
+        from deros.metamodels.recovery import recover
+
+        recovered = recover(self._source, text, language)
+        self.diagnostics += recovered.diagnostics
+        if recovered.text is None:
+            raise _NoModel
+        return _model(language, recovered.text, before_references)
 
     def _import(self, statement: Any, index: FileIndex, suffixes: tuple[str, ...]) -> Import:
         """Follow one import or use; what the file defines goes into ``index``."""
@@ -239,6 +249,16 @@ class _Loading:
                 index.complete = False
         whole = Span(self._source, statement._tx_position, statement._tx_position_end)
         return Import(pattern, tuple(found), whole)
+
+
+class _NoModel(Exception):  # noqa: N818 - the findings say what is wrong
+    """A file has no head that could be read."""
+
+
+def _model(language: Language, text: str, before_references: Any) -> Any:
+    return quick_metamodel(language).model_from_str(
+        text, pre_ref_resolution_callback=before_references
+    )
 
 
 _LOADERS: dict[Language, Any] = {

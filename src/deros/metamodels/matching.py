@@ -3,8 +3,8 @@
 Arpeggio, textX's parser, raises an exception for every alternative that does not match, and looks
 for a comment before every token. It takes three and a half times as long as the functions made here
 from the very same parser expressions. They yield the very same parse tree, except that the value of
-a token is a :class:`Token`, which knows its place. Where they find no match, textX's own parser
-runs after all, because only it can tell what is wrong.
+a token is a :class:`Token`, which knows its place. Where they find no match,
+:mod:`deros.metamodels.recovery` says what is wrong.
 
 Prepared text is parsed, see :func:`deros.metamodels.reading.prepare`: its comments are blank.
 """
@@ -30,6 +30,8 @@ from arpeggio import (
     ZeroOrMore,
 )
 
+from deros.metamodels.repaired import RepairedText, restore_places
+
 Matcher = Callable[[str, int, list[Any]], int]
 """Matches a text at a position that is no blank and appends to the list what it makes of it.
 
@@ -38,6 +40,10 @@ to be thrown away.
 """
 
 _skip_blanks = re.compile(r"[\t\n\r ]*").match
+
+
+class DoesNotParse(Exception):  # noqa: N818 - it is the answer of a parser
+    """A text is none of the language."""
 
 
 class Token(str):
@@ -78,7 +84,7 @@ class _Branch(NonTerminal):  # type: ignore[misc]
 
 
 def make_quick(metamodel: Any) -> None:
-    """Let the parsers of a textX metamodel run by matchers, and fall back to textX's way."""
+    """Let the parsers of a textX metamodel run by matchers; they raise :class:`DoesNotParse`."""
     blueprint = metamodel._parser_blueprint
     match = _Compiler().matcher(blueprint.parser_model)
 
@@ -87,8 +93,10 @@ def make_quick(metamodel: Any) -> None:
             text = self.input
             found: list[Any] = []
             if match(text, _skip_blanks(text).end(), found) >= 0:  # type: ignore[union-attr]
+                if isinstance(text, RepairedText) and text.edits:
+                    restore_places(found[0], text)
                 return found[0]
-            return super()._parse()
+            raise DoesNotParse
 
     blueprint.__class__ = QuickParser
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Iterable
 from typing import Any
 
-from arpeggio import EndOfFile, NoMatch
-from textx.exceptions import TextXSyntaxError
+from arpeggio import EndOfFile
 
 from deros import codes
-from deros.diagnostics import Diagnostic, SourceFile, Span, report
+from deros.diagnostics import Diagnostic, Fix, SourceFile, Span, report
 from deros.interfaces.names import did_you_mean, near
+from deros.metamodels.grammar import words_of
 
 _WORDS = {
     "Name": "a name",
@@ -51,31 +52,47 @@ _FOUND = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"|[\w/~]+|.', re.DOTALL)
 _MOST_NAMED = 4
 
 
-def explain(error: TextXSyntaxError, source: SourceFile) -> Diagnostic:
-    """Turn textX's syntax error into a diagnostic at the same place."""
-    cause = error.__cause__
-    position = cause.position if isinstance(cause, NoMatch) else len(source.text)
-    expected = list(dict.fromkeys(in_words(rule) for rule in error.expected_rules or ()))
+def found_at(text: str, position: int) -> str:
+    """Return the token that a text has at a position, as a reader would take it; "" at its end."""
+    found = _FOUND.match(text, position)
+    return found.group() if found is not None else ""
+
+
+def explain(
+    source: SourceFile, position: int, rules: Iterable[Any], hint: str = "", fix: Fix | None = None
+) -> Diagnostic:
+    """Say what stands at a position where only what ``rules`` match could stand.
+
+    Args:
+        source: the file.
+        position: of the first character that fits nowhere.
+        rules: the tokens of the grammar that would have fitted.
+        hint: what to do, if that is known; else the keywords that nearly match are offered.
+        fix: the hint as an edit.
+    """
+    expected = list(dict.fromkeys(in_words(rule) for rule in rules))
     if len(expected) > 1 and "';'" in expected:
         expected.remove("';'")
-    found = _FOUND.match(source.text, position)
-    if found is None:
+    text = found_at(source.text, position)
+    if not text:
         end = len(source.text.rstrip())
-        return _at_the_end(Span(source, end, end), expected)
-    span = Span(source, found.start(), found.end())
-    text = found.group()
+        return _at_the_end(Span(source, end, end), expected, hint, fix)
+    span = Span(source, position, position + len(text))
     if text == '"':
         message = "this text is not closed"
         return report(codes.SYNTAX_ERROR, message, span, "close it with '\"' on the same line")
     words = [word[1:-1] for word in expected if word.startswith("'")]
-    hint = did_you_mean(near(text, words)) if text[0].isalpha() else ""
-    return report(codes.SYNTAX_ERROR, f"{_described(text)} {_missing(expected)}", span, hint)
+    if not hint and text[0].isalpha():
+        hint = did_you_mean(near(text, words))
+    message = f"{_described(text)} {_missing(expected)}"
+    return report(codes.SYNTAX_ERROR, message, span, hint, fix=fix)
 
 
-def _at_the_end(span: Span, expected: list[str]) -> Diagnostic:
+def _at_the_end(span: Span, expected: list[str], hint: str, fix: Fix | None) -> Diagnostic:
     if not span.source.text.strip():
         return report(codes.SYNTAX_ERROR, "the file holds no model: it is empty", span)
-    return report(codes.SYNTAX_ERROR, f"the file ends {_missing(expected)}", span)
+    message = f"the file ends {_missing(expected)}"
+    return report(codes.SYNTAX_ERROR, message, span, hint, fix=fix)
 
 
 def _missing(expected: list[str]) -> str:
@@ -106,4 +123,7 @@ def in_words(rule: Any) -> str:
     if isinstance(rule, EndOfFile):
         return "the end of the file"
     words = _WORDS.get(rule.rule_name)
-    return words if words is not None else f"'{getattr(rule, 'to_match', rule.rule_name)}'"
+    if words is not None:
+        return words
+    literals = words_of(rule)
+    return f"'{literals[0] if len(literals) == 1 else rule.to_match}'"

@@ -43,7 +43,9 @@ class Scope:
         self._anonymous: dict[tuple[str, tuple[str | int, ...]], DeclaredInput | None] = {}
         # A system that could not be loaded has been reported by the loader; what it would have told
         # is then not missing here.
-        self.systems_known = all(use.system is not None for use in program.uses)
+        self.systems_known = all(
+            use.system is not None for use in program.uses
+        ) and not program.source.mentions_lost("use")
         self._uses = program.uses
         systems = [use.system for use in program.uses if use.system]
         self.topics = SystemTopics(systems, self.systems_known)

@@ -12,6 +12,7 @@ from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
 from deros.validators.allowances import Allowed, ProjectAllowance, sort_out
+from deros.validators.consequences import without_consequences
 
 
 class Checked(NamedTuple):
@@ -58,13 +59,14 @@ def check_all(
         whole = id(each) in named_files or bool(watchers)
         findings.extend(_check_model(each.model, whole, watchers, store))
     sorted_out = sort_out(in_file_order(findings), loaded, named, project)
-    return Checked(in_file_order(sorted_out.findings), list(sorted_out.allowed))
+    causes = without_consequences(sorted_out.findings, loaded)
+    return Checked(in_file_order(causes), list(sorted_out.allowed))
 
 
 def check_file(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
     """Return the findings of one file by itself, in file order, without those of its imports."""
     findings = in_file_order([*loaded.diagnostics, *_check_model(loaded.model, False, [], store)])
-    return list(sort_out(findings, [loaded], ()).findings)
+    return list(without_consequences(sort_out(findings, [loaded], ()).findings, [loaded]))
 
 
 def _watching_rules(loaded: Iterable[LoadedFile]) -> dict[int, list[Rules]]:

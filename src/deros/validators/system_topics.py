@@ -345,6 +345,8 @@ def _misspelling(read: _Channel, matches: list[_Channel]) -> Diagnostic:
 
 def _unwired(flat: FlatSystem, by_vertex: dict[Vertex, _Channel]) -> Iterator[Diagnostic]:
     for node in flat.nodes:
+        if _has_unknown_wirings(node):
+            continue  # one of those may be meant for the port
         for port in node.ports:
             if port.wiring is not None or port.port.kind not in _SEEKS_A_PARTNER:
                 continue
@@ -365,6 +367,11 @@ def _in_wirings(node: FlatNode, port: FlatPort) -> str:
     """Return how a ``connect`` names a port: with its kind where others have its name."""
     alike = sum(other.port.name == port.port.name for other in node.ports)
     return f"{port.port.kind.word} {port.port.name}" if alike > 1 else port.port.name
+
+
+def _has_unknown_wirings(node: FlatNode) -> bool:
+    known = sum(port.wiring is not None for port in node.ports) + len(node.untyped)
+    return len(node.instance.wirings) > known
 
 
 def _unwired_hint(name: str, topic: str, word: str, by_vertex: dict[Vertex, _Channel]) -> str:

@@ -1,0 +1,311 @@
+"""Edits that mend a statement: habits of other languages, misspelt keywords, missing signs.
+
+Nothing is guessed. An edit is offered when the statement parses with it (a habit, which has its own
+words: when the parse gets past it), and it is the only one of its kind that does.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+
+from arpeggio import ParsingExpression
+
+from deros.interfaces.names import did_you_mean, near
+from deros.metamodels.grammar import literal_of, words_of
+from deros.metamodels.habits import habits
+from deros.metamodels.languages import Language
+from deros.metamodels.recognising import Attempt, Place, Recogniser, Trace
+from deros.metamodels.repaired import RepairedText
+from deros.metamodels.syntax import found_at
+
+_LARGEST_TO_CLOSE = 50_000
+"""Of a larger block the missing brace is not looked for: it is read again as a whole for that."""
+
+_MOST_BLOCKS = 4
+"""How many of the blocks around a fault are tried to close."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A place that nothing matches.
+
+    Attributes:
+        text: the text with all edits so far.
+        position: of the first character that fits nowhere.
+        expected: the tokens that would fit.
+        place: the broken statement, ``None`` for the head of the file.
+        end: where the next statement begins.
+    """
+
+    text: RepairedText
+    position: int
+    expected: tuple[ParsingExpression, ...]
+    place: Place | None
+    end: int
+    language: Language
+    recogniser: Recogniser
+
+    @property
+    def found(self) -> str:
+        """The token at the position, empty at the end of the text."""
+        return found_at(self.text, self.position)
+
+    @property
+    def start(self) -> int:
+        """Where the broken statement begins."""
+        return self.place.start if self.place is not None else 0
+
+    def is_mended_by(self, start: int, end: int, by: str) -> bool:
+        """Tell whether the statement, or its head, is whole after an edit."""
+        return any(self._is_whole(place, start, end, by) for place in self._candidates)
+
+    @property
+    def _candidates(self) -> list[Place | None]:
+        """The broken statement; where none has begun yet, one of any list that may go on here."""
+        place = self.place
+        if place is None or place.start != self.position:
+            return [place]
+        found: dict[int, Place | None] = {}
+        while place is not None:
+            found.setdefault(place.list.number, Place(place.outer, place.list, self.position))
+            place = place.outer
+        return list(found.values())
+
+    def _is_whole(self, place: Place | None, start: int, end: int, by: str) -> bool:
+        text, attempt, longer = self._attempt(start, end, by, place)
+        behind = self.position + max(longer, 0)
+        if attempt.end > behind and (
+            attempt.end >= self.end + longer or self._goes_on(text, attempt.end, by)
+        ):
+            return True
+        return attempt.head_matches and attempt.reached > behind
+
+    def opens_statement_by(self, by: str) -> bool:
+        """Tell whether what was found is the start of a statement once something precedes it."""
+        for place in self._candidates:
+            _, attempt, longer = self._attempt(self.position, self.position, by, place)
+            if self.position + longer in attempt.starts:
+                return True
+        return False
+
+    def gets_on_by(self, start: int, end: int, by: str) -> bool:
+        """Tell whether the parse gets past the fault, and past the edit, after an edit."""
+        for place in self._candidates:
+            _, attempt, longer = self._attempt(start, end, by, place)
+            if attempt.reached > max(self.position + longer, start + len(by) - 1):
+                return True
+        return False
+
+    def _goes_on(self, text: str, position: int, by: str) -> bool:
+        """Tell whether a statement begins on a new line, or a block ends."""
+        if position >= len(text) or text[position] == "}":
+            return True
+        if not is_line_start(text, position):
+            return False
+        place = self.place
+        if place is not None and by.startswith("}"):
+            place = place.outer
+        while place is not None:
+            if place.list.opened_by(text, position) or place.list.seems_opened_by(text, position):
+                return True
+            place = place.outer
+        body = self.recogniser.body if self.place is None else None
+        return body is not None and bool(body.opened_by(text, position))
+
+    def _attempt(
+        self, start: int, end: int, by: str, place: Place | None
+    ) -> tuple[str, Attempt, int]:
+        text = self.text.replaced(start, end, by)
+        if by.startswith("}") and place is not None and place.outer is not None:
+            if start - place.outer.start > _LARGEST_TO_CLOSE:
+                return text, Attempt(-1, Trace(), frozenset()), 0
+            place = place.outer  # the brace closes that statement
+        if place is None:
+            attempt = self.recogniser.try_all(text)
+        else:
+            attempt = self.recogniser.try_statement(place.list, text, place.start)
+        return text, attempt, len(by) - (end - start)
+
+
+@dataclass(frozen=True, slots=True)
+class Mend:
+    """What to do about a fault.
+
+    Attributes:
+        hint: in words.
+        start: where the edit begins; ``None`` if the words alone are offered.
+        end: where what it replaces ends.
+        text: what it puts there.
+        message: what is wrong, if there are better words for it than those for any syntax error.
+    """
+
+    hint: str
+    start: int | None = None
+    end: int = 0
+    text: str = ""
+    message: str = ""
+
+
+def mends(fault: Fault) -> Iterator[Mend]:
+    """Yield what mends a fault, the likeliest first."""
+    yield from _by_habit(fault)
+    yield from islice(_misspelt(fault), 1)
+    yield from _only(_other_sign(fault))
+    yield from _only(_missing_sign(fault))
+    yield from _only(_surplus_sign(fault))
+    yield from _open_block(fault)
+
+
+def _only(found: Iterable[Mend]) -> Iterator[Mend]:
+    """Yield the edit if it is the only one that mends the statement."""
+    edits = list(found)
+    if len(edits) == 1:
+        yield edits[0]
+
+
+def _by_habit(fault: Fault) -> Iterator[Mend]:
+    for habit in habits(fault.text, fault.position, fault.start, fault.language):
+        if habit.text is None:
+            yield Mend(habit.hint, None, message=habit.message)
+            return
+        if fault.gets_on_by(habit.start, habit.end, habit.text):
+            yield Mend(habit.hint, habit.start, habit.end, habit.text, habit.message)
+            return
+
+
+def _literals(fault: Fault) -> list[str]:
+    literals = (literal_of(token) for token in fault.expected)
+    is_open = fault.text.count("{") > fault.text.count("}")
+    return [
+        each
+        for each in dict.fromkeys(literals)
+        if each is not None and each != ";" and (is_open or each != "}")
+    ]
+
+
+def _misspelt(fault: Fault) -> Iterator[Mend]:
+    found = fault.found
+    if not found[:1].isalpha():
+        return
+    end = fault.position + len(found)
+    words = [each for token in fault.expected for each in words_of(token) if each[0].isalpha()]
+    for word in near(found, words):
+        if fault.is_mended_by(fault.position, end, word):
+            yield Mend(did_you_mean([word]), fault.position, end, word)
+
+
+def _other_sign(fault: Fault) -> Iterator[Mend]:
+    found = fault.found
+    if found[:1] not in _MISTAKEN_SIGNS:
+        return
+    length = 2 if fault.text[fault.position : fault.position + 2] in _LONG_SIGNS else 1
+    end = fault.position + length
+    is_arrow = fault.text[fault.position : end] in ("->", "=>")
+    for sign in _literals(fault):
+        if sign[0].isalpha() and not is_arrow:
+            continue
+        if fault.is_mended_by(fault.position, end, _spaced(fault, fault.position, end, sign)):
+            hint = f"write '{sign}' instead of '{fault.text[fault.position : end]}'"
+            text = _spaced(fault, fault.position, end, sign)
+            yield Mend(hint, fault.position, end, text)
+
+
+_MISTAKEN_SIGNS = tuple(":=-,;)]|&")
+_NEVER_MISSING = frozenset("-[(")
+_LONG_SIGNS = frozenset({"->", "=>", ":=", "==", "<-", "::", "++", "--", "!="})
+
+
+def _missing_sign(fault: Fault) -> Iterator[Mend]:
+    if not fault.found or _opens_next(fault):
+        return
+    signs = [sign for sign in _literals(fault) if sign not in _NEVER_MISSING]
+    # What was found may be the keyword of a statement that the missing word makes room for.
+    opening = [sign for sign in signs if fault.opens_statement_by(f"{sign} ")]
+    for sign in opening or signs:
+        if fault.is_mended_by(fault.position, fault.position, f"{sign} "):
+            before = fault.text[: fault.position].rstrip()
+            # A sign goes behind the last word, a word before the next one.
+            start = len(before) if not sign[0].isalpha() and sign != "{" else fault.position
+            text = sign if start < fault.position else f"{sign} "
+            hint = f"write '{sign}' before '{fault.found}'"
+            yield Mend(hint, start, start, text)
+
+
+def _opens_next(fault: Fault) -> bool:
+    """Tell whether the next statement is what was found: then more than a sign is missing."""
+    place = fault.place
+    while place is not None:
+        if place.list.opened_by(fault.text, fault.position) == "keyword":
+            return fault.place is None or fault.place.start < fault.position
+        place = place.outer
+    return False
+
+
+def _surplus_sign(fault: Fault) -> Iterator[Mend]:
+    found = fault.found
+    if found not in (";", ",", "."):
+        return
+    end = fault.position + 1
+    if fault.is_mended_by(fault.position, end, " "):
+        yield Mend(f"remove '{found}'", fault.position, end, "")
+
+
+def _open_block(fault: Fault) -> Iterator[Mend]:
+    """Close a block whose closing brace is missing: at the end, or where an outer statement is."""
+    text = fault.text
+    missing = text.count("{") - text.count("}")
+    if missing <= 0 or fault.place is None:
+        return
+    if not fault.found:
+        if "}" in _literals(fault):
+            end = len(text.rstrip())
+            braces = "\n}" * missing
+            yield Mend(f"close the block with '{'}' * missing}'", end, end, braces)
+        return
+    outer = fault.place.outer
+    start = fault.place.start
+    for _ in range(_MOST_BLOCKS):
+        if outer is None or start - outer.start > _LARGEST_TO_CLOSE:
+            return
+        closed = text.replaced(start, start, "} ")
+        end = fault.recogniser.try_statement(outer.list, closed, outer.start).end
+        if end == start + 2 and _goes_on(fault, outer, closed, end):
+            behind = len(text[:start].rstrip())
+            word = found_at(text, start)
+            opened = " ".join(text[outer.start : text.index("{", outer.start)].split())
+            yield Mend(
+                f"close '{opened} {{' with '}}' before '{word}'",
+                behind,
+                behind,
+                "\n}",
+                f"'}}' is missing before '{word}'",
+            )
+            return
+        outer = outer.outer
+
+
+def _goes_on(fault: Fault, outer: Place, text: str, position: int) -> bool:
+    each: Place | None = outer
+    while each is not None:
+        if each.list.opened_by(text, position) == "keyword":
+            return fault.recogniser.try_statement(each.list, text, position).end > position
+        each = each.outer
+    return False
+
+
+def is_line_start(text: str, position: int) -> bool:
+    """Tell whether a position is the first of a line that is no blank, or the end of the text."""
+    line = text[text.rfind("\n", 0, position) + 1 : position]
+    return not line.strip() or position >= len(text)
+
+
+def _spaced(fault: Fault, start: int, end: int, word: str) -> str:
+    """Return a keyword with blanks where it would touch a word."""
+    if not word[0].isalpha():
+        return word
+    before = " " if fault.text[start - 1 : start].strip() else ""
+    after = " " if re.match(r"\S", fault.text[end : end + 1]) else ""
+    return f"{before}{word}{after}"

@@ -1,0 +1,431 @@
+"""Reading on after a syntax error: every error of a file, and what is sound of its model.
+
+Where the text fits nowhere, the statement that it belongs to is mended if one edit does it (see
+:mod:`deros.metamodels.mending`), so that whatever follows is read as the hint means it; else it
+becomes blank, and what it says is lost: its words are noted in the source, and what seems to be
+missing because of them is not reported. Then reading goes on from there. Every other character
+keeps its place.
+"""
+
+from __future__ import annotations
+
+import enum
+import functools
+import re
+from dataclasses import dataclass, field
+
+from arpeggio import ParsingExpression, RegExMatch
+
+from deros import codes
+from deros.diagnostics import ANY_NAME, Diagnostic, Fix, SourceFile, Span, report
+from deros.metamodels.grammar import is_name, literal_of
+from deros.metamodels.languages import Language, quick_metamodel
+from deros.metamodels.mending import Fault, Mend, is_line_start, mends
+from deros.metamodels.recognising import (
+    Place,
+    Recogniser,
+    StatementList,
+    skip_blanks,
+)
+from deros.metamodels.repaired import RepairedText
+from deros.metamodels.syntax import explain
+
+MOST_ERRORS = 50
+"""How many syntax errors of a file are explained; of the rest only their number is reported."""
+
+_WORD = re.compile(r"\w+")
+_PIECE = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"?|[^\s"{};]+|[{};]')
+_END_OF_LINE = re.compile(r"[\t\r ]*(?:\n|;|\}|\Z)")
+_ENOUGH_TOKENS = 2
+_LOOK_AHEAD = 400
+
+
+_LAST_WORD = re.compile(r"\b(\w+)[\t\n\r ]*\Z")
+_Tokens = tuple[ParsingExpression, ...]
+_A_NAME = RegExMatch(r"\w+", rule_name="Name")
+_A_NAME.compile()
+
+
+@dataclass(slots=True)
+class Recovered:
+    """What is left of a file with syntax errors.
+
+    Attributes:
+        text: what a parser takes of it; ``None`` if its head, or all of it, cannot be read.
+        diagnostics: the syntax errors.
+    """
+
+    text: RepairedText | None
+    diagnostics: list[Diagnostic]
+
+
+def recover(source: SourceFile, prepared: str, language: Language) -> Recovered:
+    """Find every syntax error of a text that does not parse.
+
+    The words of the statements that are lost go into the source.
+    """
+    return _Recovery(source, prepared, language).run()
+
+
+@functools.cache
+def recogniser(language: Language) -> Recogniser:
+    """Return the recogniser of a language, made at its first syntax error."""
+    return Recogniser(quick_metamodel(language)._parser_blueprint.parser_model)
+
+
+@dataclass(slots=True)
+class _Stretch:
+    """A piece of text that cannot be read, and whether a statement begins behind it."""
+
+    start: int
+    end: int
+    place: Place
+    sure: bool = False
+    text_before: RepairedText = field(default_factory=lambda: RepairedText.of(""))
+
+
+class _Recovery:
+    def __init__(self, source: SourceFile, prepared: str, language: Language) -> None:
+        self._source = source
+        self._language: Language = language
+        self._text = RepairedText.of(prepared)
+        self._recogniser = recogniser(language)
+        self._recogniser.forget()
+        self._diagnostics: list[Diagnostic] = []
+        self._body_start: int | None = None
+        self._stretch: _Stretch | None = None
+        self._lost: set[str] = set()
+
+    def run(self) -> Recovered:
+        """Mend or blank one error after the other, until the rest parses."""
+        complete = True
+        while not self._parses():
+            if self._diagnostics and not self._text.strip():
+                complete = False
+                break
+            if self._widen():
+                continue
+            if len(self._diagnostics) >= MOST_ERRORS:
+                self._count_the_rest()
+                complete = False
+                break
+            if not self._go_on():
+                complete = False
+                break
+        self._keep_lost()
+        self._recogniser.forget()
+        is_whole = complete and self._body_start is None
+        return Recovered(self._text if is_whole else None, self._diagnostics)
+
+    def _parses(self) -> bool:
+        if self._body_start is None:
+            return self._recogniser.run(self._text)
+        return self._recogniser.run_body(self._text, self._body_start)
+
+    # One error --------------------------------------------------------------------------------
+
+    def _go_on(self) -> bool:
+        """Report the error and change the text so that it is behind; tell whether that is done."""
+        trace = self._recogniser.trace
+        place = _statement_at(trace.places, trace.position)
+        position, expected = trace.position, tuple(trace.expected)
+        if place is not None:
+            place, position, expected = self._blamed(place, position, expected)
+        end, sure = self._resume_at(place, position)
+        fault = Fault(self._text, position, expected, place, end, self._language, self._recogniser)
+        mend = next(mends(fault), None)
+        self._report(fault, mend)
+        if mend is not None and mend.start is not None:
+            return self._apply(mend)
+        if place is None:
+            return self._skip_head(end)
+        if _is_nameless(fault):
+            self._lost.add(ANY_NAME)
+        self._blank(_Stretch(place.start, end, place, sure))
+        return True
+
+    def _blamed(self, place: Place, failed: int, expected: _Tokens) -> tuple[Place, int, _Tokens]:
+        """Return the statement that is to blame, where it breaks off, and what is missing there.
+
+        Where a statement could begin at the failure, that may belong to the statement before all
+        the same: on one line with it, or because that one lacks its end and took the next one's
+        keyword for a name.
+        """
+        text = self._text
+        whole = place
+        if place.start == failed:
+            before = self._recogniser.statement_before(place.list, failed)
+            if before is not None:
+                whole = Place(place.outer, place.list, before)
+            elif place.outer is not None:
+                whole = place.outer
+            else:
+                return place, failed, expected
+        last = _LAST_WORD.search(text, whole.start, failed)
+        if (
+            last is not None
+            and last[1] in {literal_of(token) for token in expected}
+            and not self._recogniser.begins_statement(last.start())
+        ):
+            # The keyword is there, but was taken for the name before it.
+            return whole, last.start(), (_A_NAME,)
+        cut = self._swallowing(whole, place, failed)
+        if cut is not None:
+            return whole, *cut
+        on_same_line = whole.list is place.list and not is_line_start(text, failed)
+        if on_same_line and text[:failed].rstrip()[-1:] not in (";", "}", "{"):
+            return whole, failed, expected
+        return place, failed, expected
+
+    def _swallowing(self, whole: Place, place: Place, failed: int) -> tuple[int, _Tokens] | None:
+        """Find where a statement without its end took the next one's keyword for a name."""
+        text = self._text
+        here = text.rfind("\n", whole.start, failed) + 1
+        here = skip_blanks(text, here).end()  # type: ignore[union-attr]
+        if not whole.start < here < failed:
+            return None
+        for each in _lists_of(place):
+            if each.opened_by(text, here) == "keyword":
+                if self._recogniser.try_statement(each, text, here).end <= failed:
+                    return None
+                cut = self._recogniser.try_statement(whole.list, text[:here], whole.start)
+                if cut.trace.position < here or not cut.trace.expected:
+                    return None
+                return here, tuple(cut.trace.expected)
+        return None
+
+    def _report(self, fault: Fault, mend: Mend | None) -> None:
+        original = self._text.original
+        hint, fix = "", None
+        position = original(fault.position)
+        if mend is not None:
+            hint = mend.hint
+            if mend.start is not None:
+                span = Span(self._source, original(mend.start), original(mend.end))
+                fix = Fix(span, mend.text)
+        found = explain(self._source, position, fault.expected, hint, fix)
+        if mend is not None and mend.message:
+            span = found.span
+            if mend.start is not None and mend.end > mend.start:
+                span = Span(self._source, original(mend.start), original(mend.end))
+            found = report(codes.SYNTAX_ERROR, mend.message, span, hint, fix=fix)
+        self._diagnostics.append(found)
+
+    def _apply(self, mend: Mend) -> bool:
+        assert mend.start is not None
+        self._text = self._text.replaced(mend.start, mend.end, mend.text)
+        self._forget(mend.start)
+        self._stretch = None
+        return True
+
+    def _blank(self, stretch: _Stretch) -> None:
+        stretch.text_before = self._text
+        self._stretch = stretch
+        self._text = self._text.blanked(stretch.start, stretch.end)
+        self._forget(stretch.start)
+
+    def _widen(self) -> bool:
+        """Blank the statement around the last one, where blanking that one alone did not do."""
+        stretch = self._stretch
+        if stretch is None:
+            return False
+        reached = self._recogniser.trace.position
+        if reached > stretch.end or not (stretch.sure or reached >= len(self._text)):
+            self._lose(stretch)
+            return False
+        outer = stretch.place.outer
+        if outer is None:
+            self._lose(stretch)
+            return False
+        self._text = stretch.text_before
+        end, sure = self._resume_at(outer, stretch.end)
+        self._blank(_Stretch(outer.start, end, outer, sure))
+        return True
+
+    def _lose(self, stretch: _Stretch) -> None:
+        self._lost.update(_WORD.findall(stretch.text_before[stretch.start : stretch.end]))
+        self._stretch = None
+
+    def _keep_lost(self) -> None:
+        if self._stretch is not None:
+            self._lose(self._stretch)
+        self._source.lost = frozenset(self._lost)
+
+    def _skip_head(self, end: int) -> bool:
+        """Leave a head that cannot be read; its statements are read nevertheless."""
+        self._lost.update(_WORD.findall(self._text[:end]))
+        if end >= len(self._text) or self._recogniser.body is None:
+            return False
+        self._body_start = end
+        self._recogniser.forget()
+        return True
+
+    def _forget(self, position: int) -> None:
+        """Drop what is remembered of statements that may end otherwise now.
+
+        A token may look some words ahead.
+        """
+        start = max(0, position - _LOOK_AHEAD)
+        words = list(re.finditer(r"\S+", self._text[start:position]))
+        self._recogniser.forget_from(start + words[-3].start() if len(words) > 2 else start)
+
+    def _count_the_rest(self) -> None:
+        """Report how many statements more there are that do not parse."""
+        trace = self._recogniser.trace
+        position = trace.position
+        place = _statement_at(trace.places, position)
+        first = self._text.original(position)
+        count = 0
+        while position < len(self._text):
+            count += 1
+            end, _ = self._resume_at(place, position)
+            while place is not None and end < len(self._text):
+                after = self._statement_end(place, end)
+                if after <= end:
+                    break
+                end = after
+            position = max(end, position + 1)
+            if place is not None:
+                place = Place(place.outer, place.list, position)
+        span = Span(self._source, first, first)
+        message = f"at least {count} more syntax error{'s' if count > 1 else ''}: not shown"
+        self._diagnostics.append(report(codes.MORE_SYNTAX_ERRORS, message, span))
+
+    def _statement_end(self, place: Place, start: int) -> int:
+        for each in _lists_of(place):
+            end = self._recogniser.try_statement(each, self._text, start).end
+            if end > start:
+                return end
+        found = self._text[start]
+        return skip_blanks(self._text, start + 1).end() if found in "};" else -1  # type: ignore[union-attr]
+
+    # Where reading goes on --------------------------------------------------------------------
+
+    def _resume_at(self, place: Place | None, failed: int) -> tuple[int, bool]:
+        """Return where the next statement begins, and whether it surely is one.
+
+        Args:
+            place: the broken statement; ``None`` for the head of a file.
+            failed: the position where it fits nowhere.
+        """
+        body = self._recogniser.body
+        if place is None and body is None:
+            return len(self._text), False
+        lists = _lists_of(place) if place is not None else [body] if body else []
+        start = place.start if place is not None else skip_blanks(self._text).end()  # type: ignore[union-attr]
+        return _Search(self._text, self._recogniser, lists, start, failed).end()
+
+
+class _Begin(enum.Enum):
+    """How certain it is that a statement begins somewhere."""
+
+    SURE = enum.auto()
+    MISSPELT = enum.auto()
+
+
+class _Search:
+    """The search for the end of a broken statement."""
+
+    def __init__(
+        self,
+        text: str,
+        recogniser: Recogniser,
+        lists: list[StatementList],
+        start: int,
+        failed: int,
+    ) -> None:
+        self._text = text
+        self._recogniser = recogniser
+        self._lists = lists
+        self._start = start
+        self._failed = failed
+        self._enclosed = text.count("{", 0, start) > text.count("}", 0, start)
+
+    def end(self) -> tuple[int, bool]:
+        text = self._text
+        depth = 0
+        for piece in _PIECE.finditer(text, self._start):
+            here, sign = piece.start(), piece.group()
+            if here > self._start and depth == 0 and (begin := self._begins(here)):
+                return here, begin is _Begin.SURE
+            if sign == "{":
+                depth += 1
+            elif sign == "}":
+                if depth == 0 and self._enclosed and here >= self._failed and here > self._start:
+                    return here, True
+                depth = max(0, depth - 1)
+                if depth == 0 and here > self._failed and _END_OF_LINE.match(text, here + 1):
+                    return self._past(here, ";"), False
+            elif sign == ";" and depth == 0 and here >= self._failed:
+                after = self._past(here, "")
+                if not text.startswith("{", after):
+                    return after, text.startswith("}", after)
+        return len(text), False
+
+    def _past(self, position: int, sign: str) -> int:
+        after: int = skip_blanks(self._text, position + 1).end()  # type: ignore[union-attr]
+        if sign and self._text.startswith(sign, after):
+            after = skip_blanks(self._text, after + 1).end()  # type: ignore[union-attr]
+        return after
+
+    def _begins(self, here: int) -> _Begin | None:
+        """Tell whether a statement of an open list begins here."""
+        fresh = self._is_fresh(here)
+        for each in self._lists:
+            how = each.opened_by(self._text, here)
+            if not how:
+                if fresh and here >= self._failed and each.seems_opened_by(self._text, here):
+                    return _Begin.MISSPELT
+                continue
+            if how == "name" and not fresh:
+                continue
+            if how == "keyword" and fresh and here >= self._failed:
+                return _Begin.SURE
+            attempt = self._recogniser.try_statement(each, self._text, here)
+            if here < self._failed:
+                # A statement without its end has taken the next one's first words for its own.
+                if how == "keyword" and fresh and attempt.end > self._failed:
+                    return _Begin.SURE
+            elif how == "keyword" and attempt.end >= 0:
+                return _Begin.SURE
+            elif how == "name":
+                tokens = len(_PIECE.findall(self._text[here : attempt.reached]))
+                if tokens >= _ENOUGH_TOKENS:
+                    return _Begin.SURE
+        return None
+
+    def _is_fresh(self, here: int) -> bool:
+        """Tell whether a position begins a line, or follows the end of something."""
+        last = here - 1
+        while last >= self._start and self._text[last] in "\t\n\r ":
+            if self._text[last] == "\n":
+                return True
+            last -= 1
+        return last < self._start or self._text[last] in ";{}"
+
+
+def _is_nameless(fault: Fault) -> bool:
+    """Tell whether a declaration lacks its name: whatever is missing elsewhere may be it."""
+    words = _PIECE.findall(fault.text[fault.start : fault.position])
+    if not words:
+        return fault.place is not None and any(map(is_name, fault.place.list.first))
+    return len(words) == 1 and any(map(is_name, fault.expected))
+
+
+def _statement_at(places: list[Place | None], position: int) -> Place | None:
+    """Return the innermost statement that a failure belongs to.
+
+    Where one could begin at the position, all before it is whole.
+    """
+    inner = [each for each in places if each is not None]
+    beginning = next((each for each in inner if each.start == position), None)
+    return beginning or max(inner, key=lambda each: each.start, default=None)
+
+
+def _lists_of(place: Place | None) -> list[StatementList]:
+    """Return the lists that a place lies in, innermost first, each once."""
+    found: dict[int, StatementList] = {}
+    while place is not None:
+        found.setdefault(place.list.number, place.list)
+        place = place.outer
+    return list(found.values())

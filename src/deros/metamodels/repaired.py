@@ -1,0 +1,73 @@
+"""A text with edits, which knows where its characters stood before."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from typing import Any
+
+from arpeggio import NonTerminal
+
+_NOT_BLANK = re.compile(r"[^\t\n\r ]")
+
+
+class RepairedText(str):
+    """A text that a parser takes, made of one that it does not take.
+
+    Attributes:
+        edits: of each edit that changes the length: where the text goes on behind it, and where
+            the original does.
+    """
+
+    __slots__ = ("edits",)
+    edits: tuple[tuple[int, int], ...]
+
+    @classmethod
+    def of(cls, text: str) -> RepairedText:
+        """Return a text without edits."""
+        repaired = cls(text)
+        repaired.edits = ()
+        return repaired
+
+    def replaced(self, start: int, end: int, by: str) -> RepairedText:
+        """Return the text with ``by`` in place of the characters from ``start`` to ``end``."""
+        repaired = RepairedText(f"{self[:start]}{by}{self[end:]}")
+        longer = len(by) - (end - start)
+        if not longer:
+            repaired.edits = self.edits
+            return repaired
+        before = [each for each in self.edits if each[0] <= start]
+        after = [(here + longer, there) for here, there in self.edits if here >= end]
+        resumed = (start + len(by), self.original(end))
+        repaired.edits = (*before, resumed, *after)
+        return repaired
+
+    def blanked(self, start: int, end: int) -> RepairedText:
+        """Return the text with blanks from ``start`` to ``end``; line ends stay."""
+        blanks = _NOT_BLANK.sub(" ", self[start:end])
+        return self.replaced(start, end, blanks)
+
+    def original(self, offset: int) -> int:
+        """Return where a character stood in the text as it was read.
+
+        Of characters that were put in, it is where the original goes on behind them.
+        """
+        index = bisect_right(self.edits, (offset, 1 << 62))
+        shift = 0
+        if index:
+            here, there = self.edits[index - 1]
+            shift = there - here
+        found = offset + shift
+        return min(found, self.edits[index][1]) if index < len(self.edits) else found
+
+
+def restore_places(tree: Any, text: RepairedText) -> None:
+    """Move every node of a parse tree to its place in the text as it was read."""
+    pending = [tree]
+    while pending:
+        node = pending.pop()
+        node.position = text.original(node.position)
+        if isinstance(node, NonTerminal):
+            pending += node
+        elif hasattr(node.value, "start"):
+            node.value.start = node.position

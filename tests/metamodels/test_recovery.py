@@ -1,0 +1,235 @@
+"""Syntax errors: each is reported, what is sound is read, and reading takes bounded time."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from deros import codes
+from deros.diagnostics import Diagnostic
+from deros.metamodels.grammar import literal_of
+from deros.metamodels.languages import LANGUAGES, Language
+from deros.metamodels.load import LoadedFile, Repository
+from deros.metamodels.node import NodeType
+from deros.metamodels.recovery import MOST_ERRORS, recogniser
+from deros.metamodels.rules import Rules
+from deros.metamodels.system import NodeInstance, System
+
+# Each line with an error ends in "// here".
+NODE = """\
+node camera : camera_driver
+parameters
+  name width double = 640                   // here
+  name height : integer = 480
+  name frame : string := "camera"           // here
+  nmae rate : double = 30.0                 // here
+  name gain : double = 1.0 in [0, 10;       // here
+publishers                                  // here
+  topic image : sensor_msgs.Image
+  topic info sensor_msgs.CameraInfo         // here
+subscribes
+  topic trigger : std_msgs.Empty qos reliabel  // here
+  topic stop : std_msgs.Bool qos depth ten  // here
+services
+  service reset std_srvs.Trigger            // here
+timers
+  timer grab evry 20 ms                     // here
+  timer poll every 1 sec
+"""
+SYSTEM = """\
+system Demo
+imports
+  import camera.rnd                         // here
+topics
+  topic /image : : sensor_msgs.Image        // here
+  topc /info                                // here
+  topic /stop
+node front camera                           // here
+  namespace /front
+  parameters
+    param width 320                         // here
+    param height = 240
+  wirings
+    connect image -> /image                 // here
+    connect info /info                      // here
+    connect stop to /stop
+subsystem {                                 // here
+  node rear : camera
+}
+node side : camera respwan                  // here
+node top : camera
+  parameter                                 // here
+    param width = 10
+"""
+RULES = """\
+use "demo.system" improt Demo               // here
+action stop
+const limit 0.5 m/s                         // here
+const most == 2                             // here
+input speed = topic /odom.twist.twist.linear.x timeot 0.5 sec  // here
+input pose = topic /odom.pose.pose.position.x
+entity drive {
+  fast: speed >> limit;                     // here
+  far: pose > 3 m && speed > 0;             // here
+  gone: pose.missing(;                      // here
+  near: pose < 1 m;
+}
+if drive.fast { stop; }                     // here
+if drive.far than { stop; }                 // here
+if drive.near then { stop; }
+gate /a to /b : geometry_msgs.Twist rate 10 Hz {  // here
+  lost input for 1 sec: zero;
+}
+"""
+FILES = {"camera.rnd": NODE, "demo.system": SYSTEM, "demo.deros": RULES}
+
+
+def _load(name: str, text: str) -> LoadedFile:
+    return Repository().load_text(name, text)
+
+
+def _errors(loaded: LoadedFile) -> list[Diagnostic]:
+    return [each for each in loaded.diagnostics if each.code is codes.SYNTAX_ERROR]
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_error_of_a_file_is_reported_once(name: str) -> None:
+    """Ten errors in one file are ten findings, each on its own line."""
+    text = FILES[name]
+    wrong = [number for number, line in enumerate(text.splitlines(), 1) if "// here" in line]
+    found = sorted(each.span.line for each in _errors(_load(name, text)))
+    assert len(wrong) >= 10
+    assert found == wrong
+
+
+def test_what_is_sound_of_a_node_is_read() -> None:
+    """Statements between broken ones are in the model, at their places; mended ones are, too."""
+    loaded = _load("camera.rnd", NODE)
+    node = loaded.model
+    assert isinstance(node, NodeType)
+    assert [each.name for each in node.parameters] == ["width", "height", "frame", "rate"]
+    assert [each.name for each in node.ports] == ["image", "info", "trigger", "reset"]
+    assert [each.name for each in node.timers] == ["grab", "poll"]
+    named = [(each.name, each.name_span) for each in node.parameters]
+    named += [(each.name, each.name_span) for each in node.ports]
+    assert all(span.text == name for name, span in named)
+    assert all(each.name_span.text == each.name for each in node.timers)
+    assert loaded.source is not None
+    assert {"gain", "stop"} <= loaded.source.lost
+
+
+def test_what_is_sound_of_a_system_is_read() -> None:
+    """A node whose head or whose wiring is broken keeps what is sound of it."""
+    system = _load("demo.system", SYSTEM).model
+    assert isinstance(system, System)
+    nodes = [each for each in system.members if isinstance(each, NodeInstance)]
+    assert [each.name for each in nodes] == ["front", "side", "top"]
+    assert [each.name for each in nodes[0].parameters] == ["width", "height"]
+    assert [each.port for each in nodes[0].wirings] == ["image", "info", "stop"]
+    for wiring in nodes[0].wirings:
+        assert wiring.target_span.text == wiring.target
+
+
+def test_what_is_sound_of_rules_is_read() -> None:
+    """Rules, inputs and behaviours beside broken ones are in the model."""
+    rules = _load("demo.deros", RULES).model
+    assert isinstance(rules, Rules)
+    assert "pose" in [each.name.text for each in rules.inputs]
+    assert [each.name.text for each in rules.entities[0].rules] == ["far", "gone", "near"]
+    assert len(rules.behaviours) == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.rnd", "nod camera : camera_driver\nparameters\n  name a : double ? 1\n"),
+        ("a.rnd", "node 3d : camera_driver\nparameters\n  name a : double ? 1\n"),
+        ("a.system", "system 1\ntopics\n  topic ?\n"),
+    ],
+)
+def test_a_broken_head_hides_no_error_behind_it(name: str, text: str) -> None:
+    """The errors behind a head that cannot be read are reported as well."""
+    assert [each.span.line for each in _errors(_load(name, text))] == [1, 3]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "edited"),
+    [
+        ("a.rnd", "node a p", "node a: p"),
+        ("a.rnd", "node a : p\npublisher\n", "node a : p\npublishes\n"),
+        ("a.system", "system A\ntopic /x", "system A\ntopics topic /x"),
+        ("a.system", "system A\nsubsystem s {\n  topics topic /x\n",
+         "system A\nsubsystem s {\n  topics topic /x\n}\n"),
+        ("a.deros", "if a.b { stop; }", "if a.b then { stop; }"),
+        ("a.deros", "entity e {\n  r: a > 1;\nif e.r then { stop; }",
+         "entity e {\n  r: a > 1;\n}\nif e.r then { stop; }"),
+        ("a.deros", "gate /a to /b : c.D rate 1 Hz { lost input for 1 s: zero }",
+         "gate /a -> /b : c.D rate 1 Hz { lost input for 1 s: zero }"),
+    ],
+)  # fmt: skip
+def test_a_fix_mends_the_statement(name: str, text: str, edited: str) -> None:
+    """One edit that is certain is part of the finding, and with it the text parses."""
+    (found,) = _errors(_load(name, text))
+    assert found.fix is not None
+    span = found.fix.span
+    mended = f"{text[: span.start]}{found.fix.text}{text[span.end :]}"
+    assert mended == edited
+    assert not _errors(_load(name, mended))
+
+
+@pytest.mark.parametrize("language", LANGUAGES.values())
+def test_statements_come_from_the_grammar(language: Language) -> None:
+    """What a statement is, and how it begins, is read from the grammar."""
+    known = {
+        "rosnode": {"name", "topic", "service", "timer", "parameters", "executable"},
+        "rossystem": {"import", "topic", "param", "connect", "node", "subsystem", "wirings"},
+        "deros": {"use", "const", "input", "entity", "if", "gate", "lost"},
+    }
+    steps = recogniser(language)
+    first = {literal_of(token) for each in steps.lists for token in each.first}
+    assert known[language] <= first
+
+
+def test_errors_beyond_the_most_are_counted() -> None:
+    """Of ten thousand errors fifty are shown, and the number of the others."""
+    text = "node a : b\nparameters\n" + "  name x : double ? 1.0\n" * 10_000
+    *shown, rest = _load("a.rnd", text).diagnostics
+    assert len(shown) == MOST_ERRORS
+    assert rest.code is codes.MORE_SYNTAX_ERRORS
+    assert "9950" in rest.message
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.rnd", "node a : b\nparameters\n" + "  name x double = 1.0\n" * 10_000),
+        ("a.rnd", "node a : b\nparameters\n" + "  ? ? ?\n" * 10_000),
+        ("a.rnd", "node a : b publishes " + "topic x :" * 20_000),
+        ("a.system", "system a\n" + "subsystem x {\n" * 90 + "node x : y wirings connect\n" * 999),
+        ("a.system", "system a node " + "node : " * 20_000),
+        ("a.deros", "entity e {\n" + "  r: a > 1 ?? b;\n" * 10_000 + "}\n"),
+        ("a.deros", "if a.b then { " * 99 + "? ; " * 1_000),
+        ("a.deros", "if a.b then stop;\n" * 10_000),
+        ("a.deros", "a: b\n" * 10_000),
+        ("a.deros", "}" * 20_000),
+    ],
+)  # fmt: skip
+def test_hostile_files_take_bounded_time(name: str, text: str) -> None:
+    """However many errors there are, and however deep, reading ends within seconds."""
+    before = time.process_time()
+    assert _load(name, text).diagnostics
+    assert time.process_time() - before < 5
+
+
+def test_recovery_is_linear() -> None:
+    """Ten times as much sound text around fifty errors takes about ten times as long."""
+
+    def seconds(count: int) -> float:
+        sound = "  name x : double = 1.0\n" * count
+        before = time.process_time()
+        _load("a.rnd", f"node a : b\nparameters\n{sound}" + "  name y double\n" * 40)
+        return time.process_time() - before
+
+    seconds(10)
+    assert seconds(20_000) < 25 * seconds(2_000)

@@ -1,0 +1,65 @@
+"""One mistake is one finding: what only follows from it is not reported."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Severity
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.validators.check import check
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "intelligent_one"
+FILES = {each.name: each.read_text(encoding="utf-8") for each in sorted(EXAMPLE.glob("*.*[dsm]"))}
+MODELS = {name: text for name, text in FILES.items() if not name.endswith(".md")}
+NAMED = ("intelligent_one.system", "intelligent_one.deros")
+_TOKEN = re.compile(r'"[^"\n]*"|//[^\n]*|/\*.*?\*/|[\w.]+|[^\s\w]', re.DOTALL)
+_EVERY = 17
+
+
+def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
+    repository = Repository()
+    repository.load_text(folder / changed, text)
+    named = [repository.load(folder / name) for name in NAMED]
+    found = check(named, repository, InterfaceStore(()))
+    return [each for each in found if each.severity is not Severity.INFO]
+
+
+def _garbled(text: str) -> list[tuple[int, str]]:
+    """Return the text with a sign that no statement has before every n-th of its tokens."""
+    starts = [each.start() for each in _TOKEN.finditer(text) if each[0][:2] not in ("//", "/*")]
+    return [(at, f"{text[:at]}? {text[at:]}") for at in starts[::_EVERY]]
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_syntax_error_anywhere_is_one_finding(name: str) -> None:
+    """Wherever a sound project of seven files is broken, that place alone is reported."""
+    for at, text in _garbled(MODELS[name]):
+        found = _findings(EXAMPLE, name, text)
+        places = [(each.code.name, each.span.file.rsplit("/", 1)[-1]) for each in found]
+        assert places == [("DRS003", name)], (text[max(0, at - 30) : at + 30], found)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "code"),
+    [
+        ("marking_robot.rnd", "nav_msgs.Odometry", "nav_msgs.Odometri", codes.UNKNOWN_TYPE),
+        ("marking_robot.rnd", "nav_msgs.Odometry", "nav2_mgs.Odometry", codes.UNKNOWN_PACKAGE),
+        ("intelligent_one.system", '"*.rnd"', '"nodes/*.rnd"', codes.UNKNOWN_IMPORT),
+        ("intelligent_one.deros", '"intelligent_one.system"', '"inteligent.system"',
+         codes.UNKNOWN_IMPORT),
+        ("intelligent_one.system", "to /imu", "to /imo", codes.UNKNOWN_TOPIC),
+        ("intelligent_one.system", "connect imu", "connect imo", codes.UNKNOWN_PORT),
+        ("intelligent_one.system", ": marking_robot", ": marking_robott", codes.UNKNOWN_NODE_TYPE),
+    ],
+)  # fmt: skip
+def test_an_unknown_name_is_one_finding(name: str, old: str, new: str, code: object) -> None:
+    """A typo in a type, an import, a topic, a port or a node type is reported there alone."""
+    text = MODELS[name]
+    assert old in text
+    found = _findings(EXAMPLE, name, text.replace(old, new, 1))
+    assert [each.code for each in found] == [code], found
