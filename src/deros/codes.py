@@ -100,6 +100,10 @@ UNCERTAIN_QOS = _declare(229, "two ends whose QoS may not match", _W)
 PINNED_QOS_VIOLATED = _declare(230, "pinned QoS violated")
 EMPTY_PIN = _declare(231, "QoS of a topic that pins nothing")
 STANDARD_TOPIC_TYPE = _declare(232, "standard topic with another type than everywhere else")
+RULES_DO_NOT_USE_SYSTEM = _declare(236, "safety statement for rules that use another system")
+CONNECTED_BY_RULES = _declare(237, "connection that the rules of a safety statement make")
+RULES_RUN_TWICE = _declare(238, "rules whose nodes are started twice")
+RULES_NOT_LOADED = _declare(239, "safety node wired by hand, and checked without its rules", _W)
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(301, "topic of the rules that the system lacks", absence=True)
@@ -151,6 +155,9 @@ GATE_WITHOUT_INPUT = _declare(344, "gate that does not watch its input", _W, abs
 GATE_HEARTBEAT_TOO_SHORT = _declare(345, "heartbeat given up sooner than it can be trusted", _W)
 STATE_PUBLISHED_TWICE = _declare(346, "state of an action that two nodes publish")
 HEARTBEAT_PUBLISHED_TWICE = _declare(347, "heartbeat that two nodes publish")
+SAFETY_DESCRIPTION_DIFFERS = _declare(353, "description of a safety node that is not of its rules")
+SAFETY_CONNECTED_ELSEWHERE = _declare(354, "safety node connected otherwise than its rules say")
+SAFETY_NOT_GENERATED = _declare(355, "safety node that has not been generated yet")
 GATE_RESUMES_BY_ITSELF = _declare(357, "gate that lets the robot go on by itself", _I)
 GATE_LIMIT_UNTIL_RESET = _declare(358, "limit that is to last until a reset")
 GATE_LIMIT_TO_ZERO = _declare(359, "limit that leaves a gate nothing but zero", _I)
@@ -171,8 +178,10 @@ UNKNOWN_TRACE_FIELD = _declare(503, "unknown field in a trace's message")
 WRONG_TRACE_VALUE = _declare(504, "value that the field of a trace's message cannot hold")
 UNREAD_TRACE_TOPIC = _declare(505, "topic of a trace that the rules do not read", _W)
 
-MENDED_AFTER_GENERATION = frozenset({GATE_BYPASSED, GATE_NOT_IN_SYSTEM})
-"""Errors of a system that a gate is not wired into yet: its node has to be generated before."""
+MENDED_AFTER_GENERATION = frozenset(
+    {GATE_BYPASSED, GATE_NOT_IN_SYSTEM, SAFETY_DESCRIPTION_DIFFERS, SAFETY_NOT_GENERATED}
+)
+"""Errors of a system whose safety nodes have to be generated, or generated again, before."""
 
 OF_MODELS = frozenset(
     code for code in ALL_CODES.values() if not code.name.startswith(("DRS02", "DRS4", "DRS5"))

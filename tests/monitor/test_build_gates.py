@@ -11,9 +11,9 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
+from deros.metamodels.safety_nodes import gate_node_name
 from deros.monitor import ir
 from deros.monitor.build import build
-from deros.monitor.gates import gate_node_name
 from tests.support.rules import build_rules, program
 
 ACTIONS = """

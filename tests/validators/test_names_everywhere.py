@@ -69,6 +69,12 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "Topic.name": (".system", "system s topics topic NAME", (*TOPICS, "~/a", "~")),
     "Subsystem.name": (".system", "system s subsystem NAME { }", WORDS),
     "NodeInstance.name": (".system", "system s node NAME : base", WORDS),
+    "NodeName.name": (".system", 'system s safety "s.deros" as NAME', WORDS),
+    "Package.package": (
+        ".system",
+        'system s safety "s.deros" package NAME',
+        ("Base", "a__b", "a_", "b", *WORDS),
+    ),
     "Namespace.namespace": (
         ".system",
         "system s subsystem a namespace NAME { }",

@@ -16,8 +16,13 @@ NODES = {
     "planner.rnd": "node planner : demo\npublishes\n  topic wish : geometry_msgs.Twist\n",
     "drive.rnd": "node drive : demo\nsubscribes\n  topic cmd_vel : geometry_msgs.Twist\n",
     "cmd_vel_gate.rnd": "node cmd_vel_gate : demo\n"
-    "publishes\n  topic /cmd_vel : geometry_msgs.Twist\n"
-    "subscribes\n  topic /nav : geometry_msgs.Twist\n  topic /stop : std_msgs.Bool\n",
+    "publishes\n"
+    "  topic /cmd_vel : geometry_msgs.Twist qos reliable depth 10\n"
+    "  topic /diagnostics : diagnostic_msgs.DiagnosticArray qos reliable depth 10\n"
+    "subscribes\n"
+    "  topic /nav : geometry_msgs.Twist qos best_effort depth 10\n"
+    "  topic /stop : std_msgs.Bool qos reliable transient_local depth 1\n"
+    "  topic s_safety_node/heartbeat : std_msgs.UInt64 qos reliable depth 10\n",
 }
 PLANNER = "node planner : planner\nwirings\n  connect wish to /nav\n"
 DRIVE = "node drive : drive\nwirings\n  connect cmd_vel to /cmd_vel\n"
@@ -26,8 +31,16 @@ wirings
   connect /nav to /nav
   connect /cmd_vel to /cmd_vel
   connect /stop to /stop
+  connect s_safety_node/heartbeat to /heartbeat
+  connect /diagnostics to /diagnostics
 """
-TOPICS = "  topic /nav\n  topic /cmd_vel\n  topic /stop\n  external topic /v : std_msgs.Float64\n"
+TOPICS = """  topic /nav
+  topic /cmd_vel
+  topic /stop
+  external topic /v : std_msgs.Float64
+  external topic /heartbeat
+  external topic /diagnostics
+"""
 IMPORTS = "".join(f'  import "{name}"\n' for name in NODES)
 RULES = """use "s.system" import S
 action stop publishes true on /stop : std_msgs.Bool latched;
@@ -124,11 +137,15 @@ def test_bypass_without_a_connection() -> None:
 
 
 def test_gate_connected_elsewhere() -> None:
-    """A gate that is there but reads or feeds other topics is as good as none."""
+    """A gate that is there but reads or feeds other topics is found where it is connected."""
     wrong = GATE.replace("connect /nav to /nav", "connect /nav to /wish")
     topics = TOPICS + "  external topic /wish : geometry_msgs.Twist\n"
     (finding,) = _findings(PLANNER + wrong + DRIVE, topics)
-    assert finding.message == "no 'cmd_vel_gate' of system 'S' subscribes to '/nav'"
+    assert (finding.code.name, finding.span.file, finding.span.text) == (
+        "DRS354",
+        "s.system",
+        "/wish",
+    )
 
 
 def test_node_of_an_unknown_type_may_be_the_gate() -> None:
@@ -144,12 +161,11 @@ def test_source_that_nobody_publishes() -> None:
 def test_chain_of_gates() -> None:
     """The target of one gate may be the source of the next."""
     second = RULES[RULES.index("gate ") :].replace("/cmd_vel", "/drive").replace("/nav", "/cmd_vel")
-    Path("drive.rnd").write_text(
-        "node drive_gate : demo\npublishes\n  topic /drive : geometry_msgs.Twist\n"
-        "subscribes\n  topic /cmd_vel : geometry_msgs.Twist\n"
-    )
-    members = "node second : drive_gate\nwirings\n  connect /cmd_vel to /cmd_vel\n"
-    members += "  connect /drive to /drive\n"
+    text = NODES["cmd_vel_gate.rnd"].replace("cmd_vel", "drive").replace("/nav", "/cmd_vel")
+    reliable = text.replace("best_effort", "reliable")  # as the gate before it publishes
+    Path("drive.rnd").write_text(reliable, encoding="utf-8")
+    members = GATE.replace("cmd_vel", "drive").replace("/nav", "/cmd_vel")
+    members = members.replace("node gate", "node second")
     topics = f"{TOPICS}  external topic /drive\n"
     assert _findings(PLANNER + GATE + members, topics, RULES + second) == []
 

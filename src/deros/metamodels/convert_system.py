@@ -18,6 +18,8 @@ from deros.metamodels.system import (
     NodeInstance,
     ParameterSetting,
     Respawn,
+    RulesReference,
+    SafetyInstance,
     Subsystem,
     System,
     Topic,
@@ -27,7 +29,15 @@ from deros.metamodels.system import (
 if TYPE_CHECKING:
     from deros.metamodels.scoping import FileIndex, Reference
 
-_WORDS = {"Namespace": "namespace", "Respawn": "respawn", "LogLevel": "log_level", "Qos": "qos"}
+_WORDS = {
+    "Namespace": "namespace",
+    "Respawn": "respawn",
+    "LogLevel": "log_level",
+    "Qos": "qos",
+    "NodeName": "as",
+    "Target": "target",
+    "Package": "package",
+}
 
 
 class SystemConverter(Converter):
@@ -36,12 +46,14 @@ class SystemConverter(Converter):
     def __init__(self, source: SourceFile, index: FileIndex) -> None:
         super().__init__(source)
         self._index = index
+        self.safety: list[SafetyInstance] = []
+        """Every ``safety`` statement, for the loader to resolve."""
 
     def system(self, model: Any, imports: Iterable[Import]) -> System:
         """Return the system that the file describes."""
         topics: list[Topic] = []
         members: list[NodeInstance | Subsystem] = []
-        self._parts(model.parts, topics, members)
+        safety = self._parts(model.parts, topics, members)
         return System(
             name=str(model.name),
             source=self.source,
@@ -50,6 +62,7 @@ class SystemConverter(Converter):
             imports=tuple(imports),
             topics=tuple(topics),
             members=tuple(members),
+            safety=safety,
             node_types={name: found[0] for name, found in self._index.node_types.items()},
             systems={name: found[0] for name, found in self._index.systems.items()},
             description=self.text(model.description),
@@ -57,18 +70,24 @@ class SystemConverter(Converter):
 
     def _parts(
         self, parts: Any, topics: list[Topic], members: list[NodeInstance | Subsystem]
-    ) -> None:
+    ) -> tuple[SafetyInstance, ...]:
+        """Convert what stands in a system or a subsystem; return its ``safety`` statements."""
         sections = Sections(self)
+        safety: list[SafetyInstance] = []
         for part in parts:
             kind = type(part).__name__
             if kind == "NodeInstance":
                 members.append(self._node(part))
             elif kind == "Subsystem":
                 members.append(self._subsystem(part))
+            elif kind == "SafetyInstance":
+                safety.append(self._safety(part))
             else:
                 sections.once(str(part.keyword), self.token_span(part.keyword))
                 if kind == "DeclaredTopics":
                     topics += map(self._topic, part.topics)
+        self.safety += safety
+        return tuple(safety)
 
     def _topic(self, found: Any) -> Topic:
         settings: dict[str, Any] = {}
@@ -123,13 +142,14 @@ class SystemConverter(Converter):
                 message = f"'{found.name}' uses a system and has parts of its own"
                 hint = "put the parts into a subsystem of their own"
                 self.report(codes.SYNTAX_ERROR, message, self.token_span(found.name), hint)
-        self._parts(found.parts, topics, members)
+        safety = self._parts(found.parts, topics, members)
         return Subsystem(
             str(found.name),
             self.span(found),
             self.token_span(found.name),
             topics=tuple(topics),
             members=tuple(members),
+            safety=safety,
             **settings,
         )
 
@@ -137,15 +157,7 @@ class SystemConverter(Converter):
         reference: Reference[NodeType] = found.type
         self._check_known(reference, "node type", self._index.node_types)
         node_type = reference.target
-        parameters: list[ParameterSetting] = []
-        wirings: list[Wiring] = []
-        sections = Sections(self)
-        for section in found.sections:
-            sections.once(str(section.keyword), self.token_span(section.keyword))
-            if type(section).__name__ == "Settings":
-                parameters += (self._setting(each, node_type) for each in section.settings)
-            else:
-                wirings += map(self._wiring, section.wirings)
+        parameters, wirings = self._sections(found.sections, node_type)
         return NodeInstance(
             str(found.name),
             str(reference.name),
@@ -153,10 +165,36 @@ class SystemConverter(Converter):
             self.span(found),
             self.token_span(found.name),
             self.token_span(reference.name),
-            parameters=tuple(parameters),
-            wirings=tuple(wirings),
+            parameters=parameters,
+            wirings=wirings,
             **(self._modifiers(found.modifiers) if found.modifiers else {}),
         )
+
+    def _safety(self, found: Any) -> SafetyInstance:
+        parameters, wirings = self._sections(found.sections, None)
+        return SafetyInstance(
+            self.text(found.path),
+            RulesReference(),
+            self.span(found),
+            self.token_span(found.path),
+            parameters=parameters,
+            wirings=wirings,
+            **self._modifiers(found.modifiers),
+        )
+
+    def _sections(
+        self, found: Any, node_type: NodeType | None
+    ) -> tuple[tuple[ParameterSetting, ...], tuple[Wiring, ...]]:
+        parameters: list[ParameterSetting] = []
+        wirings: list[Wiring] = []
+        sections = Sections(self)
+        for section in found:
+            sections.once(str(section.keyword), self.token_span(section.keyword))
+            if type(section).__name__ == "Settings":
+                parameters += (self._setting(each, node_type) for each in section.settings)
+            else:
+                wirings += map(self._wiring, section.wirings)
+        return tuple(parameters), tuple(wirings)
 
     def _setting(self, found: Any, node_type: NodeType | None) -> ParameterSetting:
         value = self.value(found.value)
@@ -200,6 +238,18 @@ class SystemConverter(Converter):
                 settings["respawn"] = Respawn(delay, most)
             elif what == "log_level":
                 settings["log_level"] = str(modifier.level)
+            elif what == "as":
+                settings |= {
+                    "node_name": str(modifier.name),
+                    "node_name_span": self.token_span(modifier.name),
+                }
+            elif what == "target":
+                settings["target"] = str(modifier.target)
+            elif what == "package":
+                settings |= {
+                    "package": str(modifier.package),
+                    "package_span": self.token_span(modifier.package),
+                }
             else:
                 settings["description"] = self.text(modifier.text)
         return settings

@@ -4,26 +4,48 @@ Names resolve as ROS 2 resolves them (ROS 2 design, "Topic and Service name mapp
 name stands as it is, a relative one is put under the namespace where it is written, ``~/x`` under
 the node's own full name. An absolute ``namespace`` replaces the enclosing one, a relative one
 extends it. An imported system used as ``subsystem left : Arm namespace /left`` is flattened under
-``/left``.
+``/left``. A ``safety`` statement becomes the nodes that it stands for.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
 
+from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import Value
+from deros.metamodels.graph_names import resolve_name
+from deros.metamodels.known_topics import TopicTable
 from deros.metamodels.node import NodeType, ParameterType, Port, PortKind
 from deros.metamodels.remapping import remappings, wired_ends
-from deros.metamodels.system import NodeInstance, Subsystem, System, Topic, Wiring
+from deros.metamodels.rules import Rules
+from deros.metamodels.safety_instances import (
+    Place,
+    instances,
+    safety_node_types,
+    unresolved_instance,
+)
+from deros.metamodels.safety_qos import Offers
+from deros.metamodels.system import (
+    NodeInstance,
+    SafetyInstance,
+    Subsystem,
+    System,
+    Topic,
+    Wiring,
+)
 
-
-def resolve_name(name: str, namespace: str, node_name: str = "") -> str:
-    """Return the graph name that ``name`` means under ``namespace``, for the node ``node_name``."""
-    if name.startswith("/"):
-        return name
-    if name == "~" or name.startswith("~/"):
-        return f"{resolve_name(node_name, namespace)}{name[1:]}"
-    return f"{namespace.rstrip('/')}/{name}"
+__all__ = [
+    "FlatNode",
+    "FlatPort",
+    "FlatSystem",
+    "FlatTopic",
+    "UntypedWiring",
+    "flatten",
+    "is_topic_parameter",
+    "nodes_of_rules",
+    "resolve_name",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +82,8 @@ class FlatNode:
         remappings: pairs of a port's own name and the graph name it is connected to, one for each
             name, or one for topics and one for services where these go elsewhere. A port ``via`` a
             parameter has none: its wiring sets the parameter.
+        frame: the namespace where the system that writes the node begins.
+        statement: the ``safety`` statement that the node comes from, if it does.
     """
 
     instance: NodeInstance
@@ -71,6 +95,8 @@ class FlatNode:
     untyped: tuple[UntypedWiring, ...]
     parameters: tuple[tuple[str, Value], ...]
     remappings: tuple[tuple[str, str], ...]
+    frame: str = "/"
+    statement: SafetyInstance | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,38 +123,147 @@ class FlatSystem:
 
 def flatten(system: System) -> FlatSystem:
     """Expand ``system``; unknown node types, ports and systems are left out, not reported here."""
-    nodes: list[FlatNode] = []
-    topics: list[FlatTopic] = []
-    _walk(system.topics, system.members, "/", (), (system,), nodes, topics)
-    return FlatSystem(system, tuple(nodes), tuple(topics))
+    return _Expansion(_Walk(system), _node_types).system()
 
 
-def _walk(
-    declared: tuple[Topic, ...],
-    members: tuple[NodeInstance | Subsystem, ...],
-    namespace: str,
-    path: tuple[str, ...],
-    open_systems: tuple[System, ...],
-    nodes: list[FlatNode],
-    topics: list[FlatTopic],
-) -> None:
-    topics.extend(FlatTopic(resolve_name(t.name, namespace), t, path) for t in declared)
-    for member in members:
-        inner = namespace
-        if member.namespace is not None:
-            inner = resolve_name(member.namespace, namespace)
-        if isinstance(member, NodeInstance):
-            nodes.append(_flat_node(member, inner, path))
-            continue
-        here = (*path, member.name)
-        _walk(member.topics, member.members, inner, here, open_systems, nodes, topics)
-        used = member.system
-        # A system that uses itself is reported as a cyclic import; expanding it would never end.
-        if used is not None and not any(used is one for one in open_systems):
-            _walk(used.topics, used.members, inner, here, (*open_systems, used), nodes, topics)
+@dataclass(frozen=True, slots=True)
+class _Site:
+    """A ``safety`` statement where it stands at run time."""
+
+    statement: SafetyInstance
+    path: tuple[str, ...]
+    place: Place
 
 
-def _flat_node(instance: NodeInstance, namespace: str, path: tuple[str, ...]) -> FlatNode:
+class _Walk:
+    """All that stands in a system, imports expanded, in the order written."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.topics: list[FlatTopic] = []
+        self.found: list[FlatNode | _Site] = []
+        self._enter(system, "/", "/", (), (system,))
+
+    def _enter(
+        self,
+        part: System | Subsystem,
+        namespace: str,
+        frame: str,
+        path: tuple[str, ...],
+        open_systems: tuple[System, ...],
+    ) -> None:
+        self.topics += (FlatTopic(resolve_name(t.name, namespace), t, path) for t in part.topics)
+        members: Iterable[NodeInstance | Subsystem | SafetyInstance] = part.members
+        if part.safety:
+            members = sorted((*part.members, *part.safety), key=lambda each: each.span.start)
+        for member in members:
+            inner = namespace
+            if member.namespace is not None:
+                inner = resolve_name(member.namespace, namespace)
+            if isinstance(member, NodeInstance):
+                self.found.append(_flat_node(member, inner, path, frame))
+                continue
+            if isinstance(member, SafetyInstance):
+                self.found.append(_Site(member, path, Place(inner, frame)))
+                continue
+            here = (*path, member.name)
+            self._enter(member, inner, frame, here, open_systems)
+            used = member.system
+            # A system that uses itself is reported as a cyclic import; expanding it would never
+            # end.
+            if used is not None and not any(used is one for one in open_systems):
+                self._enter(used, inner, inner, here, (*open_systems, used))
+
+
+# Safety statements --------------------------------------------------------------------------------
+
+_Describe = Callable[[SafetyInstance, Rules], tuple[NodeType, ...]]
+
+
+class _Expansion:
+    """A system with the nodes that its ``safety`` statements stand for."""
+
+    def __init__(self, walk: _Walk, describe: _Describe) -> None:
+        self._walk = walk
+        self._describe = describe
+
+    def system(self) -> FlatSystem:
+        return FlatSystem(self._walk.system, tuple(self._nodes()), tuple(self._walk.topics))
+
+    def _nodes(self) -> Iterator[FlatNode]:
+        seen: set[tuple[int, str]] = set()
+        for each in self._walk.found:
+            if isinstance(each, FlatNode):
+                yield each
+                continue
+            # A second statement for the same rules is reported; its nodes would be the same ones.
+            key = (id(each.statement.rules), each.place.frame)
+            if each.statement.rules is None or key not in seen:
+                seen.add(key)
+                yield from self._at(each)
+
+    def _at(self, site: _Site) -> Iterator[FlatNode]:
+        statement, place = site.statement, site.place
+        if statement.rules is None:
+            found: tuple[NodeInstance, ...] = (unresolved_instance(statement),)
+        else:
+            types = self._describe(statement, statement.rules)
+            found = instances(statement, statement.rules, types, place)
+        for instance in found:
+            flat = _flat_node(instance, place.namespace, site.path, place.frame)
+            yield replace(flat, statement=statement)
+
+
+def _node_types(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
+    """Return the nodes of a statement as the systems that the rules use let them be."""
+    target, package = statement.target, statement.package or ""
+    known = statement.reference.node_types
+    if (target, package) not in known:
+        known[target, package] = nodes_of_rules(rules, target, package)
+    return known[target, package]
+
+
+def nodes_of_rules(rules: Rules, target: str = "python", package: str = "") -> tuple[NodeType, ...]:
+    """Return the safety node that rules become, followed by its gates.
+
+    Args:
+        rules: as written; inputs whose type no used system tells are left out.
+        target: the language that they are generated in, ``python`` or ``cpp``.
+        package: that they are generated in, with or without what the target appends.
+    """
+    topics = _known_topics(rules)
+
+    def type_of(name: str) -> InterfaceType | None:
+        known = topics.get(name)
+        return known.type if known is not None else None
+
+    return safety_node_types(rules, type_of, topics.offers, target, package)
+
+
+def _node_types_alone(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
+    """Return the nodes of a statement as far as the rules alone say what they are.
+
+    That is all that other safety nodes have to know of them: what they publish, and of which type.
+    """
+    return safety_node_types(
+        rules, lambda _: None, lambda _: Offers(), statement.target, statement.package or ""
+    )
+
+
+def _known_topics(rules: Rules) -> TopicTable:
+    """Return what the systems that some rules use say of topics, without what safety nodes read."""
+    systems = {id(use.system): use.system for use in rules.uses if use.system is not None}
+    return TopicTable(
+        _Expansion(_Walk(system), _node_types_alone).system() for system in systems.values()
+    )
+
+
+# Nodes --------------------------------------------------------------------------------------------
+
+
+def _flat_node(
+    instance: NodeInstance, namespace: str, path: tuple[str, ...], frame: str
+) -> FlatNode:
     def full(name: str) -> str:
         return resolve_name(name, namespace, instance.name)
 
@@ -174,6 +309,7 @@ def _flat_node(instance: NodeInstance, namespace: str, path: tuple[str, ...]) ->
         untyped,
         tuple(settings.items()),
         remappings(flat_ports),
+        frame,
     )
 
 

@@ -23,7 +23,7 @@ from deros.metamodels.node import NodeType
 from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, too_deep
 from deros.metamodels.rules import Rules
 from deros.metamodels.scoping import FileIndex, attach_index
-from deros.metamodels.system import Import, System
+from deros.metamodels.system import Import, RulesReference, SafetyInstance, System
 
 _FRAMES_TO_PARSE = 20_000
 
@@ -63,6 +63,7 @@ class Repository:
         self._files: dict[str, LoadedFile] = {}
         self._open: list[_Open] = []
         self._folders: dict[str, None] = {}
+        self._unresolved: list[tuple[RulesReference, str]] = []
 
     @property
     def files(self) -> list[LoadedFile]:
@@ -99,6 +100,7 @@ class Repository:
                 self._files[key] = LoadedFile(shown, language_of(shown), None, None, found)
             else:
                 self._files[key] = self._convert(key, source)
+        self._resolve_rules()
         return self._files[key]
 
     def load_text(self, path: str | Path, text: str) -> LoadedFile:
@@ -109,7 +111,23 @@ class Repository:
         key = _identity(str(path))
         self._files.pop(key, None)
         self._files[key] = self._convert(key, SourceFile(str(path), text))
+        self._resolve_rules()
         return self._files[key]
+
+    def refer(self, reference: RulesReference, path: str) -> None:
+        """Have ``reference`` resolved to the rules in the file ``path``, once that can be loaded.
+
+        The rules use the system that refers to them, so that has to be loaded before.
+        """
+        self._unresolved.append((reference, path))
+
+    def _resolve_rules(self) -> None:
+        if self._open:
+            return
+        while self._unresolved:
+            reference, path = self._unresolved.pop(0)
+            model = self.load(path).model
+            reference.rules = model if isinstance(model, Rules) else None
 
     def _convert(self, key: str, source: SourceFile) -> LoadedFile:
         language = language_of(source.path)
@@ -188,7 +206,22 @@ class _Loading:
         converter = SystemConverter(self._source, index)
         result = converter.system(model, imports)
         self.diagnostics += converter.diagnostics
+        for statement in converter.safety:
+            self._refer(statement)
         return result
+
+    def _refer(self, statement: SafetyInstance) -> None:
+        """Find the rules that a ``safety`` statement names; they are loaded later."""
+        span = statement.path_span
+        found = self._repository.find(self._source.path, statement.path, span, (".deros",))
+        if isinstance(found, tuple) and len(found) > 1:
+            message = f"'{statement.path}' means {len(found)} files"
+            hint = "name the rules of one safety node"
+            found = report(codes.UNKNOWN_IMPORT, message, span, hint)
+        if isinstance(found, Diagnostic):
+            self.diagnostics.append(found)
+        else:
+            self._repository.refer(statement.reference, found[0])
 
     def rules(self) -> Rules:
         """Load a DeRoS program."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
@@ -58,6 +58,13 @@ _KIND_WORDS = {
     PortKind.ACTION_CLIENT: "action_client",
 }
 KINDS_BY_WORD = {word: kind for kind, word in _KIND_WORDS.items()}
+
+
+BUILT_IN_PARAMETERS: Mapping[str, ParameterType] = {
+    "use_sim_time": ParameterType.BOOL,
+    "start_type_description_service": ParameterType.BOOL,
+}
+"""Parameters that every ROS 2 node has without declaring them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,11 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import QosProfile, Value
 from deros.metamodels.node import NodeType, PortKind
+
+if TYPE_CHECKING:
+    from deros.metamodels.rules import Rules
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +94,58 @@ class NodeInstance:
     description: str = ""
 
 
+class RulesReference:
+    """The rules that a ``safety`` statement names: the loader resolves it when both are loaded.
+
+    The rules use the system that names them, so neither file can be complete before the other.
+    ``rules`` is ``None`` when the file could not be loaded, or holds an error of syntax.
+    """
+
+    __slots__ = ("node_types", "rules")
+
+    def __init__(self) -> None:
+        """Start without rules."""
+        self.rules: Rules | None = None
+        self.node_types: dict[tuple[str, str], tuple[NodeType, ...]] = {}
+        """What :mod:`deros.metamodels.safety_instances` made of them, by target and package."""
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyInstance:
+    """``safety "FILE.deros"``: the safety node of these rules and its gates, wired as they say.
+
+    Attributes:
+        path: of the rules, as written.
+        node_name: of the safety node in the ROS graph, if given.
+        target: the language that the nodes are generated in.
+        package: that they are generated in, without what the target appends; if given.
+        parameters: each is for all of the nodes that have it.
+        wirings: of ports that the rules do not name, such as ``~/heartbeat``.
+    """
+
+    path: str
+    reference: RulesReference = field(compare=False, repr=False)
+    span: Span = field(compare=False, repr=False)
+    path_span: Span = field(compare=False, repr=False)
+    node_name: str | None = None
+    node_name_span: Span | None = field(default=None, compare=False, repr=False)
+    target: Literal["python", "cpp"] = "python"
+    package: str | None = None
+    package_span: Span | None = field(default=None, compare=False, repr=False)
+    namespace: str | None = None
+    namespace_span: Span | None = field(default=None, compare=False, repr=False)
+    parameters: tuple[ParameterSetting, ...] = ()
+    wirings: tuple[Wiring, ...] = ()
+    respawn: Respawn | None = None
+    log_level: str | None = None
+    description: str = ""
+
+    @property
+    def rules(self) -> Rules | None:
+        """The rules, or ``None`` when they could not be loaded."""
+        return self.reference.rules
+
+
 @dataclass(frozen=True, slots=True)
 class Subsystem:
     """A named group of nodes and subsystems, or the use of an imported system.
@@ -105,6 +161,7 @@ class Subsystem:
     namespace_span: Span | None = field(default=None, compare=False, repr=False)
     topics: tuple[Topic, ...] = ()
     members: tuple[NodeInstance | Subsystem, ...] = ()
+    safety: tuple[SafetyInstance, ...] = ()
     system_name: str | None = None
     system_span: Span | None = field(default=None, compare=False, repr=False)
     system: System | None = field(default=None, compare=False, repr=False)
@@ -125,6 +182,7 @@ class System:
     imports: tuple[Import, ...] = ()
     topics: tuple[Topic, ...] = ()
     members: tuple[NodeInstance | Subsystem, ...] = ()
+    safety: tuple[SafetyInstance, ...] = ()
     node_types: Mapping[str, NodeType] = field(default_factory=dict, compare=False, repr=False)
     systems: Mapping[str, System] = field(default_factory=dict, compare=False, repr=False)
     description: str = ""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator
 from fractions import Fraction
 
@@ -37,30 +36,6 @@ _INDIVISIBLE = {
     QUATERNION: "a quaternion",
     LAYOUT: "the layout of an array",
 }
-_NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9]+")
-
-
-def gate_node_name(target: str) -> str:
-    """Return the name of the node type that a gate becomes: ``/front/cmd_vel`` has one of its own.
-
-    >>> gate_node_name("/front/cmd_vel")
-    'front_cmd_vel_gate'
-    """
-    return f"{_NOT_IN_NAMES.sub('_', target).strip('_')}_gate"
-
-
-CPP_SUFFIX = "_cpp"
-"""What the names of the node types end in that the C++ target makes of rules."""
-
-
-def is_gate_node(name: str, target: str) -> bool:
-    """Tell whether a node type, in whatever language, is the gate that leads to a topic."""
-    return name.removesuffix(CPP_SUFFIX) == gate_node_name(target)
-
-
-def is_gate(name: str) -> bool:
-    """Tell whether a node type, in whatever language, has the name of a gate."""
-    return name.removesuffix(CPP_SUFFIX).endswith("_gate")
 
 
 class Gates:

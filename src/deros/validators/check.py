@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from deros.diagnostics import Diagnostic, in_file_order
@@ -13,6 +14,7 @@ from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
 from deros.validators.allowances import Allowed, ProjectAllowance, sort_out
 from deros.validators.consequences import without_consequences
+from deros.validators.safety_rules import as_generated, contained_systems, neighbours
 
 
 class Checked(NamedTuple):
@@ -51,22 +53,44 @@ def check_all(
     """
     loaded = list({id(each): each for each in (*named, *repository.files)}.values())
     named_files = {id(each) for each in named}
+    loaded += neighbours(loaded, repository)
     watching = _watching_rules(loaded)
     findings: list[Diagnostic] = []
     for each in loaded:
         findings.extend(each.diagnostics)
-        watchers = watching.get(id(each.model), [])
-        whole = id(each) in named_files or bool(watchers)
+        watchers = _Watchers()
+        if isinstance(each.model, System):
+            watchers = _watchers(each.model, watching)
+        whole = id(each) in named_files or bool(watchers.whole)
         findings.extend(_check_model(each.model, whole, watchers, store))
-    sorted_out = sort_out(in_file_order(findings), loaded, named, project)
+    found = in_file_order(as_generated(findings, watching))
+    sorted_out = sort_out(found, loaded, named, project)
     causes = without_consequences(sorted_out.findings, loaded)
     return Checked(in_file_order(causes), list(sorted_out.allowed))
 
 
 def check_file(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
     """Return the findings of one file by itself, in file order, without those of its imports."""
-    findings = in_file_order([*loaded.diagnostics, *_check_model(loaded.model, False, [], store)])
+    found = _check_model(loaded.model, False, _Watchers(), store)
+    findings = in_file_order([*loaded.diagnostics, *found])
     return list(without_consequences(sort_out(findings, [loaded], ()).findings, [loaded]))
+
+
+@dataclass(frozen=True, slots=True)
+class _Watchers:
+    """The rules that use a system, and those that use a system which it contains."""
+
+    whole: tuple[Rules, ...] = ()
+    parts: tuple[Rules, ...] = ()
+
+
+def _watchers(system: System, watching: Mapping[int, list[Rules]]) -> _Watchers:
+    whole = watching.get(id(system), [])
+    parts: dict[int, Rules] = {}
+    if watching:
+        for part in contained_systems(system):
+            parts |= {id(rules): rules for rules in watching.get(id(part), [])}
+    return _Watchers(tuple(whole), tuple(r for r in parts.values() if r not in whole))
 
 
 def _watching_rules(loaded: Iterable[LoadedFile]) -> dict[int, list[Rules]]:
@@ -83,7 +107,7 @@ def _watching_rules(loaded: Iterable[LoadedFile]) -> dict[int, list[Rules]]:
 def _check_model(
     model: NodeType | System | Rules | None,
     whole: bool,
-    watchers: list[Rules],
+    watchers: _Watchers,
     store: InterfaceStore,
 ) -> Iterator[Diagnostic]:
     """Run the family that the model belongs to; each is imported only when a model asks for it."""
@@ -95,7 +119,7 @@ def _check_model(
         from deros.validators.system import check_system, check_written
 
         if whole:
-            yield from check_system(model, store, watchers)
+            yield from check_system(model, store, watchers.whole, watchers.parts)
         else:
             yield from check_written(model, store)
     elif isinstance(model, Rules):

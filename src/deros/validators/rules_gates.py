@@ -13,9 +13,9 @@ from deros.metamodels.common import Name
 from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, resolve_name
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Gate, GateLine, Rules
+from deros.metamodels.safety_nodes import gate_node_name, is_gate_node
 from deros.monitor import ir
 from deros.monitor.build import BuildResult
-from deros.monitor.gates import gate_node_name, is_gate_node
 from deros.monitor.topics import KnownTopic, SystemTopics
 from deros.validators.rules_heartbeat import check_heartbeats, heartbeat_hint
 
@@ -28,7 +28,7 @@ def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
         yield from _order(gate)
         yield from _watching(gate, heartbeat_hint(gate, states, flat))
         for each in flat:
-            yield from _wiring(gate, each)
+            yield from _wiring(gate, each, rules)
         if result.topics.complete:
             yield from _ends(gate, rules, result.topics)
     if result.program is not None:
@@ -145,7 +145,7 @@ class _End:
         return wiring.span if wiring is not None else self.node.instance.name_span
 
 
-def _wiring(gate: Gate, flat: FlatSystem) -> Iterator[Diagnostic]:
+def _wiring(gate: Gate, flat: FlatSystem, rules: Rules) -> Iterator[Diagnostic]:
     source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
     commanding = list(_at(flat, target, PortKind.PUBLISHER))
     obeying = list(_at(flat, target, PortKind.SUBSCRIPTION))
@@ -163,29 +163,17 @@ def _wiring(gate: Gate, flat: FlatSystem) -> Iterator[Diagnostic]:
         return
     if any(node.type is None for node in flat.nodes):
         return  # one of them, which another finding is about, may be the gate
-    lacks = _lacks(flat, source, target)
-    if lacks:
-        name = gate_node_name(target)
-        hint = (
-            f"the node type '{name}' is generated with the safety node: import it, and connect"
-            f" {source} and {target}"
-        )
-        place = _named(gate.target, flat)
-        yield report(codes.GATE_NOT_IN_SYSTEM, lacks, gate.target.span, hint, place)
-
-
-def _lacks(flat: FlatSystem, source: str, target: str) -> str:
-    """Say what part of the gate a system lacks, if any."""
+    if any(_is_gate(node, target) for node in flat.nodes):
+        return  # whether it is connected as the rules say is checked with the system
     name = gate_node_name(target)
-    if not any(_is_gate(node, target) for node in flat.nodes):
-        return f"system '{flat.system.name}' has no gate to '{target}': no node is a '{name}'"
-    for topic, kind, does in (
-        (target, PortKind.PUBLISHER, "publishes"),
-        (source, PortKind.SUBSCRIPTION, "subscribes to"),
-    ):
-        if not any(_is_gate(end.node, target) for end in _at(flat, topic, kind)):
-            return f"no '{name}' of system '{flat.system.name}' {does} '{topic}'"
-    return ""
+    yield report(
+        codes.GATE_NOT_IN_SYSTEM,
+        f"system '{flat.system.name}' has no gate to '{target}': no node is a '{name}'",
+        gate.target.span,
+        f"the node type '{name}' is generated with the safety node: import it, and connect"
+        f" {source} and {target}, or write 'safety \"{rules.name}.deros\"'",
+        _named(gate.target, flat),
+    )
 
 
 def _at(flat: FlatSystem, topic: str, kind: PortKind) -> Iterator[_End]:

@@ -12,9 +12,9 @@ from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.metamodels.flatten import FlatNode, FlatSystem
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Gate
+from deros.metamodels.safety_nodes import is_gate_node
 from deros.monitor import ir
 from deros.monitor.build import BuildResult
-from deros.monitor.gates import is_gate_node
 from deros.validators.system_safety import is_safety_node, is_state
 
 FEWEST_PERIODS = Fraction(5, 2)

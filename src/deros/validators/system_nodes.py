@@ -10,19 +10,20 @@ from deros.interfaces.names import check_parameter_name, check_topic_name
 from deros.interfaces.standard_topics import standard_topic
 from deros.metamodels.common import Value
 from deros.metamodels.flatten import FlatNode, FlatSystem, is_topic_parameter, resolve_name
-from deros.metamodels.node import NodeType, Parameter, ParameterType, Port, PortKind
+from deros.metamodels.node import (
+    BUILT_IN_PARAMETERS,
+    NodeType,
+    Parameter,
+    ParameterType,
+    Port,
+    PortKind,
+)
 from deros.metamodels.remapping import wired_apart, wired_ends
 from deros.metamodels.system import NodeInstance, ParameterSetting, Wiring
 from deros.validators.hints import NameIndex, did_you_mean, one_of
 from deros.validators.values import constraint_fault, entry_faults, type_fault
 
 _TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
-
-BUILT_IN_PARAMETERS: Mapping[str, ParameterType] = {
-    "use_sim_time": ParameterType.BOOL,
-    "start_type_description_service": ParameterType.BOOL,
-}
-"""Parameters that every ROS 2 node has without declaring them."""
 
 
 def check_instances(flat: FlatSystem) -> Iterator[Diagnostic]:
@@ -201,7 +202,8 @@ def _wirings(
             wiring.kind is not None or not is_topic_parameter(node_type, wiring.port)
         ):
             yield _unknown_port(instance, node_type, wiring)
-        if not ports or any(port.kind in _TOPIC_KINDS for port in ports):
+        is_topic = not ports or any(port.kind in _TOPIC_KINDS for port in ports)
+        if is_topic and _is_written(node, wiring):
             target = resolve_name(wiring.target, node.namespace, instance.name)
             kind = next((port.type for port in ports if port.kind in _TOPIC_KINDS), None)
             is_standard = standard_topic(target, kind) or standard_topic(target, None)
@@ -249,6 +251,11 @@ def _connected_twice(
                 related=(Related(first.span, "the first connection"),),
             )
             return
+
+
+def _is_written(node: FlatNode, wiring: Wiring) -> bool:
+    """Tell whether the system itself writes a wiring; those that rules write are checked there."""
+    return node.statement is None or any(wiring is each for each in node.statement.wirings)
 
 
 def _unknown_port(instance: NodeInstance, node_type: NodeType, wiring: Wiring) -> Diagnostic:

@@ -7,14 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, report
+from deros.metamodels import safety_nodes
 from deros.metamodels.flatten import FlatNode, FlatSystem, resolve_name
 from deros.metamodels.node import Port, PortKind
 from deros.metamodels.rules import Rules
-from deros.monitor.gates import is_gate
+from deros.metamodels.safety_nodes import HEARTBEAT, HEARTBEAT_TYPE, is_gate
 from deros.validators.graph import End
-
-_HEARTBEAT = "~/heartbeat"
-_HEARTBEAT_TYPE = "std_msgs/msg/UInt64"
 
 
 def check_safety_publishers(flat: FlatSystem, watchers: Iterable[Rules]) -> Iterator[Diagnostic]:
@@ -80,9 +78,9 @@ def _heartbeats(flat: FlatSystem) -> set[str]:
     found: set[str] = set()
     for node in flat.nodes:
         for port in node.ports:
-            if str(port.port.type) != _HEARTBEAT_TYPE:
+            if port.port.type != HEARTBEAT_TYPE:
                 continue
-            is_own = port.port.kind is PortKind.PUBLISHER and port.port.name == _HEARTBEAT
+            is_own = port.port.kind is PortKind.PUBLISHER and port.port.name == HEARTBEAT
             is_heard = port.port.kind is PortKind.SUBSCRIPTION and _is_gate(node)
             if is_own or (is_heard and port.port.name.endswith("/heartbeat")):
                 found.add(port.topic)
@@ -96,12 +94,7 @@ def is_of_safety(node: FlatNode) -> bool:
 
 def is_safety_node(node: FlatNode) -> bool:
     """Tell whether a node has the heartbeat of a generated safety node."""
-    return node.type is not None and any(
-        port.kind is PortKind.PUBLISHER
-        and port.name == _HEARTBEAT
-        and str(port.type) == _HEARTBEAT_TYPE
-        for port in node.type.ports
-    )
+    return node.type is not None and safety_nodes.is_safety_node(node.type)
 
 
 def _is_gate(node: FlatNode) -> bool:

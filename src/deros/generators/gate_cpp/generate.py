@@ -22,10 +22,10 @@ from deros.generators.protocol import File
 from deros.generators.rosnode_cpp.generate import Provided, licensed
 from deros.generators.safety_cpp.verbatim import runtime_sources, runtime_text
 from deros.generators.safety_python.description import node_description
-from deros.generators.safety_python.node import RESET, TRIGGER
 from deros.generators.templates import environment
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType
+from deros.metamodels.safety_nodes import RESET, TRIGGER
 from deros.monitor.ir import Program
 
 _SHARED = (

@@ -7,9 +7,8 @@ import dataclasses
 from deros.generators import gate_python
 from deros.generators.cpp_source import cpp_identifier
 from deros.generators.names import Emitted, check_collisions
-from deros.generators.safety_cpp.node import cpp_twin
-from deros.generators.safety_python.node import DIAGNOSTICS
 from deros.metamodels.node import NodeType
+from deros.metamodels.safety_nodes import DIAGNOSTICS, cpp_twin
 from deros.monitor.ir import Program
 from deros.monitor.topics import SystemTopics
 

@@ -20,7 +20,6 @@ from deros.generators.gate_cpp.messages import (
     type_views,
 )
 from deros.generators.gate_cpp.source import CppNames, number, scalar
-from deros.generators.gate_python.node import heartbeat_port
 from deros.generators.gate_view import (
     ActionView,
     GateBase,
@@ -39,7 +38,7 @@ from deros.generators.rosnode_cpp.qos import qos_expression
 from deros.interfaces.fields import format_path
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType, Port, PortKind
-from deros.monitor.gates import CPP_SUFFIX
+from deros.metamodels.safety_nodes import CPP_SUFFIX, heartbeat_port
 from deros.monitor.ir import Action, Binding, Gate, Limit, Program
 
 LATEST = 2**62 - 1

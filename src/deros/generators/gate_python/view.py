@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 from deros.generators.gate_command import limited_paths
 from deros.generators.gate_python.messages import LimitedField, limited_field, type_views
-from deros.generators.gate_python.node import heartbeat_port
 from deros.generators.gate_view import (
     ActionView,
     GateBase,
@@ -29,11 +28,11 @@ from deros.generators.rosnode_python.view import (
     node_view,
 )
 from deros.generators.safety_python.messages import literal
-from deros.generators.safety_python.node import HEARTBEAT_TYPE, RESET, TRIGGER
 from deros.interfaces.fields import format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType
+from deros.metamodels.safety_nodes import HEARTBEAT_TYPE, RESET, TRIGGER, heartbeat_port
 from deros.monitor.ir import Action, Binding, Gate, Limit, Program
 
 # Names that the template of the logic uses itself.

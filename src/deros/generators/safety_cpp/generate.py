@@ -18,15 +18,16 @@ from deros.generators.gate_cpp import gate_files, gate_nodes
 from deros.generators.monitor_c import render_monitor
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.rosnode_cpp.generate import Provided, licensed, package_files
-from deros.generators.safety_cpp.node import cpp_twin, twin_options
+from deros.generators.safety_cpp.node import twin_options
 from deros.generators.safety_cpp.origins import table
 from deros.generators.safety_cpp.verbatim import runtime_files, runtime_sources
 from deros.generators.safety_cpp.view import SafetyView, safety_view
 from deros.generators.safety_python.description import node_description
-from deros.generators.safety_python.node import safety_node
+from deros.generators.safety_python.node import package_options, safety_node
 from deros.generators.safety_view import shared_topics
 from deros.generators.templates import environment
 from deros.metamodels.rules import Rules
+from deros.metamodels.safety_nodes import cpp_twin
 from deros.monitor.build import build
 
 _NEEDS = (
@@ -52,6 +53,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     built = build(model, context.store)
     if built.program is None:
         raise GenerationError(built.diagnostics)
+    options = package_options(model, options, "cpp")
     python = safety_node(built.program, built.topics, twin_options(options), model.source)
     node = cpp_twin(python)
     shared = shared_topics(built.program, built.topics)

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
-
-from deros.diagnostics import SourceFile
 from deros.generators.protocol import Options
-from deros.metamodels.node import NodeType
-from deros.monitor.gates import CPP_SUFFIX
+from deros.metamodels.safety_nodes import CPP_SUFFIX
 
 
 def twin_options(options: Options) -> dict[str, str]:
@@ -18,10 +14,3 @@ def twin_options(options: Options) -> dict[str, str]:
         if name in options
     }
     return {**options, **named}
-
-
-def cpp_twin(node: NodeType) -> NodeType:
-    """Return the node type in C++: it stands where the Python one stood, by one word more."""
-    name, package = f"{node.name}{CPP_SUFFIX}", f"{node.package}{CPP_SUFFIX}"
-    source = SourceFile(f"{name}.rnd", node.source.text)
-    return dataclasses.replace(node, name=name, package=package, source=source)

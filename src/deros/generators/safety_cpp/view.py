@@ -25,12 +25,7 @@ from deros.generators.safety_cpp.explained import explained_rules
 from deros.generators.safety_cpp.messages import arguments, literal
 from deros.generators.safety_cpp.origins import Item, origins_view
 from deros.generators.safety_python.messages import is_stamped
-from deros.generators.safety_python.node import (
-    DIAGNOSTICS_TYPE,
-    RESET,
-    bound_actions,
-    enabled_parameter,
-)
+from deros.generators.safety_python.node import bound_actions
 from deros.generators.safety_view import (
     ChannelView,
     FieldView,
@@ -45,6 +40,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.rules import Rules
+from deros.metamodels.safety_nodes import DIAGNOSTICS_TYPE, RESET, enabled_parameter
 from deros.monitor.ir import Action, Binding, Program, Scalar
 
 _PARAMETER_TYPES = {

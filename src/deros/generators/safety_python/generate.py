@@ -9,7 +9,7 @@ from deros.generators.protocol import Context, File, Files, GenerationError, Opt
 from deros.generators.python_source import Text, call, expression, mark_long_lines
 from deros.generators.rosnode_python.generate import licensed, package_files
 from deros.generators.safety_python.description import node_description
-from deros.generators.safety_python.node import safety_node
+from deros.generators.safety_python.node import package_options, safety_node
 from deros.generators.safety_python.verbatim import runtime_files
 from deros.generators.safety_python.view import SafetyView, safety_view
 from deros.generators.safety_view import shared_topics
@@ -32,6 +32,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     built = build(model, context.store)
     if built.program is None:
         raise GenerationError(built.diagnostics)
+    options = package_options(model, options, "python")
     node = safety_node(built.program, built.topics, options, model.source)
     shared = shared_topics(built.program, built.topics)
     view = safety_view(model, built.program, node, context.store, shared)

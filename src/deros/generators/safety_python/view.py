@@ -12,12 +12,7 @@ from deros.generators.names import Emitted, check_collisions, python_identifier
 from deros.generators.python_source import import_lines, one_line, wrapped
 from deros.generators.rosnode_python.view import NodeView, interface_imports, node_view
 from deros.generators.safety_python.messages import is_stamped, literal
-from deros.generators.safety_python.node import (
-    HEARTBEAT,
-    RESET,
-    bound_actions,
-    enabled_parameter,
-)
+from deros.generators.safety_python.node import bound_actions
 from deros.generators.safety_view import (
     BehaviourView,
     ChannelView,
@@ -36,6 +31,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, PortKind
 from deros.metamodels.rules import Rules
+from deros.metamodels.safety_nodes import HEARTBEAT, RESET, enabled_parameter
 from deros.monitor import walk
 from deros.monitor.actions import LOG_STATE
 from deros.monitor.ir import Action, Binding, Program, Scalar

@@ -1,0 +1,370 @@
+"""Safety nodes and gates that are wired by hand, and ``safety`` statements, against their rules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from deros.diagnostics import Diagnostic
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.validators.check import check
+from tests.support.cli import deros
+from tests.support.hand_wired import DIFFERENCES, RULES, STATEMENT, write_hand_wired
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def findings(*files: str) -> list[Diagnostic]:
+    """Check the files as ``deros check`` does."""
+    repository = Repository()
+    named = [repository.load(file) for file in files or ("robot.system",)]
+    return check(named, repository, InterfaceStore((), prefixes=()))
+
+
+def codes(*files: str) -> list[str]:
+    """Return the codes of all findings."""
+    return [finding.code.name for finding in findings(*files)]
+
+
+def edit(path: str, *changes: tuple[str, str]) -> None:
+    """Replace texts that are there."""
+    text = Path(path).read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    Path(path).write_text(text, encoding="utf-8")
+
+
+# By hand ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("file", ["robot.system", "robot.deros"])
+def test_sound_wiring_has_no_finding(file: str) -> None:
+    """Whichever file is named: the rules beside the system are found."""
+    write_hand_wired()
+    assert findings(file) == []
+
+
+@pytest.mark.parametrize("name", DIFFERENCES)
+@pytest.mark.parametrize("file", ["robot.system", "robot.deros"])
+def test_each_difference_is_an_error_that_names_both(name: str, file: str) -> None:
+    """The place is in the system; the related place says what the rules mean."""
+    old, new, code, words = DIFFERENCES[name]
+    write_hand_wired()
+    edit("robot.system", (old, new))
+    found = [each for each in findings(file) if each.code.name == code]
+    assert len(found) == (2 if "swap" in name else 1), findings(file)
+    assert words in found[0].message
+    assert found[0].is_error
+    assert found[0].span.file == "robot.system"
+    assert found[0].related
+
+
+def test_relative_name_in_a_namespace_is_another_topic() -> None:
+    """A namespace around the safety node moves what it is connected to."""
+    write_hand_wired()
+    edit(
+        "robot.system",
+        ("subsystem Safety {", "subsystem Safety namespace /front_robot {"),
+        ("connect /front to /front", "connect /front to front"),
+        ("topics\n", "topics\n  external topic /front_robot/front : sensor_msgs.LaserScan\n"),
+    )
+    (finding,) = [each for each in findings() if each.code.name == "DRS354"]
+    assert "the rules read '/front'" in finding.message
+    assert "'/front_robot/front'" in finding.message
+
+
+def test_namespace_of_an_imported_system_is_a_finding_of_the_importing_one() -> None:
+    """Alone the system is sound; in a namespace one relative name parts from the rules."""
+    write_hand_wired()
+    edit("robot.system", ("connect /front to /front", "connect /front to front"))
+    assert findings() == []
+    Path("fleet.system").write_text(
+        'system Fleet imports import "robot.system"\nsubsystem one : Robot namespace /one\n'
+    )
+    (finding,) = [each for each in findings("fleet.system") if each.code.name == "DRS354"]
+    assert "'/one/front'" in finding.message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("  topic /rear : sensor_msgs.LaserScan qos best_effort depth 10\n", "", "it lacks the"),
+        ("/rear : sensor_msgs.LaserScan", "/rear : sensor_msgs.Imu", "is sensor_msgs.Imu, not"),
+        (
+            "/stop : std_msgs.Bool qos reliable transient_local",
+            "/stop : std_msgs.Bool qos reliable",
+            "the publisher '/stop' has another QoS",
+        ),
+        ("subscribes\n", "subscribes\n  topic /side : sensor_msgs.LaserScan\n", "'/side', which"),
+        (": robot_safety ", ": other_safety ", "in the package"),
+        ('robot"\n', 'robot"\nexecutable "other"\n', "its program is 'other'"),
+        ("publish_freq : double = 10.0", "publish_freq : double = 50.0", "'publish_freq' has"),
+        ("name lock_memory", "name old_switch : bool = true\n  name lock_memory", "'old_switch'"),
+    ],
+)
+def test_description_that_is_not_of_the_rules(old: str, new: str, words: str) -> None:
+    """Each kind of difference is named, in one finding."""
+    write_hand_wired()
+    edit("robot_safety_node.rnd", (old, new))
+    found = [each for each in findings() if each.code.name == "DRS353"]
+    if "package" in words:  # the gate, then, is in another one
+        assert any("gate" in each.span.text for each in found)
+        return
+    (finding,) = found
+    assert words in finding.message
+    assert "generate it again" in finding.hint
+
+
+def test_rules_can_be_generated_while_the_description_is_old() -> None:
+    """An input more in the rules: old description, new connection; then both are sound."""
+    write_hand_wired()
+    edit("robot.deros", ("/rear.ranges[0]", "/side.ranges[0]"))
+    edit(
+        "robot.system",
+        ("external topic /rear :", "external topic /side :"),
+        ("connect /rear to /rear", "connect /side to /side"),
+    )
+    assert codes() == ["DRS353"]
+    outcome = deros("generate", "robot.deros", "--target", "python", "-o", "out")
+    assert outcome.code == 0, outcome.err
+    new = Path("out/robot_safety/robot_safety_node.rnd").read_text(encoding="utf-8")
+    Path("robot_safety_node.rnd").write_text(new, encoding="utf-8")
+    assert codes() == []
+
+
+def test_type_that_only_an_old_description_has_wrong_keeps_nothing_from_generation() -> None:
+    """The sensor has another type now: the mismatch with the old description only follows."""
+    write_hand_wired()
+    edit("robot.system", ("/rear : sensor_msgs.LaserScan", "/rear : sensor_msgs.Range"))
+    edit("robot.deros", ("/rear.ranges[0]", "/rear.range"))
+    assert codes() == ["DRS353"]
+    assert deros("generate", "robot.deros", "--target", "cpp", "-o", "out").code == 0
+
+
+@pytest.mark.parametrize("target", ["python", "cpp"])
+def test_rules_can_be_generated_before_there_is_a_description(target: str) -> None:
+    """The imports that fail are the files that the generator writes."""
+    write_hand_wired()
+    for name in ("robot_safety_node", "command_gate"):
+        Path(f"{name}.rnd").unlink()
+    suffix = "_cpp" if target == "cpp" else ""
+    edit(
+        "robot.system",
+        ("robot_safety_node.rnd", f"robot_safety_node{suffix}.rnd"),
+        ("command_gate.rnd", f"command_gate{suffix}.rnd"),
+        (": robot_safety_node\n", f": robot_safety_node{suffix}\n"),
+        (": command_gate\n", f": command_gate{suffix}\n"),
+    )
+    assert codes() == ["DRS355", "DRS355"]
+    assert deros("check", "robot.deros").code == 1
+    outcome = deros("generate", "robot.deros", "--target", target, "-o", "out")
+    assert outcome.code == 0, outcome.err
+    for name in ("robot_safety_node", "command_gate"):
+        path = Path(f"out/robot_safety{suffix}/{name}{suffix}.rnd")
+        Path(path.name).write_text(path.read_text(encoding="utf-8"), encoding="utf-8")
+    assert findings() == []
+
+
+def test_glob_that_finds_nothing_yet() -> None:
+    """A folder for what is generated may be empty before the first run."""
+    write_hand_wired()
+    edit(
+        "robot.system",
+        ('import "robot_safety_node.rnd"', 'import "gen/*.rnd"'),
+        ('  import "command_gate.rnd"\n', ""),
+    )
+    assert codes() == ["DRS355"]
+    assert deros("generate", "robot.deros", "--target", "python", "-o", "out").code == 0
+
+
+def test_missing_import_of_another_file_stays_what_it_is() -> None:
+    """A sensor's description is not generated from the rules."""
+    write_hand_wired()
+    edit("robot.system", ("imports\n", 'imports\n  import "sensor.rnd"\n'))
+    assert codes("robot.deros") == ["DRS201"]
+
+
+def test_package_of_another_name_is_recognised_by_its_heartbeat() -> None:
+    """Generated with ``--package guard`` the only safety node is that of the only rules."""
+    write_hand_wired("guard")
+    assert findings() == []
+    edit("robot.system", ("connect /front to /front", "connect /front to /rear"))
+    assert codes() == ["DRS354"]
+
+
+def test_rules_in_another_folder_are_asked_for() -> None:
+    """They cannot be found then; named, they are compared with the system."""
+    write_hand_wired()
+    Path("rules").mkdir()
+    text = Path("robot.deros").read_text(encoding="utf-8")
+    Path("robot.deros").unlink()
+    moved = text.replace('use "', 'use "../')
+    Path("rules/robot.deros").write_text(moved, encoding="utf-8")
+    edit("robot.system", ("connect /front to /front", "connect /front to /rear"))
+    assert codes() == ["DRS239"]
+    assert codes("robot.system", "rules/robot.deros") == ["DRS354"]
+
+
+def test_neighbour_that_uses_another_system_is_left_alone() -> None:
+    """Its faults are no findings here."""
+    write_hand_wired()
+    Path("other.deros").write_text('use "nowhere.system" import Robot\naction x y z', "utf-8")
+    Path("third.deros").write_text('use "sub/robot.system" import Robot\naction x', "utf-8")
+    assert findings() == []
+
+
+def test_second_instance_by_hand() -> None:
+    """Two nodes of one generated type, in whatever namespace, are one too many."""
+    write_hand_wired()
+    edit("robot.system", ("subsystem Safety {", "subsystem Safety {\n  node again : command_gate"))
+    found = [each for each in findings() if each.code.name == "DRS238"]
+    assert [each.message for each in found] == ["'/gate' is a second gate of the rules 'robot'"]
+
+
+# Safety statements --------------------------------------------------------------------------------
+
+
+def with_statement(statement: str, more: str = "") -> None:
+    """Write the system with a statement in place of the nodes."""
+    write_hand_wired()
+    text = Path("robot.system").read_text(encoding="utf-8")
+    text = text[: text.index("subsystem Safety")].replace('  import "robot_safety_node.rnd"\n', "")
+    text = text.replace('  import "command_gate.rnd"\n', "").replace("imports\n", "")
+    Path("robot.system").write_text(f"{text}{statement}\n{more}", encoding="utf-8")
+
+
+@pytest.mark.parametrize("file", ["robot.system", "robot.deros"])
+def test_statement_has_no_finding(file: str) -> None:
+    """Not for ports that it leaves at their own names, nor for topics that nobody declares."""
+    with_statement(STATEMENT)
+    assert findings(file) == []
+    with_statement('safety "robot.deros"')
+    assert findings(file) == []
+
+
+def test_statement_and_a_node_by_hand() -> None:
+    """The rules would run twice."""
+    with_statement('safety "robot.deros"', "node again : robot_safety_node")
+    edit("robot.system", ("topics\n", 'imports\n  import "robot_safety_node.rnd"\ntopics\n'))
+    found = {each.code.name: each for each in findings()}
+    assert "a second safety node of the rules 'robot'" in found["DRS238"].message
+
+
+@pytest.mark.parametrize(
+    "wiring",
+    [
+        "/front to /rear",
+        "front to /rear",
+        "/stop to /halt",
+        "/wish to /elsewhere",
+        "/command to /elsewhere",
+        "robot_safety_node/heartbeat to /elsewhere",
+    ],
+)
+def test_statement_cannot_connect_what_the_rules_connect(wiring: str) -> None:
+    """It would be the swap that the statement is there to prevent."""
+    with_statement(f'safety "robot.deros"\nwirings connect {wiring}')
+    (finding,) = [each for each in findings() if each.is_error]
+    assert finding.code.name == "DRS237"
+
+
+def test_faults_of_a_statement_are_found_once() -> None:
+    """Unknown ports and parameters, wrong values and names are errors of the statement."""
+    with_statement(
+        'safety "robot.deros" as guard package Bad-name\n'.replace("-", "__")
+        + "parameters param publish_freq = 0.0 param unheard_of = 1 param use_sim_time = 3\n"
+        "wirings connect ~/heart to /beat\n"
+    )
+    found = [(each.code.name, each.span.text) for each in findings() if each.is_error]
+    assert sorted(found) == [
+        ("DRS204", "~/heart"),
+        ("DRS206", "unheard_of"),
+        ("DRS207", "3"),
+        ("DRS221", "0.0"),
+        ("DRS223", "Bad__name"),
+    ]
+
+
+def test_rules_with_errors_are_reported_once() -> None:
+    """Their errors are those of the rules' file; nothing is said to be missing in the system."""
+    with_statement('safety "robot.deros"')
+    edit("robot.deros", ("front.ranges[0]", "front.rages[0]"))
+    assert [(each.code.name, each.span.file) for each in findings()] == [("DRS302", "robot.deros")]
+    Path("robot.deros").write_text('use "robot.system" import Robot entity {', encoding="utf-8")
+    assert codes() == ["DRS003"]
+
+
+def test_two_robots_with_one_absolute_topic() -> None:
+    """Both gates would command the same drive, both safety nodes publish the same stop."""
+    with_statement('safety "robot.deros"')
+    Path("fleet.system").write_text(
+        'system Fleet imports import "robot.system"\n'
+        "subsystem one : Robot namespace /one subsystem two : Robot namespace /two\n"
+    )
+    assert {"DRS339", "DRS346"} <= set(codes("fleet.system"))
+
+
+def test_node_past_a_gate_of_an_imported_system() -> None:
+    """The rules see the system that they use; the one around it is checked as well."""
+    with_statement('safety "robot.deros"')
+    Path("joystick.rnd").write_text("node joystick : joy publishes topic out : geometry_msgs.Twist")
+    Path("fleet.system").write_text(
+        'system Fleet imports import "robot.system" import "joystick.rnd"\n'
+        "subsystem one : Robot\nnode joystick : joystick wirings connect out to /command\n"
+    )
+    found = {each.code.name: each for each in findings("fleet.system")}
+    assert "/joystick (out) is wired past the gate '/command_gate'" in found["DRS339"].message
+
+
+def test_rules_that_use_two_systems_run_in_one_of_them() -> None:
+    """Started from both systems, the safety node would be there twice."""
+    with_statement('safety "robot.deros"')
+    Path("yard.system").write_text('system Yard\nsafety "robot.deros"\n')
+    Path("robot.deros").write_text('use "yard.system" import Yard\n' + RULES)
+    assert "DRS238" in codes("robot.deros")
+
+
+def test_depfile_and_launch_file_follow_the_rules() -> None:
+    """The rules are a prerequisite of what is generated from the system."""
+    with_statement('safety "robot.deros"')
+    command = ("generate", "robot.system", "--target", "launch", "-o", "out", "--depfile", "d")
+    assert deros(*command).code == 0
+    assert f"{Path('robot.deros').resolve()}" in Path("d").read_text(encoding="utf-8")
+    launch = Path("out/robot.launch.py")
+    assert "'command_gate'" in launch.read_text(encoding="utf-8")
+    gate = RULES[RULES.index("gate ") :]
+    edit("robot.deros", (gate, ""))
+    assert deros(*command).code == 0
+    assert "'command_gate'" not in launch.read_text(encoding="utf-8")
+
+
+def _names(text: str) -> Iterator[str]:
+    return (line.split("'")[1] for line in text.splitlines() if "name=" in line)
+
+
+@pytest.mark.parametrize("target", ["python", "cpp"])
+def test_generated_packages_have_the_programs_that_are_started(target: str) -> None:
+    """Package and executable of each node in the launch file are in the generated package."""
+    with_statement(f'safety "robot.deros" target {target} package guard')
+    assert deros("generate", "robot.system", "--target", "launch", "-o", "out").code == 0
+    assert deros("generate", "robot.deros", "--target", target, "-o", "out").code == 0
+    launch = Path("out/robot.launch.py").read_text(encoding="utf-8")
+    started = [
+        line.split("'")[1]
+        for line in launch.splitlines()
+        if "package=" in line or "executable=" in line
+    ]
+    package = "guard_cpp" if target == "cpp" else "guard"
+    suffix = "_cpp" if target == "cpp" else ""
+    assert started == [package, f"guard_node{suffix}", package, f"command_gate{suffix}"]
+    build = "CMakeLists.txt" if target == "cpp" else "setup.py"
+    text = Path(f"out/{package}/{build}").read_text(encoding="utf-8")
+    assert all(name in text for name in started)
+    assert list(_names(launch)) == ["guard_node", "command_gate"]
