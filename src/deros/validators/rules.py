@@ -13,6 +13,7 @@ from deros.validators.rules_heartbeat import check_input_timeouts
 from deros.validators.rules_ranges import check_ranges
 from deros.validators.rules_timeouts import check_timeouts
 from deros.validators.rules_topics import check_topics
+from deros.validators.rules_unknown import check_unknown
 from deros.validators.rules_usage import check_usage
 from deros.validators.safety_wiring import check_users
 
@@ -27,4 +28,5 @@ def check_rules(rules: Rules, store: InterfaceStore) -> Iterator[Diagnostic]:
     yield from check_gates(rules, result)
     yield from check_input_timeouts(result)
     yield from check_ranges(rules, result.comparisons)
+    yield from check_unknown(rules, result)
     yield from check_users(rules)
