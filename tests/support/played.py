@@ -74,11 +74,18 @@ def imu(roll: float = 0.0, *, stamp: float = 0.0) -> Any:
     return message
 
 
-def scan(distance: float, beams: int = 360) -> Any:
-    """Return a message of the lidar, all around at one distance; a beam takes four bytes."""
+def scan(distance: float, beams: int = 360, ahead: float | None = None) -> Any:
+    """Return a message of the lidar, all around at one distance; a beam takes four bytes.
+
+    Within 45 degrees ahead, which is the middle of the scan, it is another distance, if one is
+    given.
+    """
     from sensor_msgs.msg import LaserScan
 
     message = LaserScan(angle_min=-math.pi, angle_max=math.pi, range_min=0.05, range_max=30.0)
     message.angle_increment = 2 * math.pi / beams
     message.ranges = array.array("f", [distance]) * beams
+    if ahead is not None:
+        first, last = beams * 3 // 8, beams * 5 // 8
+        message.ranges[first:last] = array.array("f", [ahead]) * (last - first)
     return message

@@ -21,7 +21,7 @@ input m = topic /mode.data timeout 1 sec
 input scan = topic /scan timeout 1 sec
 entity e {
   fast: v > fast or v.rate().abs() > 3 m/s^2 for 2 sec;
-  near: scan.nearest(-30 deg, 30 deg) < 0.5 m;
+  failsafe near: scan.nearest(-30 deg, 30 deg) < 0.5 m;
   manual: m = 0;
   silent: v.missing() or m.missing() or scan.age() > 0.5 sec;
 }
@@ -57,7 +57,7 @@ def check_text(directory: Path, system: str, text: str) -> list[str]:
 READ = """
 action stop;
 input f = topic /f.data timeout 1 sec
-entity e { r: f; }
+entity e { failsafe r: f; }
 if e.r then { stop; };
 """
 

@@ -24,7 +24,7 @@ def decided(condition: str) -> list[tuple[str, str]]:
     """Return code and place of what is decided in a condition."""
     inputs = ("mode", "v", "q", "scan", "odom", "joints", "bytes")
     used = " or ".join(f"{each}.missing()" for each in inputs)
-    statements = f"""{DECLARED} entity e {{ r: {condition}; s: {used}; }}
+    statements = f"""{DECLARED} entity e {{ failsafe r: {condition}; s: {used}; }}
         if e.r or e.s then {{ stop; }};"""
     return [(code, place) for code, place, _ in findings(statements)]
 

@@ -63,7 +63,7 @@ def test_rules_are_ends_of_the_topics_that_they_use(tmp_path: Path) -> None:
 use "arm.system" import Arm
 action halt publishes 1.0 on /estop : std_msgs.Float64 latched;
 input state = topic /state.data timeout 1 sec
-entity arm { far: state > 1.0; }
+entity arm { failsafe far: state > 1.0; }
 if arm.far then { halt; };
 """
     findings = _check(tmp_path, "arm.deros", **{"arm.system": ARM, "arm.deros": rules})

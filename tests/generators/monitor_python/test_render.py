@@ -47,6 +47,10 @@ entity body {
   near: scan.nearest(-30 deg, 30 deg) < 0.4;
 }
 entity controller { manual: mode = 0; auto: mode != 0 and enabled; }
+entity doubt {
+  blind: attitude.tilt().unknown() or speed.unknown() or mode = 3;
+  failsafe hidden: (attitude.tilt() > 20 deg and speed in [-max_speed, max_speed]) for 0.2 sec;
+}
 if drive.too_fast and controller.auto then { stop; log_state("too fast: don't"); };
 behaviour tilt: if body.tilted for 0.4 sec then {
   motor_stop;
@@ -55,6 +59,7 @@ behaviour tilt: if body.tilted for 0.4 sec then {
 };
 if body.near or body.turning or drive.silent or drive.jerky then { stop; };
 if controller.manual then { ok; };
+if doubt.blind or doubt.hidden then { stop; };
 """
 
 
@@ -139,7 +144,7 @@ def test_each_rule_names_its_source() -> None:
     text = render_monitor(timelines.program(EVERYTHING, "everything"))
     assert "# Rule drive.too_fast (everything.deros:15)\n" in text
     assert "#   too_fast: speed > max_speed for 2 sec" in text
-    assert "# Behaviour tilt (everything.deros:27)\n" in text
+    assert "# Behaviour tilt (everything.deros:31)\n" in text
     assert str(timelines.DIRECTORY) not in text
 
 

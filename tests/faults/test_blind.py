@@ -1,0 +1,112 @@
+"""Sensors that speak and say nothing: a covered lidar, an attitude of zeros."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.faults.conftest import RULES
+from tests.faults.test_gate import assert_zeros_only, stands
+from tests.support.cpp import needs_rclcpp
+from tests.support.faults import CppRobot, PythonRobot, Robot, Software
+from tests.support.played import imu, scan
+from tests.support.victims import Sensors
+
+pytestmark = pytest.mark.ros
+
+WATCHFUL = {
+    "input scan = topic /scan\n": "input scan = topic /scan timeout 0.5 sec\n",
+    "entity space { blocked:": "entity space { failsafe blocked:",
+    "numb: orientation.missing();": "numb: orientation.tilt().unknown();",
+}
+"""What the rules of the other tests become, so that the robot heeds what it does not know."""
+
+NEAREST = "scan.nearest(-0.523599, 0.523599)"
+CLEAR = 5.0
+blind = pytest.mark.parametrize(
+    "ahead", [0.0, math.nan, 0.03], ids=["zero", "nan", "below_range_min"]
+)
+
+
+@pytest.fixture(scope="module", params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Software:
+    """Give the nodes of the watchful robot, in one language after the other."""
+    folder = tmp_path_factory.mktemp("watchful")
+    models = shutil.copytree(RULES.parent, folder / "models")
+    made = PythonRobot if request.param == "python" else CppRobot
+    return made(_watchful(models), folder / "package")
+
+
+def _watchful(models: Path) -> Path:
+    """Rewrite the rules in a folder, and return their path."""
+    rules = models / RULES.name
+    text = rules.read_text(encoding="utf-8")
+    for now, then in WATCHFUL.items():
+        assert text.count(now) == 1
+        text = text.replace(now, then)
+    rules.write_text(text, encoding="utf-8")
+    return rules
+
+
+def _drive(robot: Robot, sensors: Sensors) -> None:
+    """Let all sensors see, reset the stop that stems from their silence before, and drive."""
+    sensors.drive()
+    robot.until_free()
+    robot.until(lambda: robot.reset()[0])
+    robot.until_driving()
+
+
+@blind
+def test_a_lidar_that_is_covered_ahead_stops_the_robot(robot: Robot, ahead: float) -> None:
+    """Its scans come, and the other beams measure; nobody may drive into what it does not see."""
+    with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
+        _drive(robot, sensors)
+        sensors.play("/scan", scan(CLEAR, ahead=ahead), rate=10.0)
+        robot.until_stopped(limit=0.5 + 1.0)
+        assert robot.event("trigger", "stop")[f"value {NEAREST}"] == "unknown"
+        robot.until(lambda: stands(robot))
+        stopped = len(robot.commands)
+        success, why = robot.reset()
+        assert not success
+        assert "racing (faulty.deros:" in why
+        assert_zeros_only(robot, stopped)
+        sensors.play("/scan", scan(CLEAR), rate=10.0)
+        robot.until(lambda: robot.reset()[0])
+        robot.until_driving()
+
+
+@blind
+def test_a_lidar_that_is_covered_all_around_stops_the_robot(robot: Robot, ahead: float) -> None:
+    """A scan without a valid beam does not count, and the rule is unknown at once all the same."""
+    with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
+        _drive(robot, sensors)
+        sensors.play("/scan", scan(ahead), rate=10.0)
+        robot.until_stopped(limit=0.5 + 1.0)
+        robot.until(lambda: stands(robot))
+
+
+def test_a_lidar_that_is_covered_from_the_start_keeps_the_robot_standing(robot: Robot) -> None:
+    """Its first scan ends the waiting, and the stop comes."""
+    with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
+        sensors.drive()
+        sensors.play("/scan", scan(CLEAR, ahead=0.0), rate=10.0)
+        robot.until_free()
+        robot.until_stopped()
+        assert not robot.reset()[0]
+        robot.until(lambda: stands(robot))
+
+
+def test_an_attitude_of_zeros_stops_the_robot(robot: Robot) -> None:
+    """A quaternion of zeros is no attitude; it comes in time, so nothing is missing."""
+    with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
+        _drive(robot, sensors)
+        nowhere = imu()
+        nowhere.orientation.w = 0.0
+        sensors.play("/imu", nowhere)
+        robot.until_stopped("/halt", limit=0.5 + 1.0)
+        robot.until(lambda: stands(robot))
+        sensors.play("/imu", imu())
+        robot.until_free()
