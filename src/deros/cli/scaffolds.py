@@ -72,11 +72,12 @@ _WATCHED_NODE = """\
 node ${name}_robot : $package "The robot that the rules watch"
 
 subscribes
-  topic stop_robot : std_msgs.Bool
-  topic heartbeat : std_msgs.UInt64 "Stop, too, when it stops"
+  topic cmd_vel : geometry_msgs.Twist "What the gate lets through: stand still when nothing comes"
+  topic stop_robot : std_msgs.Bool "Why it may let nothing through"
 
 publishes
   topic odom : nav_msgs.Odometry
+  topic wish : geometry_msgs.Twist "Where to go: zero before setting off, and again after a stop"
   topic resume : std_msgs.Bool
 """
 
@@ -86,9 +87,12 @@ system ${name}_system
 imports
   import "${name}_robot.rnd"
   import "${name}_safety_node.rnd"
+  import "cmd_vel_gate.rnd"
 
 topics
   topic /odom
+  topic /wish
+  topic /cmd_vel
   topic /resume
   topic /stop_robot
   topic /heartbeat
@@ -99,9 +103,10 @@ subsystem Robot {
   node robot : ${name}_robot
   wirings
     connect odom to /odom
+    connect wish to /wish
+    connect cmd_vel to /cmd_vel
     connect resume to /resume
     connect stop_robot to /stop_robot
-    connect heartbeat to /heartbeat
 }
 
 subsystem Safety {
@@ -112,6 +117,14 @@ subsystem Safety {
     connect /stop_robot to /stop_robot
     connect ~/heartbeat to /heartbeat
     connect ~/events to /safety/events
+    connect /diagnostics to /diagnostics
+
+  node gate : cmd_vel_gate
+  wirings
+    connect /wish to /wish
+    connect /cmd_vel to /cmd_vel
+    connect /stop_robot to /stop_robot
+    connect ${name}_safety_node/heartbeat to /heartbeat
     connect /diagnostics to /diagnostics
 }
 """
@@ -144,6 +157,30 @@ subscribes
   topic /resume : std_msgs.Bool qos best_effort depth 10
 """
 
+_GATE_NODE = """\
+// What the gate becomes: deros generate $name.deros --target python makes it, and this text.
+node cmd_vel_gate : ${name}_safety \
+"Lets commands from /wish through to /cmd_vel as far as it is safe"
+parameters
+  name realtime_priority : integer = 0 in [0, 99] read_only \
+"Priority under SCHED_FIFO; 0 leaves the scheduling as it is"
+  name lock_memory : bool = false read_only "Whether the memory is never paged out"
+  name garbage_collection : bool = true read_only "Whether Python looks for unused cycles"
+  name losses_in_simulated_time : bool = false read_only \
+"Under use_sim_time, count losses and the period of zeros on /clock, for tests: where it stands,\
+ nothing is lost"
+publishes
+  topic /cmd_vel : geometry_msgs.Twist qos reliable depth 10 "What safety lets through"
+  topic /diagnostics : diagnostic_msgs.DiagnosticArray qos reliable depth 10 "What applies"
+subscribes
+  topic /wish : geometry_msgs.Twist qos best_effort depth 10 "What is asked for"
+  topic /stop_robot : std_msgs.Bool qos reliable transient_local depth 1
+  topic ${name}_safety_node/heartbeat : std_msgs.UInt64 qos reliable depth 10
+services
+  service ~/reset : std_srvs.Trigger \
+"Ends the zeros that last until a reset, once their causes are over"
+"""
+
 _RULES = """\
 use "${name}.system" import ${name}_system
 
@@ -169,6 +206,15 @@ entity operator {
 if drive.too_fast or drive.blind then { stop; log_state("stopped"); };
 if operator.resumes then { resume; };
 if operator.away for 10 sec then { log_state("nobody at the button"); };
+
+// All commands go through it. Once stopped, the robot moves again when somebody means it to: after a lost
+// safety node the gate has to be reset, and after every stop the robot has to wish for zero once.
+gate /wish -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+  stop: zero;
+  lost heartbeat for 0.3 sec: zero until reset;
+  lost input for 0.5 sec: zero;
+  resume on zero command;
+}
 """
 
 _SCAFFOLDS: dict[str, dict[str, str]] = {
@@ -183,6 +229,7 @@ _SCAFFOLDS: dict[str, dict[str, str]] = {
         "$name.system": _WATCHED_SYSTEM,
         "${name}_robot.rnd": _WATCHED_NODE,
         "${name}_safety_node.rnd": _SAFETY_NODE,
+        "cmd_vel_gate.rnd": _GATE_NODE,
     },
 }
 
