@@ -6,15 +6,16 @@ The controller goes on commanding throughout, as one does that knows nothing of 
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
-from tests.support.faults import WHEELS_GATE, Robot
+from tests.support.faults import PROMPT, WHEELS_GATE, Robot
 from tests.support.played import COMMAND, COMMANDER, SENSES, command, imu
-from tests.support.ros import short_lease
+from tests.support.ros import Peer, short_lease
 from tests.support.victims import Process, Sensors
 
 pytestmark = pytest.mark.ros
@@ -215,3 +216,56 @@ def test_a_reset_is_refused_while_its_cause_lasts(robot: Robot, tmp_path: Path) 
         assert robot.reset(WHEELS_GATE)[0]
         assert_waits(robot, ZERO, standing)
         release(robot, sensors)
+
+
+def test_resets_of_strangers_are_judged_like_any_other(robot: Robot) -> None:
+    """Any number may call: each is answered, and none makes anything move."""
+    from std_srvs.srv import Trigger
+
+    stranger = Peer(int(robot.env["ROS_DOMAIN_ID"]), "stranger")
+    client = stranger.node.create_client(Trigger, f"/{WHEELS_GATE}/reset")
+    with robot.safety_node(), robot.wheels_gate(), robot.sensors() as sensors:
+        assert not stranger.call(client, Trigger.Request()).success
+        sensors.drive()
+        drive(sensors)
+        robot.until_free()
+        assert_waits(robot, RESET, 0)
+        requests = [robot.call_reset(WHEELS_GATE) for _ in range(2)]
+        assert stranger.call(client, Trigger.Request()).success
+        robot.until(lambda: all(each.done() for each in requests))
+        assert {each.result().message for each in requests} == {f"reset: {ZERO}"}
+        assert_waits(robot, ZERO, 0)
+        release(robot, sensors)
+    stranger.close()
+
+
+def test_a_reset_that_comes_late_starts_nothing(robot: Robot) -> None:
+    """Called while the gate hangs, it is judged when it is served, by what is known then."""
+    with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
+        gate.freeze()
+        request = robot.call_reset(WHEELS_GATE)
+        robot.spin(1.0)
+        assert not request.done()
+        robot.wheels.clear()
+        gate.thaw()
+        robot.until(request.done)
+        assert_waits(robot, "waits", 0)
+        robot.until(lambda: robot.reset(WHEELS_GATE)[0])
+        release(robot, sensors)
+
+
+def test_whoever_asks_for_a_reset_and_goes_holds_up_no_more_than_that(robot: Robot) -> None:
+    """The middleware looks for one that has gone, 0.1 s for each request; then the zeros go on."""
+    from std_srvs.srv import Trigger
+
+    stranger = Peer(int(robot.env["ROS_DOMAIN_ID"]), "stranger")
+    client = stranger.node.create_client(Trigger, f"/{WHEELS_GATE}/reset")
+    requests = 10
+    with robot.safety_node(), robot.wheels_gate():
+        stranger.until(client.service_is_ready)
+        for _ in range(requests):
+            client.call_async(Trigger.Request())
+        stranger.close()
+        now, heard = time.time(), len(robot.wheels)
+        robot.until(lambda: len(robot.wheels) >= heard + 5)
+        assert robot.wheels[-1].received - now < 0.1 * requests + PROMPT

@@ -207,7 +207,7 @@ if drive.too_fast or drive.blind then { stop; log_state("stopped"); };
 if operator.resumes then { resume; };
 if operator.away for 10 sec then { log_state("nobody at the button"); };
 
-// All commands go through it. Once stopped, the robot moves again when somebody means it to: after a lost
+// All commands go through it. What was stopped moves again when somebody means it to: after a lost
 // safety node the gate has to be reset, and after every stop the robot has to wish for zero once.
 gate /wish -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
   stop: zero;
