@@ -110,6 +110,23 @@ class GateBase:
         return tuple(line for line in self.lines if line.zero and not line.latch)
 
     @property
+    def has_gaps(self) -> bool:
+        """Whether a zero can have numbers in it that a limit leaves to the controller."""
+        limiting = any(line.limits for line in self.lines)
+        return limiting and bool(self.releasing) and not self.waits
+
+    @property
+    def minds_input(self) -> bool:
+        """Whether what a zero holds depends on a lost input."""
+        return self.has_gaps and "input" in self.lost
+
+    @property
+    def asks_for_input(self) -> bool:
+        """Whether anything but a line of its own depends on a lost input."""
+        limits_of_actions = any(line.limits and not line.lost for line in self.lines)
+        return self.minds_input or (limits_of_actions and "input" in self.lost)
+
+    @property
     def refusing(self) -> tuple[int, ...]:
         """The numbers of the lines that refuse a reset while they apply."""
         return tuple(n for n, line in enumerate(self.lines) if line.lost or line.zero)

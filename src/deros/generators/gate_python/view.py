@@ -182,7 +182,7 @@ class GateView(GateBase):
         zero = "self._waits" if self.waits else "zero"
         if not self.fields:
             return f"t, {zero}, is_new"
-        return f"t, {zero}, limits, is_new{f', {self.lost_input}' if 'input' in self.lost else ''}"
+        return f"t, {zero}, limits, is_new{f', {self.lost_input}' if self.minds_input else ''}"
 
     @property
     def lost_due(self) -> Call | str:
