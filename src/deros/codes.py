@@ -174,6 +174,8 @@ NAME_COLLISION = _declare(401, "two generated names collide")
 UNSUPPORTED_BY_TARGET = _declare(402, "construct that the target does not support")
 HAND_EDITED = _declare(403, "hand-edited file kept", _W)
 UNKNOWN_TARGET = _declare(404, "unknown generator")
+SHADOWED_MODULE = _declare(405, "name that hides a module or package that the output needs")
+OVERWRITES_OTHER = _declare(406, "file that another target or model has written")
 
 # Traces
 BAD_TRACE_LINE = _declare(501, "line of a trace that is no message")

@@ -59,6 +59,7 @@ class Made:
     context: Context
     generator: Generator
     findings: tuple[Diagnostic, ...]
+    file: str
 
 
 def make(request: Request) -> Made:
@@ -90,7 +91,7 @@ def make(request: Request) -> Made:
         files = generator(loaded.model, context, request.options)
     except GenerationError as error:
         raise Refused([*findings, *error.diagnostics], FINDINGS) from error
-    return Made(files, context, generator, tuple(findings))
+    return Made(files, context, generator, tuple(findings), request.file)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,18 +124,28 @@ def put(made: Made, where: Place, started_ns: int) -> WriteReport:
         started_ns: when the run began, by ``time.time_ns``.
 
     Raises:
+        Refused: if another target or model has made a file that would be replaced.
         WriteError: if something cannot be written.
         SourceTreeError: if the source tree lacks a file, or has one that is in the way.
     """
     from deros.cli.depfile import depfile, inputs, stamp, stamped, write_if_changed
-    from deros.generators.protocol import Owner
+    from deros.generators.claims import Origin, check_claims, record_claims
+    from deros.generators.protocol import GenerationError, Owner
     from deros.generators.source_tree import Merged, merge, place, remove_stale
     from deros.generators.writer import write
 
     merged = Merged(made.files, (), ())
     if where.source is not None:
         merged = merge(made.files, where.source, where.output)
+    generator = made.generator
+    origin = Origin.of(generator.language, generator.target, made.file, where.output)
+    try:
+        check_claims(merged.files, where.output, origin)
+    except GenerationError as error:
+        raise Refused(error.diagnostics, FINDINGS) from error
     written = write(merged.files, where.output, overwrite=where.overwrite)
+    if where.stamp is None and where.source is None:  # else the build system owns the folder
+        record_claims(merged.files, where.output, origin)
     place(merged.placed, where.output)
     ours = {path for path, file in merged.files.items() if file.owner is Owner.GENERATOR}
     ours |= {each.path for each in merged.placed}

@@ -98,6 +98,7 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
         Raises:
             TextXError: with all diagnostics as its text; textX prints it and exits with 1.
         """
+        from deros.generators.claims import Origin, check_claims, record_claims
         from deros.generators.writer import WriteError, write
 
         filename = getattr(model, "_tx_filename", None)
@@ -114,7 +115,10 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
             options = {names.get(name, name): str(value) for name, value in custom_args.items()}
             files = self(loaded.model, context, options)
             directory = Path(output_path) if output_path else Path(filename).parent
+            origin = Origin.of(self.language, self.target, filename, directory)
+            check_claims(files, directory, origin)
             written = write(files, directory, overwrite=overwrite)
+            record_claims(files, directory, origin)
         except GenerationError as error:
             raise TextXError(_hooks.render(error.diagnostics).rstrip()) from error
         except (WriteError, ValueError) as error:

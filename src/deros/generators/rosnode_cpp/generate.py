@@ -25,6 +25,7 @@ from deros.generators.cpp_source import (
 )
 from deros.generators.node_package import maintainer, nodes_beside, refuse_legacy, unsupported
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
+from deros.generators.reserved_names import hidden_from_cpp
 from deros.generators.rosnode_cpp.includes import base_header, base_source, user_header
 from deros.generators.rosnode_cpp.view import (
     NodeView,
@@ -34,6 +35,7 @@ from deros.generators.rosnode_cpp.view import (
     package_view,
 )
 from deros.generators.templates import environment
+from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType
 
 _MAX_GOALS = 8
@@ -53,13 +55,14 @@ def generate(model: NodeType, context: Context, options: Options) -> Files:
         GenerationError: if the node, or one beside it, cannot be made.
     """
     refuse_legacy(model)
-    return package_files([model, *nodes_beside(model, context)], options)
+    return package_files([model, *nodes_beside(model, context)], options, store=context.store)
 
 
 def package_files(
     models: Sequence[NodeType],
     options: Options,
     provided: Mapping[str, Provided] | None = None,
+    store: InterfaceStore | None = None,
 ) -> dict[str, File]:
     """Return the files of the package that ``models``, all of one package, make up.
 
@@ -68,6 +71,7 @@ def package_files(
         options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder.
         provided: the nodes whose class the caller adds, by the name of the node type. Of such a
             node there is no user's file.
+        store: the interfaces that are known: no package of theirs may be hidden.
 
     Raises:
         GenerationError: if names collide, or a construct has no counterpart in rclcpp.
@@ -78,6 +82,15 @@ def package_files(
         _check_supported(model)
     holder = options.get("copyright", "")
     package = package_view(ordered, maintainer(options), holder, provided or {})
+    scopes = [
+        (function.text.partition("::")[0], function.span)
+        for model in ordered
+        for parameter in model.parameters
+        for function in parameter.custom
+    ]
+    hidden = list(hidden_from_cpp(ordered, package.libraries, scopes, store))
+    if hidden:
+        raise GenerationError(hidden)
     root = package.name
     files = {
         f"{root}/package.xml": File(_render("package.xml", package=package)),

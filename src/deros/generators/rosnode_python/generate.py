@@ -11,6 +11,7 @@ from deros.generators.names import python_identifier
 from deros.generators.node_package import maintainer, nodes_beside, refuse_legacy, unsupported
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.python_source import call, expression, mark_long_lines, wrapped
+from deros.generators.reserved_names import hidden_from_python
 from deros.generators.rosnode_python.imports import base_imports, user_imports
 from deros.generators.rosnode_python.view import (
     GOAL_THREADS,
@@ -19,6 +20,7 @@ from deros.generators.rosnode_python.view import (
     package_view,
 )
 from deros.generators.templates import environment
+from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType
 
 _MAX_GOALS = 8
@@ -41,7 +43,7 @@ def generate(model: NodeType, context: Context, options: Options) -> Files:
         GenerationError: if the node, or one beside it, cannot be made.
     """
     refuse_legacy(model)
-    return package_files([model, *nodes_beside(model, context)], options)
+    return package_files([model, *nodes_beside(model, context)], options, store=context.store)
 
 
 def package_files(
@@ -49,6 +51,7 @@ def package_files(
     options: Options,
     raw: Collection[str] = (),
     needs: Collection[str] = (),
+    store: InterfaceStore | None = None,
 ) -> dict[str, File]:
     """Return the files of the package that ``models``, all of one package, make up.
 
@@ -58,6 +61,7 @@ def package_files(
         raw: the names of the nodes whose subscriptions hand over serialized messages. Of such a
             node there is no user's module: the caller adds its class and its ``main``.
         needs: what the modules that the caller adds import, by the keys of rosdep.
+        store: the interfaces that are known: no package of theirs may be hidden.
 
     Raises:
         GenerationError: if names collide, or a construct has no counterpart in rclpy.
@@ -68,6 +72,10 @@ def package_files(
         _check_supported(model)
     copyright_line = options.get("copyright", "")
     package = package_view(ordered, maintainer(options), copyright_line, raw, needs)
+    modules = [(each.module, ordered[0].package_span) for each in package.custom]
+    hidden = list(hidden_from_python(ordered, package.dependencies, modules, store))
+    if hidden:
+        raise GenerationError(hidden)
     files = _package_level(package)
     root = f"{package.name}/{package.name}"
     for node in package.nodes:

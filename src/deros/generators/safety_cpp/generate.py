@@ -67,7 +67,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
         holder,
     )
     provided = {node.name: _provided(view), **gates.provided}
-    files = package_files([node, *gates.nodes], options, provided)
+    files = package_files([node, *gates.nodes], options, provided, context.store)
     files |= {f"{node.package}/{node.name}.rnd": File(node_description(node))}
     files |= _node_files(view, holder)
     files |= {

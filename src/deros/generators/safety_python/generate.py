@@ -42,7 +42,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     monitor = render_monitor(built.program)
     decoders = render_decoders([each.decoded for each in view.handlers], context.store)
     needs = {"python3-numpy"} if "import numpy" in monitor + decoders else frozenset()
-    files = package_files(nodes, options, {each.name for each in nodes}, needs)
+    files = package_files(nodes, options, {each.name for each in nodes}, needs, context.store)
     root = f"{view.package}/{view.package}"
     files[f"{view.package}/{node.name}.rnd"] = File(node_description(node))
     files[f"{root}/monitor.py"] = File(licensed(monitor, copyright_line))

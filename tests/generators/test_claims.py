@@ -1,0 +1,104 @@
+"""Files that another target or model has made are not replaced, and nothing else is written."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.support.cli import deros
+
+NODE = "node base : drive publishes topic odom : std_msgs.String"
+SYSTEM = 'system Robot imports import "base.rnd" node BASE : base'
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def generate(model: str, target: str, *more: str) -> tuple[int, str]:
+    """Generate into ``out``; return the exit code and what was reported."""
+    done = deros("generate", model, "--target", target, "-o", "out", *more)
+    return done.code, done.err
+
+
+def tree() -> dict[str, bytes]:
+    """Return everything in ``out``."""
+    return {str(p): p.read_bytes() for p in Path("out").rglob("*") if p.is_file()}
+
+
+@pytest.mark.parametrize(("first", "second"), [("python", "cpp"), ("cpp", "python")])
+@pytest.mark.parametrize("recorded", [True, False])
+def test_a_package_is_in_one_language(first: str, second: str, recorded: bool) -> None:
+    """The second language is refused, also beside a package without a record."""
+    Path("base.rnd").write_text(NODE)
+    assert generate("base.rnd", first)[0] == 0
+    if not recorded:
+        Path("out/.deros-origins.json").unlink()
+    before = tree()
+    code, errors = generate("base.rnd", second)
+    assert code == 1
+    assert "DRS406" in errors
+    assert "--overwrite" not in errors
+    assert tree() == before
+    assert generate("base.rnd", first) == (0, "")
+    shutil.rmtree("out/drive")
+    assert generate("base.rnd", second)[0] == 0
+
+
+def test_nodes_of_one_package_in_two_folders_are_refused() -> None:
+    """The second run would leave the first node out of the package's setup.py."""
+    for folder, node in (("a", "one"), ("b", "two")):
+        Path(folder).mkdir()
+        Path(folder, f"{node}.rnd").write_text(NODE.replace("base", node))
+    assert generate("a/one.rnd", "python")[0] == 0
+    before = tree()
+    code, errors = generate("b/two.rnd", "python")
+    assert (code, tree()) == (1, before)
+    assert errors.count("DRS406") == 1
+    assert "'python' from '../a'" in errors
+    Path("a/three.rnd").write_text(NODE.replace("base", "three"))
+    assert generate("a/three.rnd", "python")[0] == 0  # the same package, made from the other file
+
+
+def test_two_systems_of_one_name_are_refused() -> None:
+    """A launch file of the same name would start another robot."""
+    Path("base.rnd").write_text(NODE)
+    for name in ("left", "right"):
+        Path(f"{name}.system").write_text(SYSTEM.replace("BASE", name))
+    for target in ("launch", "script"):
+        assert generate("left.system", target)[0] == 0
+        code, errors = generate("right.system", target)
+        assert code == 1
+        assert f"'{target}' from '../left.system'" in errors
+
+
+def test_what_comes_out_alike_is_fine() -> None:
+    """Two models that make the same file are no harm."""
+    Path("base.rnd").write_text(NODE)
+    for name in ("left", "right"):
+        Path(f"{name}.system").write_text(SYSTEM.replace("BASE", "base"))
+        assert generate(f"{name}.system", "launch")[0] == 0
+
+
+def test_a_model_that_was_moved_takes_its_files_over() -> None:
+    """Its old place no longer has it, so nobody else makes the files."""
+    Path("base.rnd").write_text(NODE)
+    Path("left.system").write_text(SYSTEM)
+    assert generate("left.system", "launch")[0] == 0
+    Path("left.system").unlink()
+    Path("right.system").write_text(SYSTEM.replace("BASE", "other"))
+    assert generate("right.system", "launch")[0] == 0
+    assert "other" in Path("out/robot.launch.py").read_text()
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{", '{"made by": [{"files": 1}]}', "\udcff"])
+def test_a_record_that_cannot_be_read_is_none(text: str) -> None:
+    """It is written anew; nothing is lost but the knowledge."""
+    Path("base.rnd").write_text(NODE)
+    Path("out").mkdir()
+    Path("out/.deros-origins.json").write_bytes(text.encode(errors="surrogateescape"))
+    assert generate("base.rnd", "python")[0] == 0
+    assert '"python"' in Path("out/.deros-origins.json").read_text()
