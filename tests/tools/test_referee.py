@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -149,6 +150,7 @@ def test_a_robot_that_moves_again_without_a_reset_is_found() -> None:
         ("speed", 1.2, "forward limit", 2.0),
         ("speed", -0.5, "backward limit", 2.0),
         ("front_bumper", True, "front_bumper", 2.0),
+        ("scan", math.nan, "nearest cannot be told", 2.0),
         ("scan", None, "nearest is silent", 2.4),
         ("mission", None, "controller is silent", 2.4),
     ],

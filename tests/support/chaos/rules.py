@@ -35,12 +35,14 @@ Values = dict[str, Any]
 
 
 def read(topic: str, data: bytes) -> Values:
-    """Return what a serialized message says, by short names."""
+    """Return what a serialized message says, by short names; ``None`` is what it does not tell."""
     from rclpy.serialization import deserialize_message
 
     message = deserialize_message(data, BY_NAME[topic].message_type())
     if topic == "/imu":
         q = message.orientation
+        if not q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w > 0.0:
+            return {"tilt": None}
         sine = max(-1.0, min(1.0, 2 * (q.w * q.y - q.z * q.x)))
         roll = math.atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y))
         return {"tilt": math.degrees(max(abs(roll), abs(math.asin(sine))))}
@@ -52,7 +54,8 @@ def read(topic: str, data: bytes) -> Values:
             for beam, distance in enumerate(message.ranges)
             if abs(message.angle_min + beam * message.angle_increment) <= math.radians(30.0)
         )
-        return {"nearest": min((each for each in ahead if not math.isnan(each)), default=math.inf)}
+        measured = (each for each in ahead if each >= message.range_min or each == -math.inf)
+        return {"nearest": min(measured, default=None)}
     return {topic.rpartition("/")[2]: message.data}
 
 
@@ -132,6 +135,7 @@ def broken_rules(messages: Sequence[Message], end: float) -> list[Broken]:
     switches = {name: _Switch(name) for name, _, _ in _STATES}
     lasting = {name: _Switch(name, allowed) for name, _, _, allowed in _LASTING}
     silent = {name: _Switch(f"{name} is silent") for name in NAMES.values()}
+    blind = {name: _Switch(f"{name} cannot be told") for name in NAMES.values()}
     for now, topic, data in _events(messages, end):
         name = NAMES[topic]
         if data is None:
@@ -141,14 +145,15 @@ def broken_rules(messages: Sequence[Message], end: float) -> list[Broken]:
         else:
             values |= read(topic, data)
         silent[name].set(data is None, now)
+        blind[name].set(name in values and values[name] is None, now)
         for rule, needed, is_broken in _STATES:
-            known = all(each in values for each in needed)
+            known = all(values.get(each) is not None for each in needed)
             switches[rule].set(known and bool(is_broken(values)), now)
         for rule, measured, is_broken, _ in _LASTING:
             supervised = values.get("mode") in (AUTOMATIC, LEARN)
             switch = lasting[rule]
             switch.set(supervised and measured in values and bool(is_broken(values[measured])), now)
-    every = [*switches.values(), *lasting.values(), *silent.values()]
+    every = [*switches.values(), *lasting.values(), *silent.values(), *blind.values()]
     for switch in every:
         switch.set(False, end)
     return sorted((each for s in every for each in s.found), key=lambda each: each.begin)
