@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
@@ -21,43 +23,68 @@ def check_unknown(written: rules.Rules, result: BuildResult) -> Iterator[Diagnos
     program = result.program
     if program is None:
         return
-    used = [program.rules[index] for index in sorted(_used(program))]
+    used = _used(program)
     yield from _unnoticed(program, used, result.functions)
     yield from _unasked(written, program, used)
     yield from _negated(written, program)
     yield from _without_effect(written, program)
 
 
-def _used(program: ir.Program) -> set[int]:
-    """Return the rules that a behaviour depends on."""
-    return {
-        part.rule
-        for behaviour in walk.behaviours(program)
-        for part in walk.parts(behaviour.condition)
-        if isinstance(part, ir.RuleRef)
-    }
+@dataclass(frozen=True, slots=True)
+class _Used:
+    """The rules that behaviours depend on.
+
+    Attributes:
+        rules: of any behaviour.
+        firm: the indices of those of behaviours that cannot be disabled, by themselves or with one
+            around them.
+    """
+
+    rules: list[ir.Rule]
+    firm: frozenset[int]
+
+
+def _used(program: ir.Program) -> _Used:
+    optional: set[int] = set()
+    used: set[int] = set()
+    firm: set[int] = set()
+    for behaviour in walk.behaviours(program):
+        if behaviour.optional or behaviour.parent in optional:
+            optional.add(behaviour.index)
+        for part in walk.parts(behaviour.condition):
+            if isinstance(part, ir.RuleRef):
+                used.add(part.rule)
+                if behaviour.index not in optional:
+                    firm.add(part.rule)
+    return _Used([program.rules[each] for each in sorted(used)], frozenset(firm))
 
 
 # Functions that are unknown of known messages ---------------------------------------------------
 
 
 def _unnoticed(
-    program: ir.Program, used: list[ir.Rule], functions: Iterable[AppliedFunction]
+    program: ir.Program, used: _Used, functions: Iterable[AppliedFunction]
 ) -> Iterator[Diagnostic]:
     """Yield one finding per rule and function whose loss neither it nor another rule notices."""
-    fallible = [each for each in functions if _is_fallible(each)]
-    keys = {_key(each.expression) for each in fallible}
-    noticed = {key for rule in used for key in keys if _notices(rule.condition, key)}
-    for rule in used:
+    fallible = sorted(filter(_is_fallible, functions), key=_start)
+    starts = [_start(each) for each in fallible]
+    everywhere: set[_Key] = set()
+    firmly: set[_Key] = set()
+    for rule in used.rules:
+        keys = set(_noticed(rule.condition))
+        everywhere |= keys
+        firmly |= keys if rule.index in used.firm else set()
+    for rule in used.rules:
         if isinstance(rule.condition, ir.Failsafe):
             continue
+        noticed = firmly if rule.index in used.firm else everywhere
         reported: set[_Key] = set()
         read = [part for part in walk.parts(rule.condition) if not isinstance(part, ir.Unknown)]
         asked = {_key(each) for each in walk.values(read) if isinstance(each, ir.Apply)}
-        for each in fallible:
+        first, end = (bisect_left(starts, place) for place in (rule.span.start, rule.span.end))
+        for each in fallible[first:end]:
             key = _key(each.expression)
-            inside = rule.span.start <= each.span.start < rule.span.end
-            if not inside or key not in asked or key in noticed | reported:
+            if key not in asked or key in noticed or key in reported:
                 continue
             reported.add(key)
             owner = program.inputs[each.expression.input]
@@ -68,6 +95,10 @@ def _unnoticed(
                 f"write 'failsafe {rule.name}: …', or use '{each.span.text}.unknown()' in a rule",
                 (Related(owner.span, "its messages count all the while: it is not missing"),),
             )
+
+
+def _start(function: AppliedFunction) -> int:
+    return function.span.start
 
 
 def _is_fallible(function: AppliedFunction) -> bool:
@@ -100,14 +131,16 @@ def _key(function: ir.Apply) -> _Key:
     return name, function.arguments
 
 
-def _notices(condition: ir.Condition, key: _Key) -> bool:
-    """Tell whether a rule asks whether a function is unknown, or is failsafe while it is."""
-    if isinstance(condition, ir.Failsafe):
-        not_false, _ = _while_unknown(condition.operand, key)
-        if not_false:
-            return True
-    asked = [part for part in walk.parts(condition) if isinstance(part, ir.Unknown)]
-    return any(_key(each) == key for each in walk.values(asked) if isinstance(each, ir.Apply))
+def _noticed(condition: ir.Condition) -> Iterator[_Key]:
+    """Yield the functions of which a rule asks whether they are unknown, or is true then."""
+    for part in walk.parts(condition):
+        for value in walk.values([part]):
+            if not isinstance(value, ir.Apply):
+                continue
+            key = _key(value)
+            failsafe = isinstance(condition, ir.Failsafe)
+            if isinstance(part, ir.Unknown) or (failsafe and _while_unknown(condition, key)[0]):
+                yield key
 
 
 def _while_unknown(condition: ir.Condition, key: _Key) -> tuple[bool, bool]:
@@ -126,6 +159,8 @@ def _while_unknown(condition: ir.Condition, key: _Key) -> tuple[bool, bool]:
         case ir.For():
             not_false, not_true = _while_unknown(condition.operand, key)
             return not_false and not_true, not_true  # true for too short a time is false
+        case ir.Failsafe():
+            return _while_unknown(condition.operand, key)
         case ir.Unknown():
             return False, False
         case _:
@@ -137,23 +172,25 @@ def _while_unknown(condition: ir.Condition, key: _Key) -> tuple[bool, bool]:
 # Timeouts ---------------------------------------------------------------------------------------
 
 
-def _unasked(
-    written: rules.Rules, program: ir.Program, used: list[ir.Rule]
-) -> Iterator[Diagnostic]:
+def _unasked(written: rules.Rules, program: ir.Program, used: _Used) -> Iterator[Diagnostic]:
     """Yield one finding per input whose silence no rule of a behaviour asks for."""
-    asked: set[int] = set()
+    everywhere: set[int] = set()
+    firmly: set[int] = set()
+    read_firmly: set[int] = set()
     aged: set[int] = set()
-    for rule in used:
-        for part in walk.parts(rule.condition):
-            if isinstance(part, ir.Missing | ir.Unknown):
-                asked.add(part.input)
-            elif isinstance(part, ir.Age):
-                aged.add(part.input)
-            elif isinstance(part, ir.Failsafe):
-                asked.update(part.inputs)
+    for rule in used.rules:
+        parts = tuple(walk.parts(rule.condition))
+        aged.update(part.input for part in parts if isinstance(part, ir.Age))
+        asked = {index for part in parts for index in _asked(part)}
+        everywhere |= asked
+        if rule.index in used.firm:
+            firmly |= asked
+            read_firmly |= walk.inputs_read(rule.condition, program.leaves)
     names = {each.name.text: each.name for each in reversed(written.inputs)}
     for each in program.inputs:
-        if each.timeout_ns is None or each.index in asked or each.name not in names:
+        if each.timeout_ns is None or each.name not in names:
+            continue
+        if each.index in (firmly if each.index in read_firmly else everywhere):
             continue
         # Before the first message there is no age, so age() does not tell that none comes.
         when = "never comes" if each.index in aged else "falls silent"
@@ -165,6 +202,17 @@ def _unasked(
             f"a rule with '{each.name}.missing()' or '{each.name}.unknown()', or a failsafe rule"
             " on it, says what is to happen",
         )
+
+
+def _asked(condition: ir.Condition) -> tuple[int, ...]:
+    """Return the inputs of which a condition, no part of it, asks whether they are silent."""
+    match condition:
+        case ir.Missing(input=index) | ir.Unknown(input=index):
+            return (index,)
+        case ir.Failsafe(inputs=inputs):
+            return inputs
+        case _:
+            return ()
 
 
 # Failsafe rules ---------------------------------------------------------------------------------
