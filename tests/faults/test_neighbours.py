@@ -69,6 +69,22 @@ def test_a_second_publisher_of_a_state_is_a_fault(robot: Robot) -> None:
         until_no_fault(robot, "/stop")
 
 
+def test_a_reader_that_gets_nothing_is_a_fault(robot: Robot) -> None:
+    """Whoever asks for more than the node offers would never be stopped; the fault says who."""
+    from rclpy.duration import Duration
+    from rclpy.qos import QoSProfile
+    from std_msgs.msg import Bool, UInt64
+
+    asked = QoSProfile(depth=1, deadline=Duration(seconds=1))
+    node = robot.peer.node
+    with robot.safety_node():
+        for topic, kind in (("/stop", Bool), (HEARTBEAT, UInt64)):
+            subscription = node.create_subscription(kind, topic, lambda _: None, asked)
+            until_fault(robot, f"readers of {topic}", node.get_name(), "asks for a QoS", "deadline")
+            node.destroy_subscription(subscription)
+            until_no_fault(robot, f"readers of {topic}")
+
+
 def test_the_node_alone_publishes_its_topics_and_stands_by_its_word(robot: Robot) -> None:
     """What a stranger says on them is not taken over: the node repeats what its rules say."""
     with robot.safety_node() as node:

@@ -63,6 +63,20 @@ def test_a_foreign_inactive_state_frees_nobody(world: World, ros_env: dict[str, 
 
 
 @pytest.mark.usefixtures("gate")
+def test_a_drive_that_gets_nothing_is_a_fault(world: World) -> None:
+    """One that asks for more than the gate offers stands for ever; the fault says why."""
+    from geometry_msgs.msg import Twist
+    from rclpy.duration import Duration
+    from rclpy.qos import QoSProfile
+
+    asked = QoSProfile(depth=1, deadline=Duration(seconds=1))
+    subscription = world.peer.node.create_subscription(Twist, "/cmd_vel", lambda _: None, asked)
+    world.until_fault("/test_peer asks for a QoS on it that is not offered")
+    world.peer.node.destroy_subscription(subscription)
+    world.wish_until(0.3, lambda: "asks for a QoS" not in world.status["message"])
+
+
+@pytest.mark.usefixtures("gate")
 def test_a_stranger_that_comes_speaks_and_goes_frees_nobody(
     world: World, ros_env: dict[str, str]
 ) -> None:

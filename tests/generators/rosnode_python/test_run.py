@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from subprocess import Popen
 from typing import Any
 
 import pytest
@@ -100,6 +101,48 @@ def test_messages_parameters_and_the_end(
     assert (code, "Traceback" in output) == (0, False), output
     assert output.count("scale was 1 and is 2") == 1
     assert output.count("on_control does nothing yet") == 1
+
+
+def until_printed(process: Popen[str], text: str) -> str:
+    """Read what a program prints up to the line that holds a text, and return that."""
+    while text not in (line := read_line(process)):
+        assert line, f"it ended without printing {text!r}"
+    return line
+
+
+def test_a_subscription_that_asks_for_more_is_told(start: Start, ros_peer: Peer) -> None:
+    """The error names topic, node and each policy; no message would ever come."""
+    from rclpy.duration import Duration
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from std_msgs.msg import String
+
+    asked = QoSProfile(
+        depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, deadline=Duration(seconds=1)
+    )
+    with start("chat", "talker") as process:
+        ros_peer.until(lambda: ros_peer.node.count_publishers("/chatter"))
+        ros_peer.node.create_subscription(String, "/chatter", lambda _: None, asked)
+        line = until_printed(process, "/chatter does not reach /test_peer: ")
+    assert "[ERROR]" in line
+    assert "Volatile publisher and transient local subscription; " in line
+    assert "Subscription has a deadline, but publisher does not" in line
+
+
+def test_a_publisher_that_offers_less_is_told(start: Start, ros_peer: Peer) -> None:
+    """Of one that matches, nothing is said."""
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+    from std_msgs.msg import String
+
+    ros_peer.node.create_publisher(String, "/chatter", 1)
+    with start("chat", "listener") as process:
+        ros_peer.until(lambda: ros_peer.node.count_subscribers("/chatter"))
+        offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        ros_peer.node.create_publisher(String, "/chatter", offered)
+        line = until_printed(process, "/chatter is not heard from /test_peer: ")
+        assert "[ERROR]" in line
+        assert "Best effort publisher and reliable subscription" in line
+        code, output = stop(process, signal.SIGINT)
+    assert (code, "[ERROR]" in output) == (0, False), output
 
 
 def test_parameters_set_together_are_checked_together(start: Start, ros_peer: Peer) -> None:

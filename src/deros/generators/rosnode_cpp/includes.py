@@ -29,6 +29,8 @@ def base_source(package: str, node: NodeView) -> list[str]:
     headers = list(node.provided.includes) if node.provided else []
     if node.lifecycle:
         headers.append(f"{package}/runtime/managed_node.hpp")
+    if node.reports_qos:
+        headers.append(f"{package}/runtime/qos_report.hpp")
     if any(parameter.described for parameter in node.declared):
         headers.append(_DESCRIPTOR)
     if node.checked:

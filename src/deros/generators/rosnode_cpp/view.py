@@ -146,7 +146,13 @@ class NodeView(NodeBase[PortView, TimerView]):
     def runtime(self) -> tuple[str, ...]:
         """The names of the sources that it shares with the other nodes of its package."""
         goals = ("goal_threads",) if self.actions else ()
-        return (*goals, "managed_node") if self.lifecycle else goals
+        managed = ("managed_node",) if self.lifecycle else ()
+        return (*goals, *managed, "qos_report") if self.reports_qos else (*goals, *managed)
+
+    @property
+    def reports_qos(self) -> bool:
+        """Whether it logs ends of other nodes that do not match its own."""
+        return self.provided is None and bool(self.publishers or self.subscriptions)
 
     @property
     def checked(self) -> tuple[ParameterView, ...]:

@@ -16,6 +16,7 @@ from deros.generators.rosnode_python.imports import base_imports, user_imports
 from deros.generators.rosnode_python.view import (
     GOAL_THREADS,
     MANAGED_NODE,
+    QOS_REPORT,
     PackageView,
     package_view,
 )
@@ -97,6 +98,7 @@ def package_files(
         files[f"{root}/{each.module}.py"] = File(text, Owner.USER)
     shared = {GOAL_THREADS for node in package.nodes if node.actions}
     shared |= {MANAGED_NODE for node in package.nodes if node.lifecycle}
+    shared |= {QOS_REPORT for node in package.nodes if node.reports_qos}
     folder = resources.files("deros.generators.rosnode_python.runtime")
     for module in sorted(shared):
         text = (folder / f"{module}.py").read_text(encoding="utf-8")

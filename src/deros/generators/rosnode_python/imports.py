@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from deros.generators.python_source import import_lines
-from deros.generators.rosnode_python.view import NodeView, PackageView, PortView, interface_imports
+from deros.generators.rosnode_python.view import (
+    QOS_REPORT,
+    NodeView,
+    PackageView,
+    PortView,
+    interface_imports,
+)
 
 
 def base_imports(package: str, node: NodeView) -> tuple[list[str], list[str]]:
@@ -34,6 +40,8 @@ def base_imports(package: str, node: NodeView) -> tuple[list[str], list[str]]:
         add("rclpy.executors", "SingleThreadedExecutor")
         add("rclpy.signals", "SignalHandlerOptions")
         add("rclpy.task", "Future")
+    if node.reports_qos:
+        add(f"{package}.{QOS_REPORT}", "QosReport")
     if node.lifecycle:
         add(f"{package}.managed_node", "ManagedNode")
         if node.gated:

@@ -36,6 +36,9 @@ from deros.metamodels.node import NodeType, Port, PortKind
 GOAL_THREADS = "goal_threads"
 """The module that packages have whose nodes have actions."""
 
+QOS_REPORT = "qos_report"
+"""The module that packages have whose nodes have topics."""
+
 MANAGED_NODE = "managed_node"
 """The module that packages have with managed nodes."""
 
@@ -71,6 +74,7 @@ _TAKEN = frozenset(
         "ParameterDescriptor",
         "Parameters",
         "QoSProfile",
+        "QosReport",
         "ReliabilityPolicy",
         "ServerGoalHandle",
         "SetParametersResult",
@@ -143,6 +147,11 @@ class NodeView(NodeBase[PortView, TimerView]):
     def base_module(self) -> str:
         """Module of the class that the generator owns."""
         return f"{self.module}_base"
+
+    @property
+    def reports_qos(self) -> bool:
+        """Whether it logs whom its own ends do not match; what is raw has a report of its own."""
+        return not self.raw and bool(self.publishers or self.subscriptions)
 
     @property
     def configured(self) -> bool:
@@ -384,6 +393,9 @@ def package_view(
     managed = [model for model in models if model.lifecycle]
     for model in managed[:1]:
         modules.append(Emitted(MANAGED_NODE, "the class of managed nodes", model.name_span))
+    with_topics = [model for model in models if model.name not in raw and _has_topics(model)]
+    for model in with_topics[:1]:
+        modules.append(Emitted(QOS_REPORT, "the report of QoS", model.name_span))
     nodes = tuple(node_view(model, model.name in raw) for model in models)
     custom = _custom_modules(models)
     modules += custom.values()
@@ -403,3 +415,7 @@ def package_view(
         email=maintainer[1],
         copyright=copyright_line,
     )
+
+
+def _has_topics(model: NodeType) -> bool:
+    return any(port.kind in (PortKind.PUBLISHER, PortKind.SUBSCRIPTION) for port in model.ports)

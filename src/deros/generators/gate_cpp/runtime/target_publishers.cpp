@@ -59,6 +59,7 @@ void TargetPublishers::look()
     faults.push_back("published past the gate: " + joined(others, ", "));
   }
   report_(target_, joined(faults, "; "));
+  report_("readers of " + target_, unserved_readers(node_, target_));
 }
 
 /// Return the nodes that publish past the gate, and what is to be said of a second gate.

@@ -1,5 +1,5 @@
 /// \file
-/// Who else publishes on the target of a gate: a second gate of its name, or a node past it.
+/// The target of a gate: who else publishes on it, and whom the gate's commands do not reach.
 
 #ifndef DEROS_RUNTIME__RUNTIME__TARGET_PUBLISHERS_HPP_
 #define DEROS_RUNTIME__RUNTIME__TARGET_PUBLISHERS_HPP_
@@ -16,7 +16,7 @@
 namespace deros_runtime
 {
 
-/// Looks for publishers on the target of a gate beside its own.
+/// Looks for publishers on the target of a gate beside its own, and for unserved readers.
 class TargetPublishers
 {
 public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,16 +15,22 @@ namespace deros_runtime
 namespace
 {
 
-/// Return the reason without the middleware's decoration.
-std::string bare(std::string reason)
+/// Return why the middleware does not connect a publisher with a subscription; empty if it does.
+std::string incompatible(const rclcpp::QoS & offered, const rclcpp::QoS & requested)
 {
-  const std::string mark = "ERROR: ";
-  if (reason.compare(0, mark.size(), mark) == 0) {
-    reason.erase(0, mark.size());
+  const auto fit = rclcpp::qos_check_compatible(offered, requested);
+  if (fit.compatibility != rclcpp::QoSCompatibility::Error) {
+    return "";
   }
-  reason.erase(0, std::min(reason.find_first_not_of(" ;"), reason.size()));
-  reason.erase(reason.find_last_not_of(" ;") + 1);
-  return reason;
+  const std::string mark = "ERROR: ";
+  std::vector<std::string> reasons;
+  std::istringstream parts(fit.reason);
+  for (std::string part; std::getline(parts, part, ';'); ) {
+    if (const std::size_t at = part.find(mark); at != std::string::npos) {
+      reasons.push_back(part.substr(at + mark.size()));
+    }
+  }
+  return joined(reasons, "; ");
 }
 
 /// Return why a subscription does not hear a publisher; empty if it does.
@@ -32,11 +39,19 @@ std::string unheard(const rclcpp::TopicEndpointInfo & info, const SubscribedTopi
   if (info.topic_type() != topic.type) {
     return "publishes " + info.topic_type() + " on it, which is not heard";
   }
-  const auto fit = rclcpp::qos_check_compatible(info.qos_profile(), topic.qos);
-  if (fit.compatibility == rclcpp::QoSCompatibility::Error) {
-    return "offers a QoS on it that is not heard: " + bare(fit.reason);
+  const std::string reason = incompatible(info.qos_profile(), topic.qos);
+  return reason.empty() ? "" : "offers a QoS on it that is not heard: " + reason;
+}
+
+/// Return why a publisher does not reach a subscription; empty if it does.
+std::string unserved(
+  const rclcpp::TopicEndpointInfo & offer, const rclcpp::TopicEndpointInfo & reader)
+{
+  if (reader.topic_type() != offer.topic_type()) {
+    return "subscribes to " + reader.topic_type() + " on it, which is not published";
   }
-  return "";
+  const std::string reason = incompatible(offer.qos_profile(), reader.qos_profile());
+  return reason.empty() ? "" : "asks for a QoS on it that is not offered: " + reason;
 }
 
 }  // namespace
@@ -61,6 +76,30 @@ std::vector<rclcpp::TopicEndpointInfo> heard_publishers(
       [&topic](const auto & each) {return !unheard(each, topic).empty();}),
     infos.end());
   return infos;
+}
+
+std::string unserved_readers(const rclcpp::Node & node, const std::string & topic)
+{
+  const std::vector<rclcpp::TopicEndpointInfo> offers = node.get_publishers_info_by_topic(topic);
+  const auto offer = std::find_if(
+    offers.begin(), offers.end(),
+    [&node](const auto & each) {return node_of(each) == node.get_fully_qualified_name();});
+  if (offer == offers.end()) {
+    return "";
+  }
+  std::vector<std::string> found;
+  for (const rclcpp::TopicEndpointInfo & info : node.get_subscriptions_info_by_topic(topic)) {
+    const std::string reason = unserved(*offer, info);
+    if (reason.empty()) {
+      continue;
+    }
+    const std::string name = node_of(info);
+    const std::string fault = (name.empty() ? info.node_name() : name) + ' ' + reason;
+    if (std::find(found.begin(), found.end(), fault) == found.end()) {
+      found.push_back(fault);
+    }
+  }
+  return joined(found, "; ");
 }
 
 Publishers::Publishers(rclcpp::Node & node, Report report)

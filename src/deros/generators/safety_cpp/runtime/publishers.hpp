@@ -26,6 +26,9 @@ struct SubscribedTopic
 std::vector<rclcpp::TopicEndpointInfo> heard_publishers(
   const rclcpp::Node & node, const SubscribedTopic & topic);
 
+/// Return which subscriptions of a topic get nothing from this node, and why.
+std::string unserved_readers(const rclcpp::Node & node, const std::string & topic);
+
 /// Looks, one topic at a time, at the publishers on the topics that a node subscribes to.
 /**
  * Those of another type or of an unfit quality of service cannot be heard: the middleware keeps

@@ -23,6 +23,7 @@ Siblings::Siblings(rclcpp::Node & node, std::string heartbeat, Report report)
 void Siblings::look()
 {
   look_at_heartbeat();
+  look_at_readers();
   if (states_.empty()) {
     return;
   }
@@ -43,6 +44,14 @@ void Siblings::look_at_heartbeat()
     throw Refusal(heartbeat_ + ": " + text + "; this one started last and ends now");
   }
   report_(heartbeat_, has_double ? text : "");
+}
+
+/// Look whether whoever subscribes to the next of the topics is served.
+void Siblings::look_at_readers()
+{
+  const std::string & topic = next_read_ == 0 ? heartbeat_ : states_[next_read_ - 1];
+  next_read_ = (next_read_ + 1) % (states_.size() + 1);
+  report_("readers of " + topic, unserved_readers(node_, topic));
 }
 
 /// Return the names of the nodes that publish on a topic besides this one.

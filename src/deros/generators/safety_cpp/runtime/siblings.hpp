@@ -16,7 +16,8 @@ namespace deros_runtime
 /// Looks whether somebody else publishes the heartbeat of a node, or the states of its actions.
 /**
  * The first is a second node of its name, on another machine or without a common folder for
- * temporary files; the second contradicts it.
+ * temporary files; the second contradicts it. It also looks whether whoever subscribes to one of
+ * these topics is served.
  */
 class Siblings
 {
@@ -37,12 +38,14 @@ public:
 
 private:
   void look_at_heartbeat();
+  void look_at_readers();
   std::string others(const std::string & topic) const;
 
   rclcpp::Node & node_;
   std::string heartbeat_;
   std::vector<std::string> states_;
   std::size_t next_ = 0;
+  std::size_t next_read_ = 0;
   Report report_;
   StartOrder order_;
 };

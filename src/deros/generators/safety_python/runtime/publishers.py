@@ -1,4 +1,4 @@
-"""The publishers on the topics of a node: unheard ones, and more than there may be."""
+"""The other ends of a node's topics: publishers that are unheard or too many, unserved readers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import itertools
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import qos_check_compatible, QoSCompatibility
+from rclpy.qos import qos_check_compatible, QoSCompatibility, QoSProfile
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
@@ -30,6 +30,25 @@ def heard_publishers(node: Node, subscription: Subscription) -> list[TopicEndpoi
 def listed(infos: list[TopicEndpointInfo]) -> str:
     """Return the names of the nodes of publishers, in order."""
     return ', '.join(sorted(node_of(info) or 'a node that is not known yet' for info in infos))
+
+
+def unserved_readers(node: Node, topic: str) -> str:
+    """Return which subscriptions of a topic get nothing from this node, and why."""
+    own = node.get_fully_qualified_name()
+    infos = node.get_publishers_info_by_topic(topic)
+    offer = next((info for info in infos if node_of(info) == own), None)
+    if offer is None:
+        return ''
+    unserved: dict[str, None] = {}
+    for info in node.get_subscriptions_info_by_topic(topic):
+        reason = _incompatible(offer.qos_profile, info.qos_profile)
+        if info.topic_type != offer.topic_type:
+            reason = f'subscribes to {info.topic_type} on it, which is not published'
+        elif reason:
+            reason = f'asks for a QoS on it that is not offered: {reason}'
+        if reason:
+            unserved[f'{node_of(info) or info.node_name} {reason}'] = None
+    return '; '.join(unserved)
 
 
 class Publishers:
@@ -80,8 +99,13 @@ def _unheard(info: TopicEndpointInfo, subscription: Subscription) -> str:
     kind: Any = subscription.msg_type
     if info.topic_type != f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}':
         return f'publishes {info.topic_type} on it, which is not heard'
-    fits, reason = qos_check_compatible(info.qos_profile, subscription.qos_profile)
-    if fits == QoSCompatibility.ERROR:
-        reason = reason.removeprefix('ERROR: ').strip(' ;')
-        return f'offers a QoS on it that is not heard: {reason}'
-    return ''
+    reason = _incompatible(info.qos_profile, subscription.qos_profile)
+    return f'offers a QoS on it that is not heard: {reason}' if reason else ''
+
+
+def _incompatible(offered: QoSProfile, requested: QoSProfile) -> str:
+    """Return why the middleware does not connect a publisher with a subscription."""
+    fits, reason = qos_check_compatible(offered, requested)
+    if fits != QoSCompatibility.ERROR:
+        return ''
+    return '; '.join(part.strip() for part in reason.replace('ERROR: ', '').split(';') if part)

@@ -9,7 +9,7 @@ import time
 from rclpy.node import Node
 
 from .instance import Refusal
-from .publishers import listed, node_of
+from .publishers import listed, node_of, unserved_readers
 from .start_order import StartOrder
 
 
@@ -18,7 +18,8 @@ class Siblings:
     Looks whether somebody else publishes the heartbeat of a node, or the states of its actions.
 
     The first is a second node of its name, on another machine or without a common folder for
-    temporary files; the second contradicts it.
+    temporary files; the second contradicts it. It also looks whether whoever subscribes to one of
+    these topics is served.
     """
 
     def __init__(
@@ -31,7 +32,9 @@ class Siblings:
         """Prepare; report takes a topic and what is wrong with it, empty if nothing is."""
         self._node = node
         self._heartbeat = heartbeat
-        self._states = itertools.cycle(states)
+        own = list(states)
+        self._states = itertools.cycle(own)
+        self._offered = itertools.cycle([heartbeat, *own])
         self._report = report
         self._order = StartOrder(time.monotonic_ns())
 
@@ -43,6 +46,8 @@ class Siblings:
             others = self._others(topic)
             text = f'published by {others}, too: whoever obeys it cannot tell them apart'
             self._report(topic, text if others else '')
+        topic = next(self._offered)
+        self._report(f'readers of {topic}', unserved_readers(self._node, topic))
 
     def _look_at_heartbeat(self) -> None:
         has_double = self._node.count_publishers(self._heartbeat) > 1

@@ -1,4 +1,4 @@
-"""Who else publishes on the target of a gate: a second gate of its name, or a node past it."""
+"""The target of a gate: who else publishes on it, and whom the gate's commands do not reach."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from .alarm import Alarm
 from .instance import Refusal
-from .publishers import listed, node_of
+from .publishers import listed, node_of, unserved_readers
 from .start_order import StartOrder, YOUNG
 
 PERIOD = 100_000_000  # ns from look to look, while a second gate might be met
@@ -20,7 +20,7 @@ EARLY = 2 * YOUNG  # ns after its start; a gate that met it while young has give
 
 
 class TargetPublishers:
-    """Looks for publishers on the target of a gate beside its own."""
+    """Looks for publishers on the target of a gate beside its own, and for unserved readers."""
 
     def __init__(self, node: Node, target: str, report: Callable[[str, str], None]) -> None:
         """Prepare; report takes the topic and what is wrong with it, empty if nothing is."""
@@ -41,6 +41,7 @@ class TargetPublishers:
         if others:
             faults.append(f'published past the gate: {listed(others)}')
         self._report(self._target, '; '.join(faults))
+        self._report(f'readers of {self._target}', unserved_readers(self._node, self._target))
 
     def _look_early(self) -> None:
         if self._early.due < self._early_until:
