@@ -14,6 +14,8 @@ from deros.metamodels.qos import (
     Policies,
     duration_text,
     excess,
+    overridden,
+    overridden_policy,
     policies,
     publisher_violations,
     shortfalls,
@@ -152,6 +154,34 @@ def test_an_open_policy_violates_no_pin_for_certain() -> None:
         assert [each.certain for each in publisher_violations(pin, open_profile)] == [False]
     (found,) = subscription_violations(QosProfile(reliability="best_effort"), open_profile)
     assert (found.excess, found.certain) == (True, False)
+
+
+@pytest.mark.parametrize(
+    ("parameter", "policy"),
+    [
+        ("qos_overrides./scan.subscription.reliability", "reliability"),
+        ("qos_overrides./scan.subscription_left.depth", "depth"),
+        ("qos_overrides./scan.publisher.reliability", None),
+        ("qos_overrides./scan_2.subscription.reliability", None),
+        ("scan.subscription.reliability", None),
+    ],
+)
+def test_overrides_are_named_as_in_ros(parameter: str, policy: str | None) -> None:
+    """Topic, kind of end, perhaps an identifier of it, and policy."""
+    assert overridden_policy(parameter, "/scan", "subscription") == policy
+
+
+def test_overrides_go_before_what_is_stated() -> None:
+    """A kind that is chosen at run time is not known; a time of 0 is none."""
+    stated = QosProfile(preset="sensor_data", deadline_ns=5)
+    own = policies(
+        overridden(
+            stated,
+            {"reliability": "reliable", "durability": "best_available", "deadline": 0, "depth": 2},
+        )
+    )
+    assert own == Policies("reliable", SYSTEM_DEFAULT, depth=2)
+    assert policies(overridden(None, {"history": "keep_all"})).depth == float("inf")
 
 
 def test_default_ends_match() -> None:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal
 
-from deros.metamodels.common import QosProfile
+from deros.metamodels.common import QosProfile, Value
 
 Policy = Literal[
     "reliability", "durability", "deadline", "liveliness", "lease", "depth", "lifespan"
@@ -223,6 +223,55 @@ def _below(pin: QosProfile, actual: Policies, among: tuple[Policy, ...]) -> Iter
             verdict = _is_less(policy, offer, value)
             if verdict is not False:
                 yield PinViolation(policy, offer, value, False, verdict is True)
+
+
+# Overrides --------------------------------------------------------------------------------------
+
+OVERRIDES = "qos_overrides."
+"""What the parameters begin with by which ROS 2 changes the QoS of a program's ends at the start.
+
+They read ``qos_overrides./scan.subscription.reliability``, or ``subscription_NAME`` of several.
+"""
+
+_OVERRIDE_FIELDS = {
+    "reliability": "reliability",
+    "durability": "durability",
+    "liveliness": "liveliness",
+    "depth": "depth",
+    "deadline": "deadline_ns",
+    "lifespan": "lifespan_ns",
+    "liveliness_lease_duration": "lease_ns",
+}
+
+
+def overridden_policy(parameter: str, topic: str, entity: str) -> str | None:
+    """Return which policy of an end a parameter overrides, by its name in ROS 2, or ``None``.
+
+    Args:
+        parameter: the parameter's name.
+        topic: the graph name of the end's topic.
+        entity: ``publisher`` or ``subscription``.
+    """
+    head, _, policy = parameter.rpartition(".")
+    start = f"{OVERRIDES}{topic}.{entity}"
+    return policy if head == start or head.startswith(f"{start}_") else None
+
+
+def overridden(profile: QosProfile | None, overrides: Mapping[str, Value]) -> QosProfile:
+    """Return a profile with other values for some policies, given by their names in ROS 2.
+
+    A kind that no profile can state, such as ``best_available``, is known at run time only.
+    """
+    changes: dict[str, Any] = {}
+    for policy, value in overrides.items():
+        if policy in _KINDS:
+            known = value in _KINDS[policy]
+            changes[policy] = value if known else SYSTEM_DEFAULT
+        elif policy == "history":
+            changes["keep_all"] = value == "keep_all"
+        elif policy in _OVERRIDE_FIELDS and type(value) is int:
+            changes[_OVERRIDE_FIELDS[policy]] = value or None
+    return dataclasses.replace(profile or QosProfile(), **changes)
 
 
 # Words ------------------------------------------------------------------------------------------

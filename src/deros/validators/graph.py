@@ -39,12 +39,14 @@ from typing import TYPE_CHECKING, Literal
 import networkx as nx
 
 from deros.metamodels.node import PortKind
+from deros.metamodels.qos import overridden, overridden_policy
 
 if TYPE_CHECKING:
     from deros.diagnostics import Span
     from deros.interfaces.types import InterfaceType
     from deros.metamodels.common import QosProfile
     from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, UntypedWiring
+    from deros.metamodels.system import ParameterSetting
 
 VertexKind = Literal["node", "topic", "service", "action"]
 Vertex = tuple[VertexKind, str]
@@ -58,6 +60,9 @@ CHANNEL: dict[PortKind, VertexKind] = {
     PortKind.ACTION: "action",
 }
 """The kind of vertex that a port of each kind is connected to."""
+
+_OVERRIDDEN = {PortKind.PUBLISHER: "publisher", PortKind.SUBSCRIPTION: "subscription"}
+"""How the parameters of ROS 2 that override a QoS name a port's kind."""
 
 SOURCES = frozenset({PortKind.PUBLISHER, PortKind.CLIENT, PortKind.ACTION_CLIENT})
 """The kinds of port whose edge leaves the node."""
@@ -99,23 +104,38 @@ class End:
 
     @property
     def qos(self) -> QosProfile | None:
-        """The QoS that the node description states."""
-        return self.port.port.qos
+        """The QoS that the node description states, as the system overrides it for a program."""
+        overrides = self._overrides()
+        stated = self.port.port.qos
+        if not overrides:
+            return stated
+        return overridden(stated, {policy: each.value for policy, each in overrides.items()})
 
     @property
     def qos_span(self) -> Span:
-        """Where the QoS is stated, else where the port is declared."""
+        """Where the QoS is overridden, else where it is stated, else where the port is declared."""
+        for setting in self._overrides().values():
+            return setting.span
         qos = self.port.port.qos
         return qos.span if qos is not None and qos.span is not None else self.port.port.span
 
     @property
     def is_assumed(self) -> bool:
         """Whether the QoS is the default only because nobody describes that of the program."""
-        return (
-            self.qos is None
-            and self.node.instance.type is not None
-            and (self.node.instance.type.executable is not None)
-        )
+        return self.port.port.qos is None and self._is_program
+
+    @property
+    def _is_program(self) -> bool:
+        return self.node.type is not None and self.node.type.executable is not None
+
+    def _overrides(self) -> dict[str, ParameterSetting]:
+        """Return the settings that change the QoS of a program's end; generated nodes read none."""
+        entity = _OVERRIDDEN.get(self.port.port.kind)
+        settings = self.node.instance.parameters
+        if entity is None or not settings or not self._is_program:
+            return {}
+        found = ((overridden_policy(s.name, self.port.topic, entity), s) for s in settings)
+        return {policy: setting for policy, setting in found if policy is not None}
 
 
 @dataclass(frozen=True, slots=True)

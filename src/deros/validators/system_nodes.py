@@ -18,12 +18,14 @@ from deros.metamodels.node import (
     Port,
     PortKind,
 )
+from deros.metamodels.qos import OVERRIDES, overridden_policy
 from deros.metamodels.remapping import wired_apart, wired_ends
 from deros.metamodels.system import NodeInstance, ParameterSetting, Wiring
 from deros.validators.hints import NameIndex, did_you_mean, one_of
 from deros.validators.values import constraint_fault, entry_faults, type_fault
 
 _TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
+_OVERRIDABLE = {PortKind.PUBLISHER: "publisher", PortKind.SUBSCRIPTION: "subscription"}
 
 
 def check_instances(flat: FlatSystem) -> Iterator[Diagnostic]:
@@ -64,7 +66,8 @@ def _setting(
     parameter = node_type.parameter_for(setting.name)
     if parameter is None:
         kind = BUILT_IN_PARAMETERS.get(setting.name)
-        if kind is None and setting.name.startswith("qos_overrides."):
+        if kind is None and setting.name.startswith(OVERRIDES):
+            yield from _override(node, node_type, setting)
             fault = check_parameter_name(setting.name)
             if fault is not None:
                 message = f"ROS 2 refuses the name '{setting.name}': it {fault}"
@@ -88,6 +91,27 @@ def _setting(
     yield from _value(node_type, parameter, setting)
     if parameter.keys and parameter.name != setting.name:
         yield from _entry(node, parameter, setting)
+
+
+def _override(
+    node: FlatNode, node_type: NodeType, setting: ParameterSetting
+) -> Iterator[Diagnostic]:
+    """Find the override of a QoS of a generated node, which would have no effect."""
+    if node_type.executable is not None:
+        return
+    for port in node.ports:
+        entity = _OVERRIDABLE.get(port.port.kind)
+        if entity is None or overridden_policy(setting.name, port.topic, entity) is None:
+            continue
+        yield report(
+            codes.QOS_OVERRIDE_UNREAD,
+            f"'{node.full_name}' does not read this: the QoS of '{port.port.name}' is that of its"
+            " description",
+            setting.name_span,
+            "write the 'qos' of the port in the node description; for a program that exists"
+            " already, say so there by 'executable'",
+            (Related(port.port.span, f"'{port.port.name}' is declared here"),),
+        )
 
 
 def _entry(node: FlatNode, parameter: Parameter, setting: ParameterSetting) -> Iterator[Diagnostic]:
