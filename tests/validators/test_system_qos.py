@@ -148,3 +148,19 @@ def test_the_ends_of_rules_are_those_of_the_generated_nodes(path: Path) -> None:
     }
     for end in ends_of([rules]).ends:
         assert ports[end.kind, end.topic] == end.qos
+
+
+def test_a_pin_of_an_imported_system_holds_where_the_outer_one_says_nothing(tmp_path: Path) -> None:
+    """Type and QoS are pinned by the outermost declaration that states them."""
+    (tmp_path / "a.rnd").write_text("node a : demo publishes topic x : std_msgs.Bool\n")
+    (tmp_path / "part.system").write_text(
+        "system Part topics external topic /x : std_msgs.Empty qos transient_local\n"
+    )
+    (tmp_path / "demo.system").write_text(
+        'system Demo imports import "a.rnd" import "part.system"\n'
+        "topics topic /x\nnode a : a wirings connect x to /x\nsubsystem part : Part\n"
+    )
+    repository = Repository()
+    named = [repository.load(tmp_path / "demo.system")]
+    findings = check(named, repository, InterfaceStore((), prefixes=()))
+    assert {each.code.name for each in findings} >= {"DRS209", "DRS230"}

@@ -119,8 +119,9 @@ def _origin(side: Side, policy: Policy) -> str:
 def cure(found: Iterable[Shortfall], offering: Side, requesting: Side) -> str:
     """Return the smallest change that connects the two sides.
 
-    Ends that are generated stay as they are. Otherwise it is the side with fewer descriptions, and
-    rather one that is not of an existing program; of two alike, both are named.
+    Ends that are generated stay as they are, but what a safety node or a gate asks for may follow
+    from what was offered when it was generated. Otherwise it is the side with fewer descriptions,
+    and rather one that is not of an existing program; of two alike, both are named.
     """
     found = tuple(found)
     weaker = {each.policy: _least(each) for each in found}
@@ -133,11 +134,15 @@ def cure(found: Iterable[Shortfall], offering: Side, requesting: Side) -> str:
         )
         if not side.is_fixed
     ]
+    again = ""
+    if requesting.is_fixed and any(isinstance(end, End) for end in requesting.ends):
+        again = "generate the safety node again if this is what its publisher offers"
     if not ways:
-        return "generate both again"
+        return again or "generate both again"
     effort = {id(side): (side.is_program, side.places) for side, _ in ways}
     best = min(effort.values())
-    return ", or ".join(text for side, text in ways if effort[id(side)] == best)
+    chosen = [text for side, text in ways if effort[id(side)] == best]
+    return ", or ".join([*chosen, *([again] if again else [])])
 
 
 def _the(side: Side) -> str:

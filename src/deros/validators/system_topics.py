@@ -13,6 +13,7 @@ from deros.interfaces.names import did_you_mean
 from deros.interfaces.standard_topics import is_shown_only, standard_topic, wrong_type
 from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, FlatTopic, resolve_name
 from deros.metamodels.node import PortKind
+from deros.metamodels.system import Topic
 from deros.validators.graph import CHANNEL, End, Vertex, channels, publishers, subscribers
 from deros.validators.rules_ends import RulesEnds
 from deros.validators.topic_partners import Partners, Robots
@@ -36,10 +37,14 @@ _SEEKS_A_PARTNER = {
 
 @dataclass(frozen=True, slots=True)
 class _Channel:
-    """A topic, service or action with its ends; ``open`` when the model cannot know them all."""
+    """A topic, service or action with its ends; ``open`` when the model cannot know them all.
+
+    ``pin`` is the outermost declaration that gives the topic a type.
+    """
 
     vertex: Vertex
     declared: FlatTopic | None
+    pin: Topic | None
     sources: list[End]
     sinks: list[End]
     open: bool
@@ -74,7 +79,8 @@ def check_topics(
     What ``rules`` read or feed lacks no end there, whether or not the system names the safety node.
     """
     guessed = _targets_of_unknown_ports(flat)
-    found = [_channel(graph, vertex, guessed) for vertex in channels(graph)]
+    pins = _pinned_types(flat)
+    found = [_channel(graph, vertex, guessed, pins) for vertex in channels(graph)]
     types = {each.name: each.type for each in found if each.sources or each.sinks}
     topics: list[_Channel] = []
     for channel in found:
@@ -97,25 +103,37 @@ def check_topics(
     yield from _unwired(flat, {channel.vertex: channel for channel in found})
 
 
-def _channel(graph: nx.MultiDiGraph[Vertex], vertex: Vertex, guessed: set[str]) -> _Channel:
+def _channel(
+    graph: nx.MultiDiGraph[Vertex], vertex: Vertex, guessed: set[str], pins: Mapping[str, Topic]
+) -> _Channel:
     attributes = graph.nodes[vertex]
     declared: FlatTopic | None = attributes.get("topic")
     if vertex[0] != "topic":
         # A service has no declaration of its own; an external topic of its name speaks for it.
         declared = graph.nodes.get(("topic", vertex[1]), {}).get("topic")
     sources, sinks = publishers(graph, vertex), subscribers(graph, vertex)
+    pin = pins.get(vertex[1]) if vertex[0] == "topic" else None
     is_open = (
         (declared is not None and declared.declaration.external)
         or bool(attributes.get("untyped"))
         or vertex[1] in guessed
-        or (vertex[0] == "topic" and _is_standard(vertex[1], declared, [*sources, *sinks]))
+        or (vertex[0] == "topic" and _is_standard(vertex[1], pin, [*sources, *sinks]))
     )
-    return _Channel(vertex, declared, sources, sinks, is_open)
+    return _Channel(vertex, declared, pin, sources, sinks, is_open)
 
 
-def _is_standard(name: str, declared: FlatTopic | None, ends: list[End]) -> bool:
+def _pinned_types(flat: FlatSystem) -> dict[str, Topic]:
+    """Return the declaration that gives each topic its type: the first, which is the outermost."""
+    pins: dict[str, Topic] = {}
+    for topic in flat.topics:
+        if topic.declaration.type is not None:
+            pins.setdefault(topic.name, topic.declaration)
+    return pins
+
+
+def _is_standard(name: str, pin: Topic | None, ends: list[End]) -> bool:
     """Tell whether a topic has ends in libraries, tools or hands, which no model describes."""
-    kind = declared.declaration.type if declared is not None else None
+    kind = pin.type if pin is not None else None
     if kind is None and ends:
         kind = ends[0].type
     return standard_topic(name, kind) is not None
@@ -147,9 +165,9 @@ def _ends_in_rules(topic: _Channel, rules: RulesEnds) -> bool:
 
 def _types(channel: _Channel) -> Iterator[Diagnostic]:
     ends = channel.sources + channel.sinks
-    pinned = channel.declared.declaration.type if channel.declared is not None else None
-    if channel.vertex[0] == "topic" and pinned is not None and channel.declared is not None:
-        place = channel.declared.declaration.type_span
+    pinned = channel.pin.type if channel.pin is not None else None
+    if pinned is not None and channel.pin is not None:
+        place = channel.pin.type_span
         for end in ends:
             if end.type != pinned:
                 yield report(
@@ -186,7 +204,7 @@ def _types(channel: _Channel) -> Iterator[Diagnostic]:
 
 def _unusual_types(channel: _Channel, types: Mapping[str, InterfaceType]) -> Iterator[Diagnostic]:
     """Find a standard topic of another type; a pin goes first where no library relies on it."""
-    pinned = channel.declared.declaration if channel.declared is not None else None
+    pinned = channel.pin
     places = [(end.type, end.span, f"{end.name} has") for end in (*channel.sources, *channel.sinks)]
     if pinned is not None and pinned.type is not None and pinned.type_span is not None:
         places.insert(0, (pinned.type, pinned.type_span, "the pin is"))
