@@ -112,6 +112,7 @@ def _override(
             " already, say so there by 'executable'",
             (Related(port.port.span, f"'{port.port.name}' is declared here"),),
         )
+        return
 
 
 def _entry(node: FlatNode, parameter: Parameter, setting: ParameterSetting) -> Iterator[Diagnostic]:

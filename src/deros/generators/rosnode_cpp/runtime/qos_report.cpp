@@ -35,8 +35,12 @@ std::string incompatible(const TopicEndpointInfo & offer, const TopicEndpointInf
   return reasons;
 }
 
+/// Return the name of a node, which the middleware may learn later than that of its topics.
 std::string node_of(const TopicEndpointInfo & info)
 {
+  if (info.node_name().empty() || info.node_name() == "_NODE_NAME_UNKNOWN_") {
+    return "a node that is not known yet";
+  }
   const std::string & space = info.node_namespace();
   return (space == "/" ? "" : space) + '/' + info.node_name();
 }

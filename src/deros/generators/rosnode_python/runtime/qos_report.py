@@ -15,6 +15,8 @@ from rclpy.qos import (
 )
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+UNNAMED = '_NODE_NAME_UNKNOWN_'  # what the middleware calls a node of which it knows no more yet
+
 
 class QosReport:
     """
@@ -55,6 +57,9 @@ class QosReport:
 
 
 def _node_of(info: TopicEndpointInfo) -> str:
+    """Return the name of a node, which the middleware may learn later than that of its topics."""
+    if info.node_name in ('', UNNAMED):
+        return 'a node that is not known yet'
     return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
 
 
