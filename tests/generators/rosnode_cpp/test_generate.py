@@ -91,7 +91,9 @@ def test_a_package_must_be_a_namespace(package: str) -> None:
 def test_qos_is_as_stated(qos: str, expression: str) -> None:
     """Presets, policies and both together become the rclcpp profile they mean."""
     text = base_for(f"publishes topic x : std_msgs.Bool {qos}").replace("( ", "(")
-    assert f'create_publisher<std_msgs::msg::Bool>("x", {expression});' in text
+    assert (
+        f'create_publisher<std_msgs::msg::Bool>("x", {expression}, report.publisher("x"));' in text
+    )
 
 
 @pytest.mark.parametrize(

@@ -71,7 +71,8 @@ def test_qos_is_as_stated(qos: str, expression: str) -> None:
     """Presets, policies and both together become the rclpy profile they mean."""
     text = base_for(f"publishes topic x : std_msgs.Bool {qos}")
     compact = "".join(text.split()).replace(",)", ")")
-    wanted = f"self.create_publisher(Bool, 'x', {expression})"
+    report = "event_callbacks=report.of_publishers"
+    wanted = f"self.create_publisher(Bool, 'x', {expression}, {report})"
     assert wanted.replace(" ", "") in compact
 
 
@@ -114,7 +115,7 @@ def test_open_ends_of_integers_are_exact(interval: str, bounds: tuple[int, int])
 def test_a_topic_named_by_a_parameter_is_fixed_at_start() -> None:
     """The port reads its parameter, whose change at run time is refused as read-only."""
     text = base_for('parameters name t : string = "/a" subscribes topic x : std_msgs.Bool via t')
-    assert "self.create_subscription(Bool, self.parameters.t or 'x', self.on_x, 10)" in text
+    assert "Bool, self.parameters.t or 'x', self.on_x, 10, " in " ".join(text.split())
     assert "self.declare_parameter('t', '/a', ParameterDescriptor(read_only=True))" in text
 
 
