@@ -43,6 +43,10 @@ class Converter:
         """Collect a diagnostic."""
         self.diagnostics.append(report(code, message, span, hint, related))
 
+    def lose(self, span: Span) -> None:
+        """Give up a statement that means nothing: what it mentions is not missed elsewhere."""
+        self.source.lost |= frozenset(re.findall(r"\w+", span.text))
+
     def span(self, found: Any) -> Span:
         """Return the place of a textX object."""
         return Span(self.source, found._tx_position, found._tx_position_end)
@@ -156,6 +160,8 @@ class Converter:
         if unit is None or second is None or not _TIME_UNITS.compatible(unit, second):
             message = f"'{text}' is no unit of time"
             hint = "units of time are ns, us, ms, sec, min and h"
+            if text == "Hz" and (rate := self.decimal(found.value)) > 0:
+                hint = f"write the period: '{1000 / rate:g} ms'"
             self.report(codes.UNKNOWN_UNIT, message, self.token_span(found.unit), hint)
             return 0
         duration = _TIME_UNITS.duration_ns(self.decimal(found.value), unit)

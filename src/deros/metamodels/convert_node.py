@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from deros import codes
-from deros.diagnostics import Span
+from deros.diagnostics import Fix, Span, report
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import InterfaceKind
 from deros.metamodels.common import Interval, Name, Scalar, Value
@@ -27,6 +27,15 @@ _PARAMETER_TYPES = {each.value: each for each in ParameterType} | {
     "float": ParameterType.DOUBLE,
     "float[]": ParameterType.DOUBLE_ARRAY,
 }
+_FOREIGN_TYPES = {
+    **dict.fromkeys(("float32", "float64", "real", "number", "decimal"), "double"),
+    **dict.fromkeys(("int8", "int16", "int32", "int64", "long", "uint", "unsigned"), "integer"),
+    **dict.fromkeys(("uint8", "uint16", "uint32", "uint64", "int_", "integers"), "integer"),
+    **dict.fromkeys(("str", "text", "char", "std::string"), "string"),
+    **dict.fromkeys(("boolean", "flag"), "bool"),
+}
+"""What the parameter types of other languages are called in ROS 2."""
+
 _INTERFACE_KINDS: dict[PortKind, InterfaceKind] = {
     PortKind.PUBLISHER: "msg",
     PortKind.SUBSCRIPTION: "msg",
@@ -86,7 +95,8 @@ class NodeConverter(Converter):
             if kind == "Lifecycle":
                 lifecycle = True
             elif kind == "Parameters":
-                parameters += map(self._parameter, part.parameters)
+                found = map(self._parameter, part.parameters)
+                parameters += (each for each in found if each is not None)
             elif kind == "Timers":
                 timers += map(self._timer, part.timers)
             else:
@@ -108,8 +118,10 @@ class NodeConverter(Converter):
             timers=tuple(timers),
         )
 
-    def _parameter(self, found: Any) -> Parameter:
+    def _parameter(self, found: Any) -> Parameter | None:
         kind = self._parameter_type(found)
+        if kind is None:
+            return None
         settings: dict[str, Any] = {}
         if found.default is not None:
             settings["default_span"] = self.value_span(found.default)
@@ -172,16 +184,26 @@ class NodeConverter(Converter):
         settings["interval"] = bounds
         settings["interval_span"] = Span(self.source, first.start, span.end)
 
-    def _parameter_type(self, found: Any) -> ParameterType:
+    def _parameter_type(self, found: Any) -> ParameterType | None:
         text = "".join(found.type.split())
         kind = _PARAMETER_TYPES.get(text)
         if kind is None:
-            hint = did_you_mean(near(text, _PARAMETER_TYPES))
-            message = f"unknown parameter type '{text}'"
-            hint = hint or f"the types are {', '.join(_PARAMETER_TYPES)}"
-            self.report(codes.SYNTAX_ERROR, message, self.token_span(found.type), hint)
-            return ParameterType.STRING
+            self._unknown_parameter_type(text, self.token_span(found.type))
+            self.lose(self.span(found))
         return kind
+
+    def _unknown_parameter_type(self, text: str, span: Span) -> None:
+        element, is_array = text.removesuffix("[]").lower(), text.endswith("[]")
+        meant = _FOREIGN_TYPES.get(element)
+        fix = None
+        if meant is not None:
+            hint = f"write '{meant}{'[]' * is_array}'"
+            fix = Fix(span, f"{meant}{'[]' * is_array}")
+        else:
+            hint = did_you_mean(near(text, _PARAMETER_TYPES))
+            hint = hint or f"the types are {', '.join(_PARAMETER_TYPES)}"
+        message = f"unknown parameter type '{text}'"
+        self.diagnostics.append(report(codes.SYNTAX_ERROR, message, span, hint, fix=fix))
 
     def _choices(self, array: Any, kind: ParameterType) -> tuple[Scalar, ...]:
         values = tuple(self.scalar(item) for item in array.items)

@@ -7,19 +7,21 @@ write instead, and words. A row is offered only if the statement parses on with 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from deros.metamodels.languages import Language
 
 _LOOK_BACK = 400
+_Edit = Callable[[re.Match[str]], str]
 
 
 @dataclass(frozen=True, slots=True)
 class Habit:
     """A habit that was recognised: the edit, ``text`` in place of ``start`` to ``end``, and words.
 
-    ``text`` is ``None`` where no edit can be given.
+    ``text`` is ``None`` where no edit can be given; ``reads_as`` is what a parser reads for it, if
+    it is a comment.
     """
 
     start: int
@@ -27,6 +29,7 @@ class Habit:
     text: str | None
     hint: str
     message: str = ""
+    reads_as: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,33 +43,64 @@ class _Row:
         hint: in words, with the groups likewise.
         message: what is wrong, if the words for any syntax error do not say it.
         languages: those that have the habit; none for all.
+        reads_as: what a parser reads for ``text``, if that is a comment.
     """
 
     pattern: re.Pattern[str]
-    text: str | None
+    text: str | _Edit | None
     hint: str
     message: str = ""
     languages: tuple[Language, ...] = ()
+    reads_as: str | None = None
+
+    def edit(self, match: re.Match[str]) -> str | None:
+        """Return what to write instead of a match."""
+        if self.text is None or isinstance(self.text, str):
+            return None if self.text is None else match.expand(self.text)
+        return self.text(match)
 
 
-def _row(pattern: str, text: str | None, hint: str, message: str = "", languages: str = "") -> _Row:
+def _row(
+    pattern: str,
+    text: str | _Edit | None,
+    hint: str,
+    message: str = "",
+    languages: str = "",
+    reads_as: str | None = None,
+) -> _Row:
     wanted = tuple(each for each in _LANGUAGES if each in languages.split())
-    return _Row(re.compile(pattern), text, hint, message, wanted)
+    return _Row(re.compile(pattern), text, hint, message, wanted, reads_as)
+
+
+def _interval(match: re.Match[str]) -> str:
+    """Return a chain of comparisons as an interval."""
+    opening = "[" if match["first"] == "<=" else "("
+    closing = "]" if match["last"] == "<=" else ")"
+    low, high = match["low"].strip(), match["high"].strip()
+    return f"{match['name']} in {opening}{low}, {high}{closing}"
+
+
+def _lower(match: re.Match[str]) -> str:
+    return match[0].lower()
 
 
 _LANGUAGES: tuple[Language, ...] = ("rosnode", "rossystem", "deros")
-_RULES = "deros"
-_NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
-_OPERAND = r"[\w/.~]+(?:\(\))?"
+_NODE, _SYSTEM, _RULES = _LANGUAGES
+_NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
+_UNIT = r"(?:[ ]*(?!(?:or|and|not|for|then|in)\b)[A-Za-z][\w/^]*)?"
+_OPERAND = r"[A-Za-z/][\w/.]*(?:\(\))?"
+_UPPER = "keywords are in lower case"
+_COMMENT = "a comment begins with '//'"
+_ELSE = "write 'if' with a condition of its own: each behaviour holds for itself"
+_NO_ELSE = "there is no 'else' in the rules"
 
 _ROWS = (
     # Characters
     _row(
-        '[\u201c\u201d\u201e\u00ab\u00bb](?P<said>[^"\u201c\u201d\u201e\u00ab\u00bb\n]*)'
-        "[\u201c\u201d\u00ab\u00bb]",
+        '[\u201c\u201d\u201e\u00ab](?P<said>[^"\u201c\u201d\u201e\u00ab\u00bb\n]*)[\u201c\u201d\u00bb]',
         r'"\g<said>"',
         "write plain quotes: '\"'",
-        "typographic quotes are no quotes here",
+        "typographic quotes are not quotes here",
     ),
     _row(
         r"'(?P<said>[^'\"\n]*)'",
@@ -80,35 +114,213 @@ _ROWS = (
     _row("\u2265", ">=", "write '>='"),
     _row("\u2260", "!=", "write '!='"),
     _row("\u2192", "->", "write '->'", languages=_RULES),
-    _row("\u2192", "to", "write 'to'", languages="rossystem"),
+    _row("\u2192", "to", "write 'to'", languages=_SYSTEM),
+    # Comments
     _row(
-        r"#+(?P<said>[^\n]*)",
+        r"#+(?P<said>[^\n]*)", r"//\g<said>", _COMMENT, "'#' does not begin a comment here", "", " "
+    ),
+    _row(
+        r"--(?P<said> [^\n]*)",
         r"//\g<said>",
-        "a comment begins with '//'",
-        "'#' begins no comment here",
+        _COMMENT,
+        "'--' does not begin a comment here",
+        "",
+        " ",
     ),
     _row(
         r"<!--(?P<said>[^\n]*?)-->",
         r"/*\g<said>*/",
         "a comment stands between '/*' and '*/'",
-        "'<!--' begins no comment here",
+        "'<!--' does not begin a comment here",
+        "",
+        " ",
     ),
-    _row(r"--(?P<said> [^\n]*)", r"//\g<said>", "a comment begins with '//'"),
-    _row(r"to\b", "->", "write '->'", languages=_RULES),
     # Conditions
     _row(r"\|\|?", " or ", "write 'or'", languages=_RULES),
     _row(r"&&?", " and ", "write 'and'", languages=_RULES),
+    _row(r"!\s*in\b", "not in", "write 'not in'", languages=_RULES),
     _row(r"!(?!=)", "not ", "write 'not'", languages=_RULES),
-    _row(r"(?i:or)\b", "or", "write 'or': keywords are in lower case", languages=_RULES),
-    _row(r"(?i:and)\b", "and", "write 'and': keywords are in lower case", languages=_RULES),
-    _row(r"(?i:not)\b", "not", "write 'not': keywords are in lower case", languages=_RULES),
-    _row(r"NOT[ ]+(?P<at>)", "not ", "write 'not': keywords are in lower case", languages=_RULES),
-    _row(r"(?:===|:=)", "=", "write '='", languages=_RULES),
-    _row(r"<>|~=|/=", "!=", "write '!='", languages=_RULES),
-    _row(r"=[ ]*(?P<at>)(?P<sign>[<>])", r"\g<sign>=", r"write '\g<sign>='", languages=_RULES),
+    _row(r"~(?=\w)", "not ", "write 'not'", languages=_RULES),
+    _row(r"OR\b|Or\b", "or", f"write 'or': {_UPPER}", languages=_RULES),
+    _row(r"AND\b|And\b", "and", f"write 'and': {_UPPER}", languages=_RULES),
+    _row(r"\b(?:AND|And)\s+(?P<at>)", "and ", f"write 'and': {_UPPER}", languages=_RULES),
+    _row(r"\b(?:OR|Or)\s+(?P<at>)", "or ", f"write 'or': {_UPPER}", languages=_RULES),
+    _row(r"\b(?:NOT|Not)\s+(?P<at>)", "not ", f"write 'not': {_UPPER}", languages=_RULES),
+    _row(r"===", "=", "write '='", languages=_RULES),
+    _row(r"==(?P<at>)=", "=", "write '='", languages=_RULES),
+    _row(r"<(?P<at>)>|~=|/=", "!=", "write '!='", languages=_RULES),
+    _row(r"~=|/=", "!=", "write '!='", languages=_RULES),
+    _row(r":=", "=", "write '='", languages=_RULES),
+    _row(r"<-", "=", "write '='", languages=_RULES),
+    _row(r"=(?P<at>)>\s*(?=\{)", "then ", "write 'then'", languages=_RULES),
+    _row(r"=(?P<at>)(?P<sign>[<>])", r"\g<sign>=", r"write '\g<sign>='", languages=_RULES),
+    _row(
+        r"[ ]+(?P<at>)is\s+(?:null|None|nan|missing)\b",
+        ".missing()",
+        "write '.missing()'",
+        languages=_RULES,
+    ),
     _row(r"is\s+not\b", "!=", "write '!='", languages=_RULES),
     _row(r"is\b", "=", "write '='", languages=_RULES),
     _row(r"(?:equals|eq)\b", "=", "write '='", languages=_RULES),
+    _row(r"in\s+(?P<at>)not\b", "not in", "write 'not in'", languages=_RULES),
+    _row(r"between\b", "in", "write 'in'", languages=_RULES),
+    _row(
+        rf"(?P<low>{_NUMBER}{_UNIT})\s*(?P<first><=?)\s*(?P<name>{_OPERAND})\s*"
+        rf"(?P<at>)(?P<last><=?)\s*(?P<high>{_NUMBER}{_UNIT})",
+        _interval,
+        "write it as an interval: '{edit}'",
+        "a comparison has two sides",
+        _RULES,
+    ),
+    _row(r"\s*(?P<at>)\.\.+\s*", ", ", "write ',' between the ends", languages="deros rosnode"),
+    _row(r"\s+to\s+(?P<at>)", ", ", "write ',' between the ends", languages=_RULES),
+    # Behaviours
+    _row(r"(?::|->|do\b)\s*(?=\{)", " then ", "write 'then'", languages=_RULES),
+    _row(
+        r"(?P<call>[a-z_]\w*(?:\([^()\n]*\))?)\s*;?(?=[ \t\r]*(?:\n|\Z))",
+        r"{ \g<call>; }",
+        "actions stand in braces",
+        "the actions of a behaviour stand in braces",
+        _RULES,
+    ),
+    _row(r"when\b|whenever\b", "if", "write 'if'", languages=_RULES),
+    _row(r"(?:else\s+if|elif|elsif|elseif)\b", "if", _ELSE, _NO_ELSE, _RULES),
+    _row(r"else\b", None, _ELSE, _NO_ELSE, _RULES),
+    _row(
+        rf"then\s+(?P<at>)(?P<hold>for\s+{_NUMBER}{_UNIT})",
+        r"\g<hold> then",
+        "the duration stands before 'then'",
+        "",
+        _RULES,
+    ),
+    _row(
+        r"until\b",
+        None,
+        "'for T' at the end asks that the condition holds for so long",
+        "a rule has no end in time",
+        _RULES,
+    ),
+    _row(
+        rf"(?P<hold>for\s+{_NUMBER}\s*(?:ns|us|ms|sec|s|min|h)\b)\s*(?P<what>[^;{{}}\n]+)",
+        r"\g<what> \g<hold>",
+        "the duration stands behind the condition: 'CONDITION for T'",
+        "",
+        _RULES,
+    ),
+    _row(r"(?:let|var|define|val)\b", "const", "write 'const'", languages=_RULES),
+    _row(
+        r"(?P<whole>\d+)\s*(?P<at>),(?P<part>\d+)\b",
+        r"\g<whole>.\g<part>",
+        r"write '\g<whole>.\g<part>'",
+        "a decimal point is a point",
+    ),
+    _row(r"to\b", "on", "write 'on'", languages=_RULES),
+    _row(r"to\b", "->", "write '->'", languages=_RULES),
+    _row(r"import\b(?=\s*\")", None, "write 'use \"FILE.system\" import NAME'", "", _RULES),
+    # Names, types, texts
+    _row(
+        r"(?P<package>\w+)::(?:(?P<kind>msg|srv|action)::)?(?P<name>\w+)",
+        r"\g<package>.\g<name>",
+        r"write '\g<package>.\g<name>'",
+        "the parts of a type are joined by '.'",
+    ),
+    _row(r'"(?P<name>[/~]?\w[\w/]*)"', r"\g<name>", "write the name without quotes"),
+    _row(r"(?P<name>[\w./*-]+\.(?:rnd|system))\b", r'"\g<name>"', "write the file in quotes"),
+    _row(
+        r"(?P<head>best|sensor|keep|transient|system|manual|read|log)-(?P<tail>\w+)",
+        r"\g<head>_\g<tail>",
+        r"write '\g<head>_\g<tail>'",
+    ),
+    _row(
+        r"(?P<word>BEST_EFFORT|RELIABLE|TRANSIENT_LOCAL|VOLATILE|KEEP_ALL|SENSOR_DATA)\b",
+        _lower,
+        _UPPER,
+    ),
+    _row(r"(?:yes|on|True|TRUE)\b", "true", "write 'true'"),
+    _row(r"(?:no|off|False|FALSE)\b", "false", "write 'false'"),
+    # Node descriptions
+    _row(r"subscriptions?\b|subscribers?\b", "subscribes", "write 'subscribes'", languages=_NODE),
+    _row(r"publications?\b|publishers?\b", "publishes", "write 'publishes'", languages=_NODE),
+    _row(r"params\b", "parameters", "write 'parameters'"),
+    _row(
+        r"(?P<type>double|integer|int|float|bool|string)\s+(?P<name>[a-z_]\w*)(?=\s*(?:=|$))",
+        r"name \g<name> : \g<type>",
+        r"write 'name \g<name> : \g<type>'",
+        languages=_NODE,
+    ),
+    _row(
+        rf"(?P<low>{_NUMBER})\s*\.\.\.?\s*(?P<high>{_NUMBER})",
+        r"[\g<low>, \g<high>]",
+        r"write '[\g<low>, \g<high>]'",
+        languages=_NODE,
+    ),
+    _row(r"range\s*(?=[\[(])", "in ", "write 'in'", languages=_NODE),
+    _row(r"one\s+of\b|oneof\b", "one_of", "write 'one_of'", languages=_NODE),
+    _row(
+        rf"=\s*{_NUMBER}\s*(?P<at>)[A-Za-z][A-Za-z/^0-9]*(?=\s*\[)",
+        None,
+        "write the number in the parameter's own unit, which stands in brackets",
+        "a value does not have a unit of its own",
+        _NODE,
+    ),
+    _row(
+        rf"(?P<value>=\s*{_NUMBER})\s*(?P<at>)(?P<unit>(?!in\b)[A-Za-z][A-Za-z/^0-9]*)",
+        r"\g<value> [\g<unit>]",
+        r"the unit of a parameter stands in brackets: '[\g<unit>]'",
+        languages=_NODE,
+    ),
+    _row(r"\{(?P<items>[^{}\n]*)\}", r"[\g<items>]", "a list stands in brackets", "", _NODE),
+    _row(
+        r":\s*(?P<at>)(?P<name>[A-Z]\w*)(?![\w./:])",
+        None,
+        r"write the package before the name: 'PACKAGE.\g<name>'",
+        languages="rosnode rossystem",
+    ),
+    _row(
+        r"=\s*(?P<value>[^:\n]*?)\s*:\s*(?P<type>\w+)",
+        r": \g<type> = \g<value>",
+        r"the type stands before the value: ': \g<type> = \g<value>'",
+        languages=_NODE,
+    ),
+    _row(
+        r"=\s*(?P<at>)(?P<word>[A-Za-z_][\w/]*)(?![\w.(])",
+        r'= "\g<word>"',
+        r"write '\"\g<word>\"': a text stands in quotes",
+        languages="rosnode rossystem",
+    ),
+    # System descriptions
+    _row(
+        r"remap\s+(?P<port>[\w/~]+)\s*(?::=|to|=|->)\s*(?P<to>[\w/~]+)",
+        r"connect \g<port> to \g<to>",
+        r"write 'connect \g<port> to \g<to>'",
+        languages=_SYSTEM,
+    ),
+    _row(
+        r"(?P<port>[\w/~]+)\s*(?:->|=>|:=)\s*(?P<to>[\w/~]+)",
+        r"connect \g<port> to \g<to>",
+        r"write 'connect \g<port> to \g<to>'",
+        languages=_SYSTEM,
+    ),
+    _row(r"=(?=\s*[/~])", "to", "write 'to'", languages=_SYSTEM),
+    _row(r"name\s+(?=\w+\s*=)", "param ", "write 'param'", languages=_SYSTEM),
+    _row(
+        r"(?P<name>[a-z_]\w*)\s*[:=]\s*(?P<value>[^\n]+)",
+        r"param \g<name> = \g<value>",
+        r"write 'param \g<name> = \g<value>'",
+        languages=_SYSTEM,
+    ),
+    _row(
+        rf"=\s*{_NUMBER}\s*(?P<at>)[A-Za-z]",
+        None,
+        "write the number in the unit of the parameter, without a unit",
+        "a value does not have a unit of its own",
+        _SYSTEM,
+    ),
+    _row(r"\(\)", "", "remove '()'", languages=_SYSTEM),
+    _row(r"ns\b", "namespace", "write 'namespace'", languages=_SYSTEM),
+    _row(r"include\b", "import", "write 'import'", languages=_SYSTEM),
+    _row(r"-\s*(?=/)", "topic ", "write 'topic'", languages=_SYSTEM),
 )
 
 
@@ -126,12 +338,14 @@ def habits(text: str, position: int, start: int, language: Language) -> Iterator
             continue
         match = _match(row.pattern, text, position, start)
         if match is not None and row.hint:
+            edit = row.edit(match)
             yield Habit(
                 match.start(),
                 match.end(),
-                None if row.text is None else match.expand(row.text),
-                match.expand(row.hint),
-                match.expand(row.message),
+                edit,
+                match.expand(row.hint).replace("{edit}", edit or ""),
+                row.message,
+                row.reads_as,
             )
 
 

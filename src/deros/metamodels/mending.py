@@ -17,7 +17,7 @@ from deros.interfaces.names import did_you_mean, near
 from deros.metamodels.grammar import literal_of, words_of
 from deros.metamodels.habits import habits
 from deros.metamodels.languages import Language
-from deros.metamodels.recognising import Attempt, Place, Recogniser, Trace
+from deros.metamodels.recognising import Attempt, Place, Recogniser, Trace, skip_blanks
 from deros.metamodels.repaired import RepairedText
 from deros.metamodels.syntax import found_at
 
@@ -126,7 +126,8 @@ class Fault:
         if place is None:
             attempt = self.recogniser.try_all(text)
         else:
-            attempt = self.recogniser.try_statement(place.list, text, place.start)
+            begin = skip_blanks(text, place.start).end()  # type: ignore[union-attr]
+            attempt = self.recogniser.try_statement(place.list, text, begin)
         return text, attempt, len(by) - (end - start)
 
 
@@ -140,6 +141,7 @@ class Mend:
         end: where what it replaces ends.
         text: what it puts there.
         message: what is wrong, if there are better words for it than those for any syntax error.
+        reads_as: what a parser reads in place of ``text``, if that is a comment.
     """
 
     hint: str
@@ -147,6 +149,7 @@ class Mend:
     end: int = 0
     text: str = ""
     message: str = ""
+    reads_as: str | None = None
 
 
 def mends(fault: Fault) -> Iterator[Mend]:
@@ -171,8 +174,11 @@ def _by_habit(fault: Fault) -> Iterator[Mend]:
         if habit.text is None:
             yield Mend(habit.hint, None, message=habit.message)
             return
-        if fault.gets_on_by(habit.start, habit.end, habit.text):
-            yield Mend(habit.hint, habit.start, habit.end, habit.text, habit.message)
+        reads_as = habit.text if habit.reads_as is None else habit.reads_as
+        if fault.gets_on_by(habit.start, habit.end, reads_as):
+            yield Mend(
+                habit.hint, habit.start, habit.end, habit.text, habit.message, habit.reads_as
+            )
             return
 
 
@@ -192,7 +198,7 @@ def _misspelt(fault: Fault) -> Iterator[Mend]:
         return
     end = fault.position + len(found)
     words = [each for token in fault.expected for each in words_of(token) if each[0].isalpha()]
-    for word in near(found, words):
+    for word in near(found, words, _NEAREST):
         if fault.is_mended_by(fault.position, end, word):
             yield Mend(did_you_mean([word]), fault.position, end, word)
 
@@ -214,6 +220,8 @@ def _other_sign(fault: Fault) -> Iterator[Mend]:
 
 
 _MISTAKEN_SIGNS = tuple(":=-,;)]|&")
+_NEAREST = 2
+_KEYWORD_BEFORE = re.compile(r"\b(\w+)\s*\Z")
 _NEVER_MISSING = frozenset("-[(")
 _LONG_SIGNS = frozenset({"->", "=>", ":=", "==", "<-", "::", "++", "--", "!="})
 
@@ -222,6 +230,8 @@ def _missing_sign(fault: Fault) -> Iterator[Mend]:
     if not fault.found or _opens_next(fault):
         return
     signs = [sign for sign in _literals(fault) if sign not in _NEVER_MISSING]
+    if fault.found[0] in _MISTAKEN_SIGNS:
+        signs = [sign for sign in signs if not sign[0].isalpha()]
     # What was found may be the keyword of a statement that the missing word makes room for.
     opening = [sign for sign in signs if fault.opens_statement_by(f"{sign} ")]
     for sign in opening or signs:
@@ -246,7 +256,9 @@ def _opens_next(fault: Fault) -> bool:
 
 def _surplus_sign(fault: Fault) -> Iterator[Mend]:
     found = fault.found
-    if found not in (";", ",", "."):
+    before = _KEYWORD_BEFORE.search(fault.text, 0, fault.position)
+    is_after_keyword = before is not None and before[1] in fault.recogniser.words
+    if found not in (";", ",", ".") and not (found in (":", "=") and is_after_keyword):
         return
     end = fault.position + 1
     if fault.is_mended_by(fault.position, end, " "):

@@ -144,6 +144,11 @@ class Recogniser:
 
     Statements that matched are remembered, so that a text in which something was mended is not read
     again from its start; :meth:`forget_from` drops what the mended place may change.
+
+    Attributes:
+        trace: how far the last text was read.
+        words: the keywords of the language.
+        body: the outermost list of statements.
     """
 
     def __init__(self, root: ParsingExpression) -> None:
@@ -152,6 +157,7 @@ class Recogniser:
         self._made: dict[int, Step] = {}
         self._known: dict[tuple[int, int], tuple[int, int]] = {}
         self._lists: dict[int, StatementList] = {}
+        self.words: set[str] = set()
         self._root = self._step(root)
         self.body = next(self._top_lists(root), None)
 
@@ -239,6 +245,7 @@ class Recogniser:
         if isinstance(expression, EndOfFile):
             return self._end(expression)
         if isinstance(expression, RegExMatch):
+            self.words.update(words_of(expression))
             return self._token(expression)
         if isinstance(expression, StrMatch):
             return self._sign(expression)

@@ -152,6 +152,8 @@ class _Recovery:
         keyword for a name.
         """
         text = self._text
+        if blamed := self._run_on(place, failed):
+            return blamed
         whole = place
         if place.start == failed:
             before = self._recogniser.statement_before(place.list, failed)
@@ -166,6 +168,7 @@ class _Recovery:
             last is not None
             and last[1] in {literal_of(token) for token in expected}
             and not self._recogniser.begins_statement(last.start())
+            and self._is_taken_for_a_name(whole, last.start(1), last.end(1), failed)
         ):
             # The keyword is there, but was taken for the name before it.
             return whole, last.start(), (_A_NAME,)
@@ -176,6 +179,24 @@ class _Recovery:
         if on_same_line and text[:failed].rstrip()[-1:] not in (";", "}", "{"):
             return whole, failed, expected
         return place, failed, expected
+
+    def _run_on(self, place: Place, failed: int) -> tuple[Place, int, _Tokens] | None:
+        """Return the statement before one that is none: a word on its line, taken for a name."""
+        text, start = self._text, place.start
+        is_word = place.list.opened_by(text, start) == "name" and text[start] not in "/~"
+        if start >= failed or not is_word or is_line_start(text, start):
+            return None
+        before = self._recogniser.statement_before(place.list, start)
+        if before is None or text[:start].rstrip()[-1:] in (";", "}", "{"):
+            return None
+        trace = self._recogniser.try_statement(place.list, text[:start], before).trace
+        expected = tuple(trace.expected) if trace.position >= start else (_A_NAME,)
+        return Place(place.outer, place.list, before), start, expected
+
+    def _is_taken_for_a_name(self, whole: Place, start: int, end: int, failed: int) -> bool:
+        """Tell whether any word would do in the place of one."""
+        other = f"{self._text[:start]}{'z' * (end - start)}{self._text[end:]}"
+        return self._recogniser.try_statement(whole.list, other, whole.start).reached >= failed
 
     def _swallowing(self, whole: Place, place: Place, failed: int) -> tuple[int, _Tokens] | None:
         """Find where a statement without its end took the next one's keyword for a name."""
@@ -213,7 +234,8 @@ class _Recovery:
 
     def _apply(self, mend: Mend) -> bool:
         assert mend.start is not None
-        self._text = self._text.replaced(mend.start, mend.end, mend.text)
+        text = mend.text if mend.reads_as is None else mend.reads_as
+        self._text = self._text.replaced(mend.start, mend.end, text)
         self._forget(mend.start)
         self._stretch = None
         return True
@@ -419,7 +441,12 @@ def _statement_at(places: list[Place | None], position: int) -> Place | None:
     """
     inner = [each for each in places if each is not None]
     beginning = next((each for each in inner if each.start == position), None)
-    return beginning or max(inner, key=lambda each: each.start, default=None)
+    if beginning is not None or not inner:
+        return beginning
+    deepest = max(inner, key=lambda each: each.start)
+    # Of two statements of one list, the first has read on; the other took a word of it for a name.
+    alike = (each for each in inner if each.list.number == deepest.list.number)
+    return min(alike, key=lambda each: each.start)
 
 
 def _lists_of(place: Place | None) -> list[StatementList]:

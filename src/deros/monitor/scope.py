@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 
 from deros import codes
-from deros.diagnostics import Code, Diagnostic, Related, Span, report
+from deros.diagnostics import Code, Diagnostic, Fix, Related, Span, report
 from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
 from deros.interfaces.names import check_identifier, check_topic_name, did_you_mean, near
 from deros.interfaces.rep103 import unit_of
@@ -69,9 +69,10 @@ class Scope:
         span: Span,
         hint: str = "",
         related: tuple[Related, ...] = (),
+        fix: Fix | None = None,
     ) -> None:
         """Note a finding."""
-        self.diagnostics.append(report(code, message, span, hint, related))
+        self.diagnostics.append(report(code, message, span, hint, related, fix))
 
     def check_duplicates(self, names: Iterable[Name], what: str) -> None:
         """Report every name that stands for a second thing; ``what`` has ``{}`` for the name."""
@@ -124,10 +125,12 @@ class Scope:
         return found
 
     def _unknown_unit(self, registry: UnitRegistry, text: str, span: Span) -> None:
-        hint = did_you_mean(registry.suggest(text)) or (
+        meant = registry.suggest(text)
+        hint = did_you_mean(meant) or (
             f"'unit {text} = ...' in the rules defines it" if text.isidentifier() else ""
         )
-        self.fault(codes.UNKNOWN_UNIT, f"unknown unit '{text}'", span, hint)
+        fix = Fix(span, meant[0]) if len(meant) == 1 else None
+        self.fault(codes.UNKNOWN_UNIT, f"unknown unit '{text}'", span, hint, fix=fix)
 
     def duration_ns(self, number: rules.Number) -> int | None:
         """Return a duration in nanoseconds; report what is none."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 
 from deros import codes
-from deros.diagnostics import Span
+from deros.diagnostics import Fix, Span
 from deros.interfaces.fields import FieldPath, ResolvedField, format_path, leaves
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
@@ -35,6 +35,7 @@ from deros.monitor.resolved import (
 )
 from deros.monitor.scope import Scope
 
+_NOTHING = frozenset({"none", "null", "nil", "nan", "undefined"})
 _RESULT_TYPES = {Result.FLOAT: FieldType("float64"), Result.INTEGER: FieldType("uint64")}
 
 
@@ -125,7 +126,13 @@ class Terms:
         )
         if name in self._entities:
             hint = "the rules of entities are combined in the conditions of behaviours"
-        self._scope.fault(codes.UNKNOWN_NAME, f"unknown name '{name}'", term.name.span, hint)
+        fix = None
+        if name.lower() in ("true", "false"):
+            hint, fix = f"write '{name.lower()}'", Fix(term.name.span, name.lower())
+        elif name.lower() in _NOTHING:
+            hint = "whether an input has fallen silent is 'INPUT.missing()'"
+        message = f"unknown name '{name}'"
+        self._scope.fault(codes.UNKNOWN_NAME, message, term.name.span, hint, fix=fix)
         return None
 
     def constant(self, name: str) -> Resolved | None:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Span, report
+from deros.diagnostics import Diagnostic, Fix, Span, report
 from deros.interfaces.names import near
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceKind, InterfaceType
@@ -23,17 +23,7 @@ def type_finding(store: InterfaceStore, wanted: InterfaceType, span: Span) -> It
             yield report(codes.UNUSABLE_DEFINITION, problem.about(wanted), span)
         return
     if not store.has_package(wanted.package):
-        yield report(
-            codes.UNKNOWN_PACKAGE,
-            f"no interface package '{wanted.package}' is known",
-            span,
-            hint=did_you_mean(
-                wanted.package,
-                _like(wanted.package, store.packages()),
-                "for interfaces of your own name their folder with --interfaces PATH, "
-                "or source the workspace that has them",
-            ),
-        )
+        yield _unknown_package(store, wanted.package, span)
         return
     word = _WORD[wanted.kind]
     yield report(
@@ -44,6 +34,29 @@ def type_finding(store: InterfaceStore, wanted: InterfaceType, span: Span) -> It
             wanted.name, store.names(wanted.package, wanted.kind), _elsewhere(store, wanted)
         ),
     )
+
+
+_OF_OTHERS = (
+    "for interfaces of your own name their folder with --interfaces PATH, "
+    "or source the workspace that has them"
+)
+
+
+def _unknown_package(store: InterfaceStore, package: str, span: Span) -> Diagnostic:
+    """Make the finding for a package that is not known.
+
+    One whose name is that of an interface package may well exist: where to find it comes first.
+    """
+    meant = near(package, _like(package, store.packages()))
+    message = f"no interface package '{package}' is known"
+    nearly = did_you_mean(package, meant)
+    if _stem(package) != package and nearly:
+        return report(codes.UNKNOWN_PACKAGE, message, span, f"{_OF_OTHERS}; {nearly}")
+    fix = None
+    if len(meant) == 1:
+        place = Span(span.source, span.start, span.start + len(package))
+        fix = Fix(place, meant[0])
+    return report(codes.UNKNOWN_PACKAGE, message, span, nearly or _OF_OTHERS, fix=fix)
 
 
 def _like(package: str, known: Iterable[str]) -> list[str]:

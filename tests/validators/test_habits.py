@@ -1,0 +1,318 @@
+"""Mistakes that people make: each is one finding, and what its hint asks for mends it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from deros.diagnostics import Diagnostic, Severity
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.validators.check import check
+
+BASE = {
+    "camera.rnd": """\
+node camera : camera_driver "Takes pictures"
+parameters
+  name width : integer = 640 in [1, 4096] // pixels
+  name rate : double = 30.0 [Hz]
+  name range : double = 5.0 [m]
+  name frame : string = "camera" one_of ["camera", "rear"]
+  name flip : bool = false
+publishes
+  topic image : sensor_msgs.Image qos sensor_data
+  topic pose : nav_msgs.Odometry
+  topic state : std_msgs.Bool
+subscribes
+  topic stop : std_msgs.Bool
+services
+  service reset : std_srvs.Trigger
+timers
+  timer grab every 20 ms
+""",
+    "viewer.rnd": """\
+node viewer : image_viewer
+subscribes
+  topic image : sensor_msgs.Image qos sensor_data
+clients
+  client reset : std_srvs.Trigger
+""",
+    "demo.system": """\
+system Demo
+imports
+  import "camera.rnd"
+  import "viewer.rnd"
+topics
+  topic /image
+  topic /pose
+  topic /state
+  topic /stop
+subsystem front namespace /front {
+  node camera : camera
+    parameters
+      param width = 320
+      param range = 2.5
+    wirings
+      connect image to /image
+      connect pose to /pose
+      connect state to /state
+      connect stop to /stop
+      connect reset to /reset
+}
+node viewer : viewer
+  wirings
+    connect image to /image
+    connect reset to /reset
+""",
+    "demo.deros": """\
+use "demo.system" import Demo
+action stop publishes true on /stop : std_msgs.Bool latched
+action beep
+const limit = 0.5 m/s
+input speed = topic /pose.twist.twist.linear.x timeout 0.5 sec
+input ready = topic /state.data timeout 1 sec
+entity drive {
+  fast: speed > limit for 0.2 sec;
+  odd: speed not in [-1, 2] or speed < -0.5 and not ready;
+  gone: speed.missing() or ready.missing();
+  idle: ready = false;
+}
+if drive.fast or drive.gone then { stop; };
+if drive.odd for 2 sec then { beep; stop; }
+if drive.idle then { beep; }
+""",
+}
+
+
+class Mistake(NamedTuple):
+    """A mistake: what is right in a file of the base, what people write, and words of the hint."""
+
+    file: str
+    right: str
+    wrong: str
+    words: str
+    fix: bool = True
+
+
+def _r(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
+    return Mistake("demo.deros", right, wrong, words, fix)
+
+
+def _s(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
+    return Mistake("demo.system", right, wrong, words, fix)
+
+
+def _n(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
+    return Mistake("camera.rnd", right, wrong, words, fix)
+
+
+MISTAKES = [
+    # Operators of other languages
+    _r("] or speed", "] || speed", "write 'or'"),
+    _r("] or speed", "] | speed", "write 'or'"),
+    _r("] or speed", "] OR speed", "write 'or'"),
+    _r("-0.5 and not", "-0.5 && not", "write 'and'"),
+    _r("-0.5 and not", "-0.5 & not", "write 'and'"),
+    _r("-0.5 and not", "-0.5 AND not", "write 'and'"),
+    _r("and not ready", "and !ready", "write 'not'"),
+    _r("and not ready", "and NOT ready", "write 'not'"),
+    _r("and not ready", "and ~ready", "write 'not'"),
+    _r("ready = false", "ready == False", "write 'false'"),
+    _r("ready = false", "ready = FALSE", "write 'false'"),
+    _r("ready = false", "ready === false", "write '='"),
+    _r("ready = false", "ready := false", "write '='"),
+    _r("ready = false", "ready is false", "write '='"),
+    _r("ready = false", "ready <> true", "write '!='"),
+    _r("ready = false", "ready ~= true", "write '!='"),
+    _r("ready = false", "ready is not true", "write '!='"),
+    _r("speed > limit", "speed => limit", "write '>='"),
+    _r("speed > limit", "speed ≥ limit", "write '>='"),
+    _r("speed not in [-1, 2]", "not speed in [-1 .. 2]", "write ','"),
+    _r("speed not in [-1, 2]", "speed not in [-1; 2]", "write ','"),
+    _r("speed not in [-1, 2]", "speed not in [-1 to 2]", "write ','"),
+    _r("speed not in [-1, 2]", "-1 < speed < 2", "in (-1, 2)"),
+    _r("speed not in [-1, 2]", "0 <= speed <= 2 m/s", "in [0, 2 m/s]"),
+    _r("speed not in [-1, 2]", "speed !in [-1, 2]", "write 'not in'"),
+    _r("speed not in [-1, 2]", "speed not between [-1, 2]", "write 'in'"),
+    _r("speed not in [-1, 2]", "speed in not [-1, 2]", "write 'not in'"),
+    _r("gone: speed.missing()", "gone: speed is null", "missing()"),
+    _r("gone: speed.missing()", "gone: speed = None", "missing()", False),
+    # Behaviours
+    _r("drive.gone then { stop; };", "drive.gone { stop; };", "write 'then'"),
+    _r("drive.gone then { stop; };", "drive.gone: { stop; };", "write 'then'"),
+    _r("drive.gone then { stop; };", "drive.gone => { stop; };", "write 'then'"),
+    _r("drive.gone then { stop; };", "drive.gone -> { stop; };", "write 'then'"),
+    _r("drive.gone then { stop; };", "drive.gone then stop;", "braces"),
+    _r("drive.gone then { stop; };", "drive.gone then: { stop; };", "remove ':'"),
+    _r("drive.gone then { stop; };", "drive.gone do { stop; };", "write 'then'"),
+    _r("drive.gone then { stop; };", "drive.gone THEN { stop; };", "'then'"),
+    _r("if drive.fast", "IF drive.fast", "'if'"),
+    _r("if drive.fast", "when drive.fast", "write 'if'"),
+    _r("if drive.fast or drive.gone then", "if (drive.fast or drive.gone)", "write 'then'"),
+    _r("if drive.idle", "else if drive.idle", "a condition of its own"),
+    _r("if drive.idle", "elif drive.idle", "a condition of its own"),
+    _r("{ beep; }", "{ beep; } else { stop; }", "a condition of its own", False),
+    _r("if drive.odd for 2 sec then", "if drive.odd then for 2 sec", "before 'then'"),
+    _r("fast: speed > limit for 0.2 sec", "fast: speed > limit until 0.2 sec", "for T", False),
+    _r("fast: speed > limit for 0.2 sec", "fast: for 0.2 sec speed > limit", "'for'"),
+    _r("for 0.2 sec", "for 0.2", "0.2 sec", False),
+    _r("for 0.2 sec", "for 0.2 Sec", "'sec'"),
+    _r("limit = 0.5 m/s", "limit = 0,5 m/s", "write '0.5'"),
+    _r("limit = 0.5 m/s", "limit := 0.5 m/s", "write '='"),
+    _r("limit = 0.5 m/s", "limit: 0.5 m/s", "write '='"),
+    _r("limit = 0.5 m/s", "limit 0.5 m/s", "write '='"),
+    _r("const limit", "constant limit", "'const'"),
+    _r("const limit", "let limit", "write 'const'"),
+    _r("topic /pose.twist", "/pose/twist", "'/pose'", False),
+    _r("input speed = topic", "input speed : topic", "write '='"),
+    _r("input speed = topic", "input speed <- topic", "write '='"),
+    _r("timeout 0.5 sec", "timeout: 0.5 sec", "remove ':'"),
+    _r("timeout 0.5 sec", "timeout = 0.5 sec", "remove '='"),
+    _r("timeout 0.5 sec", "time_out 0.5 sec", "'timeout'"),
+    _r("on /stop : std_msgs.Bool", "on /stop : std_msgs::msg::Bool", "std_msgs.Bool"),
+    _r("publishes true on", "publish true on", "'publishes'"),
+    _r("publishes true on", "publishes True on", "write 'true'"),
+    _r("publishes true on", "publishes true to", "write 'on'"),
+    _r('use "demo.system" import Demo', 'import "demo.system"', "use", False),
+    _r('use "demo.system" import Demo', "use demo.system import Demo", "quotes"),
+    _r('use "demo.system" import Demo', "use 'demo.system' import Demo", "double quotes"),
+    _r("entity drive {", "entity drive:", "write '{'"),
+    _r("entity drive {", "Entity drive {", "'entity'"),
+    _r("entity drive {", "entity drive", "write '{'"),
+    _r("idle: ready = false;\n}", "idle: ready = false;\n", "'}'"),
+    _r("action beep", "# beeps\naction beep", "a comment begins with '//'"),
+    _r("action beep", "-- beeps\naction beep", "a comment begins with '//'"),
+    _r("action beep", "action beep()\u00a0;", "plain blank"),
+    # Node descriptions
+    _n("publishes\n", "publisher\n", "'publishes'"),
+    _n("publishes\n", "publishes:\n", "remove ':'"),
+    _n("publishes\n", "publishes;\n", "remove ';'"),
+    _n("subscribes\n", "subscriber\n", "'subscribes'"),
+    _n("subscribes\n", "subscriptions\n", "'subscribes'"),
+    _n("parameters\n", "params\n", "'parameters'"),
+    _n("node camera :", "Node camera :", "'node'"),
+    _n(
+        "topic image : sensor_msgs.Image",
+        "topic image : sensor_msgs::msg::Image",
+        "sensor_msgs.Image",
+    ),
+    _n("topic image : sensor_msgs.Image", "topic image sensor_msgs.Image", "write ':'"),
+    _n("topic image : sensor_msgs.Image", "image : sensor_msgs.Image", "write 'topic'"),
+    _n("topic image : sensor_msgs.Image", 'topic "image" : sensor_msgs.Image', "without quotes"),
+    _n("topic image : sensor_msgs.Image", "topic image : Image", "PACKAGE.Image", False),
+    _n("topic image : sensor_msgs.Image", "topic image : sensor_msg.Image", "'sensor_msgs'"),
+    _n("topic pose : nav_msgs.Odometry", "topic pose : nav_msg/Odometry", "'nav_msgs'"),
+    _n("topic pose : nav_msgs.Odometry", "topic pose : nav2_msgs.Odometry", "--interfaces", False),
+    _n("qos sensor_data", "qos sensor-data", "'sensor_data'"),
+    _n("qos sensor_data", "qos: sensor_data", "remove ':'"),
+    _n("qos sensor_data", "qos best-effort depth 5", "'best_effort'"),
+    _n("qos sensor_data", "qos BEST_EFFORT depth 5", "lower case"),
+    _n("name rate : double", "name rate : float64", "'double'"),
+    _n("name width : integer", "name width : int32", "'integer'"),
+    _n("name frame : string", "name frame : str", "'string'"),
+    _n("name flip : bool", "name flip : boolean", "'bool'"),
+    _n("= false", "= False", "write 'false'"),
+    _n("= false", "= no", "write 'false'"),
+    _n("name rate : double = 30.0", "name rate = 30.0 : double", "the type"),
+    _n("name rate : double = 30.0", "double rate = 30.0", "write 'name"),
+    _n("= 5.0 [m]", "= 500 cm [m]", "unit", False),
+    _n("= 5.0 [m]", "= 5.0 m", "[m]"),
+    _n("= 640 in [1, 4096]", "= 640 in 1..4096", "[1, 4096]"),
+    _n("= 640 in [1, 4096]", "= 640 range [1, 4096]", "write 'in'"),
+    _n('= "camera"', "= 'camera'", "double quotes"),
+    _n('= "camera"', "= “camera”", "plain quotes"),
+    _n('= "camera"', "= camera", "quotes"),
+    _n('one_of ["camera", "rear"]', 'one_of {"camera", "rear"}', "brackets"),
+    _n('one_of ["camera", "rear"]', 'one of ["camera", "rear"]', "'one_of'"),
+    _n('one_of ["camera", "rear"]', 'oneof ["camera", "rear"]', "'one_of'"),
+    _n("every 20 ms", "20 ms", "write 'every'"),
+    _n("every 20 ms", "every 50 Hz", "20 ms", False),
+    _n("every 20 ms", "every 20", "20 ms", False),
+    _n("// pixels", "# pixels", "a comment begins with '//'"),
+    _n("services\n", "service\n", "'services'"),
+    # System descriptions
+    _s(
+        "connect image to /image\n      connect pose",
+        "connect image -> /image\n      connect pose",
+        "write 'to'",
+    ),
+    _s(
+        "connect image to /image\n      connect pose",
+        "connect image = /image\n      connect pose",
+        "write 'to'",
+    ),
+    _s(
+        "connect image to /image\n      connect pose",
+        "remap image to /image\n      connect pose",
+        "connect image to /image",
+    ),
+    _s(
+        "connect image to /image\n      connect pose",
+        "remap image:=/image\n      connect pose",
+        "connect image to /image",
+    ),
+    _s(
+        "connect image to /image\n      connect pose",
+        "image -> /image\n      connect pose",
+        "connect image to /image",
+    ),
+    _s("param width = 320", "param width: 320", "write '='"),
+    _s("param width = 320", "param width := 320", "write '='"),
+    _s("param width = 320", "width = 320", "param width = 320"),
+    _s("param width = 320", "width: 320", "param width = 320"),
+    _s("param width = 320", "name width = 320", "write 'param'"),
+    _s("param range = 2.5", "param range = 250 cm", "unit", False),
+    _s("param range = 2.5", "param range = 2,5", "write '2.5'"),
+    _s("node camera : camera", "node camera camera", "write ':'"),
+    _s("node camera : camera", "node camera = camera", "write ':'"),
+    _s("node camera : camera", "node camera: camera()", "remove '()'"),
+    _s("namespace /front {", "namespace: /front {", "remove ':'"),
+    _s("namespace /front {", "ns /front {", "'namespace'"),
+    _s("namespace /front {", 'namespace "/front" {', "without quotes"),
+    _s('  import "camera.rnd"', '  include "camera.rnd"', "'import'"),
+    _s('  import "camera.rnd"', "  import camera.rnd", "quotes"),
+    _s("topics\n", "topic\n", "'topics'"),
+    _s("  topic /pose\n", "  - /pose\n", "write 'topic"),
+    _s("  topic /pose\n", "  /pose\n", "write 'topic"),
+]
+
+
+def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
+    repository = Repository()
+    for name, sound in BASE.items():
+        (folder / name).write_text(sound, encoding="utf-8")
+    repository.load_text(folder / changed, text)
+    named = [repository.load(folder / name) for name in ("demo.system", "demo.deros")]
+    found = check(named, repository, InterfaceStore(()))
+    return [each for each in found if each.severity is not Severity.INFO]
+
+
+@pytest.mark.parametrize("name", BASE)
+def test_the_base_is_sound(name: str, tmp_path: Path) -> None:
+    """Without a mistake there is no finding."""
+    assert _findings(tmp_path, name, BASE[name]) == []
+
+
+@pytest.mark.parametrize("mistake", MISTAKES, ids=[f"{m.right}|{m.wrong}" for m in MISTAKES])
+def test_a_mistake_is_one_finding_whose_hint_mends_it(mistake: Mistake, tmp_path: Path) -> None:
+    """There is one finding; its edit, or what its words ask for, leaves none."""
+    right = BASE[mistake.file]
+    assert mistake.right in right
+    text = right.replace(mistake.right, mistake.wrong, 1)
+    found = _findings(tmp_path, mistake.file, text)
+    said = [f"{each.code.name} {each.message} | {each.hint}" for each in found]
+    assert len(found) == 1, said
+    (finding,) = found
+    assert mistake.words in f"{finding.message} | {finding.hint}"
+    assert (finding.fix is not None) == mistake.fix, said
+    if finding.fix is not None:
+        span = finding.fix.span
+        mended = f"{text[: span.start]}{finding.fix.text}{text[span.end :]}"
+        assert _findings(tmp_path, mistake.file, mended) == []
+
+
+def test_there_are_many() -> None:
+    """The table is long enough to be worth its name."""
+    assert len(MISTAKES) >= 60
