@@ -131,8 +131,9 @@ class Terms:
             hint, fix = f"write '{name.lower()}'", Fix(term.name.span, name.lower())
         elif name.lower() in _NOTHING:
             hint = "whether an input has fallen silent is 'INPUT.missing()'"
-        message = f"unknown name '{name}'"
-        self._scope.fault(codes.UNKNOWN_NAME, message, term.name.span, hint, fix=fix)
+        self._scope.fault(
+            codes.UNKNOWN_NAME, f"unknown name '{name}'", term.name.span, hint, fix=fix
+        )
         return None
 
     def constant(self, name: str) -> Resolved | None:
