@@ -104,7 +104,9 @@ QOS_OVERRIDE_UNREAD = _declare(233, "override of a QoS that the node does not re
 RULES_DO_NOT_USE_SYSTEM = _declare(236, "safety statement for rules that use another system")
 CONNECTED_BY_RULES = _declare(237, "connection that the rules of a safety statement make")
 RULES_RUN_TWICE = _declare(238, "rules whose nodes are started twice")
-RULES_NOT_LOADED = _declare(239, "safety node wired by hand, and checked without its rules", _W)
+RULES_NOT_LOADED = _declare(
+    239, "safety node wired by hand, and checked without its rules", _W, absence=True
+)
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(301, "topic of the rules that the system lacks", absence=True)

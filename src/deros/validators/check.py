@@ -65,15 +65,16 @@ def check_all(
         findings.extend(_check_model(each.model, whole, watchers, store))
     found = in_file_order(as_generated(findings, watching))
     sorted_out = sort_out(found, loaded, named, project)
-    causes = without_consequences(sorted_out.findings, loaded)
-    return Checked(in_file_order(causes), list(sorted_out.allowed))
+    told = without_consequences(sorted_out.findings, findings, loaded)
+    return Checked(in_file_order(told), list(sorted_out.allowed))
 
 
 def check_file(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
     """Return the findings of one file by itself, in file order, without those of its imports."""
     found = _check_model(loaded.model, False, _Watchers(), store)
     findings = in_file_order([*loaded.diagnostics, *found])
-    return list(without_consequences(sort_out(findings, [loaded], ()).findings, [loaded]))
+    sorted_out = sort_out(findings, [loaded], ())
+    return list(without_consequences(sorted_out.findings, findings, [loaded]))
 
 
 @dataclass(frozen=True, slots=True)

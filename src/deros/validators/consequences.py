@@ -9,7 +9,7 @@ reported as such, says nothing new; nor does one that misses a name that cannot 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from deros import codes
 from deros.diagnostics import ANY_NAME, Diagnostic, last_word
@@ -41,17 +41,22 @@ _UNKNOWN_TYPE = frozenset({codes.UNKNOWN_PACKAGE, codes.UNKNOWN_TYPE, codes.UNUS
 
 
 def without_consequences(
-    findings: Iterable[Diagnostic], files: Iterable[LoadedFile]
+    findings: Iterable[Diagnostic], causes: Sequence[Diagnostic], files: Iterable[LoadedFile]
 ) -> Iterator[Diagnostic]:
-    """Yield the findings that would be there, too, without the errors that caused others."""
-    found = list(findings)
+    """Yield those of the findings that do not only follow from one of ``causes``.
+
+    Args:
+        findings: what would be reported.
+        causes: everything that was found, whatever of it is reported.
+        files: all files of the run.
+    """
     lost = _lost_words(list(files))
-    if any(each.code in _UNKNOWN_IMPORT for each in found):
+    if any(each.code in _UNKNOWN_IMPORT for each in causes):
         lost.add(ANY_NAME)
-    types = {_type_words(each.span.text) for each in found if each.code in _UNKNOWN_TYPE}
-    refused = {each.span for each in found if each.code in _REFUSED_NAME}
-    meant = _meant(found)
-    for each in found:
+    types = {_type_words(each.span.text) for each in causes if each.code in _UNKNOWN_TYPE}
+    refused = {each.span for each in causes if each.code in _REFUSED_NAME}
+    meant = _meant(causes)
+    for each in findings:
         if lost and each.code is codes.UNUSED_ALLOWANCE:
             continue
         if each.code.tells_absence:
