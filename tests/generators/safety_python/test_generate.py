@@ -211,7 +211,7 @@ def _methods(source: str) -> set[str]:
             "action halt publishes true on /a_b : std_msgs.Bool;"
             "entity e { r: v > 1; } if e.r then { stop; halt; };",
             {},
-            "'/a_b' and port '/a/b' both become 'publish_a_b'",
+            "'/a_b' and publisher '/a/b' both become 'publish_a_b'",
         ),
         ("entity e { r: v > 1; }", {"node": "monitor"}, "module 'monitor'"),
     ],
