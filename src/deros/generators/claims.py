@@ -119,7 +119,7 @@ def record_claims(files: Files, directory: Path, origin: Origin) -> None:
     text = json.dumps({"made by": entries}, indent=1) + "\n"
     # The record helps to find mistakes: that it cannot be written is none.
     with contextlib.suppress(OSError):
-        staged = directory / f"{RECORD}.new"
+        staged = directory / f"{RECORD}.{os.getpid()}"  # several runs may write at the same time
         staged.write_text(text, encoding="utf-8")
         staged.replace(directory / RECORD)
 
