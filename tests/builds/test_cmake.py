@@ -49,17 +49,17 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_generates_when_a_model_changes_and_only_then(folder: Path, tool: str) -> None:
-    """The model, and a description that it imports, are followed; another file is not."""
+    """The model, what it imports and the rules that it names are followed; another file is not."""
     project = configured(folder, tool, SCRIPT)
     source = folder / "my models"
     assert project.generated() == 1
     assert (project.build_folder / "started/robot_system.py").is_file()
     assert project.generated() == 0
-    for name in ("robot.system", "robot_robot.rnd"):
+    for name in ("robot.system", "robot_robot.rnd", "robot.deros"):
         touch(source / name)
         assert project.generated() == 1
         assert project.generated() == 0
-    touch(source / "robot.deros")
+    (source / "unrelated.deros").write_text("")
     assert project.generated() == 0
     (source / "robot_robot.rnd").rename(source / "other.rnd")
     replace(source / "robot.system", "robot_robot.rnd", "other.rnd")
@@ -105,7 +105,8 @@ def test_an_error_in_a_model_fails_the_build(folder: Path, tool: str) -> None:
     replace(system, "connect odom to", "connect odmo to")
     failed = project.build()
     assert failed.returncode != 0
-    assert f"{system}:18:13: error[DRS204]" in failed.stdout
+    line = system.read_text().splitlines().index("    connect odmo to /odom") + 1
+    assert f"{system}:{line}:13: error[DRS204]" in failed.stdout
     assert "did you mean 'odom'?" in failed.stdout
     assert output.read_bytes() == before
     assert project.build().returncode != 0, "it fails until it is mended"

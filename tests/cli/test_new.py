@@ -71,20 +71,6 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
     assert "cannot write" in outcome.err
 
 
-def test_safety_node_and_gate_are_described_as_they_are_generated(tmp_path: Path) -> None:
-    """The node descriptions that come with new rules are the generator's own, but for comments."""
-    deros("new", "rules", "courier", "-o", tmp_path)
-    deros("generate", tmp_path / "courier.deros", "--target", "python", "-o", tmp_path / "out")
-    generated = sorted((tmp_path / "out").rglob("*.rnd"))
-    assert [path.name for path in generated] == ["cmd_vel_gate.rnd", "courier_safety_node.rnd"]
-    for path in generated:
-        texts = [
-            [line for line in each.read_text().splitlines() if not line.startswith("//")]
-            for each in (tmp_path / path.name, path)
-        ]
-        assert texts[0] == texts[1]
-
-
 def test_new_rules_let_nothing_move_again_by_itself(tmp_path: Path) -> None:
     """Not even a remark about the gate: it waits for a person, and for the controller."""
     deros("new", "rules", "courier", "-o", tmp_path)

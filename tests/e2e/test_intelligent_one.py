@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -61,14 +62,14 @@ def packages(
 
 
 def in_cpp(system: Path, folder: Path) -> Path:
-    """Write the system with two nodes in C++; return its path."""
+    """Copy the model, with the safety node and the gate in C++; return the system's path."""
+    for model in (*system.parent.glob("*.rnd"), *system.parent.glob("*.deros")):
+        shutil.copy(model, folder)
     text = system.read_text(encoding="utf-8")
-    for node in ("intelligent_one_safety_node", "command_gate"):
-        assert f" : {node}\n" in text
-        text = text.replace(f" : {node}\n", f" : {node}_cpp\n")
+    rules = 'safety "intelligent_one.deros"'
+    assert text.count(rules) == 1
     path = folder / system.name
-    nodes = os.path.relpath(system.parent, folder)
-    path.write_text(text.replace('import "', f'import "{nodes}/'), encoding="utf-8")
+    path.write_text(text.replace(rules, f"{rules} target cpp"), encoding="utf-8")
     return path
 
 

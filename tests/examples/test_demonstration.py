@@ -447,15 +447,12 @@ def test_the_picture_shows_bands_verdicts_and_both_colour_schemes() -> None:
 
 
 def test_the_system_in_cpp_differs_by_two_words(tmp_path: Path) -> None:
-    """The safety node and the gate; and it checks clean."""
+    """They choose the language of the safety node and the gate; and it checks clean."""
     system = EXAMPLES / "feeding_robot/feeding_robot.system"
     path = build.in_cpp(system, tmp_path)
     before = system.read_text(encoding="utf-8").splitlines()
     after = path.read_text(encoding="utf-8").splitlines()
     changed = [new for old, new in zip(before, after, strict=True) if old != new]
-    nodes = [line for line in changed if "import" not in line]
-    assert [line.split()[3] for line in nodes] == [
-        "feeding_robot_safety_node_cpp",
-        "actuators_command_gate_cpp",
-    ]
+    (line,) = [line for line in changed if "import" not in line]
+    assert line.split()[:4] == ["safety", '"feeding_robot.deros"', "target", "cpp"]
     assert deros("check", path, "--strict").code == 0

@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from deros.generators.protocol import Context
+from deros.generators.registry import discover
 from deros.generators.safety_python.node import program_outline
+from deros.generators.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.flatten import FlatNode, flatten, nodes_of_rules
 from deros.metamodels.load import Repository
@@ -265,26 +268,29 @@ def test_rules_as_written_and_the_program_give_the_same_nodes(path: Path) -> Non
     assert (written.optional, written.gates) == (program.optional, program.gates)
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["intelligent_one/intelligent_one", "feeding_robot/feeding_robot"],
-)
-def test_examples_have_the_descriptions_that_are_generated(name: str) -> None:
-    """The nodes derived from the rules of an example are those that its descriptions show."""
-    folder = ROOT / "examples" / name.partition("/")[0]
+@pytest.mark.parametrize("target", ["python", "cpp"])
+@pytest.mark.parametrize("name", ["intelligent_one", "feeding_robot"])
+def test_nodes_of_the_rules_are_those_that_are_generated(
+    name: str, target: str, tmp_path: Path
+) -> None:
+    """Names, packages, parameters and ports with their QoS."""
+    rules = ROOT / "examples" / name / f"{name}.deros"
     repository = Repository()
-    model = repository.load(ROOT / "examples" / f"{name}.deros").model
+    model = repository.load(rules).model
     assert isinstance(model, Rules)
-    for target in ("python", "cpp"):
-        for node in nodes_of_rules(model, target):
-            (path,) = [p for p in folder.rglob(f"{node.name}.rnd") if "install" not in p.parts]
-            described = repository.load(path).model
-            assert isinstance(described, NodeType)
-            assert {(p.kind, p.name): p for p in described.ports} == {
-                (p.kind, p.name): p for p in node.ports
-            }
-            assert described.parameters == node.parameters
-            assert (described.package, described.name) == (node.package, node.name)
+    generator = discover().find("deros", target)
+    assert generator is not None
+    write(generator(model, Context(InterfaceStore(), repository)), tmp_path)
+    described = {path.stem: Repository().load(path).model for path in tmp_path.rglob("*.rnd")}
+    assert len(described) == 2  # the safety node and its gate
+    for node in nodes_of_rules(model, target):
+        found = described[node.name]
+        assert isinstance(found, NodeType)
+        assert {(p.kind, p.name): p for p in found.ports} == {
+            (p.kind, p.name): p for p in node.ports
+        }
+        assert found.parameters == node.parameters
+        assert (found.package, found.name) == (node.package, node.name)
 
 
 def test_the_grammar_takes_attributes_in_any_order() -> None:

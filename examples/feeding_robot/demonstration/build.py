@@ -6,7 +6,7 @@ put in place first, and the generators leave them alone.
 
 from __future__ import annotations
 
-import os
+import re
 import shutil
 import subprocess
 import sys
@@ -19,11 +19,7 @@ from deros.generators.registry import discover
 from deros.generators.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import LoadedFile, Repository
-from deros.metamodels.node import NodeType
 from deros.validators.check import check
-
-CPP = "_cpp"
-"""What the names of node types and packages end in that are made of the rules in C++."""
 
 
 class BuildError(Exception):
@@ -57,8 +53,6 @@ def build(example: Path, folder: Path) -> list[str]:
     )
     packages: list[str] = []
     for file in [*rules, *nodes]:
-        if isinstance(file.model, NodeType) and file.model.package.removesuffix(CPP) in packages:
-            continue  # the safety node's description: its rules have made the whole package
         files = _generate(file, context)
         write(files, folder, overwrite=True)
         packages += sorted({PurePosixPath(path).parts[0] for path in files} - set(packages))
@@ -102,14 +96,38 @@ def build_cpp(example: Path, folder: Path) -> Path:
 def in_cpp(system: Path, folder: Path) -> Path:
     """Write a system with the safety node and the gate in C++; return the model's path.
 
-    One word more in two lines is the whole difference.
+    Two words more in one line are the whole difference.
+    """
+    rules = f'safety "{system.stem}.deros"'
+    return changed_system(system, folder, ((rules, f"{rules} target cpp"),))
+
+
+def changed_system(system: Path, folder: Path, changes: Iterable[tuple[str, str]]) -> Path:
+    """Write a system with changes to a folder, and its rules, which use it, beside it.
+
+    Args:
+        system: the model.
+        folder: where the copy goes, under the same name.
+        changes: texts that the model has once, and what stands in their place.
+
+    Returns:
+        The path of the changed model.
+
+    Raises:
+        ValueError: if a text is not there once.
     """
     text = system.read_text(encoding="utf-8")
-    for node in ("feeding_robot_safety_node", "actuators_command_gate"):
-        text = text.replace(f" : {node} ", f" : {node}{CPP} ")
-    nodes = Path(os.path.relpath(system.parent, folder)).as_posix()
-    path = folder / f"{system.stem}{CPP}.system"
-    path.write_text(text.replace('import "', f'import "{nodes}/'), encoding="utf-8")
+    here = system.parent.resolve()
+    for old, new in changes:
+        if text.count(old) != 1:
+            raise ValueError(f"{system} does not say '{old}' once")
+        text = text.replace(old, new)
+    text = re.sub(r'import "([^"]*)"', lambda found: f'import "{here / found[1]}"', text)
+    folder.mkdir(parents=True, exist_ok=True)
+    for rules in system.parent.glob("*.deros"):
+        shutil.copyfile(rules, folder / rules.name)
+    path = folder / system.name
+    path.write_text(text, encoding="utf-8")
     return path
 
 

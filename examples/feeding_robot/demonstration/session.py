@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from demonstration.build import changed_system
 from demonstration.cases import Case, play, prepare
 from demonstration.recording import Recording, Result
 from demonstration.referee import NOTHING
@@ -31,21 +32,13 @@ class Workshop:
         for a step of simulated time, and for the heartbeat in it, so it gets all its patience.
 
         Raises:
-            ValueError: if the model does not state the node's time and the PLC's patience, or does
-                not import from one place.
+            ValueError: if the model does not state the node's time and the PLC's patience.
         """
-        text = self.system.read_text(encoding="utf-8")
-        for real, simulated in (
+        changes = (
             ("param use_sim_time = false", "param use_sim_time = true"),
             ("param keep_alive_timeout = 0.5", "param keep_alive_timeout = 10.0"),
-            ('import "', f'import "{self.system.parent.resolve().as_posix()}/'),
-        ):
-            if text.count(real) != 1:
-                raise ValueError(f"{self.system} does not say '{real}' once")
-            text = text.replace(real, simulated)
-        path = self.logs / "on_simulated_time.system"
-        path.write_text(text, encoding="utf-8")
-        return path
+        )
+        return changed_system(self.system, self.logs / "on_simulated_time", changes)
 
 
 def run(

@@ -75,6 +75,8 @@ def _nearest(message: LaserScan) -> Values:
     }
 
 
+_NODES_TO_RESET = {"safety": "/safety", "gate": "/actuators_command_gate"}
+
 _WATCHED: tuple[tuple[str, type, Callable[[Any], Values]], ...] = (
     ("/odometry", Odometry, lambda message: {"speed": message.twist.twist.linear.x}),
     ("/imu", Imu, _attitude),
@@ -122,7 +124,8 @@ class Stage:
             receive = self._receiver(values) if self._pace is None else self._stepper(values)
             self._node.create_subscription(kind, topic, receive, 50)
         self._resets = {
-            node: self._node.create_client(Trigger, f"/{node}/reset") for node in ("safety", "gate")
+            node: self._node.create_client(Trigger, f"{full_name}/reset")
+            for node, full_name in _NODES_TO_RESET.items()
         }
         # The events executor is several times faster, but cannot hand over time stamps.
         executor = EventsExecutor if simulated else SingleThreadedExecutor
@@ -297,10 +300,10 @@ class Stage:
         """
         client = self._resets[node]
         if not client.wait_for_service(timeout_sec=within):
-            raise OverdueError(f"waited {within:g} s for the service /{node}/reset")
+            raise OverdueError(f"waited {within:g} s for the service {client.srv_name}")
         answered = threading.Event()
         future = client.call_async(Trigger.Request())
         future.add_done_callback(lambda _: answered.set())
         if not answered.wait(within):
-            raise OverdueError(f"waited {within:g} s for an answer of /{node}/reset")
+            raise OverdueError(f"waited {within:g} s for an answer of {client.srv_name}")
         return bool(future.result().success)

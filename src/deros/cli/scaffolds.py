@@ -86,8 +86,6 @@ system ${name}_system
 
 imports
   import "${name}_robot.rnd"
-  import "${name}_safety_node.rnd"
-  import "cmd_vel_gate.rnd"
 
 topics
   topic /odom
@@ -95,9 +93,6 @@ topics
   topic /cmd_vel
   topic /resume
   topic /stop_robot
-  topic /heartbeat
-  external topic /safety/events   // for recorders
-  external topic /diagnostics     // for the operator's tools
 
 subsystem Robot {
   node robot : ${name}_robot
@@ -110,75 +105,9 @@ subsystem Robot {
 }
 
 subsystem Safety {
-  node safety : ${name}_safety_node
-  wirings
-    connect /odom to /odom
-    connect /resume to /resume
-    connect /stop_robot to /stop_robot
-    connect ~/heartbeat to /heartbeat
-    connect ~/events to /safety/events
-    connect /diagnostics to /diagnostics
-
-  node gate : cmd_vel_gate
-  wirings
-    connect /wish to /wish
-    connect /cmd_vel to /cmd_vel
-    connect /stop_robot to /stop_robot
-    connect ${name}_safety_node/heartbeat to /heartbeat
-    connect /diagnostics to /diagnostics
+  // The safety node of these rules and its gate, connected as they say.
+  safety "$name.deros"
 }
-"""
-
-# As the generator writes it; when the rules come to read other topics, copy the generated one here.
-_SAFETY_NODE = """\
-// What the rules become: deros generate $name.deros --target python makes it, and this text.
-node ${name}_safety_node : ${name}_safety "Watches the safety rules of $name"
-parameters
-  name publish_freq : double = 10.0 [Hz] in (0.0, 1000.0] read_only \
-"How often the states of the actions and the heartbeat are published"
-  name startup_grace : double = 0.0 [s] in [0.0, 86400.0] read_only \
-"How long inputs may be late at the start; until they have come there is no heartbeat"
-  name diagnostics_freq : double = 1.0 [Hz] in (0.0, 100.0] read_only \
-"How often the state is published without a change"
-  name realtime_priority : integer = 0 in [0, 99] read_only \
-"Priority under SCHED_FIFO; 0 leaves the scheduling as it is"
-  name lock_memory : bool = false read_only "Whether the memory is never paged out"
-  name garbage_collection : bool = true read_only "Whether Python looks for unused cycles"
-publishes
-  topic /stop_robot : std_msgs.Bool qos reliable transient_local depth 1 "Active: stop"
-  topic ~/heartbeat : std_msgs.UInt64 qos reliable depth 1 \
-"Counts up at publish_freq: stop when it stops"
-  topic ~/events : diagnostic_msgs.DiagnosticStatus qos reliable transient_local depth 1000 \
-"Tells of each action, reset and fault"
-  topic /diagnostics : diagnostic_msgs.DiagnosticArray qos reliable depth 10 \
-"State of the node, of its actions and of its rules"
-subscribes
-  topic /odom : nav_msgs.Odometry qos best_effort depth 10
-  topic /resume : std_msgs.Bool qos best_effort depth 10
-"""
-
-_GATE_NODE = """\
-// What the gate becomes: deros generate $name.deros --target python makes it, and this text.
-node cmd_vel_gate : ${name}_safety \
-"Lets commands from /wish through to /cmd_vel as far as it is safe"
-parameters
-  name realtime_priority : integer = 0 in [0, 99] read_only \
-"Priority under SCHED_FIFO; 0 leaves the scheduling as it is"
-  name lock_memory : bool = false read_only "Whether the memory is never paged out"
-  name garbage_collection : bool = true read_only "Whether Python looks for unused cycles"
-  name losses_in_simulated_time : bool = false read_only \
-"Under use_sim_time, count losses and the period of zeros on /clock, for tests: where it stands,\
- nothing is lost"
-publishes
-  topic /cmd_vel : geometry_msgs.Twist qos reliable depth 10 "What safety lets through"
-  topic /diagnostics : diagnostic_msgs.DiagnosticArray qos reliable depth 10 "What applies"
-subscribes
-  topic /wish : geometry_msgs.Twist qos best_effort depth 10 "What is asked for"
-  topic /stop_robot : std_msgs.Bool qos reliable transient_local depth 1
-  topic ${name}_safety_node/heartbeat : std_msgs.UInt64 qos reliable depth 10
-services
-  service ~/reset : std_srvs.Trigger \
-"Ends the zeros that last until a reset, once their causes are over"
 """
 
 _RULES = """\
@@ -228,8 +157,6 @@ _SCAFFOLDS: dict[str, dict[str, str]] = {
         "$name.deros": _RULES,
         "$name.system": _WATCHED_SYSTEM,
         "${name}_robot.rnd": _WATCHED_NODE,
-        "${name}_safety_node.rnd": _SAFETY_NODE,
-        "cmd_vel_gate.rnd": _GATE_NODE,
     },
 }
 
