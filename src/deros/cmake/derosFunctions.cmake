@@ -80,7 +80,8 @@ endfunction()
 #
 # Adds a library with the monitor of safety rules in C, freestanding C99 without ROS 2, for firmware
 # and for programs of your own. A target that links to it finds its header, robot_monitor.h from
-# rules called robot.deros. The function robot_emit() is yours to define. PREFIX is what the files'
+# rules called robot.deros, and is linked to the mathematical library, whose functions rules use. The
+# function robot_emit() is yours to define. PREFIX is what the files'
 # names begin with, where that is not the name of the model.
 function(deros_add_monitor target)
   cmake_parse_arguments(PARSE_ARGV 1 arg
@@ -114,6 +115,9 @@ function(deros_add_monitor target)
   target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${arg_OUTPUT_DIRECTORY}>")
   target_compile_features(${target} PUBLIC c_std_99)
   set_target_properties(${target} PROPERTIES LINKER_LANGUAGE C)
+  if(NOT MSVC) # there, the functions of math.h are in the library that every program has
+    target_link_libraries(${target} PUBLIC m)
+  endif()
 endfunction()
 
 # deros_package(MODEL <file> GENERATOR <name>
