@@ -191,6 +191,20 @@ def test_statements_come_from_the_grammar(language: Language) -> None:
     assert known[language] <= first
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.rnd", "node a : p\nparameters\nparameter"),
+        ("a.rnd", "node a : p\nsubscribes\nsubscriber"),
+        ("a.system", "system a\ntopics\ntopc"),
+    ],
+)
+def test_a_mended_end_lies_in_the_file(name: str, text: str) -> None:
+    """Findings about a word that was read as a longer one end with the file at the latest."""
+    for each in _load(name, text).diagnostics:
+        assert 0 <= each.span.start <= each.span.end <= len(text)
+
+
 def test_errors_beyond_the_most_are_counted() -> None:
     """Of ten thousand errors fifty are shown, and the number of the others."""
     text = "node a : b\nparameters\n" + "  name x : double ? 1.0\n" * 10_000

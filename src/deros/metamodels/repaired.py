@@ -62,12 +62,18 @@ class RepairedText(str):
 
 
 def restore_places(tree: Any, text: RepairedText) -> None:
-    """Move every node of a parse tree to its place in the text as it was read."""
+    """Move every node of a parse tree to its place in the text as it was read.
+
+    A token that was made longer at the end of the text begins earlier, so that it ends there.
+    """
+    length = text.original(len(text))
     pending = [tree]
     while pending:
         node = pending.pop()
         node.position = text.original(node.position)
         if isinstance(node, NonTerminal):
             pending += node
-        elif hasattr(node.value, "start"):
+            continue
+        node.position = max(0, min(node.position, length - len(node.value)))
+        if hasattr(node.value, "start"):
             node.value.start = node.position
