@@ -171,6 +171,8 @@ GATE_LIMIT_TO_ZERO = _declare(359, "limit that leaves a gate nothing but zero", 
 TIMEOUT_TOO_SHORT = _declare(363, "timeout shorter than a safety node's periods", _W)
 SUSPECT_BEARING = _declare(364, "bearing that is probably not what is meant", _W)
 SUSPECT_SECTOR = _declare(365, "sector that is probably not what is meant", _W)
+WRAPPING_NOT_AN_ANGLE = _declare(366, "field annotated as wrapping that is not an angle")
+RATE_OF_ARRIVALS = _declare(367, "rate that divides by the time between two arrivals", _W)
 
 # Generation
 NAME_COLLISION = _declare(401, "two generated names collide")

@@ -216,10 +216,13 @@ def test_functions_of_functions() -> None:
     declared = "input q = topic /imu.orientation"
     found = condition("q.yaw().rate().abs() > 90 deg/s or q.yaw().rate() > 1", declared)
     yaw = ir.Apply("yaw", tuple(ir.Read(leaf) for leaf in range(4)), 0)
-    first = ir.Apply("abs", (ir.Apply("rate", (yaw,), 0, 0),), 0)
+    turn = ir.Const(2.0 * math.pi)
+    ways = [ir.Apply("unwrapped", (yaw, turn), 0, state) for state in (0, 2)]
+    rates = [ir.Apply("rate", (way,), 0, state) for way, state in zip(ways, (1, 3), strict=True)]
+    first = ir.Apply("abs", (rates[0],), 0)
     assert isinstance(found, ir.Or)
     assert found.operands[0] == ir.Compare(first, ">", ir.Const(math.pi / 2.0))
-    assert found.operands[1] == ir.Compare(ir.Apply("rate", (yaw,), 0, 1), ">", ir.Const(1.0))
+    assert found.operands[1] == ir.Compare(rates[1], ">", ir.Const(1.0))
 
 
 def test_norm_has_the_unit_of_its_components() -> None:

@@ -21,6 +21,7 @@ from hypothesis import strategies as st
 from deros.monitor import function_values as values
 from deros.monitor.function_texts import C
 from deros.monitor.functions import FUNCTIONS
+from deros.monitor.memories import SAMPLES
 
 NUMBERS = st.floats(allow_nan=False)
 MODERATE = st.floats(-1e3, 1e3, allow_subnormal=False)
@@ -251,6 +252,15 @@ def test_every_function_of_values_has_its_texts() -> None:
 
 IS_NUMBER = "static bool is_number(double value)\n{\n  return value == value;\n}\n"
 
+WINDOW = f"""typedef struct
+{{
+  int64_t stamps[{SAMPLES}];
+  double values[{SAMPLES}];
+  int64_t latest;
+  uint32_t count;
+}} window;
+"""
+
 OF_ELEMENTS = (("BASE", "float64"), ("ELEMENT", "double"), ("RESULT", "double"), ("NONE", "NAN"))
 """What the texts of arrays are made for here: the placeholders, and what stands for them."""
 
@@ -263,10 +273,11 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
         pytest.skip("no C compiler")
     directory: Path = tmp_path_factory.mktemp("functions")
     exported = "\n".join([IS_NUMBER, *C.values()]).replace("static ", "")
+    exported = exported.replace("@_", "").replace("$_SAMPLES", f"{SAMPLES}U")
     for placeholder, meant in OF_ELEMENTS:
         exported = re.sub(rf"(?<![A-Z]){placeholder}(?![A-Z])", meant, exported)
     includes = ["#include <math.h>", "#include <stdbool.h>", "#include <stdint.h>"]
-    source = "\n".join([*includes, "#include <stddef.h>", *_signatures(exported), exported])
+    source = "\n".join([*includes, "#include <stddef.h>", WINDOW, *_signatures(exported), exported])
     (directory / "functions.c").write_text(source)
     strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-O1"]
     subprocess.run(

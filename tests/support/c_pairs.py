@@ -28,6 +28,7 @@ FOCUSES: dict[str, tuple[str, ...]] = {
     "integers and elements": tuple(MORE_KINDS),
     "arrays": ("scan", "array", "element", "floats", "ints"),
     "few values": ("number", "boolean"),
+    "rates": ("stamped", "number", "quaternion"),
     "mixed": tuple(ALL_KINDS),
 }
 """The kinds of inputs that programs are drawn with."""

@@ -107,6 +107,10 @@ class _Writer:
                 return json.dumps(value.value)
             case ir.Read():
                 return self._program.inputs[self._program.leaves[value.leaf].input].name
+            case ir.Apply(function="rate_over"):
+                span = value.arguments[1]
+                assert isinstance(span, ir.Const)
+                return f"{self.value(value.arguments[0])}.rate({span.value} ns)"
             case ir.Apply(function="abs" | "rate"):
                 return f"{self.value(value.arguments[0])}.{value.function}()"
             case ir.Apply():

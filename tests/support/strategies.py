@@ -124,6 +124,22 @@ KINDS: Mapping[str, Kind] = {
     ),
 }
 
+STAMPED = Kind(
+    "/warmth",
+    InterfaceType("sensor_msgs", "msg", "Temperature"),
+    ("temperature",),
+    (
+        (("temperature",), _FLOAT, floats),
+        (("header", "stamp", "sec"), FieldType("int32"), st.sampled_from((0, 0, 0, 0, 1, -1))),
+        (
+            ("header", "stamp", "nanosec"),
+            FieldType("uint32"),
+            st.integers(0, 40) | st.sampled_from((999_999_999, 10**9)),
+        ),
+    ),
+)
+"""A number with a header, whose stamps go forward and backward, stand still or are missing."""
+
 long_ints = st.sampled_from((-(2**63), -1, 0, 1, 2**53 + 1, 2**63 - 1))
 wide_ints = st.sampled_from((0, 1, 2, 2**63, 2**64 - 1))
 
@@ -153,6 +169,7 @@ MORE_KINDS: Mapping[str, Kind] = {
     "texts": _kind("/texts", "Strings", "string", "0", st.none() | texts),
     "flags": _kind("/flags", "Flags", "bool", "unbounded", st.booleans()),
     "first": _kind("/flags", "Flags", "bool", "0", st.none() | st.booleans()),
+    "stamped": STAMPED,
     "floats": _kind("/floats", "Float32MultiArray", "float32", "unbounded", ranges),
 }
 """Further kinds, which are not drawn unless they are named."""
@@ -226,16 +243,39 @@ class _Drawing:
         return value
 
     def wrapped(self, value: ir.ValueExpression, index: int) -> ir.ValueExpression:
-        choices = ("abs", "rate") if self.writable else ("abs", "rate", "scale")
-        match self.draw(st.sampled_from(choices)):
+        choices = ("abs", "rate", "over") if self.writable else ("abs", "rate", "over", "scale")
+        choice = self.draw(st.sampled_from(choices))
+        if self.writable:  # what the text of a rate stands for, which has stamps if there are any
+            choice = (
+                choice if self.kinds[index] in ("number", "integer") or choice == "abs" else "rate"
+            )
+            jumps = isinstance(value, ir.Apply) and value.function in ("roll", "yaw")
+            if choice != "abs" and jumps:
+                turn = ir.Const(6.283185307179586)
+                value = self.remembering("unwrapped", (value, turn), index)
+        elif self.draw(st.integers(0, 3)) == 0:
+            turn = ir.Const(self.draw(st.sampled_from((2.0, 6.283185307179586, 360.0))))
+            value = self.remembering("unwrapped", (value, turn), index)
+        match choice:
             case "abs":
                 return ir.Apply("abs", (value,), index)
             case "rate":
-                self.states += 1
-                return ir.Apply("rate", (value,), index, self.states - 1)
+                return self.remembering("rate", (value,), index)
+            case "over":
+                leaves = self.inputs[index].leaves
+                header = leaves[1:] if self.kinds[index] == "stamped" else ()
+                span_ns = ir.Const(self.draw(st.sampled_from((1, 2, 3, 7, 8, 9, 20))))
+                arguments = (value, span_ns, *map(ir.Read, header))
+                return self.remembering("rate_over", arguments, index)
             case _:
                 offset = self.draw(st.sampled_from((0.0, 1.0, -0.5)))
                 return ir.Scale(value, self.draw(st.sampled_from((2.0, -1.0, 0.1))), offset)
+
+    def remembering(
+        self, function: str, arguments: tuple[ir.ValueExpression, ...], index: int
+    ) -> ir.Apply:
+        self.states += 1
+        return ir.Apply(function, arguments, index, self.states - 1)
 
     def numeric(self) -> list[int]:
         none = ("boolean", "text", "texts", "first")

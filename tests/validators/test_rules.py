@@ -20,7 +20,7 @@ input v = topic /odom.twist.twist.linear.x timeout 1 sec
 input m = topic /mode.data timeout 1 sec
 input scan = topic /scan timeout 1 sec
 entity e {
-  fast: v > fast or v.rate().abs() > 3 m/s^2 for 2 sec;
+  fast: v > fast or v.rate(0.1 sec).abs() > 3 m/s^2 for 2 sec;
   failsafe near: scan.nearest(-30 deg, 30 deg) < 0.5 m;
   manual: m = 0;
   silent: v.missing() or m.missing() or scan.age() > 0.5 sec;

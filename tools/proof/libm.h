@@ -10,6 +10,7 @@
 /*@ axiomatic Libm {
       predicate is_sqrt(double y, double x);
       predicate is_fmod(double z, double x, double y);
+      predicate is_remainder(double z, double x, double y);
       predicate is_asin(double y, double x);
       predicate is_atan2(double z, double y, double x);
     } */
@@ -21,5 +22,7 @@ extern double sqrt(double x);
 extern double atan2(double y, double x);
 /*@ assigns \nothing; ensures is_asin(\result, x); */
 extern double asin(double x);
+/*@ assigns \nothing; ensures is_remainder(\result, x, y); */
+extern double remainder(double x, double y);
 /*@ assigns \nothing; ensures is_fmod(\result, x, y); */
 extern double fmod(double x, double y);

@@ -3,6 +3,7 @@
 ROS prescribes SI units and radians (REP 103), and the message definitions say the rest in comments;
 ``rep103.json`` holds both as data. A unit given to a field of message type holds for all that is
 nested in it: ``geometry_msgs/Twist.linear`` tells ``x``, ``y`` and ``z`` wherever there is a Twist.
+A unit with ``wrapping`` behind it is that of an angle that jumps by a full turn.
 """
 
 from __future__ import annotations
@@ -16,12 +17,24 @@ from deros.interfaces.fields import FieldPath
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 
+_WRAPPING = " wrapping"
+
 
 def unit_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str | None:
     """Return the unit of the field at ``path`` of the message ``kind``.
 
     ``"1"`` says that it is a ratio, ``None`` that nothing is known of its unit.
     """
+    text = _text_of(store, kind, path)
+    return text.removesuffix(_WRAPPING) if text is not None else None
+
+
+def is_wrapping(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> bool:
+    """Tell whether the field is an angle that jumps by a full turn where it begins anew."""
+    return (_text_of(store, kind, path) or "").endswith(_WRAPPING)
+
+
+def _text_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str | None:
     here: InterfaceType | None = kind
     for part in path:
         if isinstance(part, int):

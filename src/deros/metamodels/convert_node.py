@@ -44,6 +44,9 @@ _INTERFACE_KINDS: dict[PortKind, InterfaceKind] = {
     PortKind.ACTION: "action",
     PortKind.ACTION_CLIENT: "action",
 }
+_WRAPPING = "wrapping"
+"""What stands behind the unit of an angle that jumps by a full turn where it begins anew."""
+
 _WORDS = {
     "ParameterUnit": "unit",
     "Within": "in",
@@ -240,11 +243,14 @@ class NodeConverter(Converter):
         )
 
     def _field_unit(self, found: Any) -> FieldUnit:
+        *unit, last = str(found.unit).split()
+        wrapping = last == _WRAPPING and bool(unit)
         return FieldUnit(
             "".join(found.path.split()),
-            self.unit(found.unit) or "",
+            "".join(unit if wrapping else [*unit, last]),
             self.token_span(found.path),
             self.token_span(found.unit),
+            wrapping,
         )
 
     def _timer(self, found: Any) -> Timer:

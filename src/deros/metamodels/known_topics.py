@@ -86,6 +86,15 @@ class KnownTopic:
                     return each.unit
         return None
 
+    def is_wrapping(self, path: FieldPath) -> bool:
+        """Tell whether a node description says that a field jumps by a full turn."""
+        wanted = _without_indices(format_path(path))
+        return any(
+            each.wrapping and _without_indices(each.path) == wanted
+            for flat in (*self.publishers, *self.subscriptions)
+            for each in flat.port.units
+        )
+
 
 class TopicTable:
     """The topics of several systems, by graph name.

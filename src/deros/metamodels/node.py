@@ -122,12 +122,13 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class FieldUnit:
-    """A unit annotated on a field path of a port's message."""
+    """A unit annotated on a field path of a port's message; an angle may be ``wrapping``."""
 
     path: str  # as written, "twist.twist.linear.x"
     unit: str
     span: Span = field(compare=False, repr=False)
     unit_span: Span = field(compare=False, repr=False)
+    wrapping: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,8 @@ from deros.monitor.resolved import (
     family_of,
 )
 from deros.monitor.scope import Scope
-from deros.monitor.terms import Terms, counted
+from deros.monitor.term_names import counted
+from deros.monitor.terms import Terms
 
 LOG_STATE = "log_state"
 """The action that is built in: it writes a text to the log."""

@@ -53,6 +53,16 @@ def bounds_of_length(*parts: Ends) -> Ends:
     return Fraction(0), Fraction(math.sqrt(sum(each * each for each in finite)) * (1 + 1e-15))
 
 
+def bounds_of_change(operand: Ends, seconds: Fraction) -> Ends:
+    """Return the least and greatest change per second over at least so many seconds."""
+    lower, upper = operand
+    if not isinstance(lower, Fraction) or not isinstance(upper, Fraction):
+        return -math.inf, math.inf
+    # The monitor rounds twice; the bound must not be below what it can compute.
+    greatest = (upper - lower) / seconds * (1 + Fraction(1, 10**15))
+    return -greatest, greatest
+
+
 def rounded(value: Fraction) -> float:
     """Return the nearest double; infinity beyond their range."""
     try:

@@ -30,7 +30,8 @@ from deros.monitor.resolved import (
     is_float,
 )
 from deros.monitor.scope import Scope
-from deros.monitor.terms import Terms, describe
+from deros.monitor.term_names import describe
+from deros.monitor.terms import Terms
 
 _MIRRORED: dict[ir.Operator, ir.Operator] = {
     "=": "=",

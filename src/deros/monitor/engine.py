@@ -27,7 +27,7 @@ from deros.monitor.evaluate import conjunction, evaluate_condition, evaluate_val
 from deros.monitor.explain import RuleState, explain_rule
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import Age, Apply, Behaviour, For, Input, Program, Scalar, Trigger
-from deros.monitor.state import LeafValue, RateState, State, Verdict
+from deros.monitor.state import LeafValue, State, Verdict
 
 EventKind = Literal["trigger", "reset", "refused", "clock_step"]
 
@@ -240,15 +240,11 @@ class Engine:
         return True
 
     def _follow(self, function: Apply, number: int, t_ns: int) -> None:
-        """Let a ``rate()`` see the message just stored."""
-        rate = self._state.rates.setdefault(number, RateState())
-        value = evaluate_value(function.arguments[0], self._state)
-        evaluate = FUNCTIONS[function.function].evaluate
-        assert evaluate is not None
-        rate.slope = None
-        if rate.at_ns is not None and rate.value is not None and value is not None:
-            rate.slope = evaluate(value, rate.value, t_ns - rate.at_ns)
-        rate.at_ns, rate.value = t_ns, value
+        """Let a function that remembers something see the message just stored."""
+        create = FUNCTIONS[function.function].memory
+        assert create is not None
+        memory = self._state.rates.setdefault(number, create())
+        memory.follow(t_ns, *(evaluate_value(each, self._state) for each in function.arguments))
 
     def _make_unknown(self, each: Input) -> None:
         self._state.make_unknown(each.index)

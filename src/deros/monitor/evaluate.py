@@ -57,7 +57,7 @@ def evaluate_value(value: ValueExpression, state: State) -> Any:
         case Read():
             result = state.values[value.leaf]
         case Apply(state=int(number)):
-            result = state.rates[number].slope if number in state.rates else None
+            result = state.rates[number].result if number in state.rates else None
         case Apply():
             arguments = [evaluate_value(each, state) for each in value.arguments]
             evaluate = FUNCTIONS[value.function].evaluate

@@ -110,6 +110,9 @@ def _field_name(program: Program, read: Read) -> str:
 
 
 def _function_name(program: Program, function: Apply) -> str:
+    if function.function in ("unwrapped", "rate_over"):  # as rules call what they stand for
+        subject = _operand_name(program, function.arguments[0])
+        return subject if function.function == "unwrapped" else _rate_over_name(subject, function)
     subject = program.inputs[function.input].name
     constants = [each for each in function.arguments if isinstance(each, Const)]
     operands = [each for each in function.arguments if not isinstance(each, Const)]
@@ -117,6 +120,13 @@ def _function_name(program: Program, function: Apply) -> str:
         subject = _operand_name(program, operands[0])
     written = ", ".join(f"{each.value:.6g}" for each in constants)
     return f"{subject}.{function.function}({written})"
+
+
+def _rate_over_name(subject: str, function: Apply) -> str:
+    span = function.arguments[1]
+    assert isinstance(span, Const)
+    assert isinstance(span.value, int)
+    return f"{subject}.rate({span.value / 1e9:.9g} sec)"
 
 
 def _operand_name(program: Program, value: ValueExpression) -> str:

@@ -92,6 +92,14 @@ def rate(value: float, previous: float, elapsed_ns: int) -> float | None:
     return None if math.isnan(change) else change
 
 
+def shortest_way(change: float, turn: float) -> float | None:
+    """Return a change of an angle, brought to at most half a turn; unknown for an infinite one.
+
+    The remainder is exact. It keeps the sign of a change of exactly half a turn.
+    """
+    return math.remainder(change, turn) if math.isfinite(change) else None
+
+
 def least(values: Sequence[float]) -> float | None:
     """Return the least element, unknown for an empty array."""
     return min(values) if len(values) else None

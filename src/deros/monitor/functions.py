@@ -18,10 +18,13 @@ import enum
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
+from deros.interfaces.types import FieldType
 from deros.monitor import function_texts as texts
 from deros.monitor import function_values as values
-from deros.monitor.bounds import Ends, bounds_of_absolute, bounds_of_length
+from deros.monitor import memories
+from deros.monitor.bounds import Ends, bounds_of_absolute, bounds_of_length, type_bounds
 
 
 class Argument(enum.Enum):
@@ -92,8 +95,10 @@ class Function:
         parameters: the units of the constants that follow in parentheses, by name.
         evaluate: the reference, on the leaves, then the parameters. ``None`` where the compiler
             folds the function away (conversions) or the monitor itself keeps the answer.
-        stateful: whether it compares the present message with the one before; ``evaluate`` then
-            takes the value, the previous value and the nanoseconds between them.
+        memory: what it remembers from message to message, and computes its result with.
+        over: the row that stands for calls with an argument, where this one has none.
+        turns: whether it is an angle that jumps by a full turn where it begins anew.
+        is_written: whether rules call it; others are made of what they call.
         nan_is_unknown: whether a NaN in the first leaf makes the input unknown.
         bounds: least and greatest result, where the function itself bounds it.
         bounds_from: of a function whose bounds follow from those of its leaves, how they do.
@@ -115,7 +120,10 @@ class Function:
     leaves: tuple[str, ...] = ()
     parameters: tuple[tuple[str, str], ...] = ()
     evaluate: Callable[..., float | None] | None = None
-    stateful: bool = False
+    memory: Callable[[], memories.Memory] | None = None
+    over: str = ""
+    turns: bool = False
+    is_written: bool = True
     nan_is_unknown: bool = True
     bounds: tuple[float, float] = (-math.inf, math.inf)
     bounds_from: Callable[..., Ends] | None = None
@@ -140,6 +148,7 @@ def _of_quaternion(
         leaves=("x", "y", "z", "w"),
         evaluate=evaluate,
         bounds=bounds,
+        turns=name in ("roll", "yaw"),
         python_of_unit=texts.PYTHON_OF_UNIT[name],
         c_call=name,
         c=texts.C[name],
@@ -199,11 +208,36 @@ _ROWS = (
         Result.FLOAT,
         UnitRule.PER_SECOND,
         evaluate=values.rate,
-        stateful=True,
+        memory=memories.Rate,
+        over="rate_over",
         python_call="rate_per_second",
         python=texts.PYTHON["rate"],
         c_call="rate",
         c=texts.C["rate"],
+    ),
+    Function(
+        "rate_over",
+        Argument.NUMBER,
+        Result.FLOAT,
+        UnitRule.PER_SECOND,
+        parameters=(("span", "s"),),
+        memory=memories.RateOver,
+        is_written=False,
+        python=texts.PYTHON["rate_over"],
+        c_call="rate_over",
+        c=texts.C["rate_over"],
+    ),
+    Function(
+        "unwrapped",
+        Argument.NUMBER,
+        Result.FLOAT,
+        UnitRule.SAME,
+        memory=memories.Unwrapped,
+        is_written=False,
+        python_call="unwrapped",
+        python=texts.PYTHON["unwrapped"],
+        c_call="unwrapped",
+        c=texts.C["unwrapped"],
     ),
     _of_numbers("min", values.least),
     _of_numbers("max", values.greatest),
@@ -251,4 +285,20 @@ _ROWS = (
 )
 
 FUNCTIONS: Mapping[str, Function] = {row.name: row for row in _ROWS}
-"""Every function of the rules, by its name."""
+"""Every function of the intermediate form, by its name."""
+
+WRITTEN: Mapping[str, Function] = {row.name: row for row in _ROWS if row.is_written}
+"""Every function that rules call, by its name."""
+
+
+def result_bounds(row: Function, kind: FieldType, *arguments: Ends) -> Ends:
+    """Return what bounds the result: the function where it does, else the type."""
+    if row.bounds_from is not None:
+        return row.bounds_from(*arguments)
+    if row.bounds == (-math.inf, math.inf):
+        return type_bounds(kind)
+    least, greatest = row.bounds
+    return (
+        Fraction(least) if math.isfinite(least) else least,
+        Fraction(greatest) if math.isfinite(greatest) else greatest,
+    )

@@ -103,6 +103,7 @@ class Value:
         input: what it is read from.
         bounds: least and greatest value that it can have.
         message: the message whose constants may be compared with it by name.
+        turn: of an angle that jumps by a full turn where it begins anew, that turn in its unit.
     """
 
     expression: ir.ValueExpression
@@ -111,6 +112,7 @@ class Value:
     input: DeclaredInput
     bounds: tuple[Fraction | float, Fraction | float]
     message: MessageDefinition | None = None
+    turn: float | None = None
 
     @property
     def is_integer(self) -> bool:

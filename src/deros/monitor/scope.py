@@ -14,7 +14,7 @@ from deros import codes
 from deros.diagnostics import Code, Diagnostic, Fix, Related, Span, report
 from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
 from deros.interfaces.names import check_identifier, check_topic_name, did_you_mean, near
-from deros.interfaces.rep103 import unit_of
+from deros.interfaces.rep103 import is_wrapping, unit_of
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.interfaces.units import Unit, UnitRegistry
@@ -22,9 +22,11 @@ from deros.metamodels import rules
 from deros.metamodels.common import Name
 from deros.metamodels.flatten import resolve_name
 from deros.monitor import ir
+from deros.monitor.bounds import rounded
 from deros.monitor.resolved import DeclaredInput
 from deros.monitor.topics import SystemTopics
 
+_HEADER = InterfaceType("std_msgs", "msg", "Header")
 _GAP = r"(?:\s|//[^\n]*|/\*.*?\*/)*"
 _WORD = re.compile(r"\w+")
 _PATH_PART = re.compile(rf"{_GAP}(?:\.{_GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])", re.DOTALL)
@@ -167,6 +169,20 @@ class Scope:
         known = self.topics.get(topic)
         text = (known.unit_of(path) if known else None) or unit_of(self.store, kind, path)
         return self.units.parse(text) if text else None
+
+    def full_turn(self, unit: Unit | None) -> float | None:
+        """Return a full turn in a unit of angles; ``None`` for any other."""
+        degree = self.units.parse("deg")
+        if unit is None or degree is None or not self.units.compatible(unit, degree):
+            return None
+        return rounded(360 * degree.factor / unit.factor)
+
+    def turn_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> float | None:
+        """Return the full turn by which a field jumps where its angle begins anew, if it does."""
+        known = self.topics.get(topic)
+        if (known is not None and known.is_wrapping(path)) or is_wrapping(self.store, kind, path):
+            return self.full_turn(self.unit_of(topic, kind, path))
+        return None
 
     # Topics and inputs --------------------------------------------------------------------------
 
@@ -330,6 +346,16 @@ class Scope:
         elif nan_is_unknown and not self.leaves[index].nan_is_unknown:
             self.leaves[index] = dataclasses.replace(self.leaves[index], nan_is_unknown=True)
         return ir.Read(index)
+
+    def stamp(self, each: DeclaredInput) -> tuple[ir.Read, ...]:
+        """Return seconds and nanoseconds of a message's header; nothing if its type has none."""
+        found = resolve(self.store, each.type, ("header",))
+        if isinstance(found, FieldError) or found.type.base != _HEADER or found.type.is_array:
+            return ()
+        return tuple(
+            self.read(each, ("header", "stamp", name), FieldType(kind))
+            for name, kind in (("sec", "int32"), ("nanosec", "uint32"))
+        )
 
     def program_inputs(self) -> tuple[ir.Input, ...]:
         """Return the inputs of the program, in the order of their first use."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from deros.monitor.ir import Program, Scalar
+from deros.monitor.memories import Memory
 
 LeafValue = Scalar | Sequence[Scalar] | None
 """A leaf's value as it comes in a message; ``None``: the message has no such array element."""
@@ -34,15 +35,6 @@ class InputState:
     def awaited(self) -> bool:
         """Whether it waits for its first message that counts, and is not missing yet."""
         return self.counted_ns is None and not self.missing
-
-
-@dataclass(slots=True)
-class RateState:
-    """The last counted message as ``rate()`` sees it, and the slope from the one before to it."""
-
-    at_ns: int | None = None
-    value: float | None = None
-    slope: float | None = None
 
 
 class State:
@@ -76,7 +68,7 @@ class State:
         self.turned_ns = [t_ns] * len(self._program.rules)
         self.values: list[LeafValue] = [None] * len(self._program.leaves)
         self.inputs = [InputState(t_ns + grace_ns) for _ in self._program.inputs]
-        self.rates: dict[int, RateState] = {}
+        self.rates: dict[int, Memory] = {}
         self.since: dict[int, int] = {}
 
     def make_unknown(self, index: int) -> None:

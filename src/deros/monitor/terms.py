@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from fractions import Fraction
 
@@ -16,8 +15,16 @@ from deros.metamodels import rules
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.monitor import ir, shapes
 from deros.monitor.bearings import check_sector
-from deros.monitor.bounds import Ends, rounded, type_bounds
-from deros.monitor.functions import FUNCTIONS, Argument, Function, Result, UnitRule
+from deros.monitor.bounds import Ends, bounds_of_change, rounded, type_bounds
+from deros.monitor.functions import (
+    FUNCTIONS,
+    WRITTEN,
+    Argument,
+    Function,
+    Result,
+    UnitRule,
+    result_bounds,
+)
 from deros.monitor.resolved import (
     AgeOf,
     AppliedFunction,
@@ -34,6 +41,7 @@ from deros.monitor.resolved import (
     is_written_whole,
 )
 from deros.monitor.scope import Scope
+from deros.monitor.term_names import counted, describe
 
 _NOTHING = frozenset({"none", "null", "nil", "nan", "undefined"})
 _RESULT_TYPES = {Result.FLOAT: FieldType("float64"), Result.INTEGER: FieldType("uint64")}
@@ -182,15 +190,18 @@ class Terms:
             owner,
             type_bounds(found.type),
             found.parent,
+            self._scope.turn_of(owner.topic, owner.type, path),
         )
 
     # Functions ----------------------------------------------------------------------------------
 
     def _call(self, call: rules.Call) -> Resolved | None:
         name = call.function.text
-        row = FUNCTIONS.get(name)
+        row = WRITTEN.get(name)
+        if row is not None and row.over and call.arguments:
+            row = FUNCTIONS[row.over]
         if row is None:
-            hint = did_you_mean(near(name, FUNCTIONS)) or f"there are {', '.join(FUNCTIONS)}"
+            hint = did_you_mean(near(name, WRITTEN)) or f"there are {', '.join(WRITTEN)}"
             message = f"there is no function '{name}()'"
             self._scope.fault(codes.UNKNOWN_FUNCTION, message, call.function.span, hint)
             return None
@@ -212,7 +223,7 @@ class Terms:
             return self._of_any(call, row, operand)
         if row.argument is Argument.NUMBER:
             if isinstance(operand, Value) and family(operand.type) == "number":
-                return self._of_number(row, operand)
+                return self._of_number(call, row, operand, parameters)
         elif isinstance(operand, Part) and shapes.fits(self._scope.store, row, operand.type):
             if row.bearings:
                 check_sector(self._scope, call.arguments, parameters)
@@ -225,7 +236,8 @@ class Terms:
 
     def _misapplied(self, call: rules.Call, row: Function, operand: Resolved) -> None:
         receiver = call.receiver.span.text if call.receiver else ""
-        message = f"'{row.name}()' needs {row.argument.value}, '{receiver}' is {describe(operand)}"
+        name = call.function.text
+        message = f"'{name}()' needs {row.argument.value}, '{receiver}' is {describe(operand)}"
         hint = ""
         if isinstance(operand, Part) and not operand.type.is_array:
             inner = shapes.fitting_fields(self._scope.store, row, operand.type)
@@ -274,7 +286,8 @@ class Terms:
         if len(call.arguments) != len(row.parameters):
             names = ", ".join(name for name, _ in row.parameters)
             given = f"{len(call.arguments)} given"
-            message = f"'{row.name}({names})' takes {counted(len(row.parameters))}, {given}"
+            name = call.function.text
+            message = f"'{name}({names})' takes {counted(len(row.parameters))}, {given}"
             self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span)
             return None
         found: list[Quantity] = []
@@ -285,7 +298,7 @@ class Terms:
                 if value.unit is None or self.compatible(value.unit, wanted, argument):
                     found.append(value)
             elif value is not None:
-                message = f"'{name}' of '{row.name}()' must be a constant number"
+                message = f"'{name}' of '{call.function.text}()' must be a constant number"
                 self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, argument.span)
         return tuple(found) if len(found) == len(row.parameters) else None
 
@@ -345,16 +358,56 @@ class Terms:
         for path, leaf in read:
             self._scope.read(part.input, (*part.path, *path), leaf)
 
-    def _of_number(self, row: Function, operand: Value) -> Value:
-        state = None
-        if row.stateful:
-            state = self._states
-            self._states += 1
-        owner = self._scope.use(operand.input)
-        applied = ir.Apply(row.name, (operand.expression,), owner, state)
+    def _of_number(
+        self, call: rules.Call, row: Function, operand: Value, parameters: tuple[Quantity, ...]
+    ) -> Value | None:
         kind = _RESULT_TYPES.get(row.result, operand.type)
         unit = self._unit(row, operand.unit)
-        return Value(applied, kind, unit, operand.input, _bounds(row, kind, operand.bounds))
+        arguments: list[ir.ValueExpression] = [operand.expression]
+        bounds = result_bounds(row, kind, operand.bounds)
+        if row.memory is not None and operand.turn is not None:
+            turn = (operand.expression, ir.Const(operand.turn))
+            arguments = [self._applied("unwrapped", turn, operand)]
+        if parameters:
+            span_ns = self._span_ns(call.arguments[0], parameters[0])
+            if span_ns is None:
+                return None
+            arguments += [ir.Const(span_ns), *self._scope.stamp(operand.input)]
+            if operand.turn is None:
+                bounds = bounds_of_change(operand.bounds, Fraction(span_ns, 10**9))
+        elif row.over:
+            self._scope.fault(
+                codes.RATE_OF_ARRIVALS,
+                f"'{call.span.text}' divides by the time between two arrivals, which may be next to"
+                " nothing: messages often come in bursts",
+                call.span,
+                f"write '{call.function.text}(0.1 sec)', the change over that span",
+            )
+        applied = self._applied(row.name, arguments, operand)
+        return Value(applied, kind, unit, operand.input, bounds)
+
+    def _applied(
+        self, function: str, arguments: Iterable[ir.ValueExpression], operand: Value
+    ) -> ir.Apply:
+        state = None
+        if FUNCTIONS[function].memory is not None:
+            state = self._states
+            self._states += 1
+        return ir.Apply(function, tuple(arguments), self._scope.use(operand.input), state)
+
+    def _span_ns(self, term: rules.Term, span: Quantity) -> int | None:
+        """Return the span of time that a rate is asked over; report what is none."""
+        if span.unit is None:
+            message = f"the duration '{term.span.text}' has no unit"
+            hint = f"write '{term.span.text} sec'"
+            self._scope.fault(codes.BAD_DURATION, message, term.span, hint)
+            return None
+        span_ns = self._scope.nanoseconds(span.in_unit(self._scope.units.parse("s")), term.span)
+        if span_ns == 0:
+            message = "a rate over no time has no value"
+            self._scope.fault(codes.BAD_DURATION, message, term.span, "write 'rate(0.1 sec)'")
+            return None
+        return span_ns
 
     def _of_part(self, row: Function, part: Part, parameters: tuple[Quantity, ...]) -> Value:
         arguments: list[ir.ValueExpression] = []
@@ -377,11 +430,12 @@ class Terms:
         first = (*part.path, row.leaves[0]) if row.leaves[0] else part.path
         unit = self._unit(row, self._scope.unit_of(part.input.topic, part.input.type, first))
         kind = _RESULT_TYPES.get(row.result, part.type.element)
-        bounds = _bounds(row, kind, *leaf_bounds)
+        bounds = result_bounds(row, kind, *leaf_bounds)
         if row.argument is Argument.ARRAY and part.type.size is not None:
             least = part.type.size if part.type.array == "fixed" else 0
             bounds = Fraction(least), Fraction(part.type.size)
-        return Value(applied, kind, unit, part.input, bounds)
+        turn = self._scope.full_turn(unit) if row.turns else None
+        return Value(applied, kind, unit, part.input, bounds, turn=turn)
 
     def _unit(self, row: Function, operand: Unit | None) -> Unit | None:
         match row.unit_rule:
@@ -393,46 +447,3 @@ class Terms:
                 return operand and self._scope.units.parse(f"{operand.text}/s")
             case UnitRule.NONE:
                 return self._scope.units.parse("1")
-
-
-def _bounds(row: Function, kind: FieldType, *arguments: Ends) -> Ends:
-    """Return what bounds the result: the function where it does, else the type."""
-    if row.bounds_from is not None:
-        return row.bounds_from(*arguments)
-    if row.bounds == (-math.inf, math.inf):
-        return type_bounds(kind)
-    least, greatest = row.bounds
-    return (
-        Fraction(least) if math.isfinite(least) else least,
-        Fraction(greatest) if math.isfinite(greatest) else greatest,
-    )
-
-
-def counted(arguments: int) -> str:
-    """Return a number of arguments in words."""
-    return {0: "no argument", 1: "1 argument"}.get(arguments, f"{arguments} arguments")
-
-
-def describe(found: Resolved) -> str:
-    """Return what a term is, as a diagnostic says it."""
-    match found:
-        case Quantity():
-            return "a constant number"
-        case Plain():
-            return "a constant"
-        case MessageConstant():
-            return "a constant of the message"
-        case Value(type=kind):
-            return f"{'an' if str(kind).startswith('i') else 'a'} {kind}"
-        case Part(type=kind):
-            return f"an array ({_short(kind)})" if kind.is_array else f"a {_short(kind)}"
-        case AgeOf():
-            return "an age"
-        case MissingOf() | UnknownOf():
-            return "a condition"
-
-
-def _short(kind: FieldType) -> str:
-    if isinstance(kind.base, InterfaceType):
-        return str(kind).replace(str(kind.base), kind.base.short)
-    return str(kind)

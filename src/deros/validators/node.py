@@ -295,6 +295,14 @@ def _field_unit(
     if unit is None:
         yield _unknown_unit(units, annotation.unit, annotation.unit_span)
         return
+    if annotation.wrapping and dict(unit.exponents) != {"rad": 1}:
+        yield report(
+            codes.WRAPPING_NOT_AN_ANGLE,
+            f"'{annotation.path}' is in {unit.text} ({unit.dimension}): only an angle begins anew"
+            " after a full turn",
+            annotation.unit_span,
+            f"write '[{annotation.unit}]'",
+        )
     usual = rep103.unit_of(store, port.type, path)
     expected = units.parse(usual) if usual is not None else None
     if expected is not None and not units.compatible(unit, expected):

@@ -60,6 +60,13 @@ def test_same_events_of_few_values(pair: Pair) -> None:
     pair.compare()
 
 
+@thorough
+@given(programs(kinds=("stamped", "number", "quaternion")).flatmap(pairs))
+def test_same_events_of_rates(pair: Pair) -> None:
+    """That holds of what is remembered over several messages, and of stamps that go astray."""
+    pair.compare()
+
+
 @pytest.mark.parametrize("path", COUNTEREXAMPLES, ids=lambda path: path.stem)
 def test_counterexample(path: Path) -> None:
     """Wherever the two once differed they do not any more."""

@@ -144,13 +144,14 @@ class Changes:
             found += [f"m->{fields.base} == {start}"] if fields.base else []
             found += [f"m->{name} == 0" for name in (fields.came, fields.missing) if name]
         found += [f"m->{name} == m->now" for name in layout.turned.values()]
-        found += [f"m->{each.last_t} == m->now" for each in layout.memories.values()]
+        memories = layout.memories.values()
+        found += [f"m->{each.last_t} == m->now" for each in memories if each.last_t]
         return found + [each for forget in self._view.forgets for each in self.forgotten(forget)]
 
     def forgotten(self, forget: Forget) -> list[str]:
         """Return that no value of an input is known, and none is remembered."""
         last = [f"\\is_NaN(m->{name})" for name in forget.last]
-        return [*(f"m->{name} == 0" for name in forget.known), *last]
+        return [*(f"m->{name} == 0" for name in (*forget.known, *forget.counts)), *last]
 
     def forgets_of(self, function: str) -> list[Forget]:
         """Return what a function forgets; nothing if it is empty, since there is none."""
@@ -163,7 +164,8 @@ class Changes:
         found = [iff(f"{missing} != 0", f"(\\old({missing}) != 0 || {passed})")]
         gone = f"(\\old({missing}) == 0 && {passed})"
         for forget in self.forgets_of(timeout.forget):
-            found += [f"m->{name} == ({gone} ? 0 : \\old(m->{name}))" for name in forget.known]
+            cleared = (*forget.known, *forget.counts)
+            found += [f"m->{name} == ({gone} ? 0 : \\old(m->{name}))" for name in cleared]
             for name in forget.last:
                 kept = f"same(m->{name}, \\old(m->{name}))"
                 found.append(f"({gone} ==> \\is_NaN(m->{name})) && (!{gone} ==> {kept})")
@@ -203,7 +205,7 @@ class Changes:
     def _settled(self) -> list[str]:
         """Return the fields that are changed where deadlines are settled."""
         names = [each.missing for each in self._view.timeouts]
-        names += [name for each in self._view.forgets for name in (*each.known, *each.last)]
+        names += [name for each in self._view.forgets for name in each.changed]
         return ["now", *names, *self._judged()]
 
     def _lasting(self) -> list[str]:
@@ -214,7 +216,7 @@ class Changes:
 
     def _all_but(self, names: Iterable[str]) -> list[str]:
         changed = set(names)
-        return [each.name for each in self._view.fields if each.name not in changed]
+        return [each for each in self._predicates.field_names() if each not in changed]
 
     def _macro(self, name: str) -> str:
         return self._predicates.macro(name)

@@ -284,8 +284,18 @@ class _Writer:
         for value, memory in self._layout.memories_of(each.index).items():
             operand = as_double(value.arguments[0], self._program, self._arguments)
             name = f"{memory.last}_rate"
-            places = f"&m->{memory.last}, &m->{memory.last_t}"
-            yield f"  const double {name} = rate({operand}, m->now, {places});"
+            arguments = [operand, "m->now", f"&m->{memory.last}", f"&m->{memory.last_t}"]
+            if memory.window:
+                name = f"{memory.window}_rate"
+                span = expression(value.arguments[1], self._program, self._arguments)
+                arguments = [operand, self._stamp(value), span, f"&m->{memory.window}"]
+            elif memory.total:
+                name = f"new_{memory.total}"
+                turn = expression(value.arguments[1], self._program, self._arguments)
+                arguments = [operand, turn, f"&m->{memory.last}", f"&m->{memory.total}"]
+            call = Call(FUNCTIONS[value.function].c_call, tuple(arguments))
+            # It stands in a block in the end, two columns further.
+            yield from (line[2:] for line in lay_out(4, f"const double {name} = ", call))
             self._arguments.computed[value] = name
         known = self._layout.inputs[each.index].known
         if known:
@@ -296,6 +306,11 @@ class _Writer:
         for condition, finding in self._layout.findings.items():
             if each.index in finding.inputs:
                 yield from _news(finding.name, conditions.holds(condition))
+
+    def _stamp(self, value: Apply) -> str:
+        """Return when a message was stamped, or if it has no header, when it came."""
+        header = [expression(each, self._program, self._arguments) for each in value.arguments[2:]]
+        return f"stamp_of({', '.join(header)})" if header else "m->now"
 
     def _lengths(self, each: Input) -> Iterator[str]:
         """Yield the statements that compute the length of each quaternion, once."""

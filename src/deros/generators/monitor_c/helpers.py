@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from deros.generators.monitor_c import quantities, scans
+from deros.generators.monitor_c import quantities, scans, windows
 from deros.generators.monitor_c.layout import ELEMENTS
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
@@ -232,6 +232,7 @@ static int64_t bounded(int64_t t)
 }
 """
 
+_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _STORED = {"truth": "bool", "integer": "int64_t", "unsigned": "uint64_t", "text": "uint32_t"}
 
 _LOOP = """\
@@ -245,11 +246,11 @@ def helper_texts(program: Program, text: str) -> list[str]:
     """Return the definitions that ``text`` needs, in an order in which each can be compiled."""
     needed: list[str] = []
     known = dict(_all(program))
-    wanted = text
+    wanted = _COMMENT.sub("", text)  # which quote the rules
     for name in reversed(known):
         if re.search(rf"\b{name}\(", wanted):
             needed.append(known[name])
-            wanted += known[name]
+            wanted += _COMMENT.sub("", known[name])
     return needed[::-1]
 
 
@@ -273,6 +274,13 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
         yield name, quantities.contract(name, _PARTS.get(name, "")) + C[name]
     yield "magnitude", _MAGNITUDE + C["magnitude"]
     yield "rate", _RATE + C["rate"]
+    yield "unwrapped", windows.UNWRAPPED + C["unwrapped"]
+    yield "between", windows.BETWEEN + C["between"]
+    yield "stamp_of", windows.STAMP_OF + C["stamp_of"]
+    yield "base_of", windows.BASE_OF + windows.with_loop("base_of", C["base_of"])
+    yield "drop", windows.DROP + windows.with_loop("drop", C["drop"])
+    yield "keep", windows.KEEP + C["keep"]
+    yield "rate_over", windows.RATE_OVER + C["rate_over"]
     for base in _extremes(program):
         for name, call in (("min", "least"), ("max", "greatest")):
             yield f"{call}_{base}", _of_elements(_ARRAY + _with_loop(C[name], "i, found"), base)

@@ -96,10 +96,24 @@ class InputFields:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """What ``rate()`` remembers: the message before, and when it came."""
+    """What a function remembers; the names are empty where it does not.
 
-    last: str
-    last_t: str
+    Attributes:
+        last: the value of the message before.
+        last_t: when it came.
+        total: an angle without its jumps.
+        window: the samples of a rate over a span of time.
+    """
+
+    last: str = ""
+    last_t: str = ""
+    total: str = ""
+    window: str = ""
+
+    @property
+    def numbers(self) -> list[str]:
+        """The fields that are numbers."""
+        return [name for name in (self.last, self.last_t, self.total) if name]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +123,7 @@ class Layout:
     Attributes:
         prefix: what public names begin with; ``macro`` the same in capitals.
         terms: by value; a leaf, a function, or either in another unit.
-        memories: of each ``rate()``.
+        memories: of each function that remembers something.
         findings: of each comparison of floating-point values.
         inputs: of each input, by index.
         forgets: of each input with values, the function that makes them unknown.
@@ -167,10 +181,7 @@ def lay_out(program: Program) -> Layout:
             _name_term(program, value, layout, span)
     for value in walk.values(walk.conditions(program)):
         if isinstance(value, Apply) and value.state is not None and value not in layout.memories:
-            name = program.inputs[value.input].name
-            layout.memories[value] = Memory(
-                layout.names.new(name, "last"), layout.names.new(name, "last_t")
-            )
+            layout.memories[value] = _memory(program, value, layout.names)
     for condition in walk.conditions(program):
         _name_finding(condition, layout)
     for each in program.inputs:
@@ -182,6 +193,17 @@ def lay_out(program: Program) -> Layout:
     _name_verdicts(program, layout)
     _name_actions(program, layout)
     return layout
+
+
+def _memory(program: Program, value: Apply, names: Names) -> Memory:
+    name = program.inputs[value.input].name
+    match value.function:
+        case "rate_over":
+            return Memory(window=names.new(name, "window"))
+        case "unwrapped":
+            return Memory(names.new(name, "last"), total=names.new(name, "total"))
+        case _:
+            return Memory(names.new(name, "last"), names.new(name, "last_t"))
 
 
 def compared(condition: Condition) -> list[ValueExpression]:

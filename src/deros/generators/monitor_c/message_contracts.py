@@ -134,13 +134,15 @@ class MessageContracts:
         flags += [term.known for term in terms]
         stored = self._stored(handler)
         changed = [*bases, *dict.fromkeys(flags), *stored]
-        changed += [name for each in memories for name in (each.last, each.last_t)]
-        own = self._predicates.ranges(["now", *dict.fromkeys(changed)])
+        changed += [name for each in memories for name in each.numbers]
+        windows = [each.window for each in memories if each.window]
+        counts = [f"{each}.count" for each in windows]
+        own = self._predicates.ranges(["now", *dict.fromkeys(changed), *counts])
         own += self._predicates.timeouts_in_time("m->due", bases)
         own += self._predicates.ends_in_time("m->due", bases)
         own += self._predicates.unexpired(bases)
         contract = Contract(["\\valid(m)", all_of(own), *self._arrays(handler)])
-        contract.assigns += [f"m->{name}" for name in changed]
+        contract.assigns += [f"m->{name}" for name in (*changed, *windows)]
         contract.ensures.append(all_of(own))
         awaited = [each.came for each in fields if each.awaits]
         contract.ensures += self._news(handler, [*flags, *awaited, *stored])
@@ -199,7 +201,8 @@ class MessageContracts:
         if fields.missing:
             yield f"m->{fields.missing} == 0"
         for memory in self._layout.memories_of(each.index).values():
-            yield f"m->{memory.last_t} == m->now"
+            if memory.last_t:
+                yield f"m->{memory.last_t} == m->now"
         for condition, finding in self._findings((each.index,)):
             yield iff(f"m->{finding.name} != 0", self._predicates.meaning.holds(condition))
         if len(handler.inputs) == 1:
@@ -252,13 +255,12 @@ class MessageContracts:
     def _unheard(self, each: Input, handler: Handler) -> list[str]:
         """Return that of a message that does not count all else is as it was."""
         fields = self._layout.inputs[each.index]
-        forgotten = [
-            name for forget in self._forgets(each) for name in (*forget.known, *forget.last)
-        ]
+        forgotten = [name for forget in self._forgets(each) for name in forget.changed]
         names = [fields.base, fields.came, fields.missing]
         names += [term.name for term in self._layout.terms_of(each.index)]
         names += [finding.name for _, finding in self._findings((each.index,))]
-        names += [memory.last_t for memory in self._layout.memories_of(each.index).values()]
+        for memory in self._layout.memories_of(each.index).values():
+            names += [memory.last_t, memory.total]
         kept = [name for name in names if name and name not in forgotten]
         due = ["due"] if len(handler.inputs) == 1 else []
         return [self._changes.same([*kept, *due])]

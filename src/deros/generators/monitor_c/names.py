@@ -17,7 +17,7 @@ mutable namespace new noexcept not not_eq nullptr operator or or_eq private prot
 public reinterpret_cast requires static_assert static_cast template this thread_local
 throw true try typeid typename using virtual wchar_t xor xor_eq"""
 _STANDARD = """assert errno main NULL NAN INFINITY INT64_MAX INT64_C abs fabs hypot sqrt atan2 asin
-fmod fmin fmax index time signal"""
+fmod remainder fmin fmax index time signal"""
 _OURS = """m t now due owner started count verdict condition held rises changed done grace
 enabled value both either negated truth_of failsafe lasting earlier ahead is_number bounded arrive
 step_back reach_deadline catch_up earliest judge_all evaluate act restart

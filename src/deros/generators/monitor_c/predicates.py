@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Collection, Iterable, Iterator
 
-from deros.generators.monitor_c import quantities, scans
+from deros.generators.monitor_c import quantities, scans, windows
 from deros.generators.monitor_c.contracts import all_of, any_of, iff, wrapped
 from deros.generators.monitor_c.emissions import Emissions
 from deros.generators.monitor_c.meaning import Meaning
@@ -25,6 +25,13 @@ class Predicates:
         self.meaning = Meaning(view.layout)
         self.emissions = Emissions(view)
         self._types = {each.name: each.type.strip() for each in view.fields}
+
+    def field_names(self) -> list[str]:
+        """Return the names of all fields; of a rate's samples only how many there are."""
+        return [
+            f"{each.name}.count" if each.type.strip().endswith("_window") else each.name
+            for each in self._view.fields
+        ]
 
     def fors(self, condition: Condition) -> list[For]:
         """Return the intervals of a condition that are remembered."""
@@ -52,6 +59,7 @@ class Predicates:
         program = self._view.program
         parts = [self.emissions.declarations(), quantities.declarations(program)]
         parts.append(scans.declarations(program))
+        parts += filter(None, [windows.declarations(program)])
         return "\n".join([*parts, *lines, ""])
 
     def all_fors(self) -> list[For]:
@@ -122,6 +130,9 @@ class Predicates:
         free |= set(self._layout.turned.values())
         found = []
         for name in names:
+            if name.endswith(".count"):  # of a rate's samples
+                found.append(f"m->{name} <= {self.macro('SAMPLES')}")
+                continue
             kind = self._types[name]
             if name in sinces:
                 found.append(f"(m->{name} == {unset} || 0 <= m->{name} <= m->now)")

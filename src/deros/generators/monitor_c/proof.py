@@ -85,7 +85,7 @@ class _Writer:
             yield f"which_{text.name}", contract
         for forget in self._view.forgets:
             cleared = [f"m->{name}" for name in forget.known]
-            contract = Contract(["\\valid(m)"], [*cleared, *(f"m->{n}" for n in forget.last)])
+            contract = Contract(["\\valid(m)"], [f"m->{name}" for name in forget.changed])
             contract.ensures.append(all_of(self.changes.forgotten(forget)))
             known = any_of(f"\\old({each}) != 0" for each in cleared)
             contract.ensures.append(iff("\\result != 0", known))
@@ -133,7 +133,7 @@ class _Writer:
         names = ["now", timeout.base, timeout.missing, *known]
         contract = Contract(["\\valid(m)", all_of(self.predicates.ranges(names))], [missing])
         for forget in self.changes.forgets_of(timeout.forget):
-            contract.assigns += [f"m->{name}" for name in (*forget.known, *forget.last)]
+            contract.assigns += [f"m->{name}" for name in forget.changed]
         contract.ensures += self.predicates.ranges([timeout.missing])
         contract.ensures.append(all_of(self.changes.expired(timeout)))
         return contract
@@ -144,7 +144,9 @@ class _Writer:
         changed: list[str] = []
         for each in self._view.timeouts:
             known = [name for f in self.changes.forgets_of(each.forget) for name in f.known]
-            last = [name for f in self.changes.forgets_of(each.forget) for name in f.last]
+            last = [
+                name for f in self.changes.forgets_of(each.forget) for name in (*f.last, *f.counts)
+            ]
             names += [each.base, each.missing, *known]
             changed += [each.missing, *known, *last]
         ranges = self.predicates.ranges(names)
@@ -160,7 +162,7 @@ class _Writer:
         contract = Contract(["\\valid(m)"], ["*m"])
         contract.requires.append(f"0 <= m->now <= from <= {latest}")
         names = [each.name for each in self._view.fields if each.restarted]
-        names += [name for each in self._view.forgets for name in (*each.known, *each.last)]
+        names += [name for each in self._view.forgets for name in each.changed]
         contract.ensures.append(self.changes.kept_but([*names, "due"]))
         contract.ensures.append(all_of(self.changes.as_new("from")))
         contract.ensures.append(all_of(self.predicates.all_in_time("m->due")))

@@ -10,7 +10,20 @@ from deros.diagnostics import Span, report
 from deros.generators.monitor_c.layout import LATEST, compared, rule_parts, type_of
 from deros.generators.protocol import GenerationError
 from deros.monitor import walk
-from deros.monitor.ir import Age, Apply, Condition, For, Program, Read, Trigger, ValueExpression
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import (
+    Age,
+    Apply,
+    Condition,
+    Const,
+    For,
+    Program,
+    Read,
+    Trigger,
+    ValueExpression,
+)
+
+_IN_DOUBLES = ("abs", "rate", "rate_over", "unwrapped")
 
 
 def refuse(program: Program) -> None:
@@ -38,10 +51,11 @@ def _refuse(message: str, span: Span, hint: str = "") -> NoReturn:
 def _refuse_wide(program: Program, condition: Condition, span: Span) -> None:
     """Refuse what C would compute in fewer digits than the meaning asks for."""
     for term in walk.values([condition]):
-        if not isinstance(term, Apply) or term.function not in ("abs", "rate"):
+        if not isinstance(term, Apply) or term.function not in _IN_DOUBLES:
             continue
         if _is_wide(program, term.arguments[0]):
-            _refuse(f"{term.function}() of a 64-bit integer does not fit the numbers of C", span)
+            name = "rate" if FUNCTIONS[term.function].memory is not None else term.function
+            _refuse(f"{name}() of a 64-bit integer does not fit the numbers of C", span)
 
 
 def _refuse_mixed(program: Program, condition: Condition, span: Span) -> None:
@@ -75,6 +89,12 @@ def _durations(program: Program) -> Iterator[tuple[int, Span]]:
         if each.timeout_ns is not None:
             yield each.timeout_ns, each.span
     for rule in program.rules:
+        for value in walk.values(walk.parts(rule.condition)):
+            if isinstance(value, Apply) and value.function == "rate_over":
+                span = value.arguments[1]
+                assert isinstance(span, Const)
+                assert isinstance(span.value, int)
+                yield span.value, rule.span
         yield from _durations_of(rule.condition, rule.span)
     for behaviour in walk.behaviours(program):
         yield from _durations_of(behaviour.condition, behaviour.span)

@@ -15,6 +15,10 @@ from deros.generators.monitor_c.source import comment
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
 from deros.monitor.ir import Age, Condition, For, Missing, Program, Unknown
+from deros.monitor.memories import SAMPLES
+
+WINDOW_SIZE = 16 * SAMPLES + 16
+"""The bytes of the samples of one rate over a span of time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +61,17 @@ class Forget:
     input: str
     known: tuple[str, ...]
     last: tuple[str, ...]
+    windows: tuple[str, ...]
+
+    @property
+    def counts(self) -> tuple[str, ...]:
+        """The fields that say how many samples there are of a rate."""
+        return tuple(f"{name}.count" for name in self.windows)
+
+    @property
+    def changed(self) -> tuple[str, ...]:
+        """All fields that it sets."""
+        return (*self.known, *self.last, *self.counts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,6 +216,11 @@ class MonitorView:
         return any(each.latched for each in self.actions)
 
     @property
+    def samples(self) -> int:
+        """How many samples a rate over a span of time keeps at most; 0 if there is none."""
+        return SAMPLES if any(each.window for each in self.layout.memories.values()) else 0
+
+    @property
     def has_arrays(self) -> bool:
         """Whether a message hands in an array."""
         return any(
@@ -282,8 +302,14 @@ def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
     for finding in layout.findings.values():
         yield Field("bool ", finding.name, "how values compare", 1, "false")
     for memory in layout.memories.values():
-        yield Field("double ", memory.last, "the value before", 8)
-        yield Field("int64_t ", memory.last_t, "when it came", 8, "", "m->now")
+        if memory.last:
+            yield Field("double ", memory.last, "the value before", 8)
+        if memory.last_t:
+            yield Field("int64_t ", memory.last_t, "when it came", 8, "", "m->now")
+        if memory.total:
+            yield Field("double ", memory.total, "the angle without its jumps", 8, "0.0")
+        if memory.window:
+            yield Field(f"{layout.prefix}_window ", memory.window, "its samples", WINDOW_SIZE)
 
 
 def _verdict_fields(program: Program, layout: Layout) -> Iterator[Field]:
@@ -312,8 +338,10 @@ def _forgets(program: Program, layout: Layout) -> Iterator[Forget]:
         known = dict.fromkeys(term.known for term in layout.terms_of(index))
         if layout.inputs[index].known:
             known[layout.inputs[index].known] = None
-        last = tuple(each.last for each in layout.memories_of(index).values())
-        yield Forget(function, program.inputs[index].name, tuple(known), last)
+        memories = layout.memories_of(index).values()
+        last = tuple(each.last for each in memories if each.last)
+        windows = tuple(each.window for each in memories if each.window)
+        yield Forget(function, program.inputs[index].name, tuple(known), last, windows)
 
 
 def _timeouts(program: Program, layout: Layout) -> Iterator[Timeout]:

@@ -191,15 +191,22 @@ class _Writer:
                     units.add(function.arguments)
                     lines += self._of_quaternion(each, function.arguments, indent)
                 continue
-            name = self._locals[function] = self._names.new(self._layout.values[function].name)
+            slot = self._layout.values[function].name
+            name = self._locals[function] = self._names.new(slot)
             arguments = [self._value(argument) for argument in function.arguments]
-            if function.state is not None:
+            call = row.python_call
+            if function in self._layout.windows:
+                call = f"self._{self._layout.windows[function]}.rate"
+                arguments = [arguments[0], _stamp(arguments[2:]), arguments[1]]
+            elif function.state is not None:
                 last, last_t = self._layout.last[function]
-                arguments += [f"self._{last}", f"t - self._{last_t}"]
-            lines += lay_out_call(indent, f"{name} = {row.python_call}(", arguments)
-            if function.state is not None:
-                lines += [f"{blank}self._{last} = {arguments[0]}", f"{blank}self._{last_t} = t"]
-            if row.python and self._layout.values[function].unknown == "NAN":
+                before = f"t - self._{last_t}" if last_t else f"self._{slot}"
+                arguments += [f"self._{last}", before]
+            lines += lay_out_call(indent, f"{name} = {call}(", arguments)
+            if function in self._layout.last:
+                lines.append(f"{blank}self._{last} = {arguments[0]}")
+                lines += [f"{blank}self._{last_t} = t"] if last_t else []
+            if row.python and function.function != "unwrapped":
                 lines += [f"{blank}if {name} is None:", f"{blank}    {name} = NAN"]
         return lines
 
@@ -312,6 +319,18 @@ class _Writer:
                 return scaled(self._value(value.operand), value)
             case Apply():
                 return self._locals[value]
+
+
+def needed_texts(function: Apply) -> tuple[str, ...]:
+    """Return the names of the texts that the text of a function, or its call, needs beside it."""
+    if function.function != "rate_over":
+        return ()
+    return ("rate", "stamp_of") if len(function.arguments) > 2 else ("rate",)
+
+
+def _stamp(header: Sequence[str]) -> str:
+    """Return when a message was stamped, or if it has no header, when it came."""
+    return f"stamp_of({', '.join(header)})" if header else "t"
 
 
 def _lay_out_length(indent: int, parts: Sequence[str]) -> list[str]:

@@ -41,7 +41,9 @@ class Layout:
     Attributes:
         names: of them all, and of the methods.
         values: what the conditions read of the inputs' messages, and every function of them.
-        last: of a function with a memory, what the message before gave, and when it came.
+        last: of a function with a memory, what the message before gave, and when it came; the
+            latter is empty where it does not matter.
+        windows: of a rate over a span of time, its samples.
         heard: of an input with a timeout, from when it counts: the last counted message, or the
             start.
         silent: of such an input, whether it waits for its first message, or for the first after its
@@ -63,6 +65,7 @@ class Layout:
     names: Names
     values: dict[ValueExpression, Slot] = field(default_factory=dict)
     last: dict[ValueExpression, tuple[str, str]] = field(default_factory=dict)
+    windows: dict[ValueExpression, str] = field(default_factory=dict)
     heard: dict[int, str] = field(default_factory=dict)
     silent: dict[int, str] = field(default_factory=dict)
     missing: dict[int, str] = field(default_factory=dict)
@@ -160,8 +163,12 @@ def _name_value(program: Program, value: ValueExpression, layout: Layout) -> Non
         return
     slot = layout.values[value] = _slot(program, value, layout.names)
     if isinstance(value, Apply) and value.state is not None:
-        names = (layout.names.new(slot.name, "last"), layout.names.new(slot.name, "last_t"))
-        layout.last[value] = names
+        if value.function == "rate_over":
+            layout.windows[value] = layout.names.new(slot.name, "window")
+            return
+        last = layout.names.new(slot.name, "last")
+        timed = value.function == "rate"
+        layout.last[value] = (last, layout.names.new(slot.name, "last_t") if timed else "")
 
 
 def _slot(program: Program, value: ValueExpression, names: Names) -> Slot:

@@ -13,6 +13,7 @@ MODULE_NAMES = frozenset(
     {
         *("Callable", "Collection", "Sequence", "NamedTuple", "functools", "math", "np"),
         *("Event", "Monitor", "RuleState", "explained", "scan_beams"),
+        *("RateWindow", "stamp_of"),
         *("NAN", "NEVER", "OPTIONAL", "RULES_OF"),
     }
 )

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 from deros.generators.monitor_python.behaviours import act_lines, latched_lines
 from deros.generators.monitor_python.explained import explained_lines, rules_of, waiting_lines
-from deros.generators.monitor_python.handlers import Handler, handlers
+from deros.generators.monitor_python.handlers import Handler, handlers, needed_texts
 from deros.generators.monitor_python.layout import Layout, lay_out_memory, slots_of
 from deros.generators.monitor_python.rules import Judge, judges
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
 from deros.monitor.evaluate import evaluate_condition
+from deros.monitor.function_texts import PYTHON
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import Age, Apply, Program
 from deros.monitor.state import State
@@ -114,7 +115,7 @@ def monitor_view(program: Program) -> MonitorView:
     attributes = [
         *(name for name, _ in initial),
         *(name for forget in forgets for name, _ in forget.unknown),
-        *(last_t for _, last_t in layout.last.values()),
+        *(last_t for _, last_t in layout.last.values() if last_t),
         *(
             name
             for timeout in timeouts
@@ -166,6 +167,8 @@ def _function_texts(layout: Layout) -> tuple[str, ...]:
             row = FUNCTIONS[value.function]
             if row.guard is not None:
                 texts[row.guard.python] = None
+            for name in needed_texts(value):
+                texts[PYTHON[name]] = None
             texts[row.python] = None
     return tuple(each for each in texts if each)
 
@@ -184,7 +187,7 @@ def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tu
         pairs.append((name, f"{action.name!r} in latched" if action.latched else "False"))
     if any(each.optional for each in walk.behaviours(program)):
         pairs.append(("disabled", "set()"))
-    pairs += [(last_t, "start") for _, last_t in layout.last.values()]
+    pairs += [(last_t, "start") for _, last_t in layout.last.values() if last_t]
     if known_at_start:
         pairs.append(("started", "False"))
     return tuple(pairs)
@@ -206,6 +209,9 @@ def _forgets(program: Program, layout: Layout) -> tuple[Forget, ...]:
         for value, (last, _) in layout.last.items():
             if isinstance(value, Apply) and value.input == index:
                 unknown.append((last, "NAN"))
+        for value, window in layout.windows.items():
+            if isinstance(value, Apply) and value.input == index:
+                unknown.append((window, "RateWindow()"))
         found.append(Forget(method, program.inputs[index].name, tuple(unknown)))
     return tuple(found)
 

@@ -80,7 +80,9 @@ def _parameter_name(name: str) -> str:
 
 
 def _port(port: Port) -> str:
-    units = " ".join(f"{unit.path} [{unit.unit}]" for unit in port.units)
+    units = " ".join(
+        f"{unit.path} [{unit.unit}{' wrapping' * unit.wrapping}]" for unit in port.units
+    )
     return _joined(
         f"{_KEYWORDS[port.kind]} {port.name} : {port.type.short}",
         f"{{ {units} }}" if units else "",
