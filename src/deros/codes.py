@@ -45,6 +45,11 @@ UNUSED_ALLOWANCE = _declare(22, "allowance that is not needed", _W)
 ABSENT_FINDING = _declare(23, "finding of the baseline that does not occur any more", _I)
 UNUSABLE_BASELINE = _declare(24, "baseline that cannot be used")
 
+# Project files
+UNREADABLE_PROJECT = _declare(25, "project file that cannot be read")
+UNKNOWN_PROJECT_KEY = _declare(26, "unknown key in a project file", _W)
+BAD_PROJECT_VALUE = _declare(27, "value in a project file that does not fit")
+
 # Node descriptions
 UNKNOWN_PACKAGE = _declare(101, "unknown interface package")
 UNKNOWN_TYPE = _declare(102, "unknown message, service or action type")

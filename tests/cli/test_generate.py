@@ -59,9 +59,9 @@ def test_options_of_the_generator() -> None:
     assert "did you mean '--maintainer'" in unknown.err
 
 
-@pytest.mark.parametrize("extra", [["--maintainer"], ["more.rnd"]])
+@pytest.mark.parametrize("extra", [["--maintainer"], ["-x"]])
 def test_unfinished_options_are_usage_errors(extra: list[str]) -> None:
-    """An option without its value, or a second file, is a mistake on the command line."""
+    """An option without its value, or of one letter, is a mistake on the command line."""
     outcome = deros("generate", "courier_base.rnd", "--target", "python", *extra)
     assert outcome.code == 2
     assert "Usage:" in outcome.err

@@ -55,16 +55,17 @@ def check(
 ) -> None:
     """Check models and report every finding.
 
-    FILES are node descriptions (*.rnd), system descriptions (*.system) and safety rules
-    (*.deros). What they import is checked with them. Exits with 0 if nothing was found, 1 if
-    something was (warnings count under --strict), 2 if a file cannot be read.
+    FILES are node descriptions (*.rnd), system descriptions (*.system), safety rules (*.deros),
+    and folders, of which all models are checked. What they import is checked with them. Exits
+    with 0 if nothing was found, 1 if something was (warnings count under --strict), 2 if a file
+    cannot be read.
     """
     if write_baseline and baseline is None:
         raise click.UsageError("--write-baseline needs --baseline FILE")
     with without_collector():
         found = find(files, interfaces)
     if baseline is not None:
-        found = _compared(found, files, baseline, write=write_baseline)
+        found = _compared(found, baseline, write=write_baseline)
     report(found, output_format, show_allowed=show_allowed)
     ctx.exit(exit_code(found.findings, strict=strict))
 
@@ -93,43 +94,59 @@ class Found:
         findings: what is to be reported.
         allowed: what the models allow.
         files: how many files were checked.
+        named: the models that were named, alone or by their folder.
         compared: the same findings against a baseline, if there is one.
     """
 
     findings: Sequence[Diagnostic]
     allowed: Sequence[Allowed]
     files: int
+    named: Sequence[str]
     compared: Compared | None = None
 
 
-def _compared(found: Found, named: Sequence[str], path: Path, *, write: bool) -> Found:
+def _compared(found: Found, path: Path, *, write: bool) -> Found:
     """Leave out what the baseline in ``path`` lists, which is written before if so asked."""
     from deros.cli import baseline
 
     try:
         if write:
-            count = baseline.write(path, found.findings, named)
+            count = baseline.write(path, found.findings, found.named)
             click.echo(
                 f"wrote {count} {'finding' if count == 1 else 'findings'} to {path}", err=True
             )
         listed = baseline.read(path)
     except baseline.Unusable as unusable:
         return replace(found, findings=(*found.findings, unusable.diagnostic))
-    compared = baseline.compare(found.findings, listed, named)
+    compared = baseline.compare(found.findings, listed, found.named)
     gone = tuple(baseline.absent(each, listed) for each in compared.absent)
     return replace(found, findings=(*compared.new, *gone), compared=compared)
 
 
 def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
-    """Check the files and their imports."""
+    """Check the files, all models below folders, and what they import, as their projects say."""
+    from deros.cli.models import named_models, to_be_checked
+    from deros.cli.project import interfaces_of, projects_of, unneeded
+    from deros.diagnostics import has_errors, in_file_order
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
     from deros.validators.check import check_all
 
+    models = named_models(files)
+    projects = projects_of(each.path for each in models)
     repository = Repository()
-    named = [repository.load(path) for path in files]
-    checked = check_all(named, repository, InterfaceStore(interfaces))
-    return Found(checked.findings, checked.allowed, len(repository.files))
+    loaded = [repository.load(each.path) for each in models]
+    checked = check_all(
+        to_be_checked(models, loaded, repository),
+        repository,
+        InterfaceStore(interfaces_of(interfaces, projects)),
+        [each for project in projects for each in project.allowances],
+    )
+    findings = [*checked.findings, *(d for project in projects for d in project.diagnostics)]
+    if not has_errors(findings):
+        findings += unneeded(projects, files, checked.allowed)
+    names = [each.path for each in models]
+    return Found(in_file_order(findings), checked.allowed, len(repository.files), names)
 
 
 def report(found: Found, output_format: str, *, show_allowed: bool = False) -> None:

@@ -24,18 +24,21 @@ _LARGEST = 64 << 20
 _STAMP = "# The last run of deros made these files:\n"
 
 
-def inputs(context: Context, generator: Generator, more: Iterable[Path] = ()) -> list[str]:
+def inputs(
+    context: Context, generators: Iterable[Generator], more: Iterable[Path] = ()
+) -> list[str]:
     """Return the absolute paths of all that a run has read and whose change asks for another.
 
     These are the models; the folders that globs have searched, whose change says that a file came
-    or went; the definitions of messages; ``more``; and deros and the generator themselves.
+    or went; the definitions of messages; ``more``; and deros and the generators themselves.
     """
     models = [loaded.path for loaded in context.repository.files if loaded.source is not None]
     named: list[str | Path] = [*models, *context.repository.folders, *context.store.inputs(), *more]
     named += _program("deros", "deros")
-    module = generator.function.__module__.partition(".")[0]
-    if module != "deros":
-        named += _program(module, generator.project_name)
+    for generator in generators:
+        module = generator.function.__module__.partition(".")[0]
+        if module != "deros":
+            named += _program(module, generator.project_name)
     return sorted({os.path.abspath(each) for each in named})  # noqa: PTH100 - links stay links
 
 

@@ -41,14 +41,17 @@ class _GenerateCommand(click.Command):
     cls=_GenerateCommand,
     context_settings={"ignore_unknown_options": True, "allow_extra_args": True},
 )
-@click.argument("file", type=click.Path())
-@click.option("--target", required=True, help="What to generate; see below.")
+@click.argument("files", nargs=-1, required=True, type=click.Path())
+@click.option(
+    "--target",
+    help="What to generate; see below.  [default: what the project file says]",
+)
 @click.option(
     "-o",
     "--output",
     type=click.Path(file_okay=False, path_type=Path),
-    default=Path(),
-    help="Folder to write to; made if it is not there.  [default: the current folder]",
+    help="Folder to write to; made if it is not there.  [default: what the project file says, or "
+    "the current folder]",
 )
 @click.option("--overwrite", is_flag=True, help="Replace generated files that were edited by hand.")
 @interfaces_option
@@ -75,9 +78,9 @@ class _GenerateCommand(click.Command):
 @click.pass_context
 def generate(
     ctx: click.Context,
-    file: str,
-    target: str,
-    output: Path,
+    files: tuple[str, ...],
+    target: str | None,
+    output: Path | None,
     overwrite: bool,
     interfaces: tuple[Path, ...],
     depfile: Path | None,
@@ -85,25 +88,33 @@ def generate(
     source: Path | None,
     scaffold: Path | None,
 ) -> None:
-    """Generate code, launch files or parameters from the model in FILE.
+    """Generate code, launch files or parameters from the models in FILES.
 
-    The model is checked first, and nothing is written if an error is found. Files that are made
-    for you to fill in are written once and never again.
+    FILES are models, and folders, of which all models are taken that the target is made from. They
+    are checked first, and nothing is written if an error is found. Files that are made for you to
+    fill in are written once and never again.
     """
     from deros.cli import produce
+    from deros.cli.plan import output_of, plan
     from deros.generators.source_tree import SourceTreeError
     from deros.generators.writer import WriteError, write
 
     if scaffold is not None and (depfile or stamp or source):
         raise click.UsageError("--scaffold goes without --depfile, --stamp and --source")
     started = produce.now_ns()
-    request = produce.Request(file, target, _pairs(ctx.args), interfaces)
+    models, options = _apart(files)
+    requests = plan(models, target, options, interfaces)
+    request = requests[0]
+    if len(requests) > 1 and (depfile or stamp or source or scaffold):
+        raise click.UsageError("--depfile, --stamp, --source and --scaffold are for one model")
+    if output is None:
+        output = output_of(requests)
     try:
-        made = produce.make(request)
+        made = produce.make(*requests)
         _show(made.findings)
         if scaffold is not None:
-            files = produce.scaffold_files(made, request, scaffold)
-            written = write(files, scaffold, overwrite=overwrite)
+            kept = produce.scaffold_files(made, request, scaffold)
+            written = write(kept, scaffold, overwrite=overwrite)
         else:
             where = produce.Place(output, overwrite, source, depfile, stamp)
             written = produce.put(made, where, started)
@@ -124,21 +135,27 @@ def generate(
     click.echo(_report(written))
 
 
-def _pairs(arguments: Sequence[str]) -> dict[str, str]:
-    """Read the generator's own options, ``--name value`` or ``--name=value``."""
+def _apart(arguments: Sequence[str]) -> tuple[list[str], dict[str, str]]:
+    """Return the files, and the generators' own options, ``--name value`` or ``--name=value``."""
+    words: list[str] = []
     pairs: dict[str, str] = {}
     left = list(arguments)
     while left:
         first = left.pop(0)
+        if not first.startswith("-"):
+            words.append(first)
+            continue
         if not first.startswith("--"):
-            raise click.UsageError(f"Got unexpected extra argument ({first})")
+            raise click.NoSuchOption(first)
         name, equals, value = first[2:].partition("=")
         if not equals:
             if not left:
                 raise click.UsageError(f"Option '--{name}' requires an argument.")
             value = left.pop(0)
         pairs[name] = value
-    return pairs
+    if not words:
+        raise click.UsageError("Missing argument 'FILES...'.")
+    return words, pairs
 
 
 def _show(diagnostics: Sequence[Diagnostic]) -> None:

@@ -35,16 +35,12 @@ def graph(ctx: click.Context, file: str, form: str, interfaces: tuple[Path, ...]
     Ports that nobody connected talk on their own names; these ends are marked, or dashed. Findings
     go to standard error, and errors fail the command, but what can be shown is shown.
     """
+    from deros.cli.project import check_one
     from deros.cli.render import print_text
-    from deros.interfaces.store import InterfaceStore
     from deros.metamodels.flatten import flatten
-    from deros.metamodels.load import Repository
     from deros.metamodels.system import System
-    from deros.validators.check import check
 
-    store, repository = InterfaceStore(interfaces), Repository()
-    loaded = repository.load(file)
-    findings = check([loaded], repository, store)
+    loaded, findings = check_one(file, interfaces)
     print_text(findings, sys.stderr)
     code = exit_code(findings)
     if isinstance(loaded.model, System):

@@ -22,6 +22,7 @@ _UNREADABLE = frozenset(
         codes.UNKNOWN_LANGUAGE,
         codes.FILE_TOO_LARGE,
         codes.UNUSABLE_BASELINE,
+        codes.UNREADABLE_PROJECT,
     }
 )
 

@@ -53,45 +53,96 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """The files of a model, not written yet, with what they were made by and what was found."""
+    """The files of models, not written yet, with what they were made by and what was found.
+
+    Attributes:
+        files: what is to be written.
+        context: what the generators looked at.
+        generators: those that ran.
+        findings: what was found in the models, none of it in the way.
+        outputs: the model of each generator, and what it has made.
+        rests_on: files besides the models that the result depends on.
+    """
 
     files: Files
     context: Context
-    generator: Generator
+    generators: tuple[Generator, ...]
     findings: tuple[Diagnostic, ...]
-    file: str
+    outputs: tuple[tuple[str, Files], ...]
+    rests_on: tuple[Path, ...] = ()
 
 
-def make(request: Request) -> Made:
-    """Load, check and generate.
+def make(*requests: Request) -> Made:
+    """Load, check and generate; of several models either all or nothing.
 
     Raises:
-        Refused: if the model has an error, or the target cannot be made from it.
-        ValueError: if the generator cannot read an option; ``UnknownOption`` if it has none such.
+        Refused: if a model has an error, if a target cannot be made from it, or if two of them make
+            one file differently.
+        ValueError: if a generator cannot read an option; ``UnknownOption`` if none has such a one.
     """
+    from deros.cli.project import interfaces_of, projects_of
+    from deros.diagnostics import in_file_order
     from deros.generators.protocol import Context, GenerationError
-    from deros.generators.registry import discover
+    from deros.generators.writer import join
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
     from deros.validators.check import check as check_loaded
     from deros.validators.check import check_file
 
-    context = Context(InterfaceStore(request.interfaces), Repository(), check_file)
-    loaded = context.repository.load(request.file)
-    findings = check_loaded([loaded], context.repository, context.store)
-    code = exit_code(in_the_way_of_generating(findings, request.file))
-    if code or loaded.language is None:
+    projects = projects_of(each.file for each in requests)
+    folders = interfaces_of(requests[0].interfaces, projects)
+    context = Context(InterfaceStore(folders), Repository(), check_file)
+    loaded = [context.repository.load(each.file) for each in requests]
+    allowances = [each for project in projects for each in project.allowances]
+    findings = check_loaded(loaded, context.repository, context.store, allowances)
+    findings = in_file_order([*findings, *(d for each in projects for d in each.diagnostics)])
+    # What is made of a system itself needs its gates: then nothing is yet to be mended.
+    order = sorted((each.file for each in requests), key=lambda file: not file.endswith(".system"))
+    code = exit_code(in_the_way_of_generating(findings, order[0]))
+    if code or any(each.language is None for each in loaded):
         raise Refused(findings, code or FINDINGS)
+    generators = [_generator(*pair, findings) for pair in zip(requests, loaded, strict=True)]
+    options = _options(requests, generators)
+    try:
+        outputs = [
+            (file.path, generator(file.model, context, given))
+            for file, generator, given in zip(loaded, generators, options, strict=True)
+        ]
+    except GenerationError as error:
+        raise Refused([*findings, *error.diagnostics], FINDINGS) from error
+    rests_on = tuple(each.path for each in projects if each.path is not None)
+    files = join(outputs)
+    return Made(files, context, tuple(generators), tuple(findings), tuple(outputs), rests_on)
+
+
+def _generator(request: Request, loaded: LoadedFile, findings: Sequence[Diagnostic]) -> Generator:
+    from deros.generators.registry import discover
+
+    assert loaded.language is not None
     generator = discover().find(loaded.language, request.target)
     if generator is None:
         unknown = _unknown_target(discover(), loaded, request.target)
         raise Refused([*findings, unknown], UNUSABLE)
-    _know_options(generator, request.options)
-    try:
-        files = generator(loaded.model, context, request.options)
-    except GenerationError as error:
-        raise Refused([*findings, *error.diagnostics], FINDINGS) from error
-    return Made(files, context, generator, tuple(findings), request.file)
+    return generator
+
+
+def _options(
+    requests: Sequence[Request], generators: Sequence[Generator]
+) -> list[Mapping[str, str]]:
+    """Return what each generator is given: its own of the options, and what the project says.
+
+    Raises:
+        UnknownOption: no generator of the run has an option that the command line gives.
+    """
+    from deros.cli.project import project_of
+
+    _know_options(generators, requests[0].options)
+    result: list[Mapping[str, str]] = []
+    for request, generator in zip(requests, generators, strict=True):
+        known = {option.name for option in generator.options}
+        given = {**project_of(request.file).options, **request.options}
+        result.append({name: text for name, text in given.items() if name in known})
+    return result
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,22 +188,30 @@ def put(made: Made, where: Place, started_ns: int) -> WriteReport:
     merged = Merged(made.files, (), ())
     if where.source is not None:
         merged = merge(made.files, where.source, where.output)
-    generator = made.generator
-    origin = Origin.of(generator.language, generator.target, made.file, where.output)
+    claims = [
+        (
+            {path: file for path, file in merged.files.items() if path in files},
+            Origin.of(generator.language, generator.target, model, where.output),
+        )
+        for generator, (model, files) in zip(made.generators, made.outputs, strict=True)
+    ]
     try:
-        check_claims(merged.files, where.output, origin)
+        for files, origin in claims:
+            check_claims(files, where.output, origin)
     except GenerationError as error:
         raise Refused(error.diagnostics, FINDINGS) from error
     written = write(merged.files, where.output, overwrite=where.overwrite)
     if where.stamp is None and where.source is None:  # else the build system owns the folder
-        record_claims(merged.files, where.output, origin)
+        for files, origin in claims:
+            record_claims(files, where.output, origin)
     place(merged.placed, where.output)
     ours = {path for path, file in merged.files.items() if file.owner is Owner.GENERATOR}
     ours |= {each.path for each in merged.placed}
     if where.depfile is not None:
         everything = [str(where.output / path) for path in sorted(ours)]
         targets = everything if where.stamp is None else [str(where.stamp)]
-        found = inputs(made.context, made.generator, [*merged.inputs, *where.rests_on])
+        more = [*merged.inputs, *where.rests_on, *made.rests_on]
+        found = inputs(made.context, made.generators, more)
         write_if_changed(where.depfile, depfile(targets, found))
     if where.stamp is not None:
         stale = sorted(set(stamped(where.stamp)) - ours)
@@ -248,10 +307,10 @@ def _unknown_target(registry: Registry, loaded: LoadedFile, target: str) -> Diag
     return finding(codes.UNKNOWN_TARGET, message, Span(source, 0, 0), hint.removeprefix("; "))
 
 
-def _know_options(generator: Generator, given: Mapping[str, str]) -> None:
+def _know_options(generators: Sequence[Generator], given: Mapping[str, str]) -> None:
     from deros.validators.hints import did_you_mean
 
-    known = [f"--{option.name}" for option in generator.options]
+    known = [f"--{option.name}" for generator in generators for option in generator.options]
     for name in given:
         if f"--{name}" not in known:
             raise UnknownOption(

@@ -81,10 +81,11 @@ def simulate(
     to standard error. Exits with 0, with 1 if the rules or the trace have errors, with 2 if one of
     them cannot be read.
     """  # noqa: D301 - click knows a block by the character itself
+    from deros.cli.project import interfaces_of, project_of
     from deros.interfaces.store import InterfaceStore
     from deros.monitor.trace import read_trace
 
-    store = InterfaceStore(interfaces)
+    store = InterfaceStore(interfaces_of(interfaces, [project_of(rules)]))
     program, findings = _load(rules, store)
     if program is None:
         _fail(ctx, findings)

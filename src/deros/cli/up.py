@@ -115,14 +115,10 @@ def _run(
 
 
 def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:
-    from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.load import Repository
+    from deros.cli.project import check_one
     from deros.metamodels.system import System as SystemModel
-    from deros.validators.check import check
 
-    store, repository = InterfaceStore(interfaces), Repository()
-    loaded = repository.load(file)
-    findings = check([loaded], repository, store)
+    loaded, findings = check_one(file, interfaces)
     _show(findings)
     code = exit_code(findings)
     if code:

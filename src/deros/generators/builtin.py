@@ -13,9 +13,10 @@ from deros.metamodels.system import System
 
 _MAINTAINER = Option("maintainer", "maintainer for package.xml, as 'Jane Doe <jane@example.com>'")
 _COPYRIGHT = Option("copyright", "years and holder for the files' headers, as '2026 Jane Doe'")
+_LICENCE = Option("licence", "licence of the package, as 'BSD-3-Clause' (default: Apache-2.0)")
 
 
-@generator("rosnode", "python", (_MAINTAINER, _COPYRIGHT))
+@generator("rosnode", "python", (_MAINTAINER, _COPYRIGHT, _LICENCE))
 def rosnode_python(model: NodeType, context: Context, options: Options) -> Files:
     """A complete ament_python package: base class, your node, parameters, launch file, tests."""
     from deros.generators.rosnode_python.generate import generate
@@ -23,7 +24,7 @@ def rosnode_python(model: NodeType, context: Context, options: Options) -> Files
     return generate(model, context, options)
 
 
-@generator("rosnode", "cpp", (_MAINTAINER, _COPYRIGHT))
+@generator("rosnode", "cpp", (_MAINTAINER, _COPYRIGHT, _LICENCE))
 def rosnode_cpp(model: NodeType, context: Context, options: Options) -> Files:
     """A complete ament_cmake package: base class, your node as a component, parameters, tests."""
     from deros.generators.rosnode_cpp.generate import generate
@@ -60,6 +61,7 @@ _SAFETY = (
     Option("node", "name of the safety node (default: the package's name with _node)"),
     _MAINTAINER,
     _COPYRIGHT,
+    _LICENCE,
 )
 
 

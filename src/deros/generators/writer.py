@@ -12,14 +12,14 @@ import enum
 import os
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.generators.banner import is_untouched, with_banner
-from deros.generators.protocol import Files, Owner
+from deros.generators.protocol import File, Files, Owner
 from deros.interfaces.files import read_regular
 
 _LARGEST = 256 << 20
@@ -76,6 +76,28 @@ def write(files: Files, directory: Path, *, overwrite: bool = False) -> WriteRep
         raise WriteError(f"cannot write {where}: {error.strerror or error}") from error
     except UnicodeEncodeError as error:
         raise WriteError(f"cannot write half a character, {error.object[error.start]!r}") from error
+
+
+def join(outputs: Sequence[tuple[str, Files]]) -> Files:
+    """Return the files of several models as those of one run.
+
+    Args:
+        outputs: each model's name, and what was made from it.
+
+    Raises:
+        WriteError: if two of them make one path, and not the same text of it.
+    """
+    joined: dict[str, File] = {}
+    makers: dict[str, str] = {}
+    for maker, files in outputs:
+        for path, file in files.items():
+            if joined.setdefault(path, file) != file:
+                raise WriteError(
+                    f"refused to write {path}: {makers[path]} and {maker} make it, and not the "
+                    "same; give them packages or output folders of their own"
+                )
+            makers.setdefault(path, maker)
+    return joined
 
 
 @dataclass(frozen=True, slots=True)

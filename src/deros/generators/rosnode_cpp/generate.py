@@ -24,6 +24,7 @@ from deros.generators.cpp_source import (
     tidied,
 )
 from deros.generators.node_package import maintainer, nodes_beside, refuse_legacy, unsupported
+from deros.generators.notice import licence, notice
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.reserved_names import hidden_from_cpp
 from deros.generators.rosnode_cpp.includes import base_header, base_source, user_header
@@ -68,7 +69,8 @@ def package_files(
 
     Args:
         models: one or more nodes; their order does not matter.
-        options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder.
+        options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder, and
+            ``licence`` as an SPDX identifier.
         provided: the nodes whose class the caller adds, by the name of the node type. Of such a
             node there is no user's file.
         store: the interfaces that are known: no package of theirs may be hidden.
@@ -80,8 +82,8 @@ def package_files(
     ordered = tuple(sorted(models, key=lambda model: model.name))
     for model in ordered:
         _check_supported(model)
-    holder = options.get("copyright", "")
-    package = package_view(ordered, maintainer(options), holder, provided or {})
+    holder = notice(options)
+    package = package_view(ordered, maintainer(options), holder, licence(options), provided or {})
     scopes = [
         (function.text.partition("::")[0], function.span)
         for model in ordered

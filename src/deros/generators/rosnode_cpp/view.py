@@ -22,6 +22,7 @@ from deros.generators.node_view import (
     timer_notes,
     topic_parameter,
 )
+from deros.generators.notice import is_checked
 from deros.generators.python_source import one_line, sentence
 from deros.generators.rosnode_cpp.parameters import (
     MapView,
@@ -225,7 +226,8 @@ class PackageView:
     Attributes:
         description: on one line.
         libraries: packages needed to build and run, sorted; ``launch`` those to launch.
-        copyright: years and holder for the headers; empty for none.
+        copyright: the text above each file; empty for none.
+        licence: the licence for manifests.
     """
 
     name: str
@@ -235,6 +237,7 @@ class PackageView:
     maintainer: str
     email: str
     copyright: str
+    licence: str
 
     @property
     def configured(self) -> bool:
@@ -245,7 +248,7 @@ class PackageView:
     def linters(self) -> tuple[str, ...]:
         """The packages that hold this one against ament's settings."""
         checked = ("cppcheck", "cpplint", "flake8", "lint_cmake", "pep257", "uncrustify", "xmllint")
-        names = sorted((*checked, "copyright")) if self.copyright else checked
+        names = sorted((*checked, "copyright")) if is_checked(self.copyright) else checked
         return tuple(f"ament_cmake_{name}" for name in names)
 
     def targets(self, node: NodeView) -> tuple[str, ...]:
@@ -257,6 +260,7 @@ def package_view(
     models: tuple[NodeType, ...],
     maintainer: tuple[str, str],
     copyright_line: str,
+    licence: str,
     provided: Mapping[str, Provided],
 ) -> PackageView:
     """Return the view of the package that ``models``, all of one package, make up.
@@ -286,6 +290,7 @@ def package_view(
         maintainer=maintainer[0],
         email=maintainer[1],
         copyright=copyright_line,
+        licence=licence,
     )
 
 

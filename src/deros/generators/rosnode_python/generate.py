@@ -9,6 +9,7 @@ from deros import codes
 from deros.diagnostics import report
 from deros.generators.names import python_identifier
 from deros.generators.node_package import maintainer, nodes_beside, refuse_legacy, unsupported
+from deros.generators.notice import licence, notice
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.python_source import call, expression, mark_long_lines, wrapped
 from deros.generators.reserved_names import hidden_from_python
@@ -58,7 +59,8 @@ def package_files(
 
     Args:
         models: one or more nodes; their order does not matter.
-        options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder.
+        options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder, and
+            ``licence`` as an SPDX identifier.
         raw: the names of the nodes whose subscriptions hand over serialized messages. Of such a
             node there is no user's module: the caller adds its class and its ``main``.
         needs: what the modules that the caller adds import, by the keys of rosdep.
@@ -71,8 +73,10 @@ def package_files(
     ordered = tuple(sorted(models, key=lambda model: model.name))
     for model in ordered:
         _check_supported(model)
-    copyright_line = options.get("copyright", "")
-    package = package_view(ordered, maintainer(options), copyright_line, raw, needs)
+    copyright_line = notice(options)
+    package = package_view(
+        ordered, maintainer(options), copyright_line, licence(options), raw, needs
+    )
     modules = [(each.module, ordered[0].package_span) for each in package.custom]
     hidden = list(hidden_from_python(ordered, package.dependencies, modules, store))
     if hidden:
@@ -114,7 +118,7 @@ def _package_level(package: PackageView) -> dict[str, File]:
         "test/test_flake8.py": "test_flake8.py",
         "test/test_pep257.py": "test_pep257.py",
     }
-    if package.copyright:
+    if package.checks_copyright:
         templates["test/test_copyright.py"] = "test_copyright.py"
     files = {
         f"{package.name}/{path}": File(_render(template, package=package))

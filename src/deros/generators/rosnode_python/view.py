@@ -21,6 +21,7 @@ from deros.generators.node_view import (
     timer_notes,
     topic_parameter,
 )
+from deros.generators.notice import is_checked
 from deros.generators.python_source import Call, Text, one_line, sentence, wrapped
 from deros.generators.rosnode_python.parameters import (
     MapView,
@@ -345,7 +346,8 @@ class PackageView:
     Attributes:
         description: on one line.
         dependencies: packages needed to run, sorted.
-        copyright: years and holder for the headers; empty for none.
+        copyright: the text above each file; empty for none.
+        licence: the licence for manifests.
     """
 
     name: str
@@ -356,6 +358,12 @@ class PackageView:
     maintainer: str
     email: str
     copyright: str
+    licence: str
+
+    @property
+    def checks_copyright(self) -> bool:
+        """Whether ament's test of copyright knows the headers."""
+        return is_checked(self.copyright)
 
     @property
     def description_argument(self) -> Text:
@@ -367,6 +375,7 @@ def package_view(
     models: tuple[NodeType, ...],
     maintainer: tuple[str, str],
     copyright_line: str,
+    licence: str,
     raw: Collection[str] = (),
     needs: Collection[str] = (),
 ) -> PackageView:
@@ -375,7 +384,8 @@ def package_view(
     Args:
         models: the nodes.
         maintainer: name and address.
-        copyright_line: years and holder, or nothing.
+        copyright_line: the text above each file, or nothing.
+        licence: the licence for manifests.
         raw: the names of the nodes that are raw (see :class:`NodeView`).
         needs: further packages, which the caller's own modules import.
 
@@ -414,6 +424,7 @@ def package_view(
         maintainer=maintainer[0],
         email=maintainer[1],
         copyright=copyright_line,
+        licence=licence,
     )
 
 

@@ -16,6 +16,7 @@ from deros.generators.cpp_source import (
 )
 from deros.generators.gate_cpp import gate_files, gate_nodes
 from deros.generators.monitor_c import render_monitor
+from deros.generators.notice import notice
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.rosnode_cpp.generate import Provided, licensed, package_files
 from deros.generators.safety_cpp.node import twin_options
@@ -58,7 +59,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     node = cpp_twin(python)
     shared = shared_topics(built.program, built.topics)
     view = safety_view(model, built.program, python, node, context.store, shared)
-    holder = options.get("copyright", "")
+    holder = notice(options)
     gates = gate_files(
         built.program,
         gate_nodes(built.program, built.topics, python),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from deros.generators.cdr_python import render_decoders
 from deros.generators.gate_python import gate_files, gate_nodes
 from deros.generators.monitor_python import render_monitor
+from deros.generators.notice import notice
 from deros.generators.protocol import Context, File, Files, GenerationError, Options, Owner
 from deros.generators.python_source import Text, call, expression, mark_long_lines
 from deros.generators.rosnode_python.generate import licensed, package_files
@@ -36,7 +37,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     node = safety_node(built.program, built.topics, options, model.source)
     shared = shared_topics(built.program, built.topics)
     view = safety_view(model, built.program, node, context.store, shared)
-    copyright_line = options.get("copyright", "")
+    copyright_line = notice(options)
     gates = gate_nodes(built.program, built.topics, node)
     nodes = [node, *gates]
     monitor = render_monitor(built.program)

@@ -1,0 +1,96 @@
+"""The models that a command line means: files as they are, and all models below folders."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from deros.cli.project import project_of
+from deros.metamodels.globbing import MOST_FOLDERS
+from deros.metamodels.languages import LANGUAGES
+
+if TYPE_CHECKING:
+    from deros.metamodels.load import LoadedFile, Repository
+
+_NOT_SEARCHED = frozenset({"__pycache__", "build", "install", "log", "node_modules"})
+_IGNORED = ("CMakeCache.txt", "COLCON_IGNORE", "AMENT_IGNORE")
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """One model of a command line.
+
+    Attributes:
+        path: its file.
+        searched: whether it was found in a folder that was named, not named itself.
+    """
+
+    path: str
+    searched: bool
+
+
+def named_models(paths: Sequence[str]) -> list[Named]:
+    """Return the models that arguments of a command mean, each once, those of a folder sorted.
+
+    Raises:
+        click.UsageError: a folder has no model, or too many folders in it.
+    """
+    found: dict[str, Named] = {}
+    for path in paths:
+        if not Path(path).is_dir() or Path(path).suffix in LANGUAGES:
+            found[path] = Named(path, False)
+            continue
+        models = sorted(_models_below(path, project_of(path).output))
+        if not models:
+            raise click.UsageError(f"the folder '{path}' has no model ({', '.join(LANGUAGES)})")
+        for each in models:
+            found.setdefault(each, Named(each, True))
+    return list(found.values())
+
+
+def _models_below(folder: str, output: Path | None) -> Iterator[str]:
+    """Find models, leaving out hidden folders, those of builds, and what deros writes to."""
+    for searched, (here, below, names) in enumerate(os.walk(folder)):
+        if searched >= MOST_FOLDERS:
+            raise click.UsageError(f"'{folder}' has more than {MOST_FOLDERS:,} folders: name one")
+        below[:] = sorted(each for each in below if _is_searched(Path(here, each), output))
+        yield from (
+            os.path.normpath(Path(here, name))
+            for name in names
+            if Path(name).suffix in LANGUAGES and not name.startswith(".")
+        )
+
+
+def _is_searched(folder: Path, output: Path | None) -> bool:
+    if output is not None and folder.resolve() == output.resolve():
+        return False
+    if folder.name.startswith(".") or folder.name in _NOT_SEARCHED:
+        return False
+    return not any((folder / name).exists() for name in _IGNORED)
+
+
+def to_be_checked(
+    named: Iterable[Named], loaded: Sequence[LoadedFile], repository: Repository
+) -> list[LoadedFile]:
+    """Return the files that count as named by the user.
+
+    A system that was found in a folder, and that another system imports, is a part of that one: by
+    itself its topics may lack ends.
+    """
+    from deros.metamodels.system import System
+
+    parts = {
+        id(repository.load(path))
+        for each in repository.files
+        if isinstance(each.model, System)
+        for statement in each.model.imports
+        for path in statement.files
+        if path.endswith(".system")
+    }
+    pairs = zip(named, loaded, strict=True)
+    return [file for name, file in pairs if not (name.searched and id(file) in parts)]

@@ -1,0 +1,132 @@
+"""What ``deros generate`` is to make: which targets of which of the models that were named."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from deros.cli.models import Named, named_models, to_be_checked
+from deros.cli.produce import Request
+from deros.cli.project import interfaces_of, project_of, projects_of
+
+if TYPE_CHECKING:
+    from deros.interfaces.store import InterfaceStore
+    from deros.metamodels.load import LoadedFile
+    from deros.metamodels.rules import Rules
+
+
+def plan(
+    paths: Sequence[str],
+    target: str | None,
+    options: Mapping[str, str],
+    interfaces: tuple[Path, ...],
+) -> list[Request]:
+    """Return a request for each model and target.
+
+    Of a folder those models are taken that have the target, or, without one, that the project file
+    names targets for; but no node that has a program already, none of a package that
+    rules generate, and no system that is part of another one.
+
+    Args:
+        paths: files and folders.
+        target: the target, or ``None`` for those of the project file.
+        options: the options of generators.
+        interfaces: folders with message definitions.
+
+    Raises:
+        click.UsageError: there is no target for a file, or nothing to generate in the folders.
+    """
+    named = named_models(paths)
+    if any(each.searched for each in named):
+        named = _worth_generating(named, options, interfaces)
+    requests = [
+        Request(each.path, name, options, interfaces)
+        for each in named
+        for name in _targets(each, target)
+    ]
+    if not requests:
+        what = f"'{target}' is made" if target else "a target is given in the project file"
+        raise click.UsageError(f"there is no model from which {what} in {', '.join(paths)}")
+    return requests
+
+
+def output_of(requests: Sequence[Request]) -> Path:
+    """Return the folder that the project files name to write to, or the current one.
+
+    Raises:
+        click.UsageError: two of the models belong to projects that name different folders.
+    """
+    folders = {project_of(each.file).output for each in requests}
+    if len(folders) > 1:
+        raise click.UsageError("the models belong to projects with different outputs: give -o")
+    return next(iter(folders)) or Path()
+
+
+def _targets(model: Named, target: str | None) -> tuple[str, ...]:
+    from deros.generators.registry import discover
+    from deros.metamodels.languages import language_of
+
+    language = language_of(model.path)
+    if target is not None:
+        known = language is not None and discover().find(language, target) is not None
+        return (target,) if known or not model.searched else ()
+    targets = project_of(model.path).targets.get(Path(model.path).suffix.removeprefix("."), ())
+    if not targets and not model.searched:
+        raise click.UsageError(
+            "Missing option '--target'; a project file may name targets: "
+            f"targets.{Path(model.path).suffix.removeprefix('.')}"
+        )
+    return targets
+
+
+def _worth_generating(
+    named: Sequence[Named], options: Mapping[str, str], interfaces: tuple[Path, ...]
+) -> list[Named]:
+    """Leave out what was found in folders and is not to be generated."""
+    from deros.interfaces.store import InterfaceStore
+    from deros.metamodels.load import Repository
+    from deros.metamodels.node import NodeType
+    from deros.metamodels.rules import Rules
+
+    repository = Repository()
+    loaded = [repository.load(each.path) for each in named]
+    whole = {id(each) for each in to_be_checked(named, loaded, repository)}
+    store = InterfaceStore(interfaces_of(interfaces, projects_of(each.path for each in named)))
+    generated = {
+        package
+        for each in loaded
+        if isinstance(each.model, Rules)
+        for package in _packages_of_rules(each.model, options, store)
+    }
+
+    def is_wanted(model: Named, file: LoadedFile) -> bool:
+        if not model.searched:
+            return True
+        node = file.model
+        if isinstance(node, NodeType):
+            return node.executable is None and node.package not in generated
+        return id(file) in whole
+
+    return [model for model, file in zip(named, loaded, strict=True) if is_wanted(model, file)]
+
+
+def _packages_of_rules(
+    rules: Rules, options: Mapping[str, str], store: InterfaceStore
+) -> Iterator[str]:
+    """Return the packages that a safety node, its gates and their descriptions are made in."""
+    from deros.generators.protocol import GenerationError
+    from deros.generators.safety_cpp.node import cpp_twin, twin_options
+    from deros.generators.safety_python.node import safety_node
+    from deros.monitor.build import build
+
+    built = build(rules, store)
+    if built.program is None:
+        return
+    try:
+        node = safety_node(built.program, built.topics, twin_options(options), rules.source)
+    except (GenerationError, ValueError):  # the generator itself will say so
+        return
+    yield from (node.package, cpp_twin(node).package)

@@ -1,0 +1,307 @@
+"""The project file: what a project's commands have in common, said once.
+
+It is ``deros.toml``, or the table ``[tool.deros]`` of ``pyproject.toml``, in the folder of a model
+or the nearest one above it. What the command line says wins.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from deros import codes
+from deros.diagnostics import Code, Diagnostic, SourceFile, Span, report
+from deros.interfaces.files import read_regular
+from deros.validators.hints import did_you_mean
+
+if TYPE_CHECKING:
+    from deros.metamodels.load import LoadedFile
+    from deros.validators.allowances import Allowed, ProjectAllowance
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+LANGUAGES = ("rnd", "system", "deros")
+"""The suffixes of models, as ``targets`` names them."""
+
+_LARGEST = 4 << 20
+_TEXTS = ("copyright", "licence", "maintainer")
+_KEYS = ("interfaces", "targets", "output", *_TEXTS, "allow")
+_ALLOW_KEYS = ("code", "path", "reason")
+
+
+@dataclass(frozen=True, slots=True)
+class Project:
+    """What a project file says.
+
+    Attributes:
+        path: the file; ``None`` if there is none.
+        interfaces: folders with message definitions, absolute.
+        targets: what ``deros generate`` makes of each language, by the suffix of its files.
+        output: the folder to write to, absolute; ``None`` if it is not given.
+        options: options of generators: copyright, licence and maintainer.
+        allowances: findings that are allowed by code and path.
+        diagnostics: what is wrong with the file.
+    """
+
+    path: Path | None = None
+    interfaces: tuple[Path, ...] = ()
+    targets: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    output: Path | None = None
+    options: Mapping[str, str] = field(default_factory=dict)
+    allowances: tuple[ProjectAllowance, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+NONE = Project()
+
+
+def project_of(model: str | Path) -> Project:
+    """Return the project that a model, or a folder of models, belongs to."""
+    path = _find(Path(model))
+    return NONE if path is None else _read(path)
+
+
+def projects_of(models: Iterable[str | Path]) -> list[Project]:
+    """Return the projects that models belong to, each once."""
+    paths: dict[Path, None] = {}
+    for model in models:
+        path = _find(Path(model))
+        if path is not None:
+            paths[path] = None
+    return [_read(path) for path in paths]
+
+
+def interfaces_of(given: Sequence[Path], projects: Iterable[Project]) -> tuple[Path, ...]:
+    """Return the folders of the command line, which win, and those of the projects."""
+    return (*given, *(folder for project in projects for folder in project.interfaces))
+
+
+def check_one(file: str, interfaces: Sequence[Path]) -> tuple[LoadedFile, list[Diagnostic]]:
+    """Load and check one model and all that it imports, as its project says."""
+    from deros.diagnostics import in_file_order
+    from deros.interfaces.store import InterfaceStore
+    from deros.metamodels.load import Repository
+    from deros.validators.check import check
+
+    project = project_of(file)
+    store, repository = InterfaceStore(interfaces_of(interfaces, [project])), Repository()
+    loaded = repository.load(file)
+    findings = check([loaded], repository, store, project.allowances)
+    return loaded, in_file_order([*findings, *project.diagnostics])
+
+
+def unneeded(
+    projects: Iterable[Project], named: Iterable[str], allowed: Iterable[Allowed]
+) -> list[Diagnostic]:
+    """Return the allowances of projects that no finding needs, where all of a project is checked.
+
+    Args:
+        projects: the projects.
+        named: what the user named; a project is checked as a whole if its folder is named, or one
+            above it.
+        allowed: what was allowed.
+    """
+    needed = {each.by.span for each in allowed}
+    folders = [Path(each).resolve() for each in named if Path(each).is_dir()]
+    found = []
+    for project in projects:
+        if project.path is None or not any(
+            project.path.parent.resolve().is_relative_to(folder) for folder in folders
+        ):
+            continue
+        for each in project.allowances:
+            if each.span not in needed:
+                message = f"no file of '{each.pattern}' has a finding {each.code} to allow"
+                found.append(report(codes.UNUSED_ALLOWANCE, message, each.span, "remove the entry"))
+    return found
+
+
+# Finding and reading -----------------------------------------------------------------------------
+
+
+def _find(model: Path) -> Path | None:
+    start = model.absolute()
+    for folder in (start, *start.parents) if start.is_dir() else start.parents:
+        own, shared = folder / "deros.toml", folder / "pyproject.toml"
+        if own.is_file():
+            return own
+        if shared.is_file() and _has_table(shared):
+            return shared
+    return None
+
+
+def _has_table(path: Path) -> bool:
+    """Tell whether a pyproject.toml speaks of deros; what else is in it is not our business."""
+    try:
+        text = read_regular(path, _LARGEST).decode()
+    except (OSError, ValueError):
+        return False
+    return re.search(r"(?m)^\s*\[+\s*tool\s*\.\s*[\"']?deros[\"']?\s*[\].]", text) is not None
+
+
+def _read(path: Path) -> Project:
+    from deros.metamodels.imports import shown_path
+
+    shown = shown_path(str(path))
+    try:
+        text = read_regular(path, _LARGEST).decode("utf-8-sig")
+        data = tomllib.loads(text)
+    except (OSError, ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        message = f"cannot read the project file '{shown}': {reason}"
+        start = Span(SourceFile(shown, ""), 0, 0)
+        found = (report(codes.UNREADABLE_PROJECT, message, start),)
+        return Project(path, diagnostics=found)
+    table = data if path.name == "deros.toml" else data.get("tool", {}).get("deros", {})
+    return _Reader(path, SourceFile(shown, text)).project(table)
+
+
+class _Reader:
+    """Reads the table of one project file, collecting what is wrong with it."""
+
+    def __init__(self, path: Path, source: SourceFile) -> None:
+        self._path = path
+        self._root = path.parent
+        self._source = source
+        self._found: list[Diagnostic] = []
+
+    def project(self, table: Any) -> Project:
+        if not isinstance(table, dict):
+            self._wrong("tool.deros", "is not a table")
+            table = {}
+        self._unknown(table, _KEYS, "")
+        return Project(
+            path=self._path,
+            interfaces=tuple(self._interfaces(table.get("interfaces", []))),
+            targets=self._targets(table.get("targets", {})),
+            output=self._output(table.get("output")),
+            options={key: text for key in _TEXTS if (text := self._text(table, key)) is not None},
+            allowances=tuple(self._allowances(table.get("allow", []))),
+            diagnostics=tuple(self._found),
+        )
+
+    def _interfaces(self, value: Any) -> Iterator[Path]:
+        if not _is_texts(value):
+            self._wrong("interfaces", "is not a list of folders")
+            return
+        for each in value:
+            folder = self._root / each
+            if folder.is_dir():
+                yield folder
+            else:
+                self._wrong("interfaces", f"names '{each}', and there is no such folder")
+
+    def _targets(self, value: Any) -> dict[str, tuple[str, ...]]:
+        if not isinstance(value, dict):
+            self._wrong("targets", "is not a table")
+            return {}
+        self._unknown(value, LANGUAGES, "targets.")
+        targets = {}
+        for language in LANGUAGES:
+            named = value.get(language, [])
+            if isinstance(named, str):
+                named = [named]
+            if _is_texts(named):
+                targets[language] = tuple(dict.fromkeys(named))
+            else:
+                self._wrong(language, "is neither the name of a target nor a list of names")
+        return {language: names for language, names in targets.items() if names}
+
+    def _output(self, value: Any) -> Path | None:
+        if value is None:
+            return None
+        if not isinstance(value, str) or not value:
+            self._wrong("output", "is not the path of a folder")
+            return None
+        folder = self._root / value
+        if not folder.resolve().is_relative_to(self._root.resolve()):
+            # A model from somebody else must not choose what is written where.
+            hint = "name such a folder on the command line: -o"
+            self._wrong("output", f"is '{value}', which is outside the project's folder", hint)
+            return None
+        return folder
+
+    def _text(self, table: dict[str, Any], key: str) -> str | None:
+        value = table.get(key)
+        if value is not None and not (isinstance(value, str) and value.strip()):
+            self._wrong(key, "is not a text")
+            return None
+        return value
+
+    def _allowances(self, value: Any) -> Iterator[ProjectAllowance]:
+        from deros.validators.allowances import ProjectAllowance, not_allowable
+
+        if not isinstance(value, list) or not all(isinstance(each, dict) for each in value):
+            self._wrong("allow", "is not a list of tables with code, path and reason")
+            return
+        for number, entry in enumerate(value):
+            span = self._entry(number)
+            self._unknown(entry, _ALLOW_KEYS, "allow.", span)
+            if lacking := [key for key in _ALLOW_KEYS if not _is_text(entry.get(key))]:
+                message = (
+                    f"an allowance needs {', '.join(_ALLOW_KEYS)}; here {lacking[0]} is missing"
+                )
+                self._found.append(report(codes.BAD_ALLOWANCE, message, span))
+                continue
+            wrong = not_allowable(entry["code"], span)
+            if wrong is not None:
+                self._found.append(wrong)
+                continue
+            root = self._root.absolute()
+            yield ProjectAllowance(entry["code"], entry["path"], entry["reason"], root, span)
+
+    def _unknown(
+        self, table: Mapping[str, Any], known: Sequence[str], prefix: str, span: Span | None = None
+    ) -> None:
+        for key in table:
+            if key not in known:
+                message = f"the project file knows no '{prefix}{key}'"
+                hint = did_you_mean(key, known, f"it knows {', '.join(known)}")
+                self._say(codes.UNKNOWN_PROJECT_KEY, message, span or self._place(key), hint)
+
+    def _wrong(self, key: str, what: str, hint: str = "") -> None:
+        self._say(codes.BAD_PROJECT_VALUE, f"'{key}' {what}", self._place(key), hint)
+
+    def _say(self, code: Code, message: str, span: Span, hint: str) -> None:
+        self._found.append(report(code, message, span, hint))
+
+    def _place(self, key: str) -> Span:
+        """Return where a key stands, as far as it can be told: TOML's reader gives no places."""
+        text = self._source.text
+        start = 0
+        if header := re.search(r"(?m)^\s*\[+\s*tool\s*\.\s*[\"']?deros", text):
+            start = header.start()
+        word = re.escape(key)
+        pattern = re.compile(
+            rf"(?m)^\s*(?:\[[^\n]*?\.\s*)?[\"']?({word})[\"']?\s*[=\].]|\b({word})\s*="
+        )
+        found = pattern.search(text, start)
+        if found is None:
+            return Span(self._source, start, start)
+        group = 1 if found[1] is not None else 2
+        return Span(self._source, found.start(group), found.end(group))
+
+    def _entry(self, number: int) -> Span:
+        """Return where an allowance stands."""
+        headers = re.finditer(r"(?m)^\s*(\[\[[^\]\n]*\ballow\s*\]\])", self._source.text)
+        header = next((each for n, each in enumerate(headers) if n == number), None)
+        if header is None:
+            place = self._place("allow")
+            # Entries need places of their own, also where all of them stand in one list.
+            return Span(self._source, place.start, place.end + number)
+        return Span(self._source, header.start(1), header.end(1))
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str) and bool(value.strip())
+
+
+def _is_texts(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(each, str) and each for each in value)

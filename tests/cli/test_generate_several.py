@@ -1,0 +1,153 @@
+"""``deros generate`` for several files and whole folders: all of them, or nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.support.cli import deros
+
+
+@pytest.fixture(autouse=True)
+def _in_own_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def _node(path: str, name: str, package: str, port: str = "out", more: str = "") -> None:
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    Path(path).write_text(
+        f"node {name} : {package}\n{more}publishes\n  topic {port} : std_msgs.Bool\n"
+    )
+
+
+def _packages(folder: str) -> list[str]:
+    return sorted(path.parent.name for path in Path(folder).rglob("package.xml"))
+
+
+def test_several_files_in_one_run() -> None:
+    """Each is generated; options go to those that have them."""
+    _node("a.rnd", "a", "pkg_a")
+    _node("b.rnd", "b", "pkg_b")
+    outcome = deros(
+        "generate", "a.rnd", "b.rnd", "--target", "python", "-o", "ws", "--copyright", "2026 X"
+    )
+    assert outcome.code == 0, outcome
+    assert _packages("ws") == ["pkg_a", "pkg_b"]
+    assert "2026 X" in Path("ws/pkg_b/setup.py").read_text()
+
+
+def test_options_may_stand_anywhere() -> None:
+    """An option of a generator takes the next word, wherever the files are."""
+    _node("a.rnd", "a", "pkg_a")
+    outcome = deros(
+        "generate", "--copyright", "2026 X", "a.rnd", "--maintainer=Y <y@z>", "--target", "cpp"
+    )
+    assert outcome.code == 0, outcome
+    assert 'email="y@z"' in Path("pkg_a/package.xml").read_text()
+
+
+def test_a_folder_gives_all_of_its_models_that_have_the_target() -> None:
+    """Nodes of one package come together; other languages are passed over."""
+    _node("m/a.rnd", "a", "pkg")
+    _node("m/b.rnd", "b", "pkg")
+    _node("m/sub/c.rnd", "c", "pkg_c")
+    _node("m/old.rnd", "old", "pkg_old", more='executable "old"\n')
+    _node("m/build/d.rnd", "d", "pkg_d")
+    _node("m/.hidden/e.rnd", "e", "pkg_e")
+    Path("m/s.system").write_text("system S\n")
+    outcome = deros("generate", "m", "--target", "python", "-o", "ws")
+    assert outcome.code == 0, outcome
+    assert _packages("ws") == ["pkg", "pkg_c"]
+    assert Path("ws/pkg/pkg/a.py").exists()
+    assert Path("ws/pkg/pkg/b.py").exists()
+    again = deros("generate", "m", "--target", "python", "-o", "ws")
+    assert "wrote" not in again.out
+
+
+def test_a_new_project_is_generated_at_once() -> None:
+    """The robot's node, its safety node, and the launch file; the safety node is no skeleton."""
+    assert deros("new", "rules", "courier").code == 0
+    Path("deros.toml").write_text(
+        'output = "ws"\n[targets]\nrnd = "python"\nderos = "python"\n'
+        'system = ["launch", "params"]\n'
+    )
+    outcome = deros("generate", ".")
+    assert outcome.code == 0, outcome
+    assert _packages("ws") == ["courier", "courier_safety"]
+    assert Path("ws/courier_system.launch.py").exists()
+    assert Path("ws/courier_safety/courier_safety/monitor.py").exists()
+    assert deros("check", ".").out.startswith("4 files checked")  # none of the generated ones
+    before = {path: path.stat().st_mtime_ns for path in Path("ws").rglob("*")}
+    assert deros("generate", ".").code == 0
+    assert {path: path.stat().st_mtime_ns for path in Path("ws").rglob("*")} == before
+
+
+def test_a_system_that_is_part_of_another_is_no_system_of_its_own() -> None:
+    """In a folder, parts are neither checked nor launched by themselves; named, they are."""
+    _node("m/a.rnd", "a", "pkg")
+    Path("m/part.system").write_text(
+        'system Part\nimports import "a.rnd"\ntopics topic /x\n'
+        "node a : a wirings connect out to /x\n"
+    )
+    Path("m/whole.system").write_text(
+        'system Whole\nimports import "part.system"\ntopics external topic /x\n'
+        "subsystem part : Part\n"
+    )
+    assert "DRS211" not in deros("check", "m").out
+    assert "DRS211" in deros("check", "m/part.system").out
+    assert deros("generate", "m", "--target", "launch", "-o", "ws").code == 0
+    assert [path.name for path in Path("ws").iterdir()] == ["whole.launch.py"]
+
+
+def test_an_error_in_one_leaves_all_unwritten() -> None:
+    """All files of a run are written, or none."""
+    _node("a.rnd", "a", "pkg_a")
+    Path("b.rnd").write_text("node b : pkg_b\nparameters name x : int = 0.5\n")
+    outcome = deros("generate", "a.rnd", "b.rnd", "--target", "python", "-o", "ws")
+    assert outcome.code == 1
+    assert not Path("ws").exists()
+
+
+def test_outputs_that_collide_are_refused() -> None:
+    """Two folders that both describe a part of one package would take turns."""
+    _node("one/a.rnd", "a", "pkg")
+    _node("two/b.rnd", "b", "pkg")
+    outcome = deros("generate", "one", "two", "--target", "python", "-o", "ws")
+    assert outcome.code == 2
+    assert "one/a.rnd and two/b.rnd" in outcome.err
+    assert not Path("ws").exists()
+
+
+def test_a_model_without_target_is_a_mistake() -> None:
+    """A file needs one, a folder has to have a model for it, a build makes one model."""
+    _node("m/a.rnd", "a", "pkg_a")
+    _node("m/b.rnd", "b", "pkg_b")
+    Path("empty").mkdir()
+    for arguments in (
+        ("m/a.rnd",),
+        ("m",),
+        ("m", "--target", "launch"),
+        ("empty", "--target", "python"),
+        ("--target", "python"),
+        ("m", "--target", "python", "--depfile", "d"),
+        ("m", "--target", "python", "--scaffold", "s"),
+        ("m", "--target", "python", "--nope", "x"),
+        ("m", "--target", "python", "-x"),
+    ):
+        outcome = deros("generate", *arguments)
+        assert outcome.code == 2, arguments
+        assert "Traceback" not in outcome.err
+    assert deros("generate", "m/a.rnd", "--target", "lanch").code == 2
+    assert deros("check", "empty").code == 2
+
+
+def test_folders_are_checked_as_files_are() -> None:
+    """Each model below is checked once, however it is reached."""
+    _node("m/a.rnd", "a", "pkg_a")
+    Path("m/sub").mkdir()
+    Path("m/sub/b.rnd").write_text("node b : pkg_b\nparameters name x : int = 0.5\n")
+    outcome = deros("check", "m", "m/a.rnd", "m/sub")
+    assert outcome.code == 1
+    assert outcome.out.count("DRS103") == 1
+    assert outcome.out.endswith("1 error in 2 files\n")
