@@ -11,6 +11,7 @@ from deros.generators.safety_view import (
     calls,
     lasts,
     needs_code,
+    only_resets,
     origin_file,
     refusing_behaviours,
     states_by_path,
@@ -104,3 +105,17 @@ def test_a_behaviour_depends_on_the_rules_of_those_around_it(built: Program) -> 
         ("behaviour_2", "e.near", ("e.fast", "e.near")),
         ("behaviour_3", "e.near", ("e.near",)),
     ]
+
+
+def test_an_action_that_only_resets_others_needs_no_code(built: Program) -> None:
+    """Without parameters and without a state, being run is all that it is for."""
+    assert [a.name for a in built.actions if only_resets(a, built)] == ["release"]
+    assert action_notes(named(built, "release"), built, "")[-1] == (
+        "Running it resets crawl, creep; it need not do anything else."
+    )
+    with_code = program(
+        RULES.replace("action release;", "action release(why);").replace(
+            "{ release;", '{ release("near");'
+        )
+    )
+    assert not any(only_resets(a, with_code) for a in with_code.actions)

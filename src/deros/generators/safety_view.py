@@ -88,6 +88,16 @@ def needs_code(action: Action) -> bool:
     return action.binding is None and action.name != LOG_STATE
 
 
+def only_resets(action: Action, program: Program) -> bool:
+    """Tell whether an action is there to reset others: running it is all that it has to do.
+
+    It may have code all the same; that it has none is no mistake. With parameters, or a state of
+    its own, it is for more than that.
+    """
+    resets = any(other.reset_by == action.index for other in program.actions)
+    return resets and needs_code(action) and not lasts(action) and not action.parameters
+
+
 def lasts(action: Action) -> bool:
     """Tell whether an action has a state, and is not just run."""
     return action.binding is not None or action.latched or action.reset_by is not None
@@ -113,7 +123,11 @@ def action_notes(action: Action, program: Program, description: str) -> list[str
     callers = [b.name for b in walk.behaviours(program) if b.index in action.triggered_by]
     place = f"Declared in {origin(action.span)}" if action.span else "Declared"
     note = f"{place}, run by {', '.join(callers) if callers else 'no behaviour'}."
-    return [text for text in (sentence(description), note) if text]
+    notes = [text for text in (sentence(description), note) if text]
+    if only_resets(action, program):
+        reset = [other.name for other in program.actions if other.reset_by == action.index]
+        notes.append(f"Running it resets {', '.join(reset)}; it need not do anything else.")
+    return notes
 
 
 def argument_types(action: Action, program: Program) -> list[dict[str, Trigger]]:

@@ -115,13 +115,13 @@ def test_an_action_added_later_is_reported_until_it_has_a_body() -> None:
     names: dict[str, Any] = {}
     exec(compile(files[module].text, module, "exec"), names)
     base = names["EveryThingSafetyNodeActionsBase"]
-    written_before = type("Actions", (base,), {"beep": lambda *_: None})
+    written_before = type("Actions", (base,), {"release": lambda *_: None})
     node = Mock()
     actions = written_before(node)
-    assert actions.unfilled() == ["release"]
-    actions.release()
+    assert actions.unfilled() == ["beep"]
+    actions.beep(1, "near")
     (message,) = node.get_logger().error.call_args.args
-    assert message.startswith("action release() should have been carried out now")
+    assert message.startswith("action beep(1, 'near') should have been carried out now")
 
 
 def test_bound_actions_need_no_file_of_actions() -> None:

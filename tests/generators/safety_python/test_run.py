@@ -48,7 +48,7 @@ def test_an_action_without_code_is_never_silent(start: Start, robot: Robot, node
     file = node.actions_file
     assert code == 0
     assert f"action beep does nothing: write its code in {file}" in lines
-    assert f"action release does nothing: write its code in {file}" in lines
+    assert not any("action release" in line for line in lines)  # it only resets others
     assert (
         f"action beep(3, 'too fast') should have been carried out now: write its code in {file}"
         in lines

@@ -33,6 +33,7 @@ from deros.generators.safety_view import (
     argument_types,
     calls,
     needs_code,
+    only_resets,
     origin_file,
     states_by_path,
 )
@@ -69,7 +70,10 @@ class HandlerView:
 
 @dataclass(frozen=True, slots=True)
 class ActionView:
-    """An action whose code the user writes; ``calls`` are the sites with the call of each."""
+    """An action whose code the user writes; ``calls`` are the sites with the call of each.
+
+    One that is ``optional`` may well do nothing.
+    """
 
     name: str
     enumerator: str
@@ -77,6 +81,7 @@ class ActionView:
     parameters: tuple[str, ...]
     notes: tuple[str, ...]
     calls: tuple[tuple[int, Expression], ...]
+    optional: bool
 
     @property
     def unnamed(self) -> list[str]:
@@ -140,6 +145,11 @@ class SafetyView:
     def header(self) -> str:
         """The monitor's header."""
         return f"{self.prefix}_monitor.h"
+
+    @property
+    def required_actions(self) -> tuple[ActionView, ...]:
+        """The actions without which something is left undone."""
+        return tuple(action for action in self.actions if not action.optional)
 
     @property
     def actions_class(self) -> str:
@@ -312,6 +322,7 @@ def _action(action: Action, program: Program, monitor: MonitorView, description:
             for site, call in enumerate(calls(program))
             if call.action == action.index
         ),
+        only_resets(action, program),
     )
 
 

@@ -23,6 +23,7 @@ from deros.generators.safety_view import (
     calls,
     lasts,
     needs_code,
+    only_resets,
     origin_file,
     states_by_path,
 )
@@ -80,12 +81,13 @@ class HandlerView:
 
 @dataclass(frozen=True, slots=True)
 class ActionView:
-    """An action whose code the user writes."""
+    """An action whose code the user writes; one that is ``optional`` may well do nothing."""
 
     name: str
     method: str
     signature: str
     notes: tuple[tuple[str, ...], ...]
+    optional: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +153,10 @@ class SafetyView:
     def actions_imports(self) -> list[str]:
         """The import statement of the user's module."""
         module = f"{self.package}.{self.actions_module}_base"
-        return import_lines({module: {f"{self.actions_class}Base", "not_filled_in"}})
+        names = {f"{self.actions_class}Base"}
+        if not all(action.optional for action in self.actions):
+            names.add("not_filled_in")
+        return import_lines({module: names})
 
 
 def safety_view(
@@ -335,6 +340,7 @@ def _action(action: Action, program: Program, description: str) -> ActionView:
         tuple(
             tuple(wrapped(text, indent=8)) for text in action_notes(action, program, description)
         ),
+        only_resets(action, program),
     )
 
 

@@ -13,12 +13,13 @@ from every_thing_safety.every_thing_safety_node_actions_base import (
 class EveryThingSafetyNodeActions(EveryThingSafetyNodeActionsBase):
     """What this robot does when its safety rules say so."""
 
-    @not_filled_in
     def release(self) -> None:
         """
         Carry out the action release.
 
         Declared in every_thing.deros:6, run by taken_over.
+
+        Running it resets crawl, creep; it need not do anything else.
         """
 
     @not_filled_in
