@@ -6,6 +6,7 @@ import json
 import os
 import re
 import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -131,7 +132,30 @@ def test_dry_run_prints_the_commands_and_starts_nothing(start: Start, tmp_path: 
     run = start('subsystem arm "The arm" { node a : short }', "--dry-run")
     assert run.end() == 0
     program = tmp_path / "prefix" / "lib" / "demo" / "short"
-    assert run.lines == ["# /a (arm)", f"{program} --ros-args -r __node:=a -r __ns:=/"]
+    label, command = run.lines
+    assert label == "# /a (arm)"
+    assert command.endswith(f"{program} --ros-args -r __node:=a -r __ns:=/")
+    pasted = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
+    assert (pasted.returncode, pasted.stdout) == (0, "done\n")
+
+
+def test_a_pasted_command_finds_a_package_that_runs_from_its_sources(
+    start: Start, tmp_path: Path
+) -> None:
+    """What the folders given with --package-path add to the environment is part of the command."""
+    package = tmp_path / "given" / "talk" / "talk"
+    package.mkdir(parents=True)
+    (package.parent / "setup.py").write_text("entry_points = ['speaker = talk.speaker:main']\n")
+    (package / "__init__.py").write_text("")
+    (package / "speaker.py").write_text("def main():\n    print('spoken')\n")
+    given = str(tmp_path / "given")
+    run = start(
+        "node a : speaker", "--dry-run", "--package-path", given, nodes="node speaker : talk"
+    )
+    assert run.end() == 0
+    command = ["env", "-i", "bash", "-c", run.lines[1]]
+    pasted = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (pasted.returncode, pasted.stdout) == (0, "spoken\n"), pasted.stderr
 
 
 def test_nodes_are_chosen_by_name_full_name_pattern_and_subsystem(start: Start) -> None:

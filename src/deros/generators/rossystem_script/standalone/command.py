@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 import os
 from pathlib import Path
@@ -45,7 +45,7 @@ def main(
     programs = Programs([*options.package_path, *map(Path, from_environment)], os.environ)
     found = [programs.find(node.package, node.executable) for node in chosen]
     if options.dry_run:
-        _print_commands(chosen, found)
+        _print_commands(chosen, found, programs.additions())
     missing = [node for node, start in zip(chosen, found, strict=True) if start is None]
     if missing:
         print(_not_found(missing), file=sys.stderr)
@@ -139,11 +139,15 @@ def _labels(nodes: Sequence[Node]) -> list[str]:
     return [node.name if names.count(node.name) == 1 else node.full_name for node in nodes]
 
 
-def _print_commands(nodes: Sequence[Node], found: Sequence[list[str] | None]) -> None:
+def _print_commands(
+    nodes: Sequence[Node], found: Sequence[list[str] | None], additions: Mapping[str, str]
+) -> None:
+    """Print what can be pasted into bash, in the environment that this program runs in."""
+    needed = ''.join(f'{name}={shlex.quote(value)} ' for name, value in additions.items())
     for node, start in zip(nodes, found, strict=True):
         print(f'# {node.full_name}' + (f' ({node.subsystem})' if node.subsystem else ''))
         unknown = ['ros2', 'run', node.package, node.executable]
-        line = shlex.join(command_line(node, start or unknown))
+        line = needed + shlex.join(command_line(node, start or unknown))
         text = parameter_file(node)
         print(line if text is None else f'{line} --params-file <(echo {shlex.quote(text)})')
 

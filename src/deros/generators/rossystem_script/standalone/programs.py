@@ -52,6 +52,13 @@ class Programs:
 
     def environment(self) -> dict[str, str]:
         """Return the environment of the nodes: ours, with the given folders in front."""
+        made = {**self._environment, **self.additions()}
+        # Through a pipe Python would hold back its output until a block of it is full.
+        made.setdefault('PYTHONUNBUFFERED', '1')
+        return made
+
+    def additions(self) -> dict[str, str]:
+        """Return the variables that the given folders add to, with their new values."""
         python = [path for prefix in self._prefixes for path in _python_folders(prefix)]
         in_front = {
             'AMENT_PREFIX_PATH': self._prefixes,
@@ -59,13 +66,12 @@ class Programs:
             'LD_LIBRARY_PATH': [prefix / 'lib' for prefix in self._prefixes],
             'PYTHONPATH': [*self._sources, *python],
         }
-        made = dict(self._environment)
+        made = {}
         for name, paths in in_front.items():
             entries = [str(path) for path in paths if path.is_dir()]
             if entries:
-                made[name] = os.pathsep.join([*entries, *filter(None, [made.get(name)])])
-        # Through a pipe Python would hold back its output until a block of it is full.
-        made.setdefault('PYTHONUNBUFFERED', '1')
+                before = filter(None, [self._environment.get(name)])
+                made[name] = os.pathsep.join([*entries, *before])
         return made
 
 
