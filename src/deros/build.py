@@ -103,7 +103,10 @@ def _generate(request: Request, source: Path) -> _Outcome:
         package = package_folder(made.files)
         if f"{package}/setup.py" not in made.files:
             raise ValueError(f"the target {request.target} makes no ament_python package")
-        produce.put(made, where, started)
+        _, lacking = produce.put(made, where, started)
+        findings = (*findings, *lacking)
+        if lacking:  # said again by the next build, unless it is mended
+            os.utime(stamp, ns=(0, 0))
     except produce.Refused as refused:
         return _Outcome(None, refused.diagnostics, refused.code)
     except SourceTreeError as error:

@@ -50,6 +50,9 @@ UNREADABLE_PROJECT = _declare(25, "project file that cannot be read")
 UNKNOWN_PROJECT_KEY = _declare(26, "unknown key in a project file", _W)
 BAD_PROJECT_VALUE = _declare(27, "value in a project file that does not fit")
 
+# Files that models name
+NO_SUCH_FILE = _declare(28, "file named by a parameter that is not there", _W)
+
 # Node descriptions
 UNKNOWN_PACKAGE = _declare(101, "unknown interface package")
 UNKNOWN_TYPE = _declare(102, "unknown message, service or action type")
@@ -186,6 +189,9 @@ HAND_EDITED = _declare(403, "hand-edited file kept", _W)
 UNKNOWN_TARGET = _declare(404, "unknown generator")
 SHADOWED_MODULE = _declare(405, "name that hides a module or package that the output needs")
 OVERWRITES_OTHER = _declare(406, "file that another target or model has written")
+MISSING_METHOD = _declare(407, "method that code written by hand lacks", _W)
+UNKNOWN_METHOD = _declare(408, "name in code written by hand that the model no longer has", _W)
+MANIFEST_LACKS = _declare(409, "package.xml that lacks what the generated code needs", _W)
 
 # Traces
 BAD_TRACE_LINE = _declare(501, "line of a trace that is no message")
@@ -200,7 +206,9 @@ MENDED_AFTER_GENERATION = frozenset(
 """Errors of a system whose safety nodes have to be generated, or generated again, before."""
 
 OF_MODELS = frozenset(
-    code for code in ALL_CODES.values() if not code.name.startswith(("DRS02", "DRS4", "DRS5"))
+    code
+    for code in ALL_CODES.values()
+    if not code.name.startswith(("DRS4", "DRS5")) and not "DRS020" <= code.name <= "DRS027"
 )
 """Findings about what a model says, not about generated files, traces or how deros is used."""
 

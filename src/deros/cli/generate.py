@@ -114,10 +114,11 @@ def generate(
         _show(made.findings)
         if scaffold is not None:
             kept = produce.scaffold_files(made, request, scaffold)
+            lacking = produce.lacking(made, scaffold)
             written = write(kept, scaffold, overwrite=overwrite)
         else:
             where = produce.Place(output, overwrite, source, depfile, stamp)
-            written = produce.put(made, where, started)
+            written, lacking = produce.put(made, where, started)
     except produce.Refused as refused:
         _show(refused.diagnostics)
         ctx.exit(refused.code)
@@ -131,7 +132,7 @@ def generate(
         raise click.ClickException(str(error)) from error
     except ValueError as error:
         raise click.UsageError(str(error)) from error
-    _show(written.diagnostics)
+    _show([*written.diagnostics, *lacking])
     click.echo(_report(written))
 
 

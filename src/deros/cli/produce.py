@@ -166,8 +166,10 @@ class Place:
     rests_on: tuple[Path, ...] = ()
 
 
-def put(made: Made, where: Place, started_ns: int) -> WriteReport:
+def put(made: Made, where: Place, started_ns: int) -> tuple[WriteReport, tuple[Diagnostic, ...]]:
     """Write the files, and last what the build system is to know.
+
+    Returns what became of the files, and what those of the user lack now.
 
     Args:
         made: what :func:`make` returned.
@@ -182,7 +184,8 @@ def put(made: Made, where: Place, started_ns: int) -> WriteReport:
     from deros.cli.depfile import depfile, inputs, stamp, stamped, write_if_changed
     from deros.generators.claims import Origin, check_claims, record_claims
     from deros.generators.protocol import GenerationError, Owner
-    from deros.generators.source_tree import Merged, merge, place, remove_stale
+    from deros.generators.source_tree import Merged, merge, package_folder, place, remove_stale
+    from deros.generators.user_code import review, users_files
     from deros.generators.writer import write
 
     merged = Merged(made.files, (), ())
@@ -200,6 +203,10 @@ def put(made: Made, where: Place, started_ns: int) -> WriteReport:
             check_claims(files, where.output, origin)
     except GenerationError as error:
         raise Refused(error.diagnostics, FINDINGS) from error
+    if where.source is None:
+        users = users_files(made.files, where.output)
+    else:
+        users = users_files(made.files, where.source, package_folder(made.files))
     written = write(merged.files, where.output, overwrite=where.overwrite)
     if where.stamp is None and where.source is None:  # else the build system owns the folder
         for files, origin in claims:
@@ -217,7 +224,15 @@ def put(made: Made, where: Place, started_ns: int) -> WriteReport:
         stale = sorted(set(stamped(where.stamp)) - ours)
         remove_stale(stale, where.output, overwrite=where.overwrite)
         stamp(where.stamp, sorted(ours), started_ns)
-    return written
+    return written, tuple(review(made.files, users))
+
+
+def lacking(made: Made, source: Path) -> tuple[Diagnostic, ...]:
+    """Return what the user's files in the source tree of a package lack now."""
+    from deros.generators.source_tree import package_folder
+    from deros.generators.user_code import review, users_files
+
+    return tuple(review(made.files, users_files(made.files, source, package_folder(made.files))))
 
 
 def now_ns() -> int:

@@ -19,6 +19,7 @@ from pathlib import Path, PurePosixPath
 
 from deros.generators.banner import is_untouched, with_banner
 from deros.generators.protocol import File, Files, Owner
+from deros.generators.user_manifest import named
 from deros.generators.writer import WriteError
 
 MANIFEST = "package.xml"
@@ -28,7 +29,6 @@ BUILD_SCRIPTS = frozenset({"CMakeLists.txt", "setup.py", "setup.cfg"})
 _MODELS = (".rnd", ".system", ".deros")
 _NOT_SEARCHED = frozenset({"__pycache__", "build", "install", "log", "node_modules"})
 _OTHERS_PLACE = ("CMakeCache.txt", "COLCON_IGNORE", "AMENT_IGNORE", MANIFEST)
-_DEPENDENCIES = ("depend", "build_depend", "build_export_depend", "exec_depend")
 
 
 class SourceTreeError(Exception):
@@ -95,8 +95,6 @@ def merge(files: Files, source: Path, output: Path) -> Merged:
         for name, path in own.items()
         if files[path].owner is Owner.USER and not (source / name).is_file()
     ]
-    if top and not manifest.is_file():
-        missing.append(MANIFEST)
     if missing:
         lacking = ", ".join(sorted(missing))
         message = f"{source} lacks {lacking}, which deros writes once for you to keep there"
@@ -255,13 +253,9 @@ def _check_manifest(generated: str, path: Path) -> None:
     if (name := present.findtext("name", "").strip()) != (own := wanted.findtext("name", "")):
         message = f"{path} is of a package {name!r}, generated is {own!r}"
         raise SourceTreeError(message, mended_by_scaffold=False)
-    if lacking := sorted(_named(wanted) - _named(present)):
+    if lacking := sorted(named(wanted) - named(present)):
         message = f"{path} lacks <depend> for what the generated code needs: {', '.join(lacking)}"
         raise SourceTreeError(message, mended_by_scaffold=True)
-
-
-def _named(manifest: ElementTree.Element) -> set[str]:
-    return {(each.text or "").strip() for tag in _DEPENDENCIES for each in manifest.findall(tag)}
 
 
 def _link(source: Path, target: Path) -> None:

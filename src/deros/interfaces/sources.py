@@ -20,6 +20,9 @@ from deros.interfaces.types import InterfaceKind, InterfaceType, MessageDefiniti
 INDEX = Path("share", "ament_index", "resource_index", "rosidl_interfaces")
 """Where, in a prefix, the ament index lists the packages that have interfaces."""
 
+PACKAGES = Path("share", "ament_index", "resource_index", "packages")
+"""Where it lists all packages."""
+
 _LONGEST_FILE = 4 << 20
 _NOT_SEARCHED = frozenset({"__pycache__", "build", "node_modules"})
 _PACKAGE_XML_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")

@@ -17,6 +17,7 @@ from pathlib import Path
 from deros.interfaces.nesting import Extents
 from deros.interfaces.sources import (
     INDEX,
+    PACKAGES,
     AmentSource,
     Definition,
     DefinitionProblem,
@@ -88,6 +89,17 @@ class InterfaceStore:
         """Return the names of a package's interfaces of one kind, for near matches."""
         owner = self._owner(package)
         return owner.names(package, kind) if owner else frozenset()
+
+    def share(self, package: str) -> Path | None:
+        """Return the share folder of an installed package, or ``None`` if none is known."""
+        for prefix in self._prefixes:
+            folder = prefix / "share" / package
+            try:
+                if (prefix / PACKAGES / package).is_file() and folder.is_dir():
+                    return folder
+            except OSError:  # a name longer than the file system takes
+                return None
+        return None
 
     def inputs(self) -> tuple[Path, ...]:
         """Return the files and folders on disk that the answers given so far rest on.

@@ -20,6 +20,7 @@ from deros.interfaces.names import (
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.units import UnitRegistry
 from deros.metamodels.node import FieldUnit, NodeType, Parameter, ParameterType, Port, PortKind
+from deros.validators.files import check_defaults
 from deros.validators.hints import did_you_mean
 from deros.validators.interfaces import type_finding
 from deros.validators.values import (
@@ -43,6 +44,7 @@ def check_node(node: NodeType, store: InterfaceStore) -> Iterator[Diagnostic]:
     for parameter in node.parameters:
         yield from _parameter(node, parameter, units)
         yield from _key(node, parameter)
+    yield from check_defaults(node, store)
     for port in node.ports:
         yield from _port(node, port, store, units)
     for timer in node.timers:

@@ -95,7 +95,7 @@ def package_files(
         raise GenerationError(hidden)
     root = package.name
     files = {
-        f"{root}/package.xml": File(_render("package.xml", package=package)),
+        f"{root}/package.xml": File(_render("package.xml", package=package), Owner.USER),
         f"{root}/CMakeLists.txt": File(_render("CMakeLists.txt", package=package, mark="#")),
     }
     for node in package.nodes:

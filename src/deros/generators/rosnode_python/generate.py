@@ -112,7 +112,6 @@ def package_files(
 
 def _package_level(package: PackageView) -> dict[str, File]:
     templates = {
-        "package.xml": "package.xml",
         "setup.py": "setup.py",
         "setup.cfg": "setup.cfg",
         "test/test_flake8.py": "test_flake8.py",
@@ -124,6 +123,8 @@ def _package_level(package: PackageView) -> dict[str, File]:
         f"{package.name}/{path}": File(_render(template, package=package))
         for path, template in templates.items()
     }
+    manifest = _render("package.xml", package=package)
+    files[f"{package.name}/package.xml"] = File(manifest, Owner.USER)
     files[f"{package.name}/resource/{package.name}"] = File("")
     files[f"{package.name}/{package.name}/__init__.py"] = File("")
     return files
