@@ -118,8 +118,9 @@ def _packages_of_rules(
 ) -> Iterator[str]:
     """Return the packages that a safety node, its gates and their descriptions are made in."""
     from deros.generators.protocol import GenerationError
-    from deros.generators.safety_cpp.node import cpp_twin, twin_options
+    from deros.generators.safety_cpp.node import twin_options
     from deros.generators.safety_python.node import safety_node
+    from deros.metamodels.safety_nodes import cpp_twin
     from deros.monitor.build import build
 
     built = build(rules, store)
