@@ -95,6 +95,8 @@ def merge(files: Files, source: Path, output: Path) -> Merged:
         for name, path in own.items()
         if files[path].owner is Owner.USER and not (source / name).is_file()
     ]
+    if top and not manifest.is_file() and MANIFEST not in missing:
+        missing.append(MANIFEST)
     if missing:
         lacking = ", ".join(sorted(missing))
         message = f"{source} lacks {lacking}, which deros writes once for you to keep there"

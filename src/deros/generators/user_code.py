@@ -158,20 +158,23 @@ def _compare(base: Base, written: Written) -> Iterator[Diagnostic]:
 
 
 def _unknown_uses(base: Base, written: Written, own: Iterable[str]) -> Iterator[Diagnostic]:
-    from deros.validators.hints import did_you_mean
+    from deros.interfaces.names import did_you_mean, near
 
     declared = {*own}
     for each in written.used:
         if each.text.startswith(_OFFERED) and each.text not in base.offered | declared:
             message = f"'{base.name}' has no '{each.text}' any more"
             same = [name for name in base.offered if name.split("_")[0] == each.text.split("_")[0]]
-            hint = did_you_mean(each.text, same)
+            hint = did_you_mean(near(each.text, same))
             yield report(codes.UNKNOWN_METHOD, message, each.span, hint)
     for each in written.parameters:
         if base.parameters is not None and each.text not in base.parameters:
             message = f"the node has no parameter '{each.text}' any more"
             yield report(
-                codes.UNKNOWN_METHOD, message, each.span, did_you_mean(each.text, base.parameters)
+                codes.UNKNOWN_METHOD,
+                message,
+                each.span,
+                did_you_mean(near(each.text, base.parameters)),
             )
 
 

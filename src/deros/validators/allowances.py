@@ -231,8 +231,8 @@ def not_allowable(name: str, span: Span) -> Diagnostic | None:
     """Return the finding about a code that cannot be allowed in a model, or ``None``."""
     code = codes.ALL_CODES.get(name)
     if code is None:
-        near = did_you_mean(name.upper().replace("-", "").replace("_", ""), codes.ALL_CODES)
-        hint = f"its code is {codes.SLUGS[name].name}" if name in codes.SLUGS else near
+        known = codes.SLUGS.get(name) or codes.ALL_CODES.get(re.sub(r"\W|_", "", name.upper()))
+        hint = f"its code is {known.name}" if known else "'deros explain' lists all codes"
         return report(codes.NOT_ALLOWABLE, f"there is no finding {name}", span, hint)
     if code.severity is Severity.ERROR:
         hint = "correct what it reports"
