@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,7 +10,6 @@ import pytest
 
 from deros import codes
 from deros.diagnostics import Diagnostic
-from deros.generators import user_cpp
 from deros.generators.protocol import Context, Files
 from deros.generators.registry import discover
 from deros.generators.user_code import review, users_files
@@ -64,8 +64,8 @@ def language(request: pytest.FixtureRequest) -> str:
 def reader(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Read C++ with and without clang."""
     if request.param == "names":
-        monkeypatch.setattr(user_cpp.shutil, "which", lambda _: None)
-    elif user_cpp.shutil.which("clang++") is None:
+        monkeypatch.setattr("deros.generators.user_cpp.shutil.which", lambda _: None)
+    elif shutil.which("clang++") is None:
         pytest.skip("no clang++")
 
 
