@@ -115,6 +115,29 @@ def test_more_than_the_models_say(package: Path) -> None:
     assert "Keywords: field" in metadata.read_text()
 
 
+def test_every_build_says_what_code_lacks_until_it_is_written(package: Path) -> None:
+    """An action is new in the rules: the build does not fail, and is not silent either."""
+
+    def build() -> str:
+        command = [sys.executable, "setup.py", "egg_info", "--egg-base", str(package.parent)]
+        done = subprocess.run(command, cwd=package, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stderr
+
+    assert "DRS407" not in build()
+    rules = package / "models/robot.deros"
+    replace(rules, "action resume;", "action resume;\naction horn;")
+    replace(rules, "then { stop;", "then { horn; stop;")
+    for _ in range(2):
+        told = build()
+        assert "has no method 'horn', which the model now asks for" in told
+        assert f"{ACTIONS}:" in told
+    actions = package / ACTIONS
+    actions.write_text(f"{actions.read_text()}\n    def horn(self) -> None:\n        pass\n")
+    for _ in range(2):
+        assert "DRS4" not in build()
+
+
 def test_code_to_fill_in_is_asked_for(package: Path) -> None:
     """An action that is robot code needs its file; the build names the command that writes it."""
     (package / ACTIONS).unlink()

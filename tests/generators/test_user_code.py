@@ -183,7 +183,21 @@ def test_what_another_file_may_have_is_not_called_missing(tmp_path: Path) -> Non
     assert _review(new, "python", tmp_path) == []
 
 
-@pytest.mark.parametrize("text", ["class (", "\0", "", "x = 1\n", "(" * 1000])
+def test_functions_of_the_users_modules_are_missed(tmp_path: Path) -> None:
+    """Without main() the program does not start; it may also be imported or assigned."""
+    _write(_files(OLD, "python"), tmp_path)
+    path = tmp_path / "robot/robot/base.py"
+    text = path.read_text()
+    path.write_text(text.replace("def main(", "def start("))
+    (found,) = _review(OLD, "python", tmp_path)
+    assert found.code is codes.MISSING_METHOD
+    assert "'base.py' has no function 'main'" in found.message
+    for more in ("main = start\n", "from robot.other import main\n", "from robot.other import *\n"):
+        path.write_text(text.replace("def main(", "def start(") + more)
+        assert _review(OLD, "python", tmp_path) == []
+
+
+@pytest.mark.parametrize("text", ["class (", "\0", "from x import *\n", "(" * 1000])
 def test_a_file_that_cannot_be_read_is_left_to_its_language(tmp_path: Path, text: str) -> None:
     """Nothing is said of it, and nothing fails."""
     for language in LANGUAGES:

@@ -52,6 +52,7 @@ class Base:
         offered: everything that it has, those included.
         parameters: the fields of its structure of parameters; ``None`` if it has none.
         fatal: what happens without a required method.
+        kind: what it asks for: a method of a class, or a function of a module.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Base:
     offered: frozenset[str]
     parameters: frozenset[str] | None
     fatal: str
+    kind: str = "method"
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +146,7 @@ def _compare(base: Base, written: Written) -> Iterator[Diagnostic]:
     ]
     renamed = _pairs(missing, unknown)
     for name in missing:
-        message = f"'{written.name.text}' has no method '{name}', which the model now asks for"
+        message = f"'{written.name.text}' has no {base.kind} '{name}', which the model now asks for"
         old = renamed.get(name)
         hint = f"rename '{old.text}' in line {old.span.line}" if old else f"write '{name}'"
         yield report(codes.MISSING_METHOD, f"{message}: {base.fatal}", written.name.span, hint)

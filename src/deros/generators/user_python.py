@@ -39,12 +39,36 @@ def python_classes(
             tree = ast.parse(source.text)
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             continue  # Python itself says so, and better
-        for stub in ast.parse(files[path].text).body:
+        wanted = ast.parse(files[path].text)
+        yield _functions(path, wanted, tree, source)
+        for stub in wanted.body:
             if isinstance(stub, ast.ClassDef):
                 for name in filter(generated.__contains__, map(_name, stub.bases)):
                     written = _written(name, stub.name, tree, source)
                     if written is not None:
                         yield _base(name, generated), written
+
+
+def _functions(
+    path: str, wanted: ast.Module, tree: ast.Module, source: SourceFile
+) -> tuple[Base, Written]:
+    """Return the functions that a module has to have, main() among them, and those it has."""
+    name = path.rpartition("/")[2]
+    required = tuple(each.name for each in wanted.body if isinstance(each, ast.FunctionDef))
+    known: set[str] = set()
+    complete = True
+    for node in tree.body:
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            known.add(node.name)
+        for each in ast.walk(node):
+            if isinstance(each, (ast.Import, ast.ImportFrom)):
+                known |= {alias.asname or alias.name for alias in each.names}
+                complete = complete and "*" not in known
+            elif isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store):
+                known.add(each.id)
+    base = Base(name, required, frozenset(required), None, "the node does not start", "function")
+    place = Name(name, Span(source, 0, 0))
+    return base, Written(place, (), frozenset(known), (), (), complete)
 
 
 def _base(name: str, generated: Mapping[str, tuple[ast.ClassDef, ast.Module]]) -> Base:
