@@ -47,7 +47,7 @@ def test_a_broken_node_of_the_package_is_not_dropped(
     else:
         files = generate(model, context, {})
         users = {Path(path).stem for path, file in files.items() if file.owner is Owner.USER}
-        assert users == {"talker"}
+        assert users == {"package", "talker"}
         assert not [path for path in files if "listener" in path]
 
 

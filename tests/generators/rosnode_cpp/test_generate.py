@@ -198,7 +198,8 @@ def test_a_provided_node_is_opened_by_its_class() -> None:
         includes=("b/pool.hpp",),
     )
     files = package_files([model], {}, {"guard_cpp": provided})
-    assert not [path for path, file in files.items() if file.owner is Owner.USER]
+    users = [path for path, file in files.items() if file.owner is Owner.USER]
+    assert users == ["b/package.xml"]
     source = " ".join(files["b/src/guard_base.cpp"].text.split())
     assert ': Node("guard", options) { declare_parameters();' in source
     assert "GuardBase::open_ports(const rclcpp::CallbackGroup::SharedPtr & group)" in source

@@ -83,10 +83,11 @@ def test_generation_is_deterministic() -> None:
 
 
 def test_the_users_files_are_the_users() -> None:
-    """Exactly header and source of the node's own class are left to the user."""
+    """Exactly the manifest, and header and source of the node's own class, are the user's."""
     files = files_of("odometry_node")
     users = [path for path, file in files.items() if file.owner is Owner.USER]
     assert users == [
+        "differential_odometry/package.xml",
         "differential_odometry/include/differential_odometry/odometry_node.hpp",
         "differential_odometry/src/odometry_node.cpp",
     ]

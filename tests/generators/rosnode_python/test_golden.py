@@ -85,10 +85,13 @@ def test_generation_is_deterministic() -> None:
 
 
 def test_the_users_file_is_the_users() -> None:
-    """Exactly the node's own module is left to the user."""
+    """Exactly the manifest and the node's own module are left to the user."""
     files = files_of("odometry_node")
     users = [path for path, file in files.items() if file.owner is Owner.USER]
-    assert users == ["differential_odometry/differential_odometry/odometry_node.py"]
+    assert sorted(users) == [
+        "differential_odometry/differential_odometry/odometry_node.py",
+        "differential_odometry/package.xml",
+    ]
 
 
 def test_the_users_class_fills_in_every_handler(packages: Path) -> None:

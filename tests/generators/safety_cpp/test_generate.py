@@ -78,10 +78,11 @@ def test_options_name_the_python_twin(package: str) -> None:
 
 
 def test_the_user_owns_the_actions_alone() -> None:
-    """All files are refreshed but those with the bodies of the actions."""
+    """All files are refreshed but the manifest and those with the bodies of the actions."""
     owned = {path for path, file in files_of("every_thing").items() if file.owner is Owner.USER}
     root = "every_thing_safety_cpp"
     assert owned == {
+        f"{root}/package.xml",
         f"{root}/include/{root}/every_thing_safety_node_actions.hpp",
         f"{root}/src/every_thing_safety_node_actions.cpp",
     }

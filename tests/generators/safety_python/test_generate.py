@@ -101,10 +101,13 @@ def test_the_description_stands_for_the_node() -> None:
 
 
 def test_the_user_owns_the_actions_alone() -> None:
-    """All files are refreshed but the one with the bodies of the actions."""
+    """All files are refreshed but the manifest and the bodies of the actions."""
     files = files_of("every_thing")
     owned = [path for path, file in files.items() if file.owner is Owner.USER]
-    assert owned == ["every_thing_safety/every_thing_safety/every_thing_safety_node_actions.py"]
+    assert sorted(owned) == [
+        "every_thing_safety/every_thing_safety/every_thing_safety_node_actions.py",
+        "every_thing_safety/package.xml",
+    ]
 
 
 def test_an_action_added_later_is_reported_until_it_has_a_body() -> None:
