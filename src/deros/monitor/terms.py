@@ -384,6 +384,7 @@ class Terms:
                 f"write '{call.function.text}(0.1 sec)', the change over that span",
             )
         applied = self._applied(row.name, arguments, operand)
+        self.functions.append(AppliedFunction(applied, operand.type, call.span))
         return Value(applied, kind, unit, operand.input, bounds)
 
     def _applied(

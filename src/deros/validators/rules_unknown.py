@@ -109,7 +109,7 @@ def _is_fallible(function: AppliedFunction) -> bool:
         case Argument.NUMBERS:
             return not (function.type.array == "fixed" and function.type.size)
         case _:
-            return False
+            return bool(_header(function.expression))
 
 
 def _reason(function: AppliedFunction) -> str:
@@ -118,12 +118,21 @@ def _reason(function: AppliedFunction) -> str:
             return "the quaternion has length zero"
         case Argument.SCAN:
             return "no beam of the sector is valid"
+        case Argument.NUMBER:
+            return "the headers have no stamps that go forward"
         case _:
             return "the array is empty"
 
 
+def _header(function: ir.Apply) -> tuple[ir.ValueExpression, ...]:
+    """Return what a rate over a span reads of the header; nothing for other functions."""
+    return function.arguments[2:] if function.function == "rate_over" else ()
+
+
 def _key(function: ir.Apply) -> _Key:
     """Return what functions have in common that are unknown of the same messages."""
+    if _header(function):
+        return "stamps", _header(function)
     argument = FUNCTIONS[function.function].argument
     name = function.function
     if argument in (Argument.QUATERNION, Argument.NUMBERS):

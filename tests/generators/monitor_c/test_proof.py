@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support import c_proof
+from tests.support import c_proof, rules
 from tests.support.c_eva import TABLES_CHECK
 from tests.support.c_everything import everything, examples
 from tests.support.c_harness import Unit, unit
@@ -138,6 +138,25 @@ def test_contracts_are_kept(example: Unit, tmp_path: Path) -> None:
     proof = c_proof.prove(written(example, tmp_path), PROVED)
     assert proof.left == ()
     assert proof.complaints == ()
+    assert proof.is_complete
+
+
+RATES = """
+input v = topic /speed.data timeout 1 sec
+input q = topic /imu.orientation timeout 1 sec
+entity e { r: v.rate() > 1; s: q.yaw().rate(0.1 sec) > 1; }
+action stop;
+if e.r or e.s then { stop; };
+"""
+
+
+@needs_frama_c
+def test_contracts_of_rates_are_kept(tmp_path: Path) -> None:
+    """A rate is the change by the time, and over a span that since the newest sample before it."""
+    source = c_proof.write(rules.program(RATES), tmp_path)
+    functions = ("rate", "unwrapped", "between", "stamp_of", "keep")
+    proof = c_proof.prove(source, functions)
+    assert proof.left == ()
     assert proof.is_complete
 
 

@@ -293,9 +293,8 @@ class _Writer:
                 name = f"new_{memory.total}"
                 turn = expression(value.arguments[1], self._program, self._arguments)
                 arguments = [operand, turn, f"&m->{memory.last}", f"&m->{memory.total}"]
-            call = Call(FUNCTIONS[value.function].c_call, tuple(arguments))
-            # It stands in a block in the end, two columns further.
-            yield from (line[2:] for line in lay_out(4, f"const double {name} = ", call))
+            call = f"{FUNCTIONS[value.function].c_call}({', '.join(arguments)})"
+            yield f"  const double {name} = {call};"
             self._arguments.computed[value] = name
         known = self._layout.inputs[each.index].known
         if known:

@@ -326,8 +326,12 @@ _RATE = """\
 /*@ requires \\valid(last) && \\valid(last_t) && \\separated(last, last_t);
     requires 0 <= t <= INT64_MAX && 0 <= *last_t <= INT64_MAX;
     assigns *last, *last_t;
-    ensures *last_t == t; */
-"""
+    ensures *last_t == t;
+    ensures same(*last, value);
+    check ensures t == \\old(*last_t) ==> \\is_NaN(\\result);
+    check ensures t != \\old(*last_t) ==> same(\\result,
+      CHANGE); */
+""".replace("CHANGE", quantities.change_per_second("\\old(*last)", "t - \\old(*last_t)"))
 
 
 def _extremes(program: Program) -> list[str]:

@@ -25,6 +25,13 @@ def of(operation: str, first: str, second: str) -> str:
     return f"\\{operation}_double({first}, {second})"
 
 
+def change_per_second(previous: str, elapsed: str) -> str:
+    """Return the change of ``value`` since another one, divided by a time in nanoseconds."""
+    seconds = of("div", f"(double)({elapsed})", constant(1e9))
+    change = of("div", of("sub", "value", previous), seconds)
+    return change.replace(", \\div", ",\n      \\div")
+
+
 def _sum(*parts: str) -> str:
     total = parts[0]
     for part in parts[1:]:

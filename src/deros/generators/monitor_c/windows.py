@@ -6,15 +6,14 @@ An angle without its jumps, and rates over a span of time; what they keep is of 
 from __future__ import annotations
 
 from deros.generators.monitor_c.contracts import wrapped
-from deros.generators.monitor_c.quantities import constant, of
+from deros.generators.monitor_c.quantities import change_per_second, of
 from deros.monitor import walk
 from deros.monitor.ir import Apply, Program
 
 _FILLED = "w->count <= $_SAMPLES"
 _ALL = "w->stamps[0 .. $_SAMPLES - 1], w->values[0 .. $_SAMPLES - 1], w->count"
 _BEFORE = "\\at(w->stamps[k], Pre)"
-_CHANGE = of("sub", "value", "\\at(w->values[k], Pre)")
-_SECONDS = of("div", f"(double)time_between({_BEFORE}, stamp)", constant(1e9))
+_CHANGE = change_per_second("\\at(w->values[k], Pre)", f"time_between({_BEFORE}, stamp)")
 
 UNWRAPPED = f"""\
 /* An angle without its jumps: the total goes on the shortest way round. */
@@ -119,7 +118,7 @@ RATE_OVER = f"""\
       time_between({_BEFORE}, stamp) >= span &&
       (\\forall integer j; k < j < \\old(w->count) ==>
       time_between(\\at(w->stamps[j], Pre), stamp) < span) &&
-      same(\\result, {of("div", _CHANGE, _SECONDS)})); */
+      same(\\result, {_CHANGE})); */
 """
 
 
