@@ -278,6 +278,19 @@ def test_explain_tells_values_and_since_when() -> None:
     assert (gone.value, gone.since) == (True, 10 + 10**9)
 
 
+def test_explain_names_rates_as_rules_do() -> None:
+    """What a rate is made of, to take the shortest way round, is not shown."""
+    rules = """use "robot.system" import Robot
+    action stop;
+    input q = topic /imu.orientation
+    entity e { r: q.yaw().rate(0.1 sec) > 1 or q.roll().rate().abs() > 1; }
+    if e.r then { stop; };
+    """
+    (state,) = Engine(program(rules)).explain()
+    names = [name for name, _ in state.reads]
+    assert names == ["q.yaw().rate(0.1 sec)", "q.roll().rate().abs()"]
+
+
 def test_explain_names_terms_as_rules_do() -> None:
     """A function stands behind what it is applied to; bearings are in radians."""
     rules = """use "robot.system" import Robot
