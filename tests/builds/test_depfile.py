@@ -155,7 +155,10 @@ def test_the_stamp_names_the_output(tmp_path: Path) -> None:
     _generate("robot.deros", "python")
     listed = stamped(Path("stamp"))
     files = {str(p.relative_to("out")) for p in Path("out").rglob("*") if p.is_file()}
-    assert files - set(listed) == {"robot_safety/robot_safety/robot_safety_node_actions.py"}
+    assert files - set(listed) == {
+        "robot_safety/package.xml",
+        "robot_safety/robot_safety/robot_safety_node_actions.py",
+    }
     assert listed == sorted(listed)
 
 
