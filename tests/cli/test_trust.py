@@ -23,12 +23,20 @@ HOSTILE_NAMES = {
 """File names that end a docstring, a string or a line, and go on with code, or join lines."""
 
 
+def _without_safety(models: Path) -> Path:
+    """Return the system of a copy of the example, which names its rules no more."""
+    system = shutil.copytree(ROBOT, models) / "intelligent_one.system"
+    text = system.read_text(encoding="utf-8")
+    system.write_text(text[: text.index("subsystem Safety")], encoding="utf-8")
+    return system
+
+
 @pytest.mark.parametrize("name", HOSTILE_NAMES.values(), ids=HOSTILE_NAMES.keys())
 @pytest.mark.parametrize("target", ["python", "cpp", "c"])
 def test_file_name_of_rules_becomes_no_code(name: str, target: str, tmp_path: Path) -> None:
     """Whatever the rules' file is called, no line of the output begins with what follows in it."""
     models = tmp_path / "models"
-    shutil.copytree(ROBOT, models)
+    _without_safety(models)
     rules = models / f"{name}.deros"
     (models / "intelligent_one.deros").rename(rules)
     outcome = deros("generate", rules, "--target", target, "-o", tmp_path / "out")
@@ -59,9 +67,8 @@ def test_file_name_of_node_becomes_no_code(name: str, target: str, tmp_path: Pat
 def test_file_name_of_system_becomes_no_code(name: str, target: str, tmp_path: Path) -> None:
     """The same for systems."""
     models = tmp_path / "models"
-    shutil.copytree(ROBOT, models)
-    system = models / f"{name}.system"
-    (models / "intelligent_one.system").rename(system)
+    system = _without_safety(models).rename(models / f"{name}.system")
+    (models / "intelligent_one.deros").unlink()
     outcome = deros("generate", system, "--target", target, "-o", tmp_path / "out")
     assert outcome.code == 0, outcome.err
     _assert_harmless(tmp_path / "out", name)

@@ -246,6 +246,9 @@ class Scope:
             return None
         kind = known.type
         if kind is None:
+            if not self.topics.complete:  # what could not be loaded, and is reported, may tell it
+                self.systems_known = False
+                return None
             self.fault(
                 codes.RULE_TYPE_UNKNOWN,
                 f"the system does not tell the type of '{topic}'",
