@@ -22,7 +22,7 @@ parameters
   name speed : double = 0.5 [m/s] in (0, 2.0] "How fast" read_only
   name modes : string[] = ["a", "b"] size 2
 publishes
-  topic odom : nav_msgs.Odometry { twist.twist.linear.x [m/s] } qos reliable depth 10 deadline 100 ms
+  topic odom : nav_msgs.Odometry { twist.twist.linear.x [m/s] } qos reliable deadline 1 sec
 subscribes
   topic /stop : std_msgs.Bool qos best_effort
 timers
