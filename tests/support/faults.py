@@ -76,7 +76,7 @@ class PythonRobot:
         _generate(safety_python.generate, rules, folder)
         actions = folder / PACKAGE / PACKAGE / f"{NODE}_actions.py"
         filled, count = _UNFILLED.subn("", actions.read_text(encoding="utf-8"))
-        assert count == 3
+        assert count == 1
         filled = filled.replace("    not_filled_in,\n", "")
         shutil.copy(rules.with_name("interference.py"), actions.parent)
         end = "        interference.interfere(self.node)\n"

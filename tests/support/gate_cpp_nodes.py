@@ -10,6 +10,7 @@ from pathlib import Path
 from subprocess import Popen
 
 from deros.generators.gate_cpp import gate_files, gate_nodes
+from deros.generators.notice import notice
 from deros.generators.protocol import Files
 from deros.generators.rosnode_cpp.generate import package_files
 from deros.generators.safety_cpp.verbatim import runtime_files
@@ -39,7 +40,7 @@ def gate_package(text: str, options: Mapping[str, str] | None = None, name: str 
     chosen = dict(options or {})
     safety = safety_node(built.program, built.topics, {}, loaded.model.source)
     nodes = gate_nodes(built.program, built.topics, safety)
-    holder = chosen.get("copyright", "")
+    holder = notice(chosen)
     gates = gate_files(built.program, nodes, safety, store, holder)
     package = package_files(gates.nodes, chosen, gates.provided)
     return {**package, **runtime_files(nodes[0].package, holder), **gates.files}

@@ -26,7 +26,8 @@ def decided(condition: str) -> list[tuple[str, str]]:
     used = " or ".join(f"{each}.missing()" for each in inputs)
     statements = f"""{DECLARED} entity e {{ failsafe r: {condition}; s: {used}; }}
         if e.r or e.s then {{ stop; }};"""
-    return [(code, place) for code, place, _ in findings(statements)]
+    found = ((code, place) for code, place, _ in findings(statements))
+    return [each for each in found if each[0] != "DRS367"]  # of rate() itself
 
 
 @pytest.mark.parametrize(

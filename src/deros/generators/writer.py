@@ -238,7 +238,10 @@ def _make_directory(directory: Path, undo: contextlib.ExitStack) -> None:
     """Make ``directory`` and its missing parents, each to be removed again on failure."""
     for folder in [*reversed(directory.parents), directory]:
         if not folder.exists():
-            folder.mkdir()
+            try:
+                folder.mkdir()
+            except FileExistsError:
+                continue  # a run beside this one was first
             undo.callback(_remove_folder, folder)
 
 

@@ -33,6 +33,7 @@ _WORDS = {
     "UnitText": "a unit",
     "LossUnit": "a unit",
     "LossName": "'heartbeat' or 'input'",
+    "TargetName": "'python' or 'cpp'",
     "BracketUnit": "a unit",
     "FieldPath": "a field",
     "Path": "a field",

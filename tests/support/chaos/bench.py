@@ -27,7 +27,7 @@ from tests.support.chaos.links import (
 )
 from tests.support.chaos.proxy import Proxy
 from tests.support.chaos.record import Record
-from tests.support.chaos.robot import Part
+from tests.support.chaos.robot import PARTS, Part
 from tests.support.cpp import python_overlay
 from tests.support.preload import Disk, WallClock
 from tests.support.ros import environment, own_domain
@@ -86,7 +86,7 @@ class Bench:
 
         if domain not in self._resets:
             node = self.proxy.nodes[domain]
-            self._resets[domain] = node.create_client(Trigger, f"/{domain}/reset")
+            self._resets[domain] = node.create_client(Trigger, f"/{PARTS[domain][0]}/reset")
         if not self._resets[domain].service_is_ready():
             return False
         answered = threading.Event()

@@ -18,9 +18,12 @@ from tests.support.chaos.links import GATE, PLANT, SAFETY
 PARTS: Mapping[str, tuple[str, ...]] = {
     PLANT: ("Machine", "Sensors", "Control"),
     SAFETY: ("safety",),
-    GATE: ("gate",),
+    GATE: ("actuators_command_gate",),
 }
 """What of the system runs in which domain."""
+
+_CALLED = {"actuators_command_gate": GATE}
+"""Nodes that a campaign calls by another name than the system does."""
 
 PATIENCE = 20.0
 """Seconds that a part has to end by itself."""
@@ -91,9 +94,9 @@ class Part:
                 log.write(f"{time.monotonic():.3f} {line}")
                 log.flush()
                 if (found := _STARTED.search(line)) is not None:
-                    self._note(found[1], int(found[2]))
+                    self._note(_CALLED.get(found[1], found[1]), int(found[2]))
                 elif (found := _ENDED.search(line)) is not None:
-                    self._note(found[1], None)
+                    self._note(_CALLED.get(found[1], found[1]), None)
 
     def _note(self, node: str, pid: int | None) -> None:
         with self._changed:
