@@ -107,6 +107,8 @@ class _Writer:
                 return json.dumps(value.value)
             case ir.Read():
                 return self._program.inputs[self._program.leaves[value.leaf].input].name
+            case ir.Apply(function="unwrapped"):  # what a rate of an angle is taken of
+                return self.value(value.arguments[0])
             case ir.Apply(function="rate_over"):
                 span = value.arguments[1]
                 assert isinstance(span, ir.Const)

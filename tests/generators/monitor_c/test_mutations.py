@@ -65,7 +65,7 @@ SLIPS = {
 }
 """Slips by name: a pattern of the generated text, and what it is replaced by."""
 
-PROGRAMS = 24
+PROGRAMS = 40
 """Programs that are drawn for each choice of inputs."""
 
 LIMIT_S = 60.0
