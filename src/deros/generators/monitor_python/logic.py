@@ -82,12 +82,13 @@ def lay_out(indent: int, before: str, logic: Logic, after: str = "") -> list[str
     line = f"{blank}{before}{text(logic)}{after}"
     if len(line) <= MAX_LINE or isinstance(logic, Atom):
         return [line]
-    if isinstance(logic, NoneOf):
-        return lay_out(indent, f"{before}not ", logic.operand, after)
-    return [f"{blank}{before}(", *_operands(indent + 4, logic), f"{blank}){after}"]
+    before, inner = _unnegated(before, logic)
+    return [f"{blank}{before}(", *_operands(indent + 4, inner), f"{blank}){after}"]
 
 
-def _operands(indent: int, logic: AllOf | AnyOf) -> list[str]:
+def _operands(indent: int, logic: Atom | AllOf | AnyOf) -> list[str]:
+    if isinstance(logic, Atom):
+        return [f"{' ' * indent}{logic.text}"]
     word = "and " if isinstance(logic, AllOf) else "or "
     lines: list[str] = []
     for number, each in enumerate(logic.operands):
@@ -100,12 +101,18 @@ def _operand(indent: int, before: str, logic: Logic) -> list[str]:
     line = f"{blank}{before}{text(logic)}"
     if isinstance(logic, Atom) or (not isinstance(logic, AnyOf) and len(line) <= MAX_LINE):
         return [line]
-    if isinstance(logic, NoneOf):
-        return _operand(indent, f"{before}not ", logic.operand)
-    line = f"{blank}{before}({text(logic)})"
+    before, inner = _unnegated(before, logic)
+    line = f"{blank}{before}({text(inner)})"
     if len(line) <= MAX_LINE:
         return [line]
-    return [f"{blank}{before}(", *_operands(indent + 4, logic), f"{blank})"]
+    return [f"{blank}{before}(", *_operands(indent + 4, inner), f"{blank})"]
+
+
+def _unnegated(before: str, logic: Logic) -> tuple[str, Atom | AllOf | AnyOf]:
+    """Return what stands before a pair of parentheses, which ``not`` needs, and within it."""
+    while isinstance(logic, NoneOf):
+        before, logic = f"{before}not ", logic.operand
+    return before, logic
 
 
 def lay_out_call(indent: int, before: str, arguments: Sequence[str], after: str = ")") -> list[str]:
