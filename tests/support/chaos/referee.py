@@ -81,7 +81,7 @@ class Verdict:
         broken: the rules that were broken, and when.
         violations: what must not be.
         slowest: the longest time, in s, from a broken rule until the pedal was at zero.
-        moved: whether the pedal moved at all, without which a round shows nothing.
+        moved: whether the robot drove when the round began, or in it; else a round shows nothing.
         timeline: what was said when, for whoever has to find the reason.
     """
 
@@ -162,7 +162,7 @@ class Referee:
         violations = [*self._safety(broken), *self._latch(broken), *self._gate()]
         violations += [*self._arbiter(), *self._sum(broken)]
         moving = [time for time, _ in self._pedal() if time >= self._begin]
-        verdict = Verdict(broken, violations, moved=bool(moving))
+        verdict = Verdict(broken, violations, moved=self._drove_before() or bool(moving))
         verdict.timeline = timeline(self._messages, self._begin, self._end)
         for each in broken:
             last = min(each.end, each.begin + LOST_HEARTBEAT + LOST_COMMAND + MARGIN)
@@ -315,6 +315,12 @@ class Referee:
             position = float(_number(message, PEDAL.name))
             if position:
                 yield message.time, position
+
+    def _drove_before(self) -> bool:
+        """Return whether the robot drove when the round began: a fault may stop it at once."""
+        sent = of_topic(self._messages, "sent", PLANT, PEDAL.name)
+        before = [message for message in sent if message.time < self._begin]
+        return bool(before) and bool(_number(before[-1], PEDAL.name))
 
     def _arbiter(self) -> Iterator[Violation]:
         arrived = of_topic(self._messages, "arrived", PLANT, LET_THROUGH.name)
