@@ -176,6 +176,26 @@ def test_what_is_wrong_with_it_is_a_finding(text: str, code: Code) -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("[tool]\nderos.output = 1\n", codes.BAD_PROJECT_VALUE),
+        ("[tool]\nderos = {output = 1}\n", codes.BAD_PROJECT_VALUE),
+        ("[[tool]]\n[tool.deros]\noutput = 1\n", codes.BAD_PROJECT_VALUE),
+        ("[[tool.deros]]\n", codes.BAD_PROJECT_VALUE),
+        ("[tool]\nderos = 1\n", codes.BAD_PROJECT_VALUE),
+        ("[tool.deros\n", None),
+        ('tool = "deros"\n', None),
+        ('tool = "deros\n', None),
+    ],
+)
+def test_the_table_counts_however_it_is_written(text: str, expected: Code | None) -> None:
+    """What is no table is a finding; a file that does not speak of deros is left alone."""
+    Path("pyproject.toml").write_text(text)
+    found = [(code, file) for code, file, _ in _findings("models/plain.rnd")]
+    assert found == ([] if expected is None else [(expected.name, "pyproject.toml")])
+
+
 def test_findings_name_the_line_and_near_keys() -> None:
     """The place is that of the key."""
     _project('copyright = "2020 P"\nmaintaner = "P <p@example.com>"\n')

@@ -143,7 +143,21 @@ def _has_table(path: Path) -> bool:
         text = read_regular(path, _LARGEST).decode()
     except (OSError, ValueError):
         return False
-    return re.search(r"(?m)^\s*\[+\s*tool\s*\.\s*[\"']?deros[\"']?\s*[\].]", text) is not None
+    if "deros" not in text:
+        return False
+    try:
+        return "deros" in _tool(tomllib.loads(text))
+    except (ValueError, RecursionError):  # then it is ours to report if it seems to speak of deros
+        header = r"(?m)^\s*\[+\s*tool\s*\.\s*[\"']?deros[\"']?\s*[\].]"
+        return re.search(header, text) is not None
+
+
+def _tool(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the table of tools of a pyproject.toml; it may be written as the last of a list."""
+    tool = data.get("tool", {})
+    if isinstance(tool, list) and tool:
+        tool = tool[-1]
+    return tool if isinstance(tool, dict) else {}
 
 
 def _read(path: Path) -> Project:
@@ -159,8 +173,9 @@ def _read(path: Path) -> Project:
         start = Span(SourceFile(shown, ""), 0, 0)
         found = (report(codes.UNREADABLE_PROJECT, message, start),)
         return Project(path, diagnostics=found)
-    table = data if path.name == "deros.toml" else data.get("tool", {}).get("deros", {})
-    return _Reader(path, SourceFile(shown, text)).project(table)
+    if path.name == "pyproject.toml":
+        data = _tool(data).get("deros", {})
+    return _Reader(path, SourceFile(shown, text)).project(data)
 
 
 class _Reader:
