@@ -106,7 +106,8 @@ def test_it_beats_and_repeats_at_publish_freq(start: Start, robot: Robot) -> Non
         robot.meet()
         states, beats = len(robot.stop), len(robot.beats)
         robot.peer.until(lambda: len(robot.beats) >= beats + 20)
-        assert len(robot.stop) >= states + 10
+        # A state replaces the one before it where the receiver is late: some are never seen.
+        robot.peer.until(lambda: len(robot.stop) >= states + 10)
         assert robot.beats == sorted(set(robot.beats))
         code, _ = end(process, robot)
     assert code == 0
