@@ -73,12 +73,11 @@ def _count(parameter: Parameter, number: int) -> str:
 
 def _range(interval: Interval, kind: ParameterType) -> Requirement:
     text = interval_text(interval, kind)
-    one_sided = math.isinf(interval.lower) or math.isinf(interval.upper)
     if kind.is_array:
-        where = text if one_sided else f"in {text}"
+        where = text if interval.one_sided else f"in {text}"
         return Requirement(Check.RANGE, f"must have all elements {where}")
     closed = interval.lower_closed and interval.upper_closed
-    where = f"be {text}" if one_sided else f"lie in {text}"
+    where = f"be {text}" if interval.one_sided else f"lie in {text}"
     return Requirement(Check.RANGE, f"must {where}", stated=not closed)
 
 
@@ -92,15 +91,8 @@ def spelled(value: Scalar, kind: ParameterType) -> str:
 
 
 def interval_text(interval: Interval, kind: ParameterType) -> str:
-    """Return an interval as the models write it, ``[0.1, 2.0)`` or ``>= 0.1``."""
-    lower, upper = (bound(value, kind) for value in (interval.lower, interval.upper))
-    if math.isinf(interval.upper):
-        return f"{'>=' if interval.lower_closed else '>'} {lower}"
-    if math.isinf(interval.lower):
-        return f"{'<=' if interval.upper_closed else '<'} {upper}"
-    opening = "[" if interval.lower_closed else "("
-    closing = "]" if interval.upper_closed else ")"
-    return f"{opening}{lower}, {upper}{closing}"
+    """Return an interval as the models write it, of integers without needless fractions."""
+    return interval.spelled(lambda value: bound(value, kind))
 
 
 def bound(value: float, kind: ParameterType) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
@@ -37,6 +39,21 @@ class Interval:
         above = value >= self.lower if self.lower_closed else value > self.lower
         below = value <= self.upper if self.upper_closed else value < self.upper
         return above and below
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether one of its ends is infinite."""
+        return math.isinf(self.lower) or math.isinf(self.upper)
+
+    def spelled(self, bound: Callable[[float], str] = repr) -> str:
+        """Return it as the languages write it, ``[0.1, 2.0)`` or ``>= 0.1``."""
+        if math.isinf(self.upper):
+            return f"{'>=' if self.lower_closed else '>'} {bound(self.lower)}"
+        if math.isinf(self.lower):
+            return f"{'<=' if self.upper_closed else '<'} {bound(self.upper)}"
+        opening = "[" if self.lower_closed else "("
+        closing = "]" if self.upper_closed else ")"
+        return f"{opening}{bound(self.lower)}, {bound(self.upper)}{closing}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -148,7 +148,7 @@ _ROWS = (
     _row(r"\b(?:NOT|Not)\s+(?P<at>)", "not ", f"write 'not': {_UPPER}", languages=_RULES),
     _row(r"===", "=", "write '='", languages=_RULES),
     _row(r"==(?P<at>)=", "=", "write '='", languages=_RULES),
-    _row(r"<(?P<at>)>|~=|/=", "!=", "write '!='", languages=_RULES),
+    _row(r"<(?P<at>)>", "!=", "write '!='", languages=_RULES),
     _row(r"~=|/=", "!=", "write '!='", languages=_RULES),
     _row(r":=", "=", "write '='", languages=_RULES),
     _row(r"<-", "=", "write '='", languages=_RULES),
@@ -337,7 +337,7 @@ def habits(text: str, position: int, start: int, language: Language) -> Iterator
         if row.languages and language not in row.languages:
             continue
         match = _match(row.pattern, text, position, start)
-        if match is not None and row.hint:
+        if match is not None:
             edit = row.edit(match)
             yield Habit(
                 match.start(),

@@ -51,7 +51,8 @@ def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
     builder = _Builder(program, store)
     built = builder.build()
     scope = builder.scope
-    sound = scope.systems_known and not has_errors(scope.diagnostics)
+    told = scope.systems_known and not scope.untold
+    sound = told and not has_errors(scope.diagnostics)
     return BuildResult(
         built if sound else None,
         tuple(scope.diagnostics),

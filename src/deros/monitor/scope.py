@@ -48,6 +48,7 @@ class Scope:
         self.systems_known = all(
             use.system is not None for use in program.uses
         ) and not program.source.mentions_lost("use")
+        self.untold = False  # whether a name means nothing, and it is the loader that has said why
         self._uses = program.uses
         systems = [use.system for use in program.uses if use.system]
         self.topics = SystemTopics(systems, self.systems_known)
@@ -247,7 +248,7 @@ class Scope:
         kind = known.type
         if kind is None:
             if not self.topics.complete:  # what could not be loaded, and is reported, may tell it
-                self.systems_known = False
+                self.untold = True
                 return None
             self.fault(
                 codes.RULE_TYPE_UNKNOWN,

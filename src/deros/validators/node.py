@@ -29,7 +29,6 @@ from deros.validators.values import (
     is_numeric,
     outside,
     show,
-    show_interval,
     type_fault,
 )
 
@@ -173,7 +172,7 @@ def _range_faults(parameter: Parameter) -> Iterator[str]:
     elif interval.lower > interval.upper:
         yield f"the range runs from {interval.lower} down to {interval.upper}"
     elif interval.lower == interval.upper and interval.lower not in interval:
-        yield f"no number is in {show_interval(parameter)}"
+        yield f"no number is in {interval.spelled()}"
 
 
 def _size_faults(parameter: Parameter) -> Iterator[str]:

@@ -12,7 +12,7 @@ from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.metamodels.flatten import FlatNode, FlatSystem
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Gate
-from deros.metamodels.safety_nodes import is_gate_node
+from deros.metamodels.safety_nodes import HEARTBEAT, is_gate_node
 from deros.monitor import ir
 from deros.monitor.build import BuildResult
 from deros.validators.system_safety import is_safety_node, is_state
@@ -67,8 +67,10 @@ def check_heartbeats(
     """Find lines of a gate that give up a heartbeat after too few periods of it."""
     paces = _heartbeats(gate.target, _states_of(program), systems)
     for line in gate.lines:
-        for pace in paces if line.lost == "heartbeat" and line.lost_ns else ():
-            if line.lost_ns is not None and line.lost_ns < pace.shortest_ns:
+        if line.lost != "heartbeat" or not line.lost_ns:
+            continue
+        for pace in paces:
+            if line.lost_ns < pace.shortest_ns:
                 whose = f" of '{pace.node}'" if pace.node else ""
                 yield report(
                     codes.GATE_HEARTBEAT_TOO_SHORT,
@@ -145,7 +147,7 @@ def _paces(node: FlatNode) -> dict[str, _Pace]:
     for port in node.ports:
         if port.port.kind is not PortKind.PUBLISHER:
             continue
-        if port.port.name == "~/heartbeat" or is_state(port.port):
+        if port.port.name == HEARTBEAT or is_state(port.port):
             found[port.topic] = _pace(node, "publish_freq")
         elif port.port.name.endswith("/diagnostics"):
             found[port.topic] = _pace(node, "diagnostics_freq")

@@ -5,7 +5,6 @@ Shared by the defaults of node descriptions and the ``param`` lines of system de
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from itertools import combinations
 
@@ -151,21 +150,7 @@ def outside(parameter: Parameter) -> str:
     """Say what a number is that lies out of the range of a parameter."""
     interval = parameter.interval
     assert interval is not None
-    one_sided = math.isinf(interval.lower) or math.isinf(interval.upper)
-    return f"{'not' if one_sided else 'outside'} {show_interval(parameter)}"
-
-
-def show_interval(parameter: Parameter) -> str:
-    """Spell the range of a parameter, as ``[0.1, 2.0]`` or ``>= 0.1``."""
-    interval = parameter.interval
-    assert interval is not None
-    if math.isinf(interval.upper):
-        return f"{'>=' if interval.lower_closed else '>'} {interval.lower}"
-    if math.isinf(interval.lower):
-        return f"{'<=' if interval.upper_closed else '<'} {interval.upper}"
-    left = "[" if interval.lower_closed else "("
-    right = "]" if interval.upper_closed else ")"
-    return f"{left}{interval.lower}, {interval.upper}{right}"
+    return f"{'not' if interval.one_sided else 'outside'} {interval.spelled()}"
 
 
 def _because(kind: ParameterType, value: Scalar) -> str:

@@ -229,7 +229,7 @@ def comment(parameter: Parameter, read_only: bool) -> str:
     parts = [describe(parameter).removesuffix(".")]
     if parameter.interval is not None:
         text = interval_text(parameter.interval, parameter.type)
-        parts.append(text if text[0] in "<>" else f"in {text}")
+        parts.append(text if parameter.interval.one_sided else f"in {text}")
     if parameter.choices is not None:
         parts.append(f"one of {_enumeration(parameter)}")
     parts += _size_comments(parameter)

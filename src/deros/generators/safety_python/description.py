@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator
 
@@ -61,7 +60,7 @@ def _parameter(parameter: Parameter) -> str:
     return _joined(
         head,
         f"[{parameter.unit}]" if parameter.unit is not None else "",
-        _interval(parameter.interval) if parameter.interval is not None else "",
+        _range(parameter.interval) if parameter.interval is not None else "",
         f"one_of {_value(parameter.choices)}" if parameter.choices is not None else "",
         f"size {parameter.size}" if parameter.size is not None else "",
         f"min_size {parameter.min_size}" if parameter.min_size is not None else "",
@@ -113,14 +112,8 @@ def _timer(timer: Timer) -> str:
     return _joined(head, _text(timer.description))
 
 
-def _interval(interval: Interval) -> str:
-    opening = "[" if interval.lower_closed else "("
-    closing = "]" if interval.upper_closed else ")"
-    if math.isinf(interval.upper):
-        return f"{'>=' if interval.lower_closed else '>'} {interval.lower!r}"
-    if math.isinf(interval.lower):
-        return f"{'<=' if interval.upper_closed else '<'} {interval.upper!r}"
-    return f"in {opening}{interval.lower!r}, {interval.upper!r}{closing}"
+def _range(interval: Interval) -> str:
+    return f"{'' if interval.one_sided else 'in '}{interval.spelled()}"
 
 
 def _value(value: Value | tuple[Value, ...]) -> str:
