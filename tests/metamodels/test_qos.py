@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any
 
 import pytest
 
@@ -21,6 +20,7 @@ from deros.metamodels.qos import (
     shortfalls,
     subscription_violations,
 )
+from tests.support.qos import profile
 
 MS = 10**6
 KINDS = {
@@ -39,25 +39,10 @@ def _all_policies() -> list[Policies]:
     ]
 
 
-def _profile(each: Policies) -> Any:
-    """Return the profile of rclpy."""
-    from rclpy.duration import Duration
-    from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
-
-    return QoSProfile(
-        depth=1,
-        reliability=ReliabilityPolicy[each.reliability.upper()],
-        durability=DurabilityPolicy[each.durability.upper()],
-        liveliness=LivelinessPolicy[each.liveliness.upper()],
-        deadline=Duration(nanoseconds=each.deadline or 0),
-        liveliness_lease_duration=Duration(nanoseconds=each.lease or 0),
-    )
-
-
 def test_every_pair_is_judged_as_ros_does() -> None:
     """Errors and warnings of rclpy's qos_check_compatible are what is certain, and what is not."""
     qos = pytest.importorskip("rclpy.qos")
-    every = [(each, _profile(each)) for each in _all_policies()]
+    every = [(each, profile(each)) for each in _all_policies()]
     compared = 0
     for (offered, publisher), (requested, subscription) in itertools.product(every, every):
         verdict, reason = qos.qos_check_compatible(publisher, subscription)

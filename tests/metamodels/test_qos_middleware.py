@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from deros.metamodels.qos import Policies, shortfalls
+from tests.support.qos import profile
 from tests.support.ros import LIMIT, Peer
 
 pytestmark = pytest.mark.ros
@@ -31,21 +32,6 @@ PROFILES = [
         TIMES,
     )
 ]
-
-
-def profile(each: Policies) -> Any:
-    """Return the profile of rclpy."""
-    from rclpy.duration import Duration
-    from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
-
-    return QoSProfile(
-        depth=1,
-        reliability=ReliabilityPolicy[each.reliability.upper()],
-        durability=DurabilityPolicy[each.durability.upper()],
-        liveliness=LivelinessPolicy[each.liveliness.upper()],
-        deadline=Duration(nanoseconds=each.deadline or 0),
-        liveliness_lease_duration=Duration(nanoseconds=each.lease or 0),
-    )
 
 
 @pytest.fixture
