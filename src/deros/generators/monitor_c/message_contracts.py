@@ -73,7 +73,7 @@ class MessageContracts:
         contract.of_case["first"] = list(DONE)
         contract.cases["news"] = "m->started != 0 && news != 0"
         contract.of_case["news"] = [
-            f"{changed} ==> {' && '.join(DONE)}",
+            *(f"{changed} ==> {each}" for each in DONE),
             f"!{changed} ==> {NOTHING_DONE}",
         ]
         contract.cases["none"] = "m->started != 0 && news == 0"
