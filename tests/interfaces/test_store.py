@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from deros.interfaces.standard_services import OF_EVERY_NODE, OF_MANAGED_NODES
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 
@@ -44,6 +45,13 @@ def test_embedded_messages_services_and_actions(embedded: InterfaceStore) -> Non
     action = embedded.action(InterfaceType("example_interfaces", "action", "Fibonacci"))
     assert action is not None
     assert [part.fields[0][0] for part in action] == ["order", "sequence", "sequence"]
+
+
+def test_services_that_every_node_has_are_embedded(embedded: InterfaceStore) -> None:
+    """They can be called in a model without any ROS on the machine."""
+    for kind in (*OF_EVERY_NODE.values(), *OF_MANAGED_NODES.values()):
+        if kind.package != "type_description_interfaces":
+            assert embedded.service(kind), kind
 
 
 def test_embedded_arrays_bounds_constants_and_defaults(embedded: InterfaceStore) -> None:

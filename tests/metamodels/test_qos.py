@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 
 import pytest
@@ -13,6 +14,7 @@ from deros.metamodels.qos import (
     Policies,
     duration_text,
     excess,
+    is_met_by_default,
     overridden,
     overridden_policy,
     policies,
@@ -167,6 +169,49 @@ def test_overrides_go_before_what_is_stated() -> None:
     )
     assert own == Policies("reliable", SYSTEM_DEFAULT, depth=2)
     assert policies(overridden(None, {"history": "keep_all"})).depth == float("inf")
+
+
+MIDDLEWARES = {
+    # kind that system_default becomes, of a publisher and of a subscription
+    "rmw_fastrtps": {
+        "reliability": ("reliable", "best_effort"),
+        "durability": ("transient_local", "volatile"),
+        "liveliness": ("automatic", "automatic"),
+    },
+    "rmw_cyclonedds": {
+        "reliability": ("reliable", "reliable"),
+        "durability": ("volatile", "volatile"),
+        "liveliness": ("automatic", "automatic"),
+    },
+    "OMG DDS": {
+        "reliability": ("reliable", "best_effort"),
+        "durability": ("volatile", "volatile"),
+        "liveliness": ("automatic", "automatic"),
+    },
+}
+
+
+def _as_in(middleware: str, each: Policies, end: int) -> Policies:
+    """Return a profile with what the middleware makes of its open kinds."""
+    made = {
+        policy: kinds[end]
+        for policy, kinds in MIDDLEWARES[middleware].items()
+        if getattr(each, policy) == SYSTEM_DEFAULT
+    }
+    return dataclasses.replace(each, **made)  # type: ignore[arg-type]
+
+
+def test_what_the_defaults_meet_connects_in_every_middleware() -> None:
+    """What is left out is connected by all of them; what is left in, not by one of them."""
+    every = [each for each in _all_policies() if (each.deadline, each.lease) == (None, None)]
+    for offered, requested in itertools.product(every, every):
+        found = shortfalls(offered, requested)
+        told = [each for each in found if not is_met_by_default(each)]
+        apart = [
+            bool(shortfalls(_as_in(name, offered, 0), _as_in(name, requested, 1)))
+            for name in MIDDLEWARES
+        ]
+        assert bool(told) == any(apart), (offered, requested)
 
 
 def test_default_ends_match() -> None:

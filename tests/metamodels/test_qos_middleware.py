@@ -3,18 +3,19 @@
 All policies on which a connection depends are combined: reliability, durability and liveliness in
 both kinds, deadline and lease as none, one second and two, so that what is offered is none,
 shorter, equal and longer than what is requested. That is 72 profiles for each end, and all their
-pairs. ``system_default`` is not among them: each middleware chooses what it becomes.
+pairs. ``system_default`` is not among them: each middleware chooses what it becomes. That the pairs
+which its defaults are enough for are connected is tested for itself.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import pytest
 
-from deros.metamodels.qos import Policies, shortfalls
+from deros.metamodels.qos import SYSTEM_DEFAULT, Policies, is_met_by_default, shortfalls
 from tests.support.qos import profile
 from tests.support.ros import LIMIT, Peer
 
@@ -46,13 +47,13 @@ def other_peer(ros_peer: Peer, ros_env: dict[str, str]) -> Iterator[Peer]:
 class Asking:
     """The subscriptions of one topic, each with a profile of its own, and what they are told."""
 
-    def __init__(self, peer: Peer, topic: str) -> None:
+    def __init__(self, peer: Peer, topic: str, profiles: Sequence[Policies] = PROFILES) -> None:
         from rclpy.event_handler import SubscriptionEventCallbacks
         from std_msgs.msg import Empty
 
         self._peer = peer
-        self.matched = [0] * len(PROFILES)
-        self.refused = [0] * len(PROFILES)
+        self.matched = [0] * len(profiles)
+        self.refused = [0] * len(profiles)
 
         def note(index: int) -> Any:
             def matched(event: Any) -> None:
@@ -69,7 +70,7 @@ class Asking:
             peer.node.create_subscription(
                 Empty, topic, lambda _: None, profile(each), event_callbacks=note(index)
             )
-            for index, each in enumerate(PROFILES)
+            for index, each in enumerate(profiles)
         ]
 
     def verdicts(self) -> list[bool]:
@@ -100,6 +101,34 @@ def test_every_pair_is_judged_as_the_middleware_does(ros_peer: Peer, other_peer:
         other_peer.node.destroy_publisher(publisher)
     print(f"{compared} pairs of profiles compared with the middleware")
     assert compared == len(PROFILES) ** 2 == 5184
+
+
+OPEN_PROFILES = [
+    Policies(reliability, durability, None, liveliness, None)
+    for reliability, durability, liveliness in itertools.product(
+        ("best_effort", "reliable", SYSTEM_DEFAULT),
+        ("volatile", "transient_local", SYSTEM_DEFAULT),
+        ("automatic", "manual_by_topic", SYSTEM_DEFAULT),
+    )
+]
+
+
+def test_what_the_defaults_meet_is_connected(ros_peer: Peer, other_peer: Peer) -> None:
+    """A pair that is not reported is connected, whatever ``system_default`` has become."""
+    from std_msgs.msg import Empty
+
+    compared = 0
+    for number, offered in enumerate(OPEN_PROFILES):
+        topic = f"open_{number}"
+        publisher = other_peer.node.create_publisher(Empty, topic, profile(offered))
+        asking = Asking(ros_peer, topic, OPEN_PROFILES)
+        for requested, is_connected in zip(OPEN_PROFILES, asking.verdicts(), strict=True):
+            if all(map(is_met_by_default, shortfalls(offered, requested))):
+                assert is_connected, (offered, requested)
+                compared += 1
+        asking.close()
+        other_peer.node.destroy_publisher(publisher)
+    print(f"{compared} pairs with open kinds are connected")
 
 
 SERVICES = [

@@ -41,6 +41,8 @@ def _check(folder: Path, ports: str, system: str = "") -> list[Diagnostic]:
         ("/rosout", "rcl_interfaces.Log"),
         ("/parameter_events", "rcl_interfaces.ParameterEvent"),
         ("/diagnostics", "diagnostic_msgs.DiagnosticArray"),
+        ("/robot1/diagnostics", "diagnostic_msgs.DiagnosticArray"),
+        ("/robot1/robot_description_semantic", "std_msgs.String"),
         ("/robot_description", "std_msgs.String"),
         ("/lidar/transition_event", "lifecycle_msgs.TransitionEvent"),
         ("/dock/_action/status", "action_msgs.GoalStatusArray"),
@@ -101,10 +103,24 @@ def test_markers_need_no_reader(tmp_path: Path) -> None:
     assert [each.code.name for each in found] == ["DRS210"]
 
 
+def test_interactive_markers_are_moved_in_rviz(tmp_path: Path) -> None:
+    """What a server shows needs no reader, and what it is told no publisher, wired or not."""
+    ports = """
+    publishes topic marker/update : visualization_msgs.InteractiveMarkerUpdate
+    subscribes topic marker/feedback : visualization_msgs.InteractiveMarkerFeedback
+    """
+    wired = """
+    topics topic /update topic /feedback
+    node user : user wirings connect marker/update to /update connect marker/feedback to /feedback
+    """
+    assert _check(tmp_path, ports) == []
+    assert _check(tmp_path, ports, wired) == []
+
+
 def test_each_entry_says_why() -> None:
     """And names types as they are written."""
     table = json.loads(TABLE.read_text(encoding="utf-8"))
-    for entry in (*table["topics"], *table["derived"]):
+    for entry in (*table["topics"], *table["derived"], table["shown"], table["operated"]):
         assert len(entry["why"]) > 20
         assert all(kind.count("/") == 1 for kind in entry["types"])
         if "name" in entry and entry["types"]:

@@ -116,3 +116,17 @@ node wrong : driver wirings connect data to /imu/dta connect bias to /bias
     (finding,) = _check(tmp_path, system)
     assert finding.code.name == "DRS211"
     assert finding.hint.startswith("did you mean '/imu/data'?")
+
+
+def test_a_system_used_twice_says_once_what_it_lacks(tmp_path: Path) -> None:
+    """The port is written once, however often its node runs."""
+    (tmp_path / "part.system").write_text(
+        'system Part imports import "compass.rnd"\nnode compass : compass\n'
+    )
+    system = """\
+import "part.system"
+subsystem left : Part namespace /left
+subsystem right : Part namespace /right
+"""
+    findings = [each for each in _check(tmp_path, system) if each.code.name == "DRS213"]
+    assert [each.span.text for each in findings] == ["compass"]

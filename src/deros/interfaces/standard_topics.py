@@ -62,6 +62,11 @@ def is_shown_only(kind: InterfaceType) -> bool:
     return _text(kind) in _table()[2]
 
 
+def is_operated(kind: InterfaceType) -> bool:
+    """Tell whether messages of a type come from an operator, so that no publisher is missing."""
+    return _text(kind) in _table()[3]
+
+
 def wrong_type(name: str, kind: InterfaceType, type_of: TypeOf) -> StandardTopic | None:
     """Return the entry of a topic that has another type than it has everywhere else, or ``None``.
 
@@ -80,7 +85,7 @@ def wrong_type(name: str, kind: InterfaceType, type_of: TypeOf) -> StandardTopic
 
 @lru_cache(maxsize=1 << 14)
 def _entries(name: str) -> tuple[StandardTopic, ...]:
-    named, derived, _ = _table()
+    named, derived, *_ = _table()
     found = []
     if (entry := named.get(name)) is not None:
         found.append(entry)
@@ -99,8 +104,10 @@ def _text(kind: InterfaceType) -> str:
 
 
 @cache
-def _table() -> tuple[dict[str, StandardTopic], tuple[StandardTopic, ...], frozenset[str]]:
-    """Return the named topics, the derived ones, and the types that are only shown."""
+def _table() -> tuple[
+    dict[str, StandardTopic], tuple[StandardTopic, ...], frozenset[str], frozenset[str]
+]:
+    """Return the named topics, the derived ones, and the types only shown and only operated."""
     path = Path(__file__).with_name("standard_topics.json")
     table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     named = [
@@ -117,4 +124,9 @@ def _table() -> tuple[dict[str, StandardTopic], tuple[StandardTopic, ...], froze
         StandardTopic(each["ending"], frozenset(each["types"]), each["why"], of=each["of"])
         for each in table["derived"]
     )
-    return {each.name: each for each in named}, derived, frozenset(table["shown"]["types"])
+    return (
+        {each.name: each for each in named},
+        derived,
+        frozenset(table["shown"]["types"]),
+        frozenset(table["operated"]["types"]),
+    )

@@ -166,6 +166,21 @@ def _is_less(policy: Policy, offer: Any, request: Any) -> bool | None:
     return offer is None or bool(offer > request)
 
 
+def is_met_by_default(shortfall: Shortfall) -> bool:
+    """Tell whether what ``system_default`` becomes is enough in every middleware of ROS 2.
+
+    Only a profile file of the user's could make it less. A publisher is reliable, a subscription is
+    volatile and asks for automatic liveliness; whether a subscription is best effort, and whether a
+    publisher is transient local, differs. Sources: ``rmw_node.cpp`` of rmw_cyclonedds, ``qos.cpp``
+    of rmw_fastrtps with ``DataWriterQos.cpp`` of Fast DDS, OMG DDS 1.4, section 2.2.3.
+    """
+    if shortfall.policy == "reliability":
+        return shortfall.offered == SYSTEM_DEFAULT
+    if shortfall.policy in ("durability", "liveliness"):
+        return shortfall.requested == SYSTEM_DEFAULT
+    return False
+
+
 @lru_cache(maxsize=4096)
 def pinned_policies(pin: QosProfile) -> Mapping[Policy, PolicyValue]:
     """Return the policies that a topic's QoS pins: those stated, and the kinds of its preset.

@@ -16,7 +16,14 @@ from deros.diagnostics import Diagnostic, report
 from deros.metamodels.common import QosProfile
 from deros.metamodels.flatten import FlatSystem, FlatTopic
 from deros.metamodels.node import PortKind
-from deros.metamodels.qos import ACTION_STATUS, Policy, Shortfall, pinned_policies, shortfalls
+from deros.metamodels.qos import (
+    ACTION_STATUS,
+    Policy,
+    Shortfall,
+    is_met_by_default,
+    pinned_policies,
+    shortfalls,
+)
 from deros.validators.graph import End, Vertex, channels, publishers, subscribers
 from deros.validators.qos_pins import check_pin
 from deros.validators.qos_words import AnyEnd, Side, cure, difference, places
@@ -92,7 +99,11 @@ def _pairs(
     for source in sides[0]:
         for sink in sides[1]:
             for offering, requesting, every in _compared(kind, source, sink):
-                found = tuple(each for each in every if each.policy not in pinned)
+                found = tuple(
+                    each
+                    for each in every
+                    if each.policy not in pinned and not is_met_by_default(each)
+                )
                 if found:
                     yield from _reported(name, offering, requesting, found)
                     break  # what goes the other way would be said of the same two ends

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from deros import codes
-from deros.diagnostics import Code, Diagnostic, Related, Span, report
+from deros.diagnostics import Code, Diagnostic, Related, report
 from deros.interfaces.names import did_you_mean
-from deros.interfaces.standard_topics import is_shown_only, standard_topic, wrong_type
-from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, FlatTopic, resolve_name
-from deros.metamodels.node import PortKind
-from deros.metamodels.system import Topic
-from deros.validators.graph import CHANNEL, End, Vertex, channels, publishers, subscribers
+from deros.interfaces.standard_services import OF_EVERY_NODE, OF_MANAGED_NODES
+from deros.interfaces.standard_topics import is_operated, is_shown_only, wrong_type
+from deros.metamodels.flatten import FlatNode, FlatSystem
+from deros.validators.graph import End, Vertex, channels
 from deros.validators.rules_ends import RulesEnds
+from deros.validators.topic_channels import (
+    Channel,
+    channel_of,
+    pinned_types,
+    targets_of_unknown_ports,
+)
 from deros.validators.topic_partners import Partners, Robots
+from deros.validators.unwired_ports import check_unwired
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -26,50 +31,6 @@ if TYPE_CHECKING:
 _COMPARED = 20
 """So many topics of a type that nobody subscribes to are looked at to find one for another."""
 
-_SEEKS_A_PARTNER = {
-    PortKind.PUBLISHER: "publisher",
-    PortKind.SUBSCRIPTION: "subscription",
-    PortKind.CLIENT: "client",
-    PortKind.ACTION_CLIENT: "action client",
-}
-"""Ports for which no wiring is worth a word; a server is reached under its own name as it is."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Channel:
-    """A topic, service or action with its ends; ``open`` when the model cannot know them all.
-
-    ``pin`` is the outermost declaration that gives the topic a type.
-    """
-
-    vertex: Vertex
-    declared: FlatTopic | None
-    pin: Topic | None
-    sources: list[End]
-    sinks: list[End]
-    open: bool
-
-    @property
-    def name(self) -> str:
-        return self.vertex[1]
-
-    @property
-    def type(self) -> InterfaceType:
-        """The type of the first end; only for channels that have one."""
-        return (self.sources or self.sinks)[0].type
-
-    @property
-    def undeclared(self) -> bool:
-        """Whether a wiring names a topic that nobody declares, which is a finding of its own."""
-        return self.declared is None and any(end.wired for end in (*self.sources, *self.sinks))
-
-    @property
-    def span(self) -> Span:
-        """Where it is declared, else its first connection."""
-        if self.declared is not None:
-            return self.declared.declaration.name_span
-        return (self.sources or self.sinks)[0].span
-
 
 def check_topics(
     flat: FlatSystem, graph: nx.MultiDiGraph[Vertex], rules: RulesEnds
@@ -78,11 +39,11 @@ def check_topics(
 
     What ``rules`` read or feed lacks no end there, whether or not the system names the safety node.
     """
-    guessed = _targets_of_unknown_ports(flat)
-    pins = _pinned_types(flat)
-    found = [_channel(graph, vertex, guessed, pins) for vertex in channels(graph)]
+    guessed = targets_of_unknown_ports(flat)
+    pins = pinned_types(flat)
+    found = [channel_of(graph, vertex, guessed, pins) for vertex in channels(graph)]
     types = {each.name: each.type for each in found if each.sources or each.sinks}
-    topics: list[_Channel] = []
+    topics: list[Channel] = []
     for channel in found:
         unusual = list(_unusual_types(channel, types)) if channel.vertex[0] == "topic" else []
         yield from unusual or _types(channel)
@@ -97,63 +58,15 @@ def check_topics(
         if not matches[0].sinks:
             misspelt.add(matches[0].name)
     yield from _missing_ends(topics, misspelt, partners)
+    nodes = {node.full_name: node for node in flat.nodes}
     for channel in found:
         if channel.vertex[0] != "topic":
-            yield from _missing_server(channel)
-    yield from _unwired(flat, {channel.vertex: channel for channel in found})
+            yield from _missing_server(channel, nodes)
+    by_vertex = {channel.vertex: channel for channel in found}
+    yield from check_unwired(flat, by_vertex, partners, rules.read.__contains__)
 
 
-def _channel(
-    graph: nx.MultiDiGraph[Vertex], vertex: Vertex, guessed: set[str], pins: Mapping[str, Topic]
-) -> _Channel:
-    attributes = graph.nodes[vertex]
-    declared: FlatTopic | None = attributes.get("topic")
-    if vertex[0] != "topic":
-        # A service has no declaration of its own; an external topic of its name speaks for it.
-        declared = graph.nodes.get(("topic", vertex[1]), {}).get("topic")
-    sources, sinks = publishers(graph, vertex), subscribers(graph, vertex)
-    pin = pins.get(vertex[1]) if vertex[0] == "topic" else None
-    is_open = (
-        (declared is not None and declared.declaration.external)
-        or bool(attributes.get("untyped"))
-        or vertex[1] in guessed
-        or (vertex[0] == "topic" and _is_standard(vertex[1], pin, [*sources, *sinks]))
-    )
-    return _Channel(vertex, declared, pin, sources, sinks, is_open)
-
-
-def _pinned_types(flat: FlatSystem) -> dict[str, Topic]:
-    """Return the declaration that gives each topic its type: the first, which is the outermost."""
-    pins: dict[str, Topic] = {}
-    for topic in flat.topics:
-        if topic.declaration.type is not None:
-            pins.setdefault(topic.name, topic.declaration)
-    return pins
-
-
-def _is_standard(name: str, pin: Topic | None, ends: list[End]) -> bool:
-    """Tell whether a topic has ends in libraries, tools or hands, which no model describes."""
-    kind = pin.type if pin is not None else None
-    if kind is None and ends:
-        kind = ends[0].type
-    return standard_topic(name, kind) is not None
-
-
-def _targets_of_unknown_ports(flat: FlatSystem) -> set[str]:
-    """Return the topics wired to ports that are not known, which other findings report.
-
-    Whether such a port publishes or subscribes cannot be told: nothing is said to be missing there.
-    """
-    targets: set[str] = set()
-    for node in flat.nodes:
-        known = {id(port.wiring) for port in node.ports}
-        for wiring in node.instance.wirings:
-            if id(wiring) not in known:
-                targets.add(resolve_name(wiring.target, node.namespace, node.instance.name))
-    return targets
-
-
-def _ends_in_rules(topic: _Channel, rules: RulesEnds) -> bool:
+def _ends_in_rules(topic: Channel, rules: RulesEnds) -> bool:
     """Tell whether the safety node is the end that a topic would lack."""
     return (topic.name in rules.read and (bool(topic.sources) or not topic.sinks)) or (
         topic.name in rules.fed and not topic.sources
@@ -163,7 +76,7 @@ def _ends_in_rules(topic: _Channel, rules: RulesEnds) -> bool:
 # Types ------------------------------------------------------------------------------------------
 
 
-def _types(channel: _Channel) -> Iterator[Diagnostic]:
+def _types(channel: Channel) -> Iterator[Diagnostic]:
     ends = channel.sources + channel.sinks
     pinned = channel.pin.type if channel.pin is not None else None
     if pinned is not None and channel.pin is not None:
@@ -202,7 +115,7 @@ def _types(channel: _Channel) -> Iterator[Diagnostic]:
             )
 
 
-def _unusual_types(channel: _Channel, types: Mapping[str, InterfaceType]) -> Iterator[Diagnostic]:
+def _unusual_types(channel: Channel, types: Mapping[str, InterfaceType]) -> Iterator[Diagnostic]:
     """Find a standard topic of another type; a pin goes first where no library relies on it."""
     pinned = channel.pin
     places = [(end.type, end.span, f"{end.name} has") for end in (*channel.sources, *channel.sinks)]
@@ -225,10 +138,10 @@ def _unusual_types(channel: _Channel, types: Mapping[str, InterfaceType]) -> Ite
 
 
 def _missing_ends(
-    topics: Iterable[_Channel], misspelt: set[str], partners: Partners[_Channel]
+    topics: Iterable[Channel], misspelt: set[str], partners: Partners[Channel]
 ) -> Iterator[Diagnostic]:
     lonely = [t for t in topics if t.declared is not None and not t.open and t.name not in misspelt]
-    fed: dict[InterfaceType, list[_Channel]] = defaultdict(list)
+    fed: dict[InterfaceType, list[Channel]] = defaultdict(list)
     for topic in lonely:
         if topic.sources and not topic.sinks and len(fed[topic.type]) < _COMPARED:
             fed[topic.type].append(topic)
@@ -240,7 +153,7 @@ def _missing_ends(
                 topic.span,
                 hint="remove the declaration, or connect ports to it",
             )
-        elif not topic.sources:
+        elif not topic.sources and not is_operated(topic.type):
             other = next((t for t in fed[topic.type] if partners.can_join(t, topic)), None)
             yield _one_sided(
                 codes.NO_PUBLISHER,
@@ -250,7 +163,7 @@ def _missing_ends(
                 topic.sinks,
                 f"'{other.name}' has the same type and nobody subscribes to it; " if other else "",
             )
-        elif not topic.sinks and not is_shown_only(topic.type):
+        elif topic.sources and not topic.sinks and not is_shown_only(topic.type):
             yield _one_sided(
                 codes.NO_SUBSCRIBER,
                 f"nobody subscribes to '{topic.name}', which {_names(topic.sources)} "
@@ -261,14 +174,14 @@ def _missing_ends(
             )
 
 
-def _subscribed_instead(topic: _Channel, partners: Partners[_Channel]) -> str:
+def _subscribed_instead(topic: Channel, partners: Partners[Channel]) -> str:
     """Return the beginning of a hint that names the topics that a published one may have to be."""
     matches = partners.read_for(topic, lambda read: not read.undeclared)
     hint = did_you_mean(each.name for each in matches)
     return f"{hint} There are subscriptions of its type; " if hint else ""
 
 
-def _one_sided(code: Code, message: str, topic: _Channel, ends: list[End], hint: str) -> Diagnostic:
+def _one_sided(code: Code, message: str, topic: Channel, ends: list[End], hint: str) -> Diagnostic:
     direction = "fed from" if code is codes.NO_PUBLISHER else "read"
     return report(
         code,
@@ -291,27 +204,51 @@ def _s(ends: list[End]) -> str:
     return "s" if len(ends) == 1 else ""
 
 
-def _missing_server(channel: _Channel) -> Iterator[Diagnostic]:
+def _missing_server(channel: Channel, nodes: Mapping[str, FlatNode]) -> Iterator[Diagnostic]:
     if channel.sinks or channel.open:
         return
+    name = channel.name
+    owner, _, service = name.rpartition("/")
+    node = nodes.get(owner) if channel.vertex[0] == "service" else None
+    if node is not None and node.type is None:
+        return  # whether it is a managed one cannot be told
+    served = _own_service(node, service) if node is not None else None
     for end in channel.sources:
-        if end.wired:
+        if served is not None:
+            if end.type != served:
+                yield report(
+                    codes.TYPE_MISMATCH,
+                    f"'{name}' joins two types: {end.name} has {end.type.short}, "
+                    f"'{owner}' serves {served.short} as every node of its kind",
+                    end.span,
+                    related=(Related(end.port.port.type_span, "the client is declared here"),),
+                )
+        elif end.wired:
             yield report(
                 codes.SERVICE_WITHOUT_SERVER,
-                f"no node serves the {channel.vertex[0]} '{channel.name}' that {end.name} calls",
+                f"no node serves the {channel.vertex[0]} '{name}' that {end.name} calls",
                 end.span,
-                hint="connect a server to that name; if it is outside the model, "
-                f"declare 'external topic {channel.name}'",
+                hint=f"'{owner}' is not described as 'lifecycle'"
+                if node is not None and service in OF_MANAGED_NODES
+                else "connect a server to that name; if it is outside the model, "
+                f"declare 'external topic {name}'",
                 related=(Related(end.port.port.span, "the client is declared here"),),
             )
+
+
+def _own_service(node: FlatNode, service: str) -> InterfaceType | None:
+    """Return the type of a service that a node has without describing it, or ``None``."""
+    if node.type is not None and node.type.lifecycle and service in OF_MANAGED_NODES:
+        return OF_MANAGED_NODES[service]
+    return OF_EVERY_NODE.get(service)
 
 
 # Misspellings -----------------------------------------------------------------------------------
 
 
 def _misspelt(
-    topics: Iterable[_Channel], partners: Partners[_Channel], rules: RulesEnds
-) -> list[tuple[_Channel, list[_Channel]]]:
+    topics: Iterable[Channel], partners: Partners[Channel], rules: RulesEnds
+) -> list[tuple[Channel, list[Channel]]]:
     """Pair topics that are only subscribed with the published ones that they probably are.
 
     Where names of one type nearly match, it is likelier that one of them is wrong than that a
@@ -325,7 +262,7 @@ def _misspelt(
         if read.name in rules.fed:
             continue
 
-        def allow(fed: _Channel, read: _Channel = read) -> bool:
+        def allow(fed: Channel, read: Channel = read) -> bool:
             return not fed.undeclared and (fed.name, read.name) not in rules.gated
 
         matches = partners.fed_for(read, allow)
@@ -334,12 +271,12 @@ def _misspelt(
     return found
 
 
-def _misspelling(read: _Channel, matches: list[_Channel]) -> Diagnostic:
+def _misspelling(read: Channel, matches: list[Channel]) -> Diagnostic:
     fed = matches[0]
     *others, last = [f"'{each.name}'" for each in matches]
     names = f"{', '.join(others)} or {last}" if others else last
     kind = fed.type.short
-    if fed.sinks:
+    if fed.sinks or fed.open:
         message = f"nobody publishes '{read.name}', but '{fed.name}' with its type, {kind}"
         hint = f"connect {_names(read.sinks)} to {names}"
     else:
@@ -356,45 +293,3 @@ def _misspelling(read: _Channel, matches: list[_Channel]) -> Diagnostic:
             Related(read.sinks[0].span, f"subscribed by {read.sinks[0].name}"),
         ),
     )
-
-
-# Unwired ports ----------------------------------------------------------------------------------
-
-
-def _unwired(flat: FlatSystem, by_vertex: dict[Vertex, _Channel]) -> Iterator[Diagnostic]:
-    for node in flat.nodes:
-        if _has_unknown_wirings(node):
-            continue  # one of those may be meant for the port
-        for port in node.ports:
-            if port.wiring is not None or port.port.kind not in _SEEKS_A_PARTNER:
-                continue
-            is_topic = CHANNEL[port.port.kind] == "topic"
-            if is_topic and standard_topic(port.topic, port.port.type) is not None:
-                continue  # its other ends are in libraries and tools
-            word = _SEEKS_A_PARTNER[port.port.kind]
-            yield report(
-                codes.UNWIRED_PORT,
-                f"{word} '{port.port.name}' of '{node.instance.name}' is not connected",
-                node.instance.name_span,
-                hint=_unwired_hint(_in_wirings(node, port), port.topic, word, by_vertex),
-                related=(Related(port.port.span, f"the {word} is declared here"),),
-            )
-
-
-def _in_wirings(node: FlatNode, port: FlatPort) -> str:
-    """Return how a ``connect`` names a port: with its kind where others have its name."""
-    alike = sum(other.port.name == port.port.name for other in node.ports)
-    return f"{port.port.kind.word} {port.port.name}" if alike > 1 else port.port.name
-
-
-def _has_unknown_wirings(node: FlatNode) -> bool:
-    known = sum(port.wiring is not None for port in node.ports) + len(node.untyped)
-    return len(node.instance.wirings) > known
-
-
-def _unwired_hint(name: str, topic: str, word: str, by_vertex: dict[Vertex, _Channel]) -> str:
-    channel = by_vertex.get(("topic", topic))
-    if channel is not None and channel.declared is not None:
-        return f"'{topic}' is declared and has its name: add 'connect {name} to {topic}'"
-    what = "talks on" if word in ("publisher", "subscription") else "calls"
-    return f"it {what} its own name, '{topic}', unless a 'connect {name} to …' says otherwise"
