@@ -138,9 +138,9 @@ def test_hint_for_a_gate_without_heartbeat() -> None:
     """The line that the hint proposes is long enough for the rate that the system sets."""
     without = RULES.replace("  lost heartbeat for 0.3 sec: zero;\n", "")
     (finding,) = _findings(_safety() + _gate(), without)
-    assert finding.hint == "add 'lost heartbeat for 0.3 sec: zero;'"
+    assert finding.hint == "add 'lost heartbeat for 0.3 sec: zero until reset;'"
     (finding,) = _findings(_safety(publish_freq=2.0) + _gate(), without)
-    assert finding.hint == "add 'lost heartbeat for 1.25 sec: zero;'"
+    assert finding.hint == "add 'lost heartbeat for 1.25 sec: zero until reset;'"
 
 
 def _watching(term: str, timeout: str) -> str:

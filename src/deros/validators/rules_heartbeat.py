@@ -85,7 +85,7 @@ def check_heartbeats(
 def heartbeat_hint(gate: Gate, states: set[str], systems: Iterable[FlatSystem]) -> str:
     """Return the line that watches the heartbeat, with a time that the systems' paces allow."""
     needed = (pace.shortest_ns for pace in _heartbeats(gate.target.text, states, systems))
-    return f"add 'lost heartbeat for {_seconds(max(_HINTED_NS, *needed))} sec: zero;'"
+    return f"add 'lost heartbeat for {_seconds(max(_HINTED_NS, *needed))} sec: zero until reset;'"
 
 
 def _states_of(program: ir.Program) -> set[str]:
