@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import functools
 import itertools
 import multiprocessing
@@ -115,6 +116,7 @@ def _differs(library: Loaded, cases: Sequence[c_pairs.Case]) -> bool:
     """Compare in a process of its own: a slip may make the emitted code run for ever."""
 
     def compare() -> None:
+        faulthandler.disable()  # a slip may make it crash, too, which is no news
         os._exit(next(c_pairs.differences(library, cases), None) is not None)
 
     child = multiprocessing.get_context("fork").Process(target=compare)
