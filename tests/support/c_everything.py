@@ -68,14 +68,15 @@ input counters = topic /counters.data
 entity drive {
   too_fast: speed > max_speed for 2 sec;
   jerky: speed.rate() > 2 and not enabled;
-  climbing: height.rate().abs() >= 0.1 for 0.5 sec;
+  climbing: (height.rate().abs() >= 0.1 or height.rate(1 sec) > 0.5) for 0.5 sec;
   silent: speed.missing() or scan.age() > 1 sec or elbow.missing() or beats.age() >= 0.1 sec;
 }
 entity body {
   tilted: attitude.roll() not in [-10 deg, 10 deg] or
           attitude.pitch() not in [-10 deg, 10 deg);
   turned: attitude.yaw() > 90 deg or attitude.tilt() > 5 deg;
-  turning: turn.norm() >= 90 deg/s;
+  turning: turn.norm() >= 90 deg/s or attitude.yaw().rate() > 2 or
+           attitude.yaw().rate(0.5 sec) < -2;
   near: scan.nearest(-30 deg, 30 deg) < 0.4 or scan.nearest(150 deg, -150 deg) < 0.2;
   bent: positions.max() > 1.5 or positions.min() < -1.5 or elbow.abs() > 2;
   joints: names.count() != 6 or positions.count() < 6;

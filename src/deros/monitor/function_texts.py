@@ -273,7 +273,11 @@ static void keep(@_window *w, double value, int64_t stamp, int64_t span)
     "between": """\
 static int64_t between(int64_t earlier, int64_t later)
 {
-  return ((0 <= earlier) && (earlier < later)) ? (later - earlier) : 0;
+  int64_t elapsed = 0;
+  if ((0 <= earlier) && (earlier < later)) {
+    elapsed = later - earlier;
+  }
+  return elapsed;
 }
 """,
     "stamp_of": """\
@@ -291,7 +295,11 @@ static int64_t stamp_of(int64_t sec, int64_t nanosec)
 static double unwrapped(double value, double turn, double *last, double *total)
 {
   const double way = remainder(value - *last, turn);
-  *total = is_number(way) ? (*total + way) : value;
+  if (is_number(way)) {
+    *total += way;
+  } else {
+    *total = value;
+  }
   *last = value;
   return *total;
 }

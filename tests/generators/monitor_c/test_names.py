@@ -28,15 +28,20 @@ string y
 float64 y_length
 int32[] z
 float64 z_given
+geometry_msgs/Quaternion o
+float64 o_last_rate
+float64 new_o_total
 """
 """Fields named as what is passed beside the elements of others, before and after these."""
+_LOCAL = re.compile(r"^ +(?:const )?(?:bool|double|int64_t|uint32_t|size_t) (\w+) =", re.MULTILINE)
 _FIELD = re.compile(r"[a-z](?:_?[a-z0-9])*")
 
 
 def _own_names() -> list[str]:
-    """Return what a monitor and its contracts call, as far as a message's field may be named so."""
+    """Return what a monitor and its contracts call and declare, where a field may be named so."""
     texts = render_monitor(everything()).values()
     called = {name for text in texts for name in re.findall(r"(\w+)(?:\{\w+\})?\(", text)}
+    called |= {name for text in texts for name in _LOCAL.findall(text)}
     called |= {re.sub(r"_(?:scan|imu)$", "_hostile", name) for name in called}
     return sorted(name for name in called - KEYWORDS if _FIELD.fullmatch(name))
 
@@ -44,10 +49,12 @@ def _own_names() -> list[str]:
 def _rules(names: list[str]) -> str:
     """Return rules that read a field of each name, beside every construct that there is."""
     fields = [*names, "x_count", "x_count_2", "y_length", "z_given", "z[1]"]
+    fields += ["o_last_rate", "new_o_total"]
     inputs = "".join(f"input x{i} = topic /hostile.{name}\n" for i, name in enumerate(fields))
     inputs += "input x = topic /hostile.x\ninput y = topic /hostile.y\n"
+    inputs += "input o = topic /hostile.o\n"
     tests = " or ".join(f"x{i} > 0.5" for i in range(len(fields)))
-    rules = f'  r: {tests} or x.max() > 0.5 or y = "on";\n'
+    rules = f'  r: {tests} or x.max() > 0.5 or y = "on" or o.yaw().rate() > 1;\n'
     return f"{RULES}\n{inputs}entity hostile {{\n{rules}}}\nif hostile.r then {{ stop; }};\n"
 
 

@@ -8,13 +8,16 @@ import shutil
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from deros.generators.monitor_c import render_monitor
 from deros.generators.monitor_c.deviations import DEVIATIONS
 from deros.generators.protocol import File, GenerationError
-from deros.monitor.ir import Program
+from deros.monitor import walk
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import Apply, Condition, Program
 from tests.support import c_pairs, misra
 from tests.support.c_everything import RULES, built, everything, examples
 from tests.support.golden import Golden
@@ -32,7 +35,7 @@ COMPILERS = {
     "Cortex-M4": ("arm-none-eabi-gcc", "-std=c99", "-ffreestanding", "-mcpu=cortex-m4"),
 }
 
-LIBM = {"fabs", "sqrt", "atan2", "asin", "fmod"}
+LIBM = {"fabs", "sqrt", "atan2", "asin", "fmod", "remainder"}
 """What the functions of rules need of the mathematical library."""
 
 
@@ -194,6 +197,19 @@ def test_refusal(case: str) -> None:
 
 def _program(rules: str) -> Program:
     return built(rules, "refused")
+
+
+def test_the_program_has_every_construct() -> None:
+    """What is new in the language is compiled, linted and kept, too."""
+    conditions = list(walk.conditions(everything()))
+    called = {
+        term.function
+        for value in walk.values(conditions)
+        for term in walk.terms(value)
+        if isinstance(term, Apply)
+    }
+    assert called == {row.name for row in FUNCTIONS.values() if row.evaluate or row.memory}
+    assert {type(each) for each in conditions} == set(get_args(Condition))
 
 
 def test_the_files_are_as_kept(golden: Golden) -> None:

@@ -10,6 +10,7 @@ from deros.generators.monitor_c.expressions import (
     Conditions,
     as_double,
     expression,
+    function_name,
     present,
 )
 from deros.generators.monitor_c.helpers import helper_names
@@ -28,7 +29,7 @@ from deros.interfaces.types import FLOAT_TYPES, STRING_TYPES
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
 from deros.monitor.functions import FUNCTIONS, Argument
-from deros.monitor.ir import Age, Apply, Input, Leaf, Program, Read, ValueExpression
+from deros.monitor.ir import Age, Apply, Input, Leaf, Program, Read, Scale, ValueExpression
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +126,7 @@ class _Writer:
         self._inputs = [each for each in program.inputs if each.topic == topic]
         name = names.new(self._inputs[0].name if len(self._inputs) == 1 else topic)
         self._functions = (f"{layout.prefix}_on_{name}", *(f"{e}_{name}" for e in _OF_MESSAGES))
+        self._names = self._known_names()
         self._parameters = self._name_parameters()
         self._arguments = Arguments(self._leaf_names(), self._count_names())
 
@@ -151,18 +153,20 @@ class _Writer:
 
     # Parameters ---------------------------------------------------------------------------------
 
+    def _known_names(self) -> Names:
+        """Return what names parameters and constants, none as a function that is called there."""
+        called = (*self._functions, *self._layout.judges.values())
+        return new_names({*helper_names(self._program), *called, "news"})
+
     def _name_parameters(self) -> tuple[Parameter, ...]:
-        """Name the parameters, none as a function that is called where they are known."""
         groups: dict[tuple[str | int, ...], list[Leaf]] = {}
         for each in self._inputs:
             for index in each.leaves if self._is_observed(each) else ():
                 leaf = self._program.leaves[index]
                 if self._is_needed(leaf):
                     groups.setdefault(leaf.path, []).append(leaf)
-        called = (*self._functions, *self._layout.judges.values())
-        names = new_names({*helper_names(self._program), *called})
         return tuple(
-            self._parameter(names.new(*path, endings=_ENDINGS), path, group)
+            self._parameter(self._names.new(*path, endings=_ENDINGS), path, group)
             for path, group in groups.items()
         )
 
@@ -282,19 +286,21 @@ class _Writer:
         """Yield the statements that store values; what rules read of them is news if it differs."""
         yield from self._lengths(each)
         for value, memory in self._layout.memories_of(each.index).items():
+            yield from self._angle(value.arguments[0])
             operand = as_double(value.arguments[0], self._program, self._arguments)
-            name = f"{memory.last}_rate"
+            parts = (memory.last, "rate")
             arguments = [operand, "m->now", f"&m->{memory.last}", f"&m->{memory.last_t}"]
             if memory.window:
-                name = f"{memory.window}_rate"
+                parts = (memory.window, "rate")
                 span = expression(value.arguments[1], self._program, self._arguments)
                 arguments = [operand, self._stamp(value), span, f"&m->{memory.window}"]
             elif memory.total:
-                name = f"new_{memory.total}"
+                parts = ("new", memory.total)
                 turn = expression(value.arguments[1], self._program, self._arguments)
                 arguments = [operand, turn, f"&m->{memory.last}", f"&m->{memory.total}"]
-            call = f"{FUNCTIONS[value.function].c_call}({', '.join(arguments)})"
-            yield f"  const double {name} = {call};"
+            name = self._names.new(*parts)
+            call = f"{FUNCTIONS[value.function].c_call}("
+            yield from lay_out_list(2, f"const double {name} = {call}", arguments, ");")
             self._arguments.computed[value] = name
         known = self._layout.inputs[each.index].known
         if known:
@@ -320,9 +326,25 @@ class _Writer:
                 texts = [
                     expression(part, self._program, self._arguments) for part in value.arguments
                 ]
-                name = f"length_{len(lengths) + 1}"
+                name = self._names.new("length", str(len(lengths) + 1))
                 lengths[value.arguments] = name
                 yield from lay_out(2, f"const double {name} = ", Call("length_of", tuple(texts)))
+
+    def _angle(self, operand: ValueExpression) -> Iterator[str]:
+        """Yield the statement that computes what a memory takes of a quaternion, once."""
+        while isinstance(operand, Scale):
+            operand = operand.operand
+        computed, lengths = self._arguments.computed, self._arguments.lengths
+        if isinstance(operand, Apply) and operand.arguments in lengths and operand not in computed:
+            length = lengths[operand.arguments]
+            texts = [
+                f"{expression(each, self._program, self._arguments)} / {length}"
+                for each in operand.arguments
+            ]
+            name = self._names.new("new", operand.function)
+            call = f"{function_name(operand, self._program)}("
+            yield from lay_out_list(2, f"const double {name} = {call}", texts, ");")
+            computed[operand] = name
 
     def _value(self, term: Term) -> Iterator[str]:
         if term.texts:
