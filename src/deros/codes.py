@@ -115,6 +115,7 @@ RULES_RUN_TWICE = _declare(238, "rules whose nodes are started twice")
 RULES_NOT_LOADED = _declare(
     239, "safety node wired by hand, and checked without its rules", _W, absence=True
 )
+LIKELY_CROSSED = _declare(240, "two connections that have probably been exchanged", _W)
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(301, "topic of the rules that the system lacks", absence=True)

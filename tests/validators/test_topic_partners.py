@@ -130,3 +130,26 @@ subsystem right : Part namespace /right
 """
     findings = [each for each in _check(tmp_path, system) if each.code.name == "DRS213"]
     assert [each.span.text for each in findings] == ["compass"]
+
+
+def test_transforms_under_another_name_are_reported(tmp_path: Path) -> None:
+    """Nobody describes who reads transforms, but they are for one topic."""
+    node = 'node program : demo executable "program" publishes topic {} : tf2_msgs.TFMessage\n'
+    for name, expected in (("/tf", []), ("/ft", ["DRS213"])):
+        folder = tmp_path / name.strip("/")
+        folder.mkdir()
+        (folder / "program.rnd").write_text(node.format(name))
+        findings = _check(folder, "node program : program\n")
+        assert [each.code.name for each in findings] == expected
+
+
+def test_what_is_declared_and_lacks_a_publisher_is_asked_of_programs(tmp_path: Path) -> None:
+    """A topic that leaves the model may be the one that an output was meant for."""
+    (tmp_path / "program.rnd").write_text(
+        'node program : demo executable "program" publishes topic maps : nav_msgs.OccupancyGrid\n'
+    )
+    system = "topics external topic /robot/map : nav_msgs.OccupancyGrid\n"
+    findings = _check(tmp_path, f"{system}node program : program namespace /robot\n")
+    assert [each.code.name for each in findings] == ["DRS213"]
+    other = system.replace("/robot/map", "/robot/costs")
+    assert _check(tmp_path, f"{other}node program : program namespace /robot\n") == []

@@ -67,6 +67,11 @@ def is_operated(kind: InterfaceType) -> bool:
     return _text(kind) in _table()[3]
 
 
+def has_topic_of_its_own(kind: InterfaceType) -> bool:
+    """Tell whether messages of a type are for one standard topic, as transforms are."""
+    return any(entry.fixed and _text(kind) in entry.types for entry in _table()[0].values())
+
+
 def wrong_type(name: str, kind: InterfaceType, type_of: TypeOf) -> StandardTopic | None:
     """Return the entry of a topic that has another type than it has everywhere else, or ``None``.
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from deros.diagnostics import Diagnostic, in_file_order
+from deros.diagnostics import Code, Diagnostic, Span, in_file_order
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import LoadedFile, Repository
 from deros.metamodels.node import NodeType
@@ -63,10 +63,21 @@ def check_all(
             watchers = _watchers(each.model, watching)
         whole = id(each) in named_files or bool(watchers.whole)
         findings.extend(_check_model(each.model, whole, watchers, store))
-    found = in_file_order(as_generated(findings, watching))
+    found = in_file_order(_said_once(as_generated(findings, watching)))
     sorted_out = sort_out(found, loaded, named, project)
     told = without_consequences(sorted_out.findings, findings, loaded)
     return Checked(in_file_order(told), list(sorted_out.allowed))
+
+
+def _said_once(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Keep one of the findings that say the same of one place.
+
+    A system that rules use, and that another one contains, is checked on its own and as a part.
+    """
+    said: dict[tuple[Code, str, Span], Diagnostic] = {}
+    for each in findings:
+        said.setdefault((each.code, each.message, each.span), each)
+    return list(said.values())
 
 
 def check_file(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:

@@ -14,6 +14,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.flatten import flatten
 from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
+from deros.validators.crossed_ports import check_crossed
 from deros.validators.files import check_files
 from deros.validators.graph import wiring_graph
 from deros.validators.rules_ends import ends_of
@@ -45,6 +46,7 @@ def check_system(
     yield from check_instances(flat)
     yield from check_statements(flat)
     yield from check_files(flat, store)
+    yield from check_crossed(flat)
     programs = tuple(watchers)
     if not any(node.statement is not None and node.type is None for node in flat.nodes):
         # Else what the rules would read and publish is not known, and nothing proves to be missing.

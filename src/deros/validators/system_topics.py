@@ -163,15 +163,22 @@ def _missing_ends(
                 topic.sinks,
                 f"'{other.name}' has the same type and nobody subscribes to it; " if other else "",
             )
-        elif topic.sources and not topic.sinks and not is_shown_only(topic.type):
+        elif topic.sources and _is_unread(topic) and not is_shown_only(topic.type):
+            somebody = "nobody else subscribes" if topic.sinks else "nobody subscribes"
             yield _one_sided(
                 codes.NO_SUBSCRIBER,
-                f"nobody subscribes to '{topic.name}', which {_names(topic.sources)} "
+                f"{somebody} to '{topic.name}', which {_names(topic.sources)} "
                 f"publish{'es' if len(topic.sources) == 1 else ''}",
                 topic,
                 topic.sources,
                 _subscribed_instead(topic, partners),
             )
+
+
+def _is_unread(topic: Channel) -> bool:
+    """Tell whether a published topic reaches no node but the one that publishes it."""
+    names = {end.node.full_name for end in (*topic.sources, *topic.sinks)}
+    return not topic.sinks or len(names) == 1
 
 
 def _subscribed_instead(topic: Channel, partners: Partners[Channel]) -> str:

@@ -43,6 +43,13 @@ class Channel:
         return (self.sources or self.sinks)[0].type
 
     @property
+    def known_type(self) -> InterfaceType | None:
+        """The pinned type, else that of the first end; ``None`` for a topic without either."""
+        if self.pin is not None:
+            return self.pin.type
+        return self.type if self.sources or self.sinks else None
+
+    @property
     def undeclared(self) -> bool:
         """Whether a wiring names a topic that nobody declares, which is a finding of its own."""
         return self.declared is None and any(end.wired for end in (*self.sources, *self.sinks))

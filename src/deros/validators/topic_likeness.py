@@ -78,6 +78,12 @@ def likeness(first: str, second: str) -> float:
     return 0.7 * last + 0.3 * space
 
 
+def words_of(name: str) -> frozenset[str]:
+    """Return the words of a name, its namespace included, with synonyms made equal."""
+    space, last = _parts(name)
+    return frozenset((*space, *last))
+
+
 class LikelyTopics:
     """Finds, among very many names, those that one was probably meant to be.
 

@@ -7,12 +7,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
-from deros.interfaces.standard_topics import is_operated, is_shown_only, standard_topic
+from deros.interfaces.standard_topics import (
+    has_topic_of_its_own,
+    is_operated,
+    is_shown_only,
+    standard_topic,
+)
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem
 from deros.metamodels.node import PortKind
 from deros.validators.graph import CHANNEL, Vertex
 from deros.validators.topic_channels import Channel
+from deros.validators.topic_likeness import LikelyTopics
 from deros.validators.topic_partners import Partners
 
 _SEEKS_A_PARTNER = {
@@ -94,21 +100,33 @@ class _Asked:
         self._partners = partners
         self._unfed: dict[InterfaceType, list[Channel]] = defaultdict(list)
         self._called: dict[tuple[InterfaceType, str], list[Channel]] = defaultdict(list)
+        declared: dict[InterfaceType, list[str]] = defaultdict(list)
         for each in found:
-            if each.vertex[0] != "topic" or not each.sinks:
+            if each.vertex[0] != "topic":
+                continue
+            if each.declared is not None and not each.sources and each.known_type is not None:
+                declared[each.known_type].append(each.name)
+            if not each.sinks:
                 continue
             if not each.sources and not each.open:
                 self._unfed[each.type].append(each)
             self._called[each.type, _last_word(each.name)].append(each)
+        self._declared = {kind: LikelyTopics(names) for kind, names in declared.items()}
 
     def asks_for(self, fed: Channel) -> bool:
         """Tell whether somebody in the system may wait for what is published on a topic.
 
         That is so where the topic is declared or read, where a topic of its type that another node
-        reads is called alike, or where one lacks a publisher.
+        reads is called alike, or one that is declared and not published, or where one lacks a
+        publisher; and where the type is for a standard topic, which this one is not.
         """
         own = {end.node.full_name for end in fed.sources}
         if fed.declared is not None or any(end.node.full_name not in own for end in fed.sinks):
+            return True
+        if has_topic_of_its_own(fed.type):
+            return True
+        declared = self._declared.get(fed.type)
+        if declared is not None and declared.best(fed.name, lambda _: 0.0, 1):
             return True
         candidates = [
             *self._unfed[fed.type][:_COMPARED],
