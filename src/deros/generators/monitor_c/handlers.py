@@ -10,7 +10,6 @@ from deros.generators.monitor_c.expressions import (
     Conditions,
     as_double,
     expression,
-    function_name,
     present,
 )
 from deros.generators.monitor_c.helpers import helper_names
@@ -299,8 +298,8 @@ class _Writer:
                 turn = expression(value.arguments[1], self._program, self._arguments)
                 arguments = [operand, turn, f"&m->{memory.last}", f"&m->{memory.total}"]
             name = self._names.new(*parts)
-            call = f"{FUNCTIONS[value.function].c_call}("
-            yield from lay_out_list(2, f"const double {name} = {call}", arguments, ");")
+            call = f"{FUNCTIONS[value.function].c_call}({', '.join(arguments)})"
+            yield f"  const double {name} = {call};"
             self._arguments.computed[value] = name
         known = self._layout.inputs[each.index].known
         if known:
@@ -336,14 +335,9 @@ class _Writer:
             operand = operand.operand
         computed, lengths = self._arguments.computed, self._arguments.lengths
         if isinstance(operand, Apply) and operand.arguments in lengths and operand not in computed:
-            length = lengths[operand.arguments]
-            texts = [
-                f"{expression(each, self._program, self._arguments)} / {length}"
-                for each in operand.arguments
-            ]
+            text = expression(operand, self._program, self._arguments)
             name = self._names.new("new", operand.function)
-            call = f"{function_name(operand, self._program)}("
-            yield from lay_out_list(2, f"const double {name} = {call}", texts, ");")
+            yield f"  const double {name} = {text};"
             computed[operand] = name
 
     def _value(self, term: Term) -> Iterator[str]:
