@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from deros.interfaces.types import InterfaceType
 
@@ -59,17 +59,17 @@ def standard_topic(name: str, kind: InterfaceType | None) -> StandardTopic | Non
 
 def is_shown_only(kind: InterfaceType) -> bool:
     """Tell whether messages of a type are for tools, so that no subscription is missing."""
-    return _text(kind) in _table()[2]
+    return _text(kind) in _table().shown
 
 
 def is_operated(kind: InterfaceType) -> bool:
     """Tell whether messages of a type come from an operator, so that no publisher is missing."""
-    return _text(kind) in _table()[3]
+    return _text(kind) in _table().operated
 
 
 def has_topic_of_its_own(kind: InterfaceType) -> bool:
     """Tell whether messages of a type are for one standard topic, as transforms are."""
-    return any(entry.fixed and _text(kind) in entry.types for entry in _table()[0].values())
+    return _text(kind) in _table().fixed
 
 
 def wrong_type(name: str, kind: InterfaceType, type_of: TypeOf) -> StandardTopic | None:
@@ -90,17 +90,17 @@ def wrong_type(name: str, kind: InterfaceType, type_of: TypeOf) -> StandardTopic
 
 @lru_cache(maxsize=1 << 14)
 def _entries(name: str) -> tuple[StandardTopic, ...]:
-    named, derived, *_ = _table()
+    table = _table()
     found = []
-    if (entry := named.get(name)) is not None:
+    if (entry := table.named.get(name)) is not None:
         found.append(entry)
     for depth in (1, 2):
         parts = name.rsplit("/", depth)
         if len(parts) > depth and parts[0]:
-            entry = named.get("/" + "/".join(parts[1:]))
+            entry = table.named.get("/" + "/".join(parts[1:]))
             if entry is not None and entry.anywhere:
                 found.append(entry)
-    found += (each for each in derived if name.endswith(each.name))
+    found += (each for each in table.derived if name.endswith(each.name))
     return tuple(found)
 
 
@@ -108,11 +108,26 @@ def _text(kind: InterfaceType) -> str:
     return f"{kind.package}/{kind.name}"
 
 
+class _Table(NamedTuple):
+    """What is known of standard topics.
+
+    Attributes:
+        named: the topics by their names.
+        derived: those whose names are made of another topic's.
+        shown: the types that are for tools alone.
+        operated: the types that come from an operator.
+        fixed: the types that have one topic each.
+    """
+
+    named: dict[str, StandardTopic]
+    derived: tuple[StandardTopic, ...]
+    shown: frozenset[str]
+    operated: frozenset[str]
+    fixed: frozenset[str]
+
+
 @cache
-def _table() -> tuple[
-    dict[str, StandardTopic], tuple[StandardTopic, ...], frozenset[str], frozenset[str]
-]:
-    """Return the named topics, the derived ones, and the types only shown and only operated."""
+def _table() -> _Table:
     path = Path(__file__).with_name("standard_topics.json")
     table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     named = [
@@ -129,9 +144,10 @@ def _table() -> tuple[
         StandardTopic(each["ending"], frozenset(each["types"]), each["why"], of=each["of"])
         for each in table["derived"]
     )
-    return (
+    return _Table(
         {each.name: each for each in named},
         derived,
-        frozenset(table["shown"]["types"]),
-        frozenset(table["operated"]["types"]),
+        shown=frozenset(table["shown"]["types"]),
+        operated=frozenset(table["operated"]["types"]),
+        fixed=frozenset(kind for each in named if each.fixed for kind in each.types),
     )
