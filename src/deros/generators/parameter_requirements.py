@@ -72,13 +72,12 @@ def _count(parameter: Parameter, number: int) -> str:
 
 
 def _range(interval: Interval, kind: ParameterType) -> Requirement:
-    text = interval_text(interval, kind)
+    where = interval_clause(interval, kind)
     if kind.is_array:
-        where = text if interval.one_sided else f"in {text}"
         return Requirement(Check.RANGE, f"must have all elements {where}")
     closed = interval.lower_closed and interval.upper_closed
-    where = f"be {text}" if interval.one_sided else f"lie in {text}"
-    return Requirement(Check.RANGE, f"must {where}", stated=not closed)
+    verb = "be" if interval.one_sided else "lie"
+    return Requirement(Check.RANGE, f"must {verb} {where}", stated=not closed)
 
 
 def spelled(value: Scalar, kind: ParameterType) -> str:
@@ -90,9 +89,9 @@ def spelled(value: Scalar, kind: ParameterType) -> str:
     return repr(value)
 
 
-def interval_text(interval: Interval, kind: ParameterType) -> str:
-    """Return an interval as the models write it, of integers without needless fractions."""
-    return interval.spelled(lambda value: bound(value, kind))
+def interval_clause(interval: Interval, kind: ParameterType) -> str:
+    """Return an interval as descriptions state it, of integers without needless fractions."""
+    return interval.clause(lambda value: bound(value, kind))
 
 
 def bound(value: float, kind: ParameterType) -> str:

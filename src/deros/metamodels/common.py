@@ -55,6 +55,10 @@ class Interval:
         closing = "]" if self.upper_closed else ")"
         return f"{opening}{bound(self.lower)}, {bound(self.upper)}{closing}"
 
+    def clause(self, bound: Callable[[float], str] = repr) -> str:
+        """Return how a description states it, ``in [0.1, 2.0)`` or ``>= 0.1``."""
+        return f"{'' if self.one_sided else 'in '}{self.spelled(bound)}"
+
 
 @dataclass(frozen=True, slots=True)
 class QosProfile:

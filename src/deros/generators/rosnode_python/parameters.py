@@ -18,7 +18,7 @@ from deros.generators.parameter_requirements import (
     Check,
     bound,
     integer_bounds,
-    interval_text,
+    interval_clause,
     requirements,
     spelled,
 )
@@ -228,8 +228,7 @@ def comment(parameter: Parameter, read_only: bool) -> str:
     """Return what a comment says of a parameter: description, unit and constraints."""
     parts = [describe(parameter).removesuffix(".")]
     if parameter.interval is not None:
-        text = interval_text(parameter.interval, parameter.type)
-        parts.append(text if parameter.interval.one_sided else f"in {text}")
+        parts.append(interval_clause(parameter.interval, parameter.type))
     if parameter.choices is not None:
         parts.append(f"one of {_enumeration(parameter)}")
     parts += _size_comments(parameter)

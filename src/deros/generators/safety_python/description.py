@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from deros.metamodels.common import Interval, QosProfile, Scalar, Value
+from deros.metamodels.common import QosProfile, Scalar, Value
 from deros.metamodels.node import NodeType, Parameter, Port, PortKind, Timer
 
 _KEYWORDS = {
@@ -60,7 +60,7 @@ def _parameter(parameter: Parameter) -> str:
     return _joined(
         head,
         f"[{parameter.unit}]" if parameter.unit is not None else "",
-        _range(parameter.interval) if parameter.interval is not None else "",
+        parameter.interval.clause() if parameter.interval is not None else "",
         f"one_of {_value(parameter.choices)}" if parameter.choices is not None else "",
         f"size {parameter.size}" if parameter.size is not None else "",
         f"min_size {parameter.min_size}" if parameter.min_size is not None else "",
@@ -110,10 +110,6 @@ def _qos(profile: QosProfile) -> str:
 def _timer(timer: Timer) -> str:
     head = f"timer {timer.name} every {timer.period_ns} ns"
     return _joined(head, _text(timer.description))
-
-
-def _range(interval: Interval) -> str:
-    return f"{'' if interval.one_sided else 'in '}{interval.spelled()}"
 
 
 def _value(value: Value | tuple[Value, ...]) -> str:
