@@ -266,14 +266,14 @@ def test_only_optional_behaviours_can_be_disabled() -> None:
 def test_explain_tells_values_and_since_when() -> None:
     """A rule that is not true is false only if all that it reads is known."""
     engine = Engine(program(TIMED), start_ns=5)
-    fast, old, gone = engine.explain()
+    fast, old, gone = engine.explain().rules
     assert (fast.name, fast.value, fast.since, fast.reads) == ("e.fast", None, 5, (("v", None),))
     assert (old.value, old.reads) == (None, (("v.age()", None),))
     assert (gone.line, gone.text) == (4, "gone: v.missing();")
     assert (gone.value, gone.reads) == (False, (("v.missing()", False),))
     _speed(engine, 10, 0.6)
     engine.advance(10 + 10**9)
-    fast, old, gone = engine.explain()
+    fast, old, gone = engine.explain().rules
     assert (fast.value, old.value, old.reads) == (None, False, (("v.age()", 1.0),))
     assert (gone.value, gone.since) == (True, 10 + 10**9)
 
@@ -286,7 +286,7 @@ def test_explain_names_rates_as_rules_do() -> None:
     entity e { r: q.yaw().rate(0.1 sec) > 1 or q.roll().rate().abs() > 1; }
     if e.r then { stop; };
     """
-    (state,) = Engine(program(rules)).explain()
+    (state,) = Engine(program(rules)).explain().rules
     names = [name for name, _ in state.reads]
     assert names == ["q.yaw().rate(0.1 sec)", "q.roll().rate().abs()"]
 
@@ -304,7 +304,7 @@ def test_explain_names_terms_as_rules_do() -> None:
     }
     if e.r then { stop; };
     """
-    (state,) = Engine(program(rules)).explain()
+    (state,) = Engine(program(rules)).explain().rules
     names = [name for name, _ in state.reads]
     assert names == ["scan.nearest(-1, 0.5)", "q.roll()", "v", "v.rate()"]
     assert state.text == "r: scan.nearest(-1 rad, 0.5 rad) < 1 or q.roll() > v or v.rate() > 2;"

@@ -37,7 +37,7 @@ def _scan(ahead: float) -> dict[int, LeafValue]:
 
 def _verdicts(engine: Engine) -> list[bool | None]:
     """Return how ``near`` counts, and what the two forms of ``unknown()`` give."""
-    return [each.value for each in engine.explain()]
+    return [each.value for each in engine.explain().rules]
 
 
 @monitors
@@ -110,7 +110,7 @@ def test_the_report_says_what_was_unknown(monitor: Monitor) -> None:
     """The state of a failsafe rule that acts shows the value that it lacks."""
     engine = monitor(program(RULES), 0)
     engine.message(100 * MS, "/scan", _scan(0.0))
-    near, silent, blind = engine.explain()
+    near, silent, blind = engine.explain().rules
     assert near.value is True
     assert near.text.startswith("failsafe near:")
     assert near.reads == (("scan.nearest(-0.523599, 0.523599)", None),)

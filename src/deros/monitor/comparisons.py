@@ -32,6 +32,7 @@ from deros.monitor.resolved import (
 from deros.monitor.scope import Scope
 from deros.monitor.term_names import describe
 from deros.monitor.terms import Terms
+from deros.monitor.wordings import wording
 
 _MIRRORED: dict[ir.Operator, ir.Operator] = {
     "=": "=",
@@ -157,7 +158,8 @@ class Comparisons:
         if isinstance(constant, Quantity):
             if not self._is_number(value, left) or not self._convertible(constant, value, right):
                 return None
-            return self._with_number(node, value, operator, constant.in_unit(value.unit))
+            number = constant.in_unit(value.unit)
+            return self._with_number(node, value, operator, number, constant)
         scalar: ir.Scalar
         if isinstance(constant, Plain):
             scalar, named = constant.value, f"the {family_of(constant.value)} '{right.span.text}'"
@@ -172,11 +174,13 @@ class Comparisons:
                 message = f"{named} is {scalar}, not a number that can be compared with"
                 self._scope.fault(codes.WRONG_OPERAND, message, node.span)
                 return None
-            return self._with_number(node, value, operator, Fraction(scalar))
+            return self._with_number(node, value, operator, Fraction(scalar), constant)
         if operator not in _EQUALITY:
             self._not_ordered(node, operator, named)
             return None
-        return ir.Compare(value.expression, operator, ir.Const(scalar))
+        return ir.Compare(
+            value.expression, operator, ir.Const(scalar), wording(operator, value, constant)
+        )
 
     def _not_ordered(self, node: rules.Comparison, operator: str, what: str) -> None:
         message = f"{what} can be compared with = and != only, not {operator}"
@@ -196,16 +200,22 @@ class Comparisons:
         return self._terms.compatible(unit, value.unit, term)
 
     def _with_number(
-        self, node: rules.Comparison, value: Value, operator: ir.Operator, number: Fraction
+        self,
+        node: rules.Comparison,
+        value: Value,
+        operator: ir.Operator,
+        number: Fraction,
+        constant: Fixed,
     ) -> ir.Condition:
         """Compare with an exact number, which for an integer is brought to an integer first."""
         bound: int | float
+        shown = wording(operator, value, constant)
         if value.is_integer:
             operator, bound = integer_bound(operator, number)
         else:
             bound = rounded(number)
         self._note(node, value, bounds_of(operator, exact(bound)), operator in _EQUALITY)
-        return ir.Compare(value.expression, operator, ir.Const(bound))
+        return ir.Compare(value.expression, operator, ir.Const(bound), shown)
 
     def _between_values(
         self, node: rules.Comparison, left: Value, operator: ir.Operator, right: Value
@@ -226,7 +236,8 @@ class Comparisons:
         if kind == "number":
             equality = operator in _EQUALITY
             self._note(node, left, None, equality, is_float(right.type), (operator, right))
-        return ir.Compare(left.expression, operator, self._scaled(right, left))
+        shown = wording(operator, left, right)
+        return ir.Compare(left.expression, operator, self._scaled(right, left), shown)
 
     def _scaled(self, value: Value, wanted: Value) -> ir.ValueExpression:
         """Return the value in the unit of ``wanted``."""
@@ -316,7 +327,8 @@ class Comparisons:
             ends = [exact(each.value) for each in (least, greatest)]
             bounds = Bounds(ends[0], ends[1], lower_closed, upper_closed, node.negated)
         self._note(node, operand, bounds, equality=False)
-        return ir.Within(operand.expression, least, greatest, lower_closed, upper_closed)
+        shown = wording("=", operand, lower, upper, brackets=_brackets(node))
+        return ir.Within(operand.expression, least, greatest, lower_closed, upper_closed, shown)
 
     def _end(
         self,
@@ -356,9 +368,9 @@ class Comparisons:
         bound_ns = self._age_bound(bound, term.span)
         if bound_ns is None:
             return None
-        found = ir.Age(self._scope.use(age.input), operator, bound_ns)
         self._note_age(node, age, bounds_of(operator, _seconds(bound_ns)))
-        return found
+        shown = wording(operator, self._seconds_of(age), bound)
+        return ir.Age(self._scope.use(age.input), operator, bound_ns, shown)
 
     def _age_within(
         self, node: rules.Membership, age: AgeOf, lower: Resolved, upper: Resolved
@@ -374,10 +386,13 @@ class Comparisons:
             _seconds(least), _seconds(greatest), node.lower_closed, node.upper_closed, node.negated
         )
         self._note_age(node, age, ends)
+        seconds = self._seconds_of(age)
+        above: ir.Operator = ">=" if node.lower_closed else ">"
+        below: ir.Operator = "<=" if node.upper_closed else "<"
         within = ir.And(
             (
-                ir.Age(owner, ">=" if node.lower_closed else ">", least),
-                ir.Age(owner, "<=" if node.upper_closed else "<", greatest),
+                ir.Age(owner, above, least, wording(above, seconds, lower)),
+                ir.Age(owner, below, greatest, wording(below, seconds, upper)),
             )
         )
         return ir.Not(within) if node.negated else within
@@ -386,11 +401,13 @@ class Comparisons:
         self, node: rules.Comparison | rules.Membership, age: AgeOf, bounds: Bounds
     ) -> None:
         """Let the checks of value ranges know an age as the number of seconds that it is."""
+        self._note(node, self._seconds_of(age), bounds, equality=False)
+
+    def _seconds_of(self, age: AgeOf) -> Value:
         row = FUNCTIONS["age"]
         expression = ir.Apply(row.name, (), self._scope.use(age.input))
         unit = self._scope.units.parse(row.unit)
-        seconds = Value(expression, FieldType("float64"), unit, age.input, (Fraction(0), math.inf))
-        self._note(node, seconds, bounds, equality=False)
+        return Value(expression, FieldType("float64"), unit, age.input, (Fraction(0), math.inf))
 
     def _age_bound(self, bound: Resolved, span: Span) -> int | None:
         if not isinstance(bound, Quantity):
@@ -403,6 +420,10 @@ class Comparisons:
             self._scope.fault(codes.INCOMPATIBLE_UNITS, message, span)
             return None
         return self._scope.nanoseconds(bound.in_unit(second), span)
+
+
+def _brackets(node: rules.Membership) -> str:
+    return ("[" if node.lower_closed else "(") + ("]" if node.upper_closed else ")")
 
 
 def _seconds(nanoseconds: int) -> Fraction:

@@ -62,6 +62,7 @@ class Conditions:
                 if inner is None or duration_ns is None:
                     return None
                 self._durations += 1
-                return ir.For(self._durations - 1, inner, duration_ns, condition.span)
+                written = " ".join(condition.duration.span.text.split())
+                return ir.For(self._durations - 1, inner, duration_ns, condition.span, written)
             case _:
                 return leaf(condition)

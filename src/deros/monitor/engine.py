@@ -24,7 +24,7 @@ from typing import Literal
 from deros.diagnostics import Span
 from deros.monitor import walk
 from deros.monitor.evaluate import conjunction, evaluate_condition, evaluate_value, is_nan
-from deros.monitor.explain import RuleState, explain_rule
+from deros.monitor.explain import Explanation, explain
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import Age, Apply, Behaviour, For, Input, Program, Scalar, Trigger
 from deros.monitor.state import LeafValue, State, Verdict
@@ -165,12 +165,9 @@ class Engine:
             self._evaluate()
         return self.events[before:]
 
-    def explain(self) -> tuple[RuleState, ...]:
-        """Return what each rule is worth since the last event, and the values behind it."""
-        return tuple(
-            explain_rule(self._program, rule, self._state, self._now_ns)
-            for rule in self._program.rules
-        )
+    def explain(self) -> Explanation:
+        """Return what each rule is worth since the last event, and why each behaviour holds."""
+        return explain(self._program, self._state, self._now_ns)
 
     # Time ---------------------------------------------------------------------------------------
 

@@ -1,32 +1,15 @@
-"""What a rule is worth and which values it is worth that by, for people to read."""
+"""What the rules are worth and by which values, and why behaviours hold, for people to read."""
 
 from __future__ import annotations
 
-import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from deros.monitor import walk
-from deros.monitor.evaluate import evaluate_condition, evaluate_value
-from deros.monitor.ir import (
-    Age,
-    Apply,
-    Condition,
-    Const,
-    Missing,
-    Program,
-    Read,
-    Rule,
-    Scalar,
-    Scale,
-    Unknown,
-    ValueExpression,
-)
+from deros.monitor.causes import causes_of_behaviour, causes_of_rule
+from deros.monitor.ir import Program, Rule, Scalar
+from deros.monitor.reads import one_line, term_name, term_value, terms
 from deros.monitor.state import State
-
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-
-Term = Read | Apply | Missing | Unknown | Age
-"""What a rule reads: a field, a function of fields, or a question about messages as such."""
 
 
 class RuleState(NamedTuple):
@@ -40,6 +23,7 @@ class RuleState(NamedTuple):
         since: when it last became true or ceased to be, in nanoseconds; the start, or the last
             backward step of the clock, if it did not since.
         reads: each term that it reads, with its value; ``None`` is unknown, an age is in seconds.
+        causes: while it is true, the parts of its condition that make it so, with their values.
     """
 
     name: str
@@ -48,104 +32,45 @@ class RuleState(NamedTuple):
     value: bool | None
     since: int
     reads: tuple[tuple[str, Scalar | None], ...]
+    causes: tuple[str, ...] = ()
 
 
-def explain_rule(program: Program, rule: Rule, state: State, t_ns: int) -> RuleState:
-    """Return what a rule is worth since the last event."""
+class Explanation(NamedTuple):
+    """A monitor at some instant.
+
+    Attributes:
+        rules: all of them.
+        causes: of each behaviour that holds, the rules that make it hold, with their causes.
+    """
+
+    rules: tuple[RuleState, ...]
+    causes: Mapping[str, tuple[str, ...]]
+
+
+def explain(program: Program, state: State, t_ns: int) -> Explanation:
+    """Return what everything is worth since the last event."""
+    rules = tuple(_explain_rule(program, rule, state, t_ns) for rule in program.rules)
+    causes = {
+        each.name: causes_of_behaviour(program, each, state, t_ns)
+        for each in walk.behaviours(program)
+        if state.holds[each.index] is True
+    }
+    return Explanation(rules, causes)
+
+
+def _explain_rule(program: Program, rule: Rule, state: State, t_ns: int) -> RuleState:
     reads = tuple(
-        (term_name(program, term), _value(term, state, t_ns)) for term in terms(rule.condition)
+        (term_name(program, term), term_value(term, state, t_ns)) for term in terms(rule.condition)
     )
     value: bool | None = state.verdicts[rule.index] is True
     if not value and any(each is None for _, each in reads):
         value = None
-    since_ns = state.turned_ns[rule.index]
-    text = one_line(rule.span.text)
-    return RuleState(rule.full_name, rule.span.line, text, value, since_ns, reads)
-
-
-def one_line(text: str) -> str:
-    """Return the text of a rule in one line, without comments."""
-    return " ".join(_COMMENT.sub(" ", text).split())
-
-
-def terms(condition: Condition) -> tuple[Term, ...]:
-    """Return what a condition reads, in the order written, each once."""
-    found: dict[Term, None] = {}
-    for part in walk.parts(condition):
-        if isinstance(part, Missing | Unknown | Age):
-            found[_plain(part)] = None
-        else:
-            found.update(dict.fromkeys(walk.terminals(part)))
-    return tuple(found)
-
-
-def term_name(program: Program, term: Term) -> str:
-    """Return a term as rules write it, with angles in radians: ``orientation.roll()``."""
-    match term:
-        case Missing():
-            return f"{program.inputs[term.input].name}.missing()"
-        case Unknown():
-            if term.operand is None:
-                return f"{program.inputs[term.input].name}.unknown()"
-            return f"{_function_name(program, term.operand)}.unknown()"
-        case Age():
-            return f"{program.inputs[term.input].name}.age()"
-        case Read():
-            return _field_name(program, term)
-        case Apply():
-            return _function_name(program, term)
-
-
-def _plain(term: Missing | Unknown | Age) -> Term:
-    """Return the term without what it is compared with, so that equal terms are equal."""
-    return Age(term.input, "=", 0) if isinstance(term, Age) else term
-
-
-def _field_name(program: Program, read: Read) -> str:
-    leaf = program.leaves[read.leaf]
-    each = program.inputs[leaf.input]
-    rest = leaf.path[len(each.path) :] if leaf.path[: len(each.path)] == each.path else leaf.path
-    steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in rest)
-    return each.name + "".join(steps)
-
-
-def _function_name(program: Program, function: Apply) -> str:
-    if function.function in ("unwrapped", "rate_over"):  # as rules call what they stand for
-        subject = _operand_name(program, function.arguments[0])
-        return subject if function.function == "unwrapped" else _rate_over_name(subject, function)
-    subject = program.inputs[function.input].name
-    constants = [each for each in function.arguments if isinstance(each, Const)]
-    operands = [each for each in function.arguments if not isinstance(each, Const)]
-    if len(operands) == 1:  # a field or a function of fields, no message or part of one
-        subject = _operand_name(program, operands[0])
-    written = ", ".join(f"{each.value:.6g}" for each in constants)
-    return f"{subject}.{function.function}({written})"
-
-
-def _rate_over_name(subject: str, function: Apply) -> str:
-    span = function.arguments[1]
-    assert isinstance(span, Const)
-    assert isinstance(span.value, int)
-    return f"{subject}.rate({span.value / 1e9:.9g} sec)"
-
-
-def _operand_name(program: Program, value: ValueExpression) -> str:
-    match value:
-        case Scale():
-            return _operand_name(program, value.operand)
-        case Const():
-            return str(value.value)
-        case _:
-            return term_name(program, value)
-
-
-def _value(term: Term, state: State, t_ns: int) -> Scalar | None:
-    match term:
-        case Missing() | Unknown():
-            return evaluate_condition(term, state, t_ns)
-        case Age():
-            counted_ns = state.inputs[term.input].counted_ns
-            return None if counted_ns is None else (t_ns - counted_ns) / 1e9
-        case Read() | Apply():
-            value: Scalar | None = evaluate_value(term, state)
-            return value
+    return RuleState(
+        rule.full_name,
+        rule.span.line,
+        one_line(rule.span.text),
+        value,
+        state.turned_ns[rule.index],
+        reads,
+        causes_of_rule(program, rule.index, True, state, t_ns) if value else (),
+    )

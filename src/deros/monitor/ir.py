@@ -115,12 +115,31 @@ class Truth:
 
 
 @dataclass(frozen=True, slots=True)
+class Wording:
+    """How people read a comparison, as its author wrote it; it has no part in what it means.
+
+    Attributes:
+        operator: before whatever bringing a bound to an integer made of it.
+        unit: of the value on the left, where another one stands on the right; else empty.
+        right: the right side, or the ends of the interval: a constant as text with its unit, of
+            another value the unit, or nothing.
+        brackets: of the interval.
+    """
+
+    operator: Operator
+    unit: str
+    right: tuple[str, ...]
+    brackets: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Compare:
     """A comparison of two values of one kind."""
 
     left: ValueExpression
     operator: Operator
     right: ValueExpression
+    wording: Wording | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +151,7 @@ class Within:
     upper: ValueExpression
     lower_closed: bool
     upper_closed: bool
+    wording: Wording | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,6 +186,7 @@ class Age:
     input: int
     operator: Operator
     bound_ns: int
+    wording: Wording | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,6 +222,7 @@ class For:
     operand: Condition
     duration_ns: int
     span: Span = field(compare=False, repr=False)
+    wording: str = field(default="", compare=False, repr=False)  # the duration, as written
 
 
 @dataclass(frozen=True, slots=True)

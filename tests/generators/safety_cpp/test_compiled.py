@@ -81,7 +81,7 @@ def _explained(model: Rules, context: Context) -> list[str]:
         if value != value:
             continue  # no stream of C++ reads NaN
         _take(monitor, topic, t, value)
-        for rule in monitor.explain():
+        for rule in monitor.explain().rules:
             reads = (f"{term}={_shown(read)}" for term, read in rule.reads)
             words = (rule.name, str(rule.line), rule.text, _shown(rule.value), str(rule.since))
             told.append("\t".join((*words, *reads)) + "\n")

@@ -115,11 +115,14 @@ def test_each_trigger_is_one_event_with_its_cause(start: Start, robot: Robot) ->
             "behaviour": "speeding",
             "origin": "every_thing.deros:28",
             "condition": "drive.fast for 100 ms",
+            "cause": "drive.fast for 100 ms: speed 0.9 > 0.5 m/s",
             "rule drive.fast": "true",
             "value speed": "0.9",
         }.items()
     )
-    assert event["message"] == "stop, by speeding (every_thing.deros:28: if drive.fast for 100 ms)"
+    assert event["message"] == (
+        "stop, by speeding (every_thing.deros:28): drive.fast for 100 ms: speed 0.9 > 0.5 m/s"
+    )
     assert 0 <= int(event["published_ns"]) - int(event["time_ns"]) < 1_000_000_000
 
 

@@ -32,7 +32,7 @@ def test_a_violation_stops_the_robot_until_it_is_reset(start: Start, robot: Robo
 
         code, lines = end(process, robot)
     assert code == 0
-    place = "speeding (every_thing.deros:28: if drive.fast for 100 ms)"
+    place = "speeding (every_thing.deros:28): drive.fast for 100 ms: speed 0.9 > 0.5 m/s"
     assert lines[0] == "watching 8 rules of every_thing.deros"
     assert f"stop, by {place}" in lines
     assert f"speed limit exceeded, by {place}" in lines
@@ -96,7 +96,7 @@ def test_a_silent_sensor_and_a_takeover(start: Start, robot: Robot) -> None:
         robot.drive_until(0.1, released)
         code, lines = end(process, robot, signal.SIGINT)
     assert code == 0
-    assert "crawl, by lost (every_thing.deros:29: if drive.silent or body.ill)" in lines
+    assert "crawl, by lost (every_thing.deros:29): drive.silent: speed.missing()" in lines
     assert "crawl is reset" in lines
 
 

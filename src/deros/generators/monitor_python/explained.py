@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from deros.generators.monitor_python.layout import Layout
 from deros.generators.monitor_python.logic import Atom, all_of, any_of, lay_out, lay_out_call
 from deros.monitor import walk
-from deros.monitor.explain import Term, one_line, term_name, terms
 from deros.monitor.ir import Age, Missing, Program, RuleRef, Unknown
+from deros.monitor.reads import Term, one_line, term_name, terms
 
 
 def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -27,7 +27,7 @@ def explained_lines(program: Program, layout: Layout) -> list[str]:
     lines: list[str] = []
     for rule in program.rules:
         reads = [
-            f"({term_name(program, term)!r}, {_value(term, layout)})"
+            f"({term_name(program, term)!r}, {value_text(term, layout)})"
             for term in terms(rule.condition)
         ]
         arguments = [
@@ -36,6 +36,7 @@ def explained_lines(program: Program, layout: Layout) -> list[str]:
             repr(one_line(rule.span.text)),
             f"self._{layout.verdicts[rule.index]}",
             f"self._{layout.since[rule.index]}",
+            f"self._{layout.why[rule.index]}",
             *reads,
         ]
         lines += lay_out_call(12, "explained(", arguments, "),")
@@ -51,7 +52,8 @@ def waiting_lines(layout: Layout) -> list[str]:
     return lay_out(8, "return ", any_of(inputs) if inputs else Atom("False"))
 
 
-def _value(term: Term, layout: Layout) -> str:
+def value_text(term: Term, layout: Layout) -> str:
+    """Return the expression of a term's value, with NaN or None for unknown."""
     match term:
         case Missing():
             return f"self._{layout.missing[term.input]}"

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from deros.generators.monitor_python.names import Names
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
-from deros.monitor import walk
+from deros.monitor import causes, walk
 from deros.monitor.functions import FUNCTIONS, Result
 from deros.monitor.ir import (
     Age,
@@ -60,6 +60,9 @@ class Layout:
         active: of each action that can be reset.
         ran: of each action that resets another, whether it ran in the present event.
         forget: of each input with values, the method that makes them unknown.
+        why: of each rule, the method that tells why it is true.
+        why_not: of each rule that a behaviour negates, the method that tells why it is false.
+        why_holds: of each behaviour, the method that tells why it holds.
     """
 
     names: Names
@@ -80,6 +83,9 @@ class Layout:
     active: dict[int, str] = field(default_factory=dict)
     ran: dict[int, str] = field(default_factory=dict)
     forget: dict[int, str] = field(default_factory=dict)
+    why: dict[int, str] = field(default_factory=dict)
+    why_not: dict[int, str] = field(default_factory=dict)
+    why_holds: dict[int, str] = field(default_factory=dict)
 
 
 def lay_out_memory(program: Program) -> Layout:
@@ -97,6 +103,7 @@ def lay_out_memory(program: Program) -> Layout:
     _name_inputs(program, layout)
     _name_verdicts(program, layout)
     _name_actions(program, layout)
+    _name_causes(program, layout)
     return layout
 
 
@@ -156,6 +163,16 @@ def _name_actions(program: Program, layout: Layout) -> None:
         if action.reset_by is not None and action.reset_by not in layout.ran:
             reset_by = program.actions[action.reset_by]
             layout.ran[reset_by.index] = layout.names.new(reset_by.name, "ran")
+
+
+def _name_causes(program: Program, layout: Layout) -> None:
+    negated = causes.negated_rules(program)
+    for rule in program.rules:
+        layout.why[rule.index] = layout.names.new("why", rule.entity, rule.name)
+        if rule.index in negated:
+            layout.why_not[rule.index] = layout.names.new("why_not", rule.entity, rule.name)
+    for behaviour in walk.behaviours(program):
+        layout.why_holds[behaviour.index] = layout.names.new("why", behaviour.name)
 
 
 def _name_value(program: Program, value: ValueExpression, layout: Layout) -> None:

@@ -12,8 +12,8 @@ from deros.monitor.functions import FUNCTIONS
 MODULE_NAMES = frozenset(
     {
         *("Callable", "Collection", "Sequence", "NamedTuple", "functools", "math", "np"),
-        *("Event", "Monitor", "RuleState", "explained", "scan_beams"),
-        *("RateWindow", "stamp_of"),
+        *("Event", "Explanation", "Monitor", "RuleState", "explained", "scan_beams"),
+        *("RateWindow", "because", "shown", "stamp_of", "unknown_of"),
         *("NAN", "NEVER", "OPTIONAL", "RULES_OF"),
     }
 )
@@ -26,6 +26,7 @@ METHOD_NAMES = frozenset(
 LOCAL_NAMES = frozenset(
     {
         *("changed", "due", "emit", "fresh", "now", "self", "started", "t", "verdict"),
+        *("causes", "found", "rules"),
         *("cosine", "length", "sine", "ux", "uy", "uz", "uw"),
     }
 )

@@ -11,7 +11,7 @@ from deros.generators.monitor_python.render import render_monitor
 from deros.generators.monitor_python.view import monitor_view
 from deros.monitor import walk
 from deros.monitor.engine import Event
-from deros.monitor.explain import RuleState
+from deros.monitor.explain import Explanation, RuleState
 from deros.monitor.ir import Program, Trigger
 from deros.monitor.state import LeafValue
 
@@ -81,9 +81,10 @@ class GeneratedMonitor:
         self._monitor.enable(t_ns, behaviour, enabled)
         return self.events[before:]
 
-    def explain(self) -> tuple[RuleState, ...]:
-        """Return what each rule is worth since the last event, and the values behind it."""
-        return tuple(RuleState(*each) for each in self._monitor.explain())
+    def explain(self) -> Explanation:
+        """Return what each rule is worth since the last event, and why each behaviour holds."""
+        told = self._monitor.explain()
+        return Explanation(tuple(RuleState(*each) for each in told.rules), told.causes)
 
     def _take(self, event: Any) -> None:
         span = self._spans.get((event.action, event.behaviour, event.line))

@@ -10,6 +10,7 @@ from deros.generators.monitor_python.explained import explained_lines, rules_of,
 from deros.generators.monitor_python.handlers import Handler, handlers, needed_texts
 from deros.generators.monitor_python.layout import Layout, lay_out_memory, slots_of
 from deros.generators.monitor_python.rules import Judge, judges
+from deros.generators.monitor_python.whys import Why, whys
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
 from deros.monitor.evaluate import evaluate_condition
@@ -67,6 +68,9 @@ class MonitorView:
         rules_of: the name of each, and the rules that its condition names.
         optional: the names of those that can be disabled.
         explained: the lines of what ``explain()`` says of each rule.
+        whys: the methods that tell why rules are true or false, and why behaviours hold.
+        why_holds: the name of each behaviour, its attribute, and the method that tells why.
+        says_unknown: whether one of them tells which terms have no value.
         waiting: the lines of what ``waiting`` returns.
         act: the lines of all behaviours and resets.
         ends: instants, as attributes or sums, that are deadlines while they lie ahead.
@@ -92,6 +96,9 @@ class MonitorView:
     rules_of: tuple[tuple[str, tuple[str, ...]], ...]
     optional: tuple[str, ...]
     explained: tuple[str, ...]
+    whys: tuple[Why, ...]
+    why_holds: tuple[tuple[str, str, str], ...]
+    says_unknown: bool
     waiting: tuple[str, ...]
     act: tuple[str, ...]
     ends: tuple[str, ...]
@@ -108,6 +115,7 @@ def monitor_view(program: Program) -> MonitorView:
     made = handlers(program, layout, methods, known_at_start)
     annotations = [each.annotation for handler in made for each in handler.parameters]
     arrays = [*functions, *(line for handler in made for line in handler.lines)]
+    told = tuple(whys(program, layout))
     initial = _initial(program, layout, known_at_start)
     restarted = _restarted(layout)
     forgets = _forgets(program, layout)
@@ -151,6 +159,12 @@ def monitor_view(program: Program) -> MonitorView:
         rules_of=tuple(rules_of(program)),
         optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
         explained=tuple(explained_lines(program, layout)),
+        whys=told,
+        why_holds=tuple(
+            (each.name, layout.holds[each.index], layout.why_holds[each.index])
+            for each in walk.behaviours(program)
+        ),
+        says_unknown=any("unknown_of(" in line for each in told for line in each.lines),
         waiting=tuple(waiting_lines(layout)),
     )
 

@@ -8,8 +8,8 @@ from deros.generators.cpp_source import Call, Expression, Text, cpp_double, cpp_
 from deros.generators.monitor_c.expressions import known_of
 from deros.generators.monitor_c.layout import Layout
 from deros.generators.monitor_c.layout import Term as Field
-from deros.monitor.explain import Term, one_line, term_name, terms
 from deros.monitor.ir import Age, Missing, Program, Rule, Scale, Unknown
+from deros.monitor.reads import Term, one_line, term_name, terms
 
 
 def explained_rules(program: Program, layout: Layout) -> Iterator[Expression]:

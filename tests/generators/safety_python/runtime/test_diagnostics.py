@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 from unittest.mock import Mock
 
@@ -26,6 +28,14 @@ class Rule(NamedTuple):
     text: str = "fast: speed > 1;"
     since: int = 0
     reads: tuple[tuple[str, Any], ...] = (("speed", 2.0),)
+    causes: tuple[str, ...] = ()
+
+
+class Explanation(NamedTuple):
+    """What a monitor explains."""
+
+    rules: tuple[Rule, ...] = ()
+    causes: Mapping[str, tuple[str, ...]] = MappingProxyType({})
 
 
 class Event(NamedTuple):
@@ -54,9 +64,8 @@ class Shown:
             self.node, Mock(), behaviours, actions, self.messages.append, 1.0, lambda: 0
         )
         self.unready = ""
-        self.diagnostics.begin(
-            lambda: (rules, holding), lambda: 6_000_000_000, lambda: self.unready
-        )
+        explained = Explanation(rules, dict.fromkeys(holding, ("why",)))
+        self.diagnostics.begin(lambda: explained, lambda: 6_000_000_000, lambda: self.unready)
 
     def ring(self) -> dict[str, Any]:
         """Publish now, and return the statuses by the last part of their name."""
@@ -111,21 +120,31 @@ def test_a_rule_that_has_to_be_false_is_to_blame_for_it() -> None:
 def test_an_action_shows_cause_and_time() -> None:
     """Since when, by what; a further trigger does not move the start."""
     shown = Shown()
-    shown.diagnostics.ordered(Event("trigger", "stop"))
-    shown.diagnostics.ordered(Event("trigger", "stop", "another", 5_500_000_000))
+    why = Explanation((), {"stopping": ("a.a: speed 2.0 > 1", "b.b: lidar.missing()")})
+    shown.diagnostics.ordered(Event("trigger", "stop"), why)
+    shown.diagnostics.ordered(Event("trigger", "stop", "another", 5_500_000_000), why)
     status = shown.ring()["action stop"]
     values = {each.key: each.value for each in status.values}
     assert (status.level[0], status.message) == (WARN, "active")
     assert values == {
         "runs": "2",
         "cause": "stopping",
+        "because": "a.a: speed 2.0 > 1 and b.b: lidar.missing()",
         "since": "1.000 s ago",
         "since_ns": "5000000000",
     }
-    shown.diagnostics.ordered(Event("refused", "stop"))
+    shown.diagnostics.ordered(Event("refused", "stop"), Explanation())
     assert shown.ring()["action stop"].message == "active"
-    shown.diagnostics.ordered(Event("reset", "stop"))
+    shown.diagnostics.ordered(Event("reset", "stop"), Explanation())
     assert shown.ring()["action stop"].message == "inactive"
+
+
+def test_a_true_rule_shows_its_true_parts() -> None:
+    """Beside the values of all that it reads."""
+    rule = Rule("drive.fast", True, causes=("speed 2.0 > 1", "lidar.missing()"))
+    values = {each.key: each.value for each in Shown(rule).ring()["drive.fast"].values}
+    assert values["speed"] == "2.0"
+    assert values["cause"] == "speed 2.0 > 1 and lidar.missing()"
 
 
 def test_a_fault_is_red_until_it_is_gone() -> None:

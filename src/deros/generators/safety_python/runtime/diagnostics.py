@@ -14,7 +14,7 @@ from rclpy.clock import Clock
 from rclpy.node import Node
 
 from .alarm import Alarm
-from .events import Behaviour, shown
+from .events import Behaviour, cause, shown
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
@@ -25,11 +25,12 @@ PAUSE = 1_000_000  # ns between the messages of one state
 
 @dataclass(frozen=True)
 class ActionState:
-    """An action: whether it is active, or that it ran, by which behaviour, and since when."""
+    """An action: whether it is active, or that it ran, by which behaviour and why, since when."""
 
     lasts: bool  # whether it has a state, and is not just run
     active: bool = False
     cause: str = ''
+    because: str = ''
     since: int | None = None
     runs: int = 0
 
@@ -68,8 +69,8 @@ class Diagnostics:
         """
         Start publishing.
 
-        explain returns the states of the rules and the behaviours that hold, now the time in which
-        they are told, and summary what the node is not ready for; empty if it watches.
+        explain returns what the rules are worth and why behaviours hold, now the time in which
+        that is told, and summary what the node is not ready for; empty if it watches.
         """
         self._explain, self._now, self._summary = explain, now, summary
         self._alarm.ring_at(0)
@@ -81,8 +82,8 @@ class Diagnostics:
             self._alarm.ring_at(soon)
         self._again = True
 
-    def ordered(self, event: Any) -> None:
-        """Follow an event of the monitor."""
+    def ordered(self, event: Any, explained: Any) -> None:
+        """Follow an event of the monitor; explained is what it explains after it."""
         before = self.actions.get(event.action)
         if before is None or event.kind not in ('trigger', 'reset'):
             return
@@ -91,8 +92,9 @@ class Diagnostics:
         if before.active and active:
             after = dataclasses.replace(before, runs=runs)
         else:
+            because = cause(event.behaviour, explained)
             after = ActionState(
-                before.lasts, before.lasts and active, event.behaviour, event.t, runs
+                before.lasts, before.lasts and active, event.behaviour, because, event.t, runs
             )
         self.actions[event.action] = after
 
@@ -129,11 +131,14 @@ class Diagnostics:
     def _statuses(self) -> Iterator[DiagnosticStatus]:
         name = self._node.get_fully_qualified_name()
         now = self._now()
-        rules, holding = self._explain()
+        explained = self._explain()
+        rules = explained.rules
         yield self._node_status(name, rules)
         for action, state in self.actions.items():
             yield _action_status(f'{name}: action {action}', state, now)
-        blamed = {rule.name for behaviour in holding for rule in self._causes(behaviour, rules)}
+        blamed = {
+            rule.name for behaviour in explained.causes for rule in self._causes(behaviour, rules)
+        }
         for rule in rules:
             yield _rule_status(f'{name}: {rule.name}', rule, rule.name in blamed, now)
 
@@ -156,6 +161,8 @@ def _action_status(name: str, state: ActionState, now: int) -> DiagnosticStatus:
     values: dict[str, object] = {'runs': state.runs}
     if state.cause:
         values['cause'] = state.cause
+    if state.because:
+        values['because'] = state.because
     if state.since is not None:
         values |= _since(state.since, now)
     return _status(WARN if state.active else OK, name, message, values)
@@ -165,6 +172,8 @@ def _rule_status(name: str, rule: Any, blamed: bool, now: int) -> DiagnosticStat
     true = ERROR if blamed else WARN
     level = {None: STALE, False: ERROR if blamed else OK, True: true}[rule.value]
     values = {term: shown(value) for term, value in rule.reads}
+    if rule.causes:
+        values['cause'] = ' and '.join(rule.causes)
     return _status(
         level,
         name,

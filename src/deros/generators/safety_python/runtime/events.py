@@ -35,14 +35,14 @@ class Events:
         self._behaviours = behaviours
         self._publish = publish
 
-    def ordered(self, event: Any, done: int, states: Sequence[Any]) -> None:
+    def ordered(self, event: Any, done: int, after: Any) -> None:
         """
         Tell of an event of the monitor.
 
-        done is when it was acted upon, in the monitor's time; states are what the monitor explains
+        done is when it was acted upon, in the monitor's time; after is what the monitor explains
         after it.
         """
-        message, level = self._described(event, states)
+        message, level = self._described(event, after)
         told = {
             'action': event.action,
             'origin': f'{self._rules}:{event.line}' if event.line else '',
@@ -57,12 +57,14 @@ class Events:
                 'behaviour': event.behaviour,
                 'origin': behaviour.origin,
                 'condition': behaviour.condition,
+                'cause': cause(event.behaviour, after),
             }
-            told |= self._causes(event.behaviour, states)
+            told |= self._values(event.behaviour, after)
         if event.kind == 'refused':
             told |= {'holding': ', '.join(event.holding), 'unknown': ', '.join(event.unknown)}
+            told |= {f'cause {name}': cause(name, after) for name in event.holding}
             for name in (*event.holding, *event.unknown):
-                told |= self._causes(name, states)
+                told |= self._values(name, after)
         self.tell(event.kind, level, message, **told)
 
     def tell(self, kind: str, level: bytes, message: str, **values: object) -> None:
@@ -83,29 +85,35 @@ class Events:
         found = self._behaviours[behaviour]
         return f'{behaviour} ({found.origin}: if {found.condition})'
 
-    def refusal(
-        self, holding: Sequence[str], unknown: Sequence[str], states: Sequence[Any]
-    ) -> str:
+    def refusal(self, holding: Sequence[str], unknown: Sequence[str], present: Any) -> str:
         """
         Return why a reset is refused; nothing if it is not.
 
         holding and unknown are the behaviours whose conditions are so, of those that trigger the
-        action.
+        action; present is what the monitor explains.
         """
         reasons = []
         if holding:
-            reasons.append(f'called for by {", ".join(map(self.origin, holding))}')
+            told = (self._origin_holding(name, present) for name in holding)
+            reasons.append(f'called for by {", ".join(told)}')
         if unknown:
-            told = (self._origin_unknown(name, states) for name in unknown)
+            told = (self._origin_unknown(name, present) for name in unknown)
             reasons.append(f'not known to be false: {", ".join(told)}')
         return '; '.join(reasons)
 
-    def _origin_unknown(self, behaviour: str, states: Sequence[Any]) -> str:
+    def _origin_holding(self, behaviour: str, present: Any) -> str:
+        """Return a behaviour with its place in the rules, and what makes it hold."""
+        found = cause(behaviour, present)
+        if not found:
+            return self.origin(behaviour)
+        return f'{behaviour} ({self._behaviours[behaviour].origin}): {found}'
+
+    def _origin_unknown(self, behaviour: str, present: Any) -> str:
         """Return a behaviour as origin() does, with the terms without a value."""
         rules = self._behaviours[behaviour].rules
         terms = [
             term
-            for state in states
+            for state in present.rules
             if state.name in rules and state.value is None
             for term, value in state.reads
             if value is None
@@ -114,10 +122,10 @@ class Events:
             return self.origin(behaviour)
         return f'{self.origin(behaviour)}, unknown: {", ".join(dict.fromkeys(terms))}'
 
-    def _causes(self, behaviour: str, states: Sequence[Any]) -> dict[str, str]:
+    def _values(self, behaviour: str, after: Any) -> dict[str, str]:
         """Return what the rules are worth that a behaviour depends on, and what they read."""
         told = {}
-        for state in states:
+        for state in after.rules:
             if state.name in self._behaviours[behaviour].rules:
                 told[f'rule {state.name}'] = shown(state.value)
                 told |= {f'value {term}': shown(value) for term, value in state.reads}
@@ -132,16 +140,26 @@ class Events:
         else:
             log.error(message)
 
-    def _described(self, event: Any, states: Sequence[Any]) -> tuple[str, bytes]:
+    def _described(self, event: Any, after: Any) -> tuple[str, bytes]:
         if event.kind == 'clock_step':
             return 'the clock stepped back: all inputs are unknown until their next message', ERROR
         if event.kind == 'reset':
             return f'{event.action} is reset', OK
         if event.kind == 'refused':
-            why = self.refusal(event.holding, event.unknown, states)
+            why = self.refusal(event.holding, event.unknown, after)
             return f'{event.action} stays active, {why}', WARN
         what = event.arguments[0] if event.action == 'log_state' else event.action
-        return f'{what}, by {self.origin(event.behaviour)}', WARN
+        return f'{what}, by {self._origin_holding(event.behaviour, after)}', WARN
+
+
+def cause(behaviour: str, explained: Any) -> str:
+    """
+    Return what makes a behaviour hold: rules, with the true parts of their conditions.
+
+    Nothing if it does not hold any more: a message may show that the clock has stepped back, and
+    change at once what the step brought about.
+    """
+    return ' and '.join(explained.causes.get(behaviour, ()))
 
 
 def shown(value: object) -> str:

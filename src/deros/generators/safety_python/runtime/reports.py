@@ -79,4 +79,4 @@ class Reports:
     def _tell(self, events: Sequence[Any], done: Sequence[int], states: Sequence[Any]) -> None:
         for event, done_at, explained in zip(events, done, states, strict=False):
             self._events.ordered(event, done_at, explained)
-            self._diagnostics.ordered(event)
+            self._diagnostics.ordered(event, explained)

@@ -1,0 +1,116 @@
+"""What conditions read, and what rules call it."""
+
+from __future__ import annotations
+
+import re
+
+from deros.monitor import walk
+from deros.monitor.evaluate import evaluate_condition, evaluate_value
+from deros.monitor.ir import (
+    Age,
+    Apply,
+    Condition,
+    Const,
+    Missing,
+    Program,
+    Read,
+    Scalar,
+    Scale,
+    Unknown,
+    ValueExpression,
+)
+from deros.monitor.state import State
+
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+Term = Read | Apply | Missing | Unknown | Age
+"""What a rule reads: a field, a function of fields, or a question about messages as such."""
+
+
+def one_line(text: str) -> str:
+    """Return the text of a rule in one line, without comments."""
+    return " ".join(_COMMENT.sub(" ", text).split())
+
+
+def terms(condition: Condition) -> tuple[Term, ...]:
+    """Return what a condition reads, in the order written, each once."""
+    found: dict[Term, None] = {}
+    for part in walk.parts(condition):
+        if isinstance(part, Missing | Unknown | Age):
+            found[plain_term(part)] = None
+        else:
+            found.update(dict.fromkeys(walk.terminals(part)))
+    return tuple(found)
+
+
+def plain_term(term: Missing | Unknown | Age) -> Term:
+    """Return a term without what it is compared with, so that equal terms are equal."""
+    return Age(term.input, "=", 0) if isinstance(term, Age) else term
+
+
+def term_name(program: Program, term: Term) -> str:
+    """Return a term as rules write it, with angles in radians: ``orientation.roll()``."""
+    match term:
+        case Missing():
+            return f"{program.inputs[term.input].name}.missing()"
+        case Unknown():
+            if term.operand is None:
+                return f"{program.inputs[term.input].name}.unknown()"
+            return f"{_function_name(program, term.operand)}.unknown()"
+        case Age():
+            return f"{program.inputs[term.input].name}.age()"
+        case Read():
+            return _field_name(program, term)
+        case Apply():
+            return _function_name(program, term)
+
+
+def term_value(term: Term, state: State, t_ns: int) -> Scalar | None:
+    """Return the value of a term; ``None`` is unknown, an age is in seconds."""
+    match term:
+        case Missing() | Unknown():
+            return evaluate_condition(term, state, t_ns)
+        case Age():
+            counted_ns = state.inputs[term.input].counted_ns
+            return None if counted_ns is None else (t_ns - counted_ns) / 1e9
+        case Read() | Apply():
+            value: Scalar | None = evaluate_value(term, state)
+            return value
+
+
+def _field_name(program: Program, read: Read) -> str:
+    leaf = program.leaves[read.leaf]
+    each = program.inputs[leaf.input]
+    rest = leaf.path[len(each.path) :] if leaf.path[: len(each.path)] == each.path else leaf.path
+    steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in rest)
+    return each.name + "".join(steps)
+
+
+def _function_name(program: Program, function: Apply) -> str:
+    if function.function in ("unwrapped", "rate_over"):  # as rules call what they stand for
+        subject = _operand_name(program, function.arguments[0])
+        return subject if function.function == "unwrapped" else _rate_over_name(subject, function)
+    subject = program.inputs[function.input].name
+    constants = [each for each in function.arguments if isinstance(each, Const)]
+    operands = [each for each in function.arguments if not isinstance(each, Const)]
+    if len(operands) == 1:  # a field or a function of fields, no message or part of one
+        subject = _operand_name(program, operands[0])
+    written = ", ".join(f"{each.value:.6g}" for each in constants)
+    return f"{subject}.{function.function}({written})"
+
+
+def _rate_over_name(subject: str, function: Apply) -> str:
+    span = function.arguments[1]
+    assert isinstance(span, Const)
+    assert isinstance(span.value, int)
+    return f"{subject}.rate({span.value / 1e9:.9g} sec)"
+
+
+def _operand_name(program: Program, value: ValueExpression) -> str:
+    match value:
+        case Scale():
+            return _operand_name(program, value.operand)
+        case Const():
+            return str(value.value)
+        case _:
+            return term_name(program, value)

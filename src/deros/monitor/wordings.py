@@ -1,0 +1,63 @@
+"""How comparisons are shown to people: the author's own numbers and units, constants resolved."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from deros.interfaces.units import Unit
+from deros.monitor import ir
+from deros.monitor.bounds import rounded
+from deros.monitor.resolved import MessageConstant, Plain, Quantity, Resolved, Value
+
+_LONGEST_TEXT = 60
+_GREATEST_WHOLE = 10**16  # beyond that, a number is written with an exponent
+
+
+def wording(operator: ir.Operator, left: Value, *right: Resolved, brackets: str = "") -> ir.Wording:
+    """Return how a comparison of a value with what stands on its right is shown."""
+    units = [each.unit for each in right if isinstance(each, Quantity | Value)]
+    differ = any(each and not _same(each, left.unit) for each in units)
+    shown = tuple(_side(each, units_differ=differ) for each in right)
+    return ir.Wording(operator, str(left.unit) if differ and left.unit else "", shown, brackets)
+
+
+def quoted(text: str) -> str:
+    """Return a text in quotes, on one line of bounded length, fit for a log."""
+    line = "".join(each if each.isprintable() else "?" for each in text[:_LONGEST_TEXT])
+    return f'"{line}{"…" if len(text) > _LONGEST_TEXT else ""}"'
+
+
+def constant(value: ir.Scalar) -> str:
+    """Return a constant as text."""
+    if isinstance(value, str):
+        return quoted(value)
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _side(side: Resolved, *, units_differ: bool) -> str:
+    match side:
+        case Quantity():
+            return f"{_number(side.value)} {side.unit}" if side.unit else _number(side.value)
+        case Plain():
+            return constant(side.value)
+        case MessageConstant():
+            return side.constant.name
+        case Value(unit=unit) if unit and units_differ:
+            return str(unit)
+        case _:
+            return ""
+
+
+def _number(number: Fraction) -> str:
+    if number.denominator == 1 and abs(number) < _GREATEST_WHOLE:
+        return str(number.numerator)
+    return str(rounded(number))
+
+
+def _same(one: Unit, other: Unit | None) -> bool:
+    """Return whether two units are one, however they are written."""
+    return other is not None and (one.exponents, one.factor, one.offset) == (
+        other.exponents,
+        other.factor,
+        other.offset,
+    )

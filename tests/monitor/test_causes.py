@@ -1,0 +1,252 @@
+"""The culprit is named: which parts of a condition make it true, and with which values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+
+from deros.generators.monitor_python.run import GeneratedMonitor
+from deros.monitor.engine import Engine
+from deros.monitor.ir import Program
+from deros.monitor.state import LeafValue
+from tests.support.rules import program
+
+MS = 10**6
+INPUTS = """
+action stop;
+const limit = 2.5
+const max_tilt = toRad(10 deg)
+const greeting = "a{b}'c\\""
+input v = topic /speed.data timeout 0.5 sec
+input u = topic /odom.twist.twist.linear.x
+input w = topic /odom.twist.twist.linear.y
+input f = topic /flag.data
+input m = topic /mode.data
+input n = topic /name.data
+input q = topic /imu.orientation
+input s = topic /status
+"""
+
+monitors = pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
+Monitor = Callable[..., Engine]
+
+
+class Driver:
+    """A monitor of rules that is fed with values by the paths of their fields."""
+
+    def __init__(self, monitor: Monitor, text: str) -> None:
+        """Start at 0."""
+        self.program: Program = program(INPUTS + text)
+        self.monitor = monitor(self.program)
+
+    def send(self, t_ms: int, topic: str, **values: LeafValue) -> None:
+        """Send a message; the last part of a field's path names it, all others are 0."""
+        leaves: dict[int, LeafValue] = {}
+        for leaf in self.program.leaves:
+            if self.program.inputs[leaf.input].topic == topic:
+                leaves[leaf.index] = values.get(str(leaf.path[-1]), 0.0)
+        self.monitor.message(t_ms * MS, topic, leaves)
+
+    def causes(self, rule: int = 0) -> tuple[str, ...]:
+        """Return the causes of a rule."""
+        return self.monitor.explain().rules[rule].causes
+
+    def why(self, behaviour: str = "b") -> tuple[str, ...]:
+        """Return why a behaviour holds."""
+        return self.monitor.explain().causes[behaviour]
+
+
+def rule(condition: str) -> str:
+    """Return rules with one condition, and a behaviour of it."""
+    return f"entity e {{ r: {condition}; }} behaviour b: if e.r then {{ stop; }};"
+
+
+@monitors
+@pytest.mark.parametrize(
+    ("condition", "topic", "values", "expected"),
+    [
+        ("v > 2", "/speed", {"data": 3.25}, "v 3.25 > 2"),
+        ("limit < v", "/speed", {"data": 3.25}, "v 3.25 > 2.5"),
+        ("not v <= limit", "/speed", {"data": 3.25}, "v 3.25 > 2.5"),
+        ("not v != 3.25", "/speed", {"data": 3.25}, "v = 3.25"),
+        ("v != 2", "/speed", {"data": -0.0}, "v -0.0 != 2"),
+        ("v > 2", "/speed", {"data": math.inf}, "v inf > 2"),
+        ("v in (2, 4]", "/speed", {"data": 3.0}, "v 3.0 in (2, 4]"),
+        ("v not in [0, 2]", "/speed", {"data": 3.0}, "v 3.0 not in [0, 2]"),
+        ("not v in [0, 2]", "/speed", {"data": 3.0}, "v 3.0 not in [0, 2]"),
+        ("u > 5 km/h", "/odom", {"x": 2.0}, "u 2.0 m/s > 5 km/h"),
+        ("u > 0.5 m/s", "/odom", {"x": 2.0}, "u 2.0 > 0.5 m/s"),
+        ("u >= w", "/odom", {"x": 2.0, "y": 1.5}, "u 2.0 >= w 1.5"),
+        ("u in [w, 3 m/s]", "/odom", {"x": 2.0, "y": 1.5}, "u 2.0 in [w 1.5, 3 m/s]"),
+        ("u > 1", "/odom", {"x": 2.0}, "u 2.0 > 1"),
+        ("m > 2.5", "/mode", {"data": 7}, "m 7 > 2.5"),
+        ("m = 7", "/mode", {"data": 7}, "m = 7"),
+        ("s.level = ERROR", "/status", {"level": 2}, "s.level = ERROR"),
+        ("s.level != ERROR", "/status", {"level": 0}, "s.level 0 != ERROR"),
+        ("f", "/flag", {"data": True}, "f is true"),
+        ("not f", "/flag", {"data": False}, "f is false"),
+        ("f = false", "/flag", {"data": False}, "f = false"),
+        ('n != "auto"', "/name", {"data": "a\nb"}, 'n "a?b" != "auto"'),
+        ('n != "auto"', "/name", {"data": "x" * 99}, f'n "{"x" * 60}…" != "auto"'),
+        ("n = greeting", "/name", {"data": "a{b}'c\""}, 'n = "a{b}\'c""'),
+        (
+            "q.roll() not in [-max_tilt, max_tilt]",
+            "/imu",
+            {"x": 1.0},
+            "q.roll() 3.141592653589793 rad not in [-10 deg, 10 deg]",
+        ),
+        ("true", "/flag", {"data": True}, "true"),
+    ],
+)
+def test_a_comparison_is_told_with_its_value(
+    monitor: Monitor, condition: str, topic: str, values: dict[str, LeafValue], expected: str
+) -> None:
+    """The bound is as its author wrote it, and negated it is the plain opposite."""
+    driver = Driver(monitor, rule(condition) + " entity z { z: f or m = 1; }")
+    driver.send(100, topic, **values)
+    assert driver.causes() == (expected,)
+    assert driver.why() == (f"e.r: {expected}",)
+
+
+@monitors
+def test_of_an_or_the_true_operands_are_told_and_of_an_and_all(monitor: Monitor) -> None:
+    """Whatever else stands beside them."""
+    driver = Driver(monitor, rule("(v > 1 or f or m = 2) and not (u > 1 or m = 3)"))
+    driver.send(100, "/speed", data=3.0)
+    driver.send(100, "/odom", x=0.5)
+    driver.send(100, "/mode", data=2)
+    assert driver.causes() == ("v 3.0 > 1", "m = 2", "u 0.5 <= 1", "m 2 != 3")
+    driver.send(100, "/speed", data=0.0)
+    assert driver.causes() == ("m = 2", "u 0.5 <= 1", "m 2 != 3")
+
+
+@monitors
+def test_of_a_negated_and_the_false_operands_are_told(monitor: Monitor) -> None:
+    """One is enough, and what is unknown is none."""
+    driver = Driver(monitor, rule("not (v > 1 and f and m = 2)"))
+    driver.send(100, "/speed", data=3.0)
+    driver.send(100, "/mode", data=1)
+    assert driver.causes() == ("m 1 != 2",)
+    driver.send(100, "/flag", data=False)
+    assert driver.causes() == ("f is false", "m 1 != 2")
+
+
+@monitors
+def test_a_for_is_told_when_it_is_due(monitor: Monitor) -> None:
+    """Beside another part that is true, one that is not due yet is no cause."""
+    driver = Driver(monitor, rule("(u > 1 or u > 5 for 500 ms) or f"))
+    driver.send(100, "/odom", x=3.0)
+    driver.send(200, "/flag", data=True)
+    assert driver.causes() == ("f is true",)
+    driver.monitor.advance(599 * MS)
+    assert driver.causes() == ("f is true",)
+    driver.monitor.advance(600 * MS)
+    assert driver.causes() == ("u 3.0 > 1 for 500 ms", "f is true")
+    driver.send(700, "/flag", data=False)
+    assert driver.causes() == ("u 3.0 > 1 for 500 ms",)
+
+
+@monitors
+def test_a_negated_for_is_told_by_what_is_short_or_false(monitor: Monitor) -> None:
+    """Its operand has not lasted yet, or is false."""
+    driver = Driver(monitor, rule("f and not (u > 1 for 0.5 sec)"))
+    driver.send(100, "/flag", data=True)
+    driver.send(100, "/odom", x=3.0)
+    assert driver.causes() == ("f is true", "u 3.0 > 1 for less than 0.5 sec")
+    driver.send(200, "/odom", x=0.5)
+    assert driver.causes() == ("f is true", "u 0.5 <= 1")
+
+
+@monitors
+def test_a_for_around_a_for(monitor: Monitor) -> None:
+    """The inner duration comes first; what is not yet so is told in the author's words."""
+    driver = Driver(monitor, rule("((u > 1 for 0.1 sec) or f for 0.2 sec) and m = 0"))
+    driver.send(0, "/mode", data=0)
+    driver.send(100, "/odom", x=3.0)
+    driver.monitor.advance(400 * MS)
+    assert driver.causes() == ("u 3.0 > 1 for 0.1 sec for 0.2 sec", "m = 0")
+    driver = Driver(monitor, rule("not (((u > 1 for 0.1 sec) or f) for 0.2 sec)"))
+    driver.send(100, "/flag", data=True)
+    assert driver.causes() == ("not yet ((u > 1 for 0.1 sec) or f) for 0.2 sec",)
+
+
+@monitors
+def test_silence_is_told(monitor: Monitor) -> None:
+    """An age with its value, the questions about messages as they are asked."""
+    driver = Driver(monitor, rule("v.missing() or v.age() >= 500 ms or not v.unknown()"))
+    driver.send(100, "/speed", data=3.0)
+    assert driver.causes() == ("not v.unknown()",)
+    driver.monitor.advance(600 * MS)
+    assert driver.causes() == ("v.missing()", "v.age() 0.5 s >= 500 ms")
+    driver = Driver(monitor, rule("v.age() not in [0, 0.3 sec] or v.unknown()"))
+    driver.send(100, "/speed", data=3.0)
+    driver.monitor.advance(600 * MS)
+    assert driver.causes() == ("v.age() 0.5 > 0.3 sec", "v.unknown()")
+
+
+@monitors
+def test_a_failsafe_rule_names_what_is_unknown(monitor: Monitor) -> None:
+    """Where it is true by its values, those are told."""
+    text = "entity e { failsafe r: v > 5 and v.rate() < 1; } behaviour b: if e.r then { stop; };"
+    driver = Driver(monitor, text)
+    driver.send(100, "/speed", data=6.0)
+    assert driver.causes() == ("unknown: v.rate()",)
+    driver.send(200, "/speed", data=6.0)
+    assert driver.causes() == ("v 6.0 > 5", "v.rate() 0.0 < 1")
+    driver.monitor.advance(700 * MS)
+    assert driver.causes() == ("unknown: v, v.rate()",)
+    assert driver.why() == ("e.r: unknown: v, v.rate()",)
+
+
+@monitors
+def test_a_behaviour_is_told_by_its_rules(monitor: Monitor) -> None:
+    """Those that hold, negated ones by why they are false, and the conditions around it first."""
+    text = """
+    entity e { fast: v > 1 and f; slow: u < 1; off: m = 0; }
+    behaviour outer: if (e.fast for 0.1 sec) or e.off then {
+      behaviour inner: if not e.slow or not (e.off for 1 sec) then { stop; };
+    };
+    """
+    driver = Driver(monitor, text)
+    driver.send(100, "/mode", data=1)
+    driver.send(100, "/flag", data=True)
+    driver.send(100, "/odom", x=3.0)
+    assert driver.monitor.explain().causes == {}
+    driver.send(200, "/speed", data=2.0)
+    assert driver.monitor.explain().causes == {}
+    driver.monitor.advance(300 * MS)
+    fast = "e.fast for 0.1 sec: v 2.0 > 1 and f is true"
+    assert driver.why("outer") == (fast,)
+    assert driver.why("inner") == (fast, "not e.slow: u 3.0 >= 1", "not e.off: m 1 != 0")
+    driver.send(310, "/mode", data=0)
+    assert driver.why("outer") == (fast, "e.off: m = 0")
+    assert driver.why("inner") == (
+        fast,
+        "e.off: m = 0",
+        "not e.slow: u 3.0 >= 1",
+        "e.off for less than 1 sec: m = 0",
+    )
+
+
+@monitors
+def test_a_rule_that_is_not_true_has_no_cause(monitor: Monitor) -> None:
+    """Nor has a behaviour that does not hold, be it disabled only."""
+    text = "entity e { r: v > 1; } optional behaviour b: if e.r then { stop; };"
+    driver = Driver(monitor, text)
+    assert driver.causes() == ()
+    driver.send(100, "/speed", data=2.0)
+    driver.monitor.enable(110 * MS, "b", False)
+    assert driver.causes() == ("v 2.0 > 1",)
+    assert driver.monitor.explain().causes == {}
+
+
+def test_intervals_within_negated_ones_do_not_multiply() -> None:
+    """The emitted text grows with the rule, not with the powers of two."""
+    condition = "u > 1"
+    for _ in range(30):
+        condition = f"not ({condition} for 1 sec)"
+    driver = Driver(GeneratedMonitor, rule(condition))
+    driver.send(100, "/odom", x=3.0)
+    assert len(driver.causes()) == 1
