@@ -247,6 +247,7 @@ def test_intervals_within_negated_ones_do_not_multiply() -> None:
     condition = "u > 1"
     for _ in range(30):
         condition = f"not ({condition} for 1 sec)"
-    driver = Driver(GeneratedMonitor, rule(condition))
+    monitor: Monitor = GeneratedMonitor  # type: ignore[assignment]
+    driver = Driver(monitor, rule(condition))
     driver.send(100, "/odom", x=3.0)
     assert len(driver.causes()) == 1

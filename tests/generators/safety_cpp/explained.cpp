@@ -38,10 +38,14 @@ void tell(const every_thing_monitor & monitor)
     for (const auto & read : rule.reads) {
       std::cout << '\t' << read.term << '=' << read.value.value_or("unknown");
     }
+    for (const auto & cause : rule.causes) {
+      std::cout << '\t' << cause;
+    }
     std::cout << '\n';
   }
   for (const std::size_t behaviour : state.holding) {
-    std::cout << "holds\t" << told::origins().behaviours[behaviour].name << '\n';
+    std::cout << "holds\t" << told::origins().behaviours[behaviour].name << '\t' <<
+      told::runtime::cause_of(behaviour, state) << '\n';
   }
   std::cout << "." << std::endl;
 }

@@ -81,11 +81,13 @@ def _explained(model: Rules, context: Context) -> list[str]:
         if value != value:
             continue  # no stream of C++ reads NaN
         _take(monitor, topic, t, value)
-        for rule in monitor.explain().rules:
+        state = monitor.explain()
+        for rule in state.rules:
             reads = (f"{term}={_shown(read)}" for term, read in rule.reads)
             words = (rule.name, str(rule.line), rule.text, _shown(rule.value), str(rule.since))
-            told.append("\t".join((*words, *reads)) + "\n")
-        told += [f"holds\t{name}\n" for name in monitor.holding]
+            told.append("\t".join((*words, *reads, *rule.causes)) + "\n")
+        assert tuple(state.causes) == monitor.holding
+        told += [f"holds\t{name}\t{' and '.join(why)}\n" for name, why in state.causes.items()]
         told.append(".\n")
     return told
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from deros.generators.cpp_source import Call, Expression, Text, cpp_double, cpp_string
 from deros.generators.monitor_c.expressions import known_of
@@ -10,10 +10,11 @@ from deros.generators.monitor_c.layout import Layout
 from deros.generators.monitor_c.layout import Term as Field
 from deros.monitor.ir import Age, Missing, Program, Rule, Scale, Unknown
 from deros.monitor.reads import Term, one_line, term_name, terms
+from deros.monitor.wordings import quoted
 
 
 def explained_rules(program: Program, layout: Layout) -> Iterator[Expression]:
-    """Yield, for each rule, the expression of its state; the monitor's struct is ``m``."""
+    """Yield the expression of the state of each rule; the monitor's struct is ``m``."""
     for rule in program.rules:
         yield Call("runtime::explained", tuple(_arguments(program, layout, rule)))
 
@@ -25,8 +26,24 @@ def _arguments(program: Program, layout: Layout, rule: Rule) -> Iterator[Express
     yield f"m.{layout.verdicts[rule.index]} == {layout.macro}_TRUE"
     yield f"m.{layout.turned[rule.index]}"
     for term in terms(rule.condition):
-        value = _value(layout, term)
-        yield Call("runtime::Reading", (cpp_string(term_name(program, term)), value))
+        yield reading(program, layout, term)
+
+
+def reading(program: Program, layout: Layout, term: Term) -> Expression:
+    """Return the expression of a term with its value."""
+    name = cpp_string(term_name(program, term))
+    return Call("runtime::Reading", (name, _value(layout, term)))
+
+
+def shown_text(layout: Layout, term: Term) -> str:
+    """Return the expression of the text that causes tell the value of a term by."""
+    if isinstance(term, Age):
+        fields = layout.inputs[term.input]
+        return f"runtime::shown(runtime::seconds(m.now - m.{fields.base}))"
+    field, scale = _field(layout, term)
+    if field.texts:
+        return _chosen(f"m.{field.name}", map(quoted, field.texts))
+    return f"runtime::shown({_unscaled(field, scale)})"
 
 
 def _value(layout: Layout, term: Term) -> str:
@@ -56,11 +73,20 @@ def _field(layout: Layout, term: Term) -> tuple[Field, Scale | None]:
 
 
 def _known(field: Field, scale: Scale | None) -> str:
-    value = f"m.{field.name}"
+    value = _unscaled(field, scale)
     if field.texts:
-        listed = ", ".join(map(cpp_string, field.texts))
-        value = f"runtime::text_of({value}, {{{listed}}})"
-    elif scale is not None:
-        offset = f"({value} - {cpp_double(scale.offset)})" if scale.offset else value
-        value = f"{offset} / {cpp_double(scale.factor)}"
+        value = _chosen(value, field.texts)
     return f"runtime::value_of(m.{field.known}, {value})"
+
+
+def _chosen(place: str, texts: Iterable[str]) -> str:
+    return f"runtime::text_of({place}, {{{', '.join(map(cpp_string, texts))}}})"
+
+
+def _unscaled(field: Field, scale: Scale | None) -> str:
+    """Return a value in its own unit."""
+    value = f"m.{field.name}"
+    if scale is None:
+        return value
+    offset = f"({value} - {cpp_double(scale.offset)})" if scale.offset else value
+    return f"{offset} / {cpp_double(scale.factor)}"

@@ -24,6 +24,7 @@ from deros.generators.python_source import sentence
 from deros.generators.safety_cpp.explained import explained_rules
 from deros.generators.safety_cpp.messages import arguments, literal
 from deros.generators.safety_cpp.origins import Item, origins_view
+from deros.generators.safety_cpp.whys import Why, why_behaviour, why_rule, whys
 from deros.generators.safety_python.messages import is_stamped
 from deros.generators.safety_python.node import bound_actions
 from deros.generators.safety_view import (
@@ -103,7 +104,9 @@ class SafetyView:
             ``message_headers`` without the services.
         monitor: the view of the monitor in C.
         shared: the watched topics that may have several publishers.
-        explained: the expressions of the rules' states.
+        explained: the expressions of the rules' states, each with the monitor's field of the
+            verdict, and the function that tells why the rule is true.
+        whys: these functions, and those of behaviours and of what behaviours negate.
         origins: the tables of behaviours, actions and sites.
         latched: name and enumerator of each latched action.
         optional: enumerator of each behaviour that can be disabled, the function that does it, and
@@ -124,7 +127,8 @@ class SafetyView:
     shared: frozenset[str]
     channels: tuple[ChannelView, ...]
     actions: tuple[ActionView, ...]
-    explained: tuple[Expression, ...]
+    explained: tuple[tuple[Expression, str, str], ...]
+    whys: tuple[Why, ...]
     origins: list[Item]
     latched: tuple[tuple[str, str], ...]
     optional: tuple[tuple[str, str, str], ...]
@@ -162,10 +166,13 @@ class SafetyView:
         return f"{self.stem}_actions"
 
     @property
-    def conditions(self) -> list[tuple[str, str]]:
-        """The enumerator of each behaviour, with the monitor's field of its condition."""
-        fields = self.monitor.layout.conditions
-        return [(name, fields[i]) for i, (_, name) in enumerate(self.monitor.behaviour_names)]
+    def conditions(self) -> list[tuple[str, str, str]]:
+        """The enumerator of each behaviour, the monitor's field of its condition, and its why."""
+        layout = self.monitor.layout
+        return [
+            (name, layout.conditions[i], why_behaviour(layout, i))
+            for i, (_, name) in enumerate(self.monitor.behaviour_names)
+        ]
 
     @property
     def bound(self) -> list[tuple[str, str]]:
@@ -218,7 +225,13 @@ def safety_view(
         shared=shared,
         channels=tuple(_channels(program, node, monitor, store)),
         actions=actions,
-        explained=tuple(explained_rules(program, monitor.layout)),
+        explained=tuple(
+            (state, monitor.layout.verdicts[rule.index], why_rule(monitor.layout, rule.index))
+            for rule, state in zip(
+                program.rules, explained_rules(program, monitor.layout), strict=True
+            )
+        ),
+        whys=tuple(whys(program, monitor.layout)),
         origins=origins_view(model, program, monitor, f"{stem}_actions.cpp"),
         latched=tuple((a.name, a.enumerator) for a in monitor.actions if a.latched),
         optional=tuple(_optional(monitor)),

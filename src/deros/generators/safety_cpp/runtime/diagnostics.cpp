@@ -56,7 +56,7 @@ void Diagnostics::changed()
   again_ = true;
 }
 
-void Diagnostics::ordered(const Event & event)
+void Diagnostics::ordered(const Event & event, const Explanation & after)
 {
   const Site & site = origins_.sites[event.site];
   if (!site.action || (event.kind != Kind::Trigger && event.kind != Kind::Reset)) {
@@ -70,12 +70,13 @@ void Diagnostics::ordered(const Event & event)
   }
   state.active = active && origins_.actions[*site.action].lasts;
   state.cause = site.behaviour ? origins_.behaviours[*site.behaviour].name : "";
+  state.because = site.behaviour ? cause_of(*site.behaviour, after) : "";
   state.since = event.t;
 }
 
 void Diagnostics::latched(std::size_t action)
 {
-  actions_[action] = {true, "active before the start", std::nullopt, 0};
+  actions_[action] = {true, "active before the start", "", std::nullopt, 0};
 }
 
 bool Diagnostics::fault(const std::string & subject, const std::string & text)
@@ -182,6 +183,9 @@ Diagnostics::Status Diagnostics::action_status(std::size_t action, Time now) con
   if (!state.cause.empty()) {
     values.emplace_back("cause", state.cause);
   }
+  if (!state.because.empty()) {
+    values.emplace_back("because", state.because);
+  }
   if (state.since) {
     add_since(values, *state.since, now);
   }
@@ -198,6 +202,9 @@ Diagnostics::Status Diagnostics::rule_status(const RuleState & rule, bool blamed
   Values values;
   for (const Reading & each : rule.reads) {
     values.emplace_back(each.term, each.value.value_or("unknown"));
+  }
+  if (!rule.causes.empty()) {
+    values.emplace_back("cause", joined(rule.causes, " and "));
   }
   add_since(values, rule.since, now);
   values.emplace_back("line", std::to_string(rule.line));

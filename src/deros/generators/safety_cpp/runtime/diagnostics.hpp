@@ -46,8 +46,8 @@ public:
   /// Publish soon.
   void changed();
 
-  /// Follow an event of the monitor.
-  void ordered(const Event & event);
+  /// Follow an event of the monitor; after is what the monitor was worth after it.
+  void ordered(const Event & event, const Explanation & after);
 
   /// Show an action as active that was so before the start.
   void latched(std::size_t action);
@@ -56,11 +56,12 @@ public:
   bool fault(const std::string & subject, const std::string & text);
 
 private:
-  /// An action: whether it is active, or that it ran, by which behaviour, and since when.
+  /// An action: whether it is active, or that it ran, by which behaviour and why, since when.
   struct ActionState
   {
     bool active = false;
     std::string cause;
+    std::string because;
     std::optional<Time> since;
     std::size_t runs = 0;
   };

@@ -34,7 +34,7 @@ std::string shown(const std::optional<bool> & value)
 }
 
 /// Add what the rules are worth that a behaviour depends on, and what they read.
-void add_causes(Values & values, const Behaviour & behaviour, const Explanation & after)
+void add_values(Values & values, const Behaviour & behaviour, const Explanation & after)
 {
   for (const RuleState & rule : after.rules) {
     const auto & named = behaviour.rules;
@@ -88,16 +88,20 @@ void Events::ordered(const Event & event, Time done, const Explanation & after)
     set(values, "behaviour", behaviour.name);
     set(values, "origin", behaviour.origin);
     set(values, "condition", behaviour.condition);
-    add_causes(values, behaviour, after);
+    set(values, "cause", cause_of(*site.behaviour, after));
+    add_values(values, behaviour, after);
   }
   if (event.kind == Kind::Refused) {
     const std::vector<std::size_t> holding = callers(*site.action, after.holding);
     const std::vector<std::size_t> unknown = callers(*site.action, after.unknown);
     set(values, "holding", names(holding));
     set(values, "unknown", names(unknown));
+    for (const std::size_t behaviour : holding) {
+      set(values, "cause " + origins_.behaviours[behaviour].name, cause_of(behaviour, after));
+    }
     for (const auto & refusing : {holding, unknown}) {
       for (const std::size_t behaviour : refusing) {
-        add_causes(values, origins_.behaviours[behaviour], after);
+        add_values(values, origins_.behaviours[behaviour], after);
       }
     }
   }
@@ -123,7 +127,7 @@ std::string Events::refusal(std::size_t action, const Explanation & present) con
 {
   std::vector<std::string> holding;
   for (const std::size_t caller : callers(action, present.holding)) {
-    holding.push_back(origin(caller));
+    holding.push_back(origin_holding(caller, present));
   }
   std::vector<std::string> unknown;
   for (const std::size_t caller : callers(action, present.unknown)) {
@@ -137,6 +141,14 @@ std::string Events::refusal(std::size_t action, const Explanation & present) con
     reasons.push_back("not known to be false: " + joined(unknown, ", "));
   }
   return joined(reasons, "; ");
+}
+
+/// Return a behaviour with its place in the rules, and what makes it hold.
+std::string Events::origin_holding(std::size_t behaviour, const Explanation & present) const
+{
+  const Behaviour & found = origins_.behaviours[behaviour];
+  const std::string cause = cause_of(behaviour, present);
+  return cause.empty() ? origin(behaviour) : found.name + " (" + found.origin + "): " + cause;
 }
 
 /// Return a behaviour as origin() does, with the terms without a value.
@@ -195,7 +207,7 @@ std::pair<std::string, Level> Events::described(
     return {action + " stays active, " + refusal(*site.action, after), WARN};
   }
   const std::string & what = site.text.empty() ? action : site.text;
-  return {what + ", by " + origin(*site.behaviour), WARN};
+  return {what + ", by " + origin_holding(*site.behaviour, after), WARN};
 }
 
 }  // namespace deros_runtime

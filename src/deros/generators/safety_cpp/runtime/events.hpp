@@ -63,6 +63,7 @@ public:
   std::string refusal(std::size_t action, const Explanation & present) const;
 
 private:
+  std::string origin_holding(std::size_t behaviour, const Explanation & present) const;
   std::string origin_unknown(std::size_t behaviour, const Explanation & present) const;
   std::vector<std::size_t> callers(
     std::size_t action, const std::vector<std::size_t> & among) const;

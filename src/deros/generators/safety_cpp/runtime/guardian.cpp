@@ -296,7 +296,7 @@ void Guardian::tell()
       after = robot_.explain(slot);
     }
     events_.ordered(each.event, each.done, after);
-    diagnostics_.ordered(each.event);
+    diagnostics_.ordered(each.event, after);
   }
   untold_.clear();
   slot_ = 0;

@@ -1,6 +1,7 @@
 #include "deros_runtime/runtime/told.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,7 +18,7 @@ RuleState explained(
   const bool is_known = is_true || std::all_of(
     reads.begin(), reads.end(), [](const Reading & each) {return each.value.has_value();});
   const std::optional<bool> value = is_known ? std::optional<bool>(is_true) : std::nullopt;
-  return {name, line, text, value, since, std::move(reads)};
+  return {name, line, text, value, since, std::move(reads), {}};
 }
 
 std::optional<std::string> value_of(bool is_known, const std::string & value)
@@ -28,6 +29,29 @@ std::optional<std::string> value_of(bool is_known, const std::string & value)
 std::string text_of(std::uint32_t place, const std::vector<std::string> & known)
 {
   return place == 0 ? "another text" : known[place - 1];
+}
+
+std::string because(const std::string & head, const Causes & causes)
+{
+  return head + joined(causes, " and ");
+}
+
+std::string unknown_of(const std::string & suffix, const std::vector<Reading> & reads)
+{
+  std::vector<std::string> names;
+  for (const Reading & each : reads) {
+    if (!each.value) {
+      names.push_back(each.term);
+    }
+  }
+  return "unknown: " + joined(names, ", ") + suffix;
+}
+
+std::string cause_of(std::size_t behaviour, const Explanation & state)
+{
+  const auto found = std::find(state.holding.begin(), state.holding.end(), behaviour);
+  return found == state.holding.end() ? "" :
+         state.causes[static_cast<std::size_t>(found - state.holding.begin())];
 }
 
 }  // namespace deros_runtime

@@ -81,6 +81,9 @@ struct Reading
   std::optional<std::string> value;
 };
 
+/// What makes something so: parts of conditions, each with its values.
+using Causes = std::vector<std::string>;
+
 /// What a rule is worth since the last event, and the values that it reads.
 struct RuleState
 {
@@ -90,6 +93,7 @@ struct RuleState
   std::optional<bool> value;  // none: it is not true, and something that it reads is unknown
   Time since;  // when it last became true or ceased to be; else the start or the last clock step
   std::vector<Reading> reads;
+  Causes causes;  // while it is true
 };
 
 /// Return the state of a rule of which is known whether it is true.
@@ -118,6 +122,19 @@ std::optional<std::string> value_of(bool is_known, const std::string & value);
 /// Return a text by its place, from 1, among those that the rules know.
 std::string text_of(std::uint32_t place, const std::vector<std::string> & known);
 
+/// Return the cause that is a rule, with its own causes.
+std::string because(const std::string & head, const Causes & causes);
+
+/// Return the cause that some of the terms that a rule reads have no value.
+std::string unknown_of(const std::string & suffix, const std::vector<Reading> & reads);
+
+/// The same, with what it reads one by one.
+template<typename ... Readings>
+std::string unknown_of(const std::string & suffix, Readings && ... reads)
+{
+  return unknown_of(suffix, std::vector<Reading>{std::forward<Readings>(reads)...});
+}
+
 /// Return a time in seconds.
 inline double seconds(Time time)
 {
@@ -129,8 +146,16 @@ struct Explanation
 {
   std::vector<RuleState> rules;
   std::vector<std::size_t> holding;  // the behaviours whose conditions hold
+  std::vector<std::string> causes;  // of each of these, what makes it hold
   std::vector<std::size_t> unknown;  // the behaviours whose conditions are unknown
 };
+
+/// Return what makes a behaviour hold; nothing if it does not hold any more.
+/**
+ * A message may show that the clock has stepped back, and change at once what the step brought
+ * about.
+ */
+std::string cause_of(std::size_t behaviour, const Explanation & state);
 
 }  // namespace deros_runtime
 
