@@ -300,7 +300,8 @@ def test_events_in_json(folder: Path) -> None:
     result = run(folder, "--until", "9", trace=line("/speed", {"data": 1}))
     records = [json.loads(each) for each in result.stdout.splitlines()]
     place = {"behaviour": "behaviour_1", "file": str(folder / "r.deros"), "line": 5}
-    event = {"t": "2.500000000", "event": "trigger"}
+    cause = "e.fast: /speed.data 1.0 > 0.5 for 1 sec"
+    event = {"t": "2.500000000", "event": "trigger", "cause": cause}
     assert records == [
         {**event, "action": "stop", **place},
         {**event, "action": "beep", "arguments": [3], **place},

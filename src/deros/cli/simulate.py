@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
     from deros.diagnostics import Diagnostic, SourceFile
     from deros.interfaces.store import InterfaceStore
+    from deros.monitor.gate_simulation import GateAnswer
     from deros.monitor.ir import Program
-    from deros.monitor.simulate import Monitor
-    from deros.monitor.trace import TraceMessage
+    from deros.monitor.simulate import Explained, Monitor
 
 MONITORS = ("reference", "python")
 
 
-def _until(ctx: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
     del ctx, parameter
     if value is None:
         return None
@@ -49,8 +49,40 @@ def _until(ctx: click.Context, parameter: click.Parameter, value: str | None) ->
     "--until",
     "until_ns",
     metavar="T",
-    callback=_until,
-    help="Run the clock on to this time in seconds.  [default: the last message]",
+    callback=_seconds,
+    help="Run the clock on to this time in seconds.  [default: the last line]",
+)
+@click.option(
+    "--grace",
+    "grace_ns",
+    metavar="T",
+    default="0",
+    show_default=True,
+    callback=_seconds,
+    help="For how many seconds inputs may be late at the start, as 'startup_grace' of the node.",
+)
+@click.option("--gates", "with_gates", is_flag=True, help="Show what the gates do, and why.")
+@click.option(
+    "--commands",
+    "all_commands",
+    is_flag=True,
+    help="Of the gates, show each command that they publish, not only what changes.",
+)
+@click.option(
+    "--publish-freq",
+    "publish_hz",
+    type=click.FloatRange(0, 1000, min_open=True),
+    default=10.0,
+    show_default=True,
+    help="How often the gates are told states and heartbeat, as 'publish_freq' of the node.",
+)
+@click.option(
+    "--format",
+    "output_format",
+    type=click.Choice(("json", "text")),
+    default="json",
+    show_default=True,
+    help="One JSON object, or one line for people, per event.",
 )
 @click.option(
     "--monitor",
@@ -67,22 +99,32 @@ def simulate(
     rules: str,
     trace_file: str,
     until_ns: int | None,
+    grace_ns: int,
+    with_gates: bool,
+    all_commands: bool,
+    publish_hz: float,
+    output_format: str,
     engine: str,
     interfaces: tuple[Path, ...],
 ) -> None:
     """Run safety rules over a recorded trace.
 
-    RULES is a *.deros file. A line of the trace is a message:
+    RULES is a *.deros file. A line of the trace is a message, a reset of the latched actions or of
+    a gate, a switch of an optional behaviour, or the loss of the safety node's heartbeat:
 
     \b
         {"t": "1.5", "topic": "/imu", "data": {"angular_velocity.z": 0.2}}
+        {"t": "4", "reset": true}
+        {"t": "5", "disable": "near"}
+        {"t": "6", "heartbeat": false}
 
-    Prints one JSON object per event (trigger, reset, refused); steps of the clock and findings go
-    to standard error. Exits with 0, with 1 if the rules or the trace have errors, with 2 if one of
-    them cannot be read.
+    Prints each event (trigger, reset, refused) with its cause: the parts of the rules that are
+    true, and their values. Steps of the clock and findings go to standard error. Exits with 0, with
+    1 if the rules or the trace have errors, with 2 if one of them cannot be read.
     """  # noqa: D301 - click knows a block by the character itself
     from deros.cli.project import interfaces_of, project_of
     from deros.interfaces.store import InterfaceStore
+    from deros.monitor.simulate import play
     from deros.monitor.trace import read_trace
 
     store = InterfaceStore(interfaces_of(interfaces, [project_of(rules)]))
@@ -96,7 +138,13 @@ def simulate(
     if any(each.is_error for each in trace.diagnostics):
         _fail(ctx, trace.diagnostics)
     _report(trace.diagnostics)
-    _play(trace.messages, until_ns, _monitor(engine, program))
+    gates = None
+    if with_gates or all_commands:
+        from deros.monitor.gate_simulation import Gates
+
+        gates = Gates(program, store, grace_ns, publish_hz, tell_all=all_commands)
+    happenings = play(_monitor(engine, program, grace_ns), trace.lines, until_ns, gates)
+    _show(happenings, output_format == "text")
 
 
 def _load(path: str, store: InterfaceStore) -> tuple[Program | None, list[Diagnostic]]:
@@ -130,24 +178,32 @@ def _read(path: str) -> tuple[SourceFile | None, list[Diagnostic]]:
         return None, [unreadable.diagnostic]
 
 
-def _monitor(engine: str, program: Program) -> Monitor:
+def _monitor(engine: str, program: Program, grace_ns: int) -> Monitor:
     if engine == "python":
         from deros.generators.monitor_python.run import GeneratedMonitor
 
-        return GeneratedMonitor(program)
+        return GeneratedMonitor(program, grace_ns=grace_ns)
     from deros.monitor.engine import Engine
 
-    return Engine(program)
+    return Engine(program, grace_ns=grace_ns)
 
 
-def _play(messages: Iterable[TraceMessage], until_ns: int | None, monitor: Monitor) -> None:
-    from deros.monitor.simulate import event_record, seconds, simulate
+def _show(happenings: Iterable[Explained | GateAnswer], as_text: bool) -> None:
+    from deros.monitor import simulate as told
 
-    for event in simulate(monitor, messages, until_ns):
-        if event.kind == "clock_step":
-            click.echo(f"the clock stepped back to {seconds(event.t_ns)}", err=True)
+    for each in happenings:
+        if isinstance(each, told.Explained):
+            event = each.event
+            if event.kind == "clock_step":
+                click.echo(f"the clock stepped back to {told.seconds(event.t_ns)}", err=True)
+            elif as_text:
+                click.echo(told.event_line(event, each.causes))
+            else:
+                click.echo(json.dumps(told.event_record(event, each.causes)))
+        elif as_text:
+            click.echo(told.answer_line(each))
         else:
-            click.echo(json.dumps(event_record(event)))
+            click.echo(json.dumps(told.answer_record(each)))
 
 
 def _fail(ctx: click.Context, findings: Sequence[Diagnostic]) -> NoReturn:

@@ -1,17 +1,21 @@
-"""Traces: recorded messages, one JSON object a line, for simulation and tests.
+"""Traces: what happens to a robot, one JSON object a line, for simulation and tests.
 
-A line is ``{"t": "1.5", "topic": "/imu", "data": {"angular_velocity.z": 0.2}}``: the time in
+A message is ``{"t": "1.5", "topic": "/imu", "data": {"angular_velocity.z": 0.2}}``: the time in
 seconds, read exactly, as text or as a number; the topic; and the fields that matter, nested or
 dotted, array elements as ``position[2]``. All other fields have the defaults of the message
 definition. ``NaN``, ``Infinity`` and ``-Infinity`` may be written as texts. Empty lines are
 skipped.
+
+Other lines have, in place of ``topic``: ``"reset": true`` (of the latched actions) or ``"reset":
+"/cmd_vel"`` (of the gate to that topic), ``"enable": "NAME"`` or ``"disable": "NAME"`` (of an
+optional behaviour), ``"heartbeat": false`` or ``true`` (whether the gates hear the safety node).
 """
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from typing import Any
@@ -20,30 +24,73 @@ from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.store import InterfaceStore
+from deros.monitor import walk
+from deros.monitor.commands import Message
 from deros.monitor.ir import Leaf, Program
 from deros.monitor.state import LeafValue
 from deros.monitor.trace_values import DataError, MessageReader
 
 _SECONDS = re.compile(r"\d{1,30}(\.\d{0,30})?", re.ASCII)
+_KINDS = ("topic", "reset", "enable", "disable", "heartbeat")
 _NS_PER_S = 10**9
 _LAST_NS = 2**63 - 1  # of ROS's time
 
 
 @dataclass(frozen=True, slots=True)
 class TraceMessage:
-    """One message: its time, its topic, and the value of each leaf of that topic's inputs."""
+    """One message: its time, its topic, and the value of each leaf of that topic's inputs.
+
+    ``command`` is the whole message, on a topic that a gate reads; ``is_input`` tells whether the
+    rules read it, too.
+    """
 
     t_ns: int
     topic: str
     leaves: Mapping[int, LeafValue]
+    command: Message | None = None
+    is_input: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class TraceReset:
+    """A reset of the latched actions or, with its target topic, of a ``gate``."""
+
+    t_ns: int
+    gate: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TraceSwitch:
+    """An optional behaviour is enabled, or disabled."""
+
+    t_ns: int
+    behaviour: str
+    enabled: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TraceHeartbeat:
+    """From now on the gates hear the safety node, its states and its heartbeat, or do not."""
+
+    t_ns: int
+    heard: bool
+
+
+TraceLine = TraceMessage | TraceReset | TraceSwitch | TraceHeartbeat
+"""What a line of a trace stands for."""
 
 
 @dataclass(frozen=True, slots=True)
 class Trace:
     """What a trace holds for one program, and what is wrong with it."""
 
-    messages: tuple[TraceMessage, ...]
+    lines: tuple[TraceLine, ...]
     diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def messages(self) -> tuple[TraceMessage, ...]:
+        """The lines that are messages."""
+        return tuple(each for each in self.lines if isinstance(each, TraceMessage))
 
 
 def read_trace(source: SourceFile, program: Program, store: InterfaceStore) -> Trace:
@@ -52,8 +99,8 @@ def read_trace(source: SourceFile, program: Program, store: InterfaceStore) -> T
     Every faulty line is reported, and left out as well.
     """
     reader = _Reader(source, program, store)
-    messages = tuple(reader.messages())
-    return Trace(messages, tuple(reader.diagnostics))
+    lines = tuple(reader.lines())
+    return Trace(lines, tuple(reader.diagnostics))
 
 
 def nanoseconds(seconds: str) -> int | None:
@@ -79,7 +126,9 @@ class _Fault(Exception):  # noqa: N818 - it carries a finding, and is no fault o
 class _Reader:
     def __init__(self, source: SourceFile, program: Program, store: InterfaceStore) -> None:
         self._source = source
-        self._topics = program.topics
+        self._program = program
+        self._commands = {each.source: each.type for each in program.gates}
+        self._topics = self._commands | program.topics
         self._readers = {topic: MessageReader(store, kind) for topic, kind in self._topics.items()}
         self._leaves: dict[str, list[Leaf]] = {topic: [] for topic in self._topics}
         for leaf in program.leaves:
@@ -87,23 +136,35 @@ class _Reader:
         self._unread: set[str] = set()
         self.diagnostics: list[Diagnostic] = []
 
-    def messages(self) -> Iterator[TraceMessage]:
+    def lines(self) -> Iterator[TraceLine]:
         start = 0
-        for line in self._source.text.split("\n"):
-            if line.strip():
-                span = Span(self._source, start, start + len(line.rstrip()))
+        for text in self._source.text.split("\n"):
+            if text.strip():
+                span = Span(self._source, start, start + len(text.rstrip()))
                 try:
-                    message = self._message(line, span)
+                    line = self._line(text, span)
                 except _Fault as fault:
                     self.diagnostics.append(fault.diagnostic)
                 else:
-                    if message is not None:
-                        yield message
-            start += len(line) + 1
+                    if line is not None:
+                        yield line
+            start += len(text) + 1
 
-    def _message(self, line: str, span: Span) -> TraceMessage | None:
-        record = _record(line, span)
+    def _line(self, text: str, span: Span) -> TraceLine | None:
+        record = _record(text, span)
         t_ns = _time(record, span)
+        match _kind(record, span):
+            case "reset":
+                return TraceReset(t_ns, self._reset(record["reset"], span))
+            case "enable" | "disable" as kind:
+                behaviour = self._optional(kind, record[kind], span)
+                return TraceSwitch(t_ns, behaviour, kind == "enable")
+            case "heartbeat":
+                return TraceHeartbeat(t_ns, self._heard(record["heartbeat"], span))
+            case _:
+                return self._message(record, t_ns, span)
+
+    def _message(self, record: Mapping[str, Any], t_ns: int, span: Span) -> TraceMessage | None:
         topic = record["topic"]
         if topic not in self._topics:
             self._report_unread(topic, span)
@@ -116,7 +177,47 @@ class _Reader:
             where = _find_last(span, error.key.rpartition(".")[2])
             raise _Fault(report(code, str(error), where, error.hint)) from error
         leaves = {leaf.index: reader.leaf(message, leaf.path) for leaf in self._leaves[topic]}
-        return TraceMessage(t_ns, topic, leaves)
+        command = reader.whole(message) if topic in self._commands else None
+        return TraceMessage(t_ns, topic, leaves, command, topic in self._program.topics)
+
+    def _reset(self, given: Any, span: Span) -> str | None:
+        """Return which gate is reset; none is the safety node."""
+        if given is True:
+            if not any(each.latched for each in self._program.actions):
+                raise _fault("no action is 'latched', so there is nothing to reset", "reset", span)
+            return None
+        gates = {each.target: each for each in self._program.gates}
+        if not isinstance(given, str):
+            hint = "true resets the latched actions, the target topic of a gate that gate"
+            raise _fault("'reset' is true or a text", "reset", span, hint)
+        if given not in gates:
+            hint = did_you_mean(near(given, gates)) or _listed("gates lead to", gates)
+            raise _fault(f"no gate leads to '{given}'", given, span, hint)
+        if not gates[given].is_latching:
+            text = f"the gate to '{given}' has no line 'until reset', so there is nothing to reset"
+            raise _fault(text, given, span)
+        return given
+
+    def _optional(self, kind: str, given: Any, span: Span) -> str:
+        everyone = {each.name: each.optional for each in walk.behaviours(self._program)}
+        if not isinstance(given, str):
+            raise _fault(f"'{kind}' is the name of an optional behaviour", kind, span)
+        if given not in everyone:
+            optional = [name for name, is_optional in everyone.items() if is_optional]
+            hint = did_you_mean(near(given, everyone)) or _listed("optional are", optional)
+            raise _fault(f"no behaviour '{given}'", given, span, hint)
+        if not everyone[given]:
+            hint = f"write 'optional behaviour {given}: if ...' in the rules"
+            raise _fault(f"the behaviour '{given}' is not optional", given, span, hint)
+        return given
+
+    def _heard(self, given: Any, span: Span) -> bool:
+        if not isinstance(given, bool):
+            hint = "false: from now on the gates do not hear the safety node; true: they do again"
+            raise _fault("'heartbeat' is true or false", "heartbeat", span, hint)
+        if not self._program.gates:
+            raise _fault("the rules have no gate that hears the heartbeat", "heartbeat", span)
+        return given
 
     def _report_unread(self, topic: str, span: Span) -> None:
         if topic in self._unread:
@@ -125,6 +226,24 @@ class _Reader:
         hint = did_you_mean(near(topic, self._topics))
         text = f"no rule reads '{topic}', so its messages are left out"
         self.diagnostics.append(report(codes.UNREAD_TRACE_TOPIC, text, _find(span, topic), hint))
+
+
+def _fault(text: str, key: str, span: Span, hint: str = "") -> _Fault:
+    return _Fault(report(codes.BAD_TRACE_LINE, text, _find_last(span, key), hint))
+
+
+def _listed(what: str, names: Iterable[str]) -> str:
+    listed = ", ".join(names)
+    return f"{what} {listed}" if listed else ""
+
+
+def _kind(record: Mapping[str, Any], span: Span) -> str:
+    """Return what a line is, by the key that only such lines have."""
+    kinds = [each for each in _KINDS if each in record]
+    if len(kinds) > 1:
+        text = f"one line has both '{kinds[0]}' and '{kinds[1]}'"
+        raise _fault(text, kinds[1], span, "write two lines, with the same time")
+    return kinds[0]
 
 
 def _record(line: str, span: Span) -> Mapping[str, Any]:
@@ -139,10 +258,13 @@ def _record(line: str, span: Span) -> Mapping[str, Any]:
         raise _Fault(report(codes.BAD_TRACE_LINE, text, span)) from error
     if not isinstance(record, dict):
         raise _Fault(report(codes.BAD_TRACE_LINE, "the line is no object {…}", span))
-    for key in ("t", "topic"):
-        if key not in record:
-            raise _Fault(report(codes.BAD_TRACE_LINE, f"the message lacks '{key}'", span))
-    if not isinstance(record["topic"], str):
+    if "t" not in record:
+        raise _Fault(report(codes.BAD_TRACE_LINE, "the line lacks 't'", span))
+    if not any(each in record for each in _KINDS):
+        hint = did_you_mean(key for each in record for key in near(each, _KINDS))
+        text = "the line lacks 'topic', and is no 'reset', 'enable', 'disable' or 'heartbeat'"
+        raise _Fault(report(codes.BAD_TRACE_LINE, text, span, hint))
+    if not isinstance(record.get("topic", ""), str):
         where = _find(span, "topic")
         raise _Fault(report(codes.BAD_TRACE_LINE, "'topic' is no text", where))
     if not isinstance(record.get("data", {}), dict):

@@ -80,6 +80,24 @@ class MessageReader:
         result: LeafValue = value
         return result
 
+    def whole(self, message: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the message with all of its fields, those of messages in it included."""
+        return self._whole(message, self._definition)
+
+    def _whole(self, message: Mapping[str, Any], definition: MessageDefinition) -> dict[str, Any]:
+        return {
+            name: self._whole_value(*self._field(message, definition, name))
+            for name, _ in definition.fields
+        }
+
+    def _whole_value(self, value: Any, kind: FieldType) -> Any:
+        if not isinstance(kind.base, InterfaceType):
+            return value
+        definition = self._resolve(kind.base, "")
+        if kind.is_array:
+            return [self._whole(each, definition) for each in value]
+        return self._whole(value, definition)
+
     # Definitions --------------------------------------------------------------------------------
 
     def _resolve(self, kind: InterfaceType | str, key: str) -> MessageDefinition:

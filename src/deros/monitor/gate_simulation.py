@@ -1,0 +1,242 @@
+"""The gates of a program beside its monitor: what they would let through, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from deros.interfaces.store import InterfaceStore
+from deros.monitor.commands import Message, is_finite
+from deros.monitor.engine import Event
+from deros.monitor.gate import GateEngine, Output
+from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
+from deros.monitor.reads import one_line
+from deros.monitor.trace_values import MessageReader
+
+AnswerKind = Literal["passed", "limited", "zero", "refused", "gate_reset", "gate_reset_refused"]
+
+_KINDS: dict[str, AnswerKind] = {"pass": "passed", "limited": "limited", "zero": "zero"}
+_REFUSED = "the command holds NaN or infinity"
+
+
+@dataclass(frozen=True, slots=True)
+class GateAnswer:
+    """Something that a gate does.
+
+    Attributes:
+        t_ns: when.
+        event: what it makes of commands, or of a reset.
+        gate: the topic to which it leads.
+        why: the lines of the gate that apply, or that refuse the reset.
+        message: what it publishes, if it does.
+    """
+
+    t_ns: int
+    event: AnswerKind
+    gate: str
+    why: tuple[str, ...] = ()
+    message: Message | None = None
+
+
+class Gates:
+    """Runs the gates of a program, and what the safety node tells them.
+
+    The safety node publishes the states of its bound actions at the start, whenever they change,
+    and ``publish_freq`` times a second with its heartbeat, which begins as soon as it does not wait
+    for inputs any more. All of them count in one time, that of the trace.
+
+    Attributes:
+        heard: whether the gates hear the safety node.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        store: InterfaceStore,
+        grace_ns: int = 0,
+        publish_hz: float = 10.0,
+        *,
+        tell_all: bool = False,
+    ) -> None:
+        """Start at 0.
+
+        Args:
+            program: whose gates run.
+            store: the definitions of their messages.
+            grace_ns: for how long after the start the heartbeat waits for inputs.
+            publish_hz: the ``publish_freq`` of the safety node.
+            tell_all: whether each command that is published is told of, also if nothing changes.
+        """
+        self.heard = True
+        self._gates = [_Gate(each, program.actions, store, tell_all) for each in program.gates]
+        self._states = _States(program, store)
+        self._grace_ns = grace_ns
+        self._period_ns = round(1e9 / publish_hz)
+        self._publish_ns = 0  # when it publishes next
+        self._is_starting = True
+        self._has_begun = False
+        self._beats = 0
+
+    @property
+    def next_ns(self) -> int | None:
+        """When something happens by itself; ``None`` without gates."""
+        if not self._gates:
+            return None
+        deadlines = (each.engine.next_deadline for each in self._gates)
+        return min(self._publish_ns, *(each for each in deadlines if each is not None))
+
+    def settle(
+        self, t_ns: int, events: Sequence[Event], waiting: bool, stepped: bool
+    ) -> Iterator[GateAnswer]:
+        """Have all that happens at an instant happen, after the events of the monitor.
+
+        Args:
+            t_ns: the instant.
+            events: those of the monitor.
+            waiting: whether the monitor waits for inputs.
+            stepped: whether the clock has stepped back.
+        """
+        self._states.follow(events)
+        for gate in self._gates:
+            yield from gate.told(gate.engine.advance(t_ns))
+        if any(event.kind in ("trigger", "reset") for event in events):
+            yield from self._publish_states(t_ns)
+        if stepped or t_ns >= self._publish_ns:
+            yield from self._publish_states(t_ns)
+            yield from self._beat(t_ns, waiting)
+            self._publish_ns = t_ns + self._period_ns
+
+    def command(self, t_ns: int, topic: str, message: Message) -> Iterator[GateAnswer]:
+        """Have the gates that read a topic take a command."""
+        for gate in self._gates:
+            if gate.gate.source == topic:
+                yield from gate.command(t_ns, message)
+
+    def reset(self, t_ns: int, target: str) -> Iterator[GateAnswer]:
+        """Reset the gate that leads to a topic."""
+        for gate in self._gates:
+            if gate.gate.target == target:
+                yield from gate.reset(t_ns)
+
+    def _publish_states(self, t_ns: int) -> Iterator[GateAnswer]:
+        if not self.heard:
+            return
+        for topic, message in self._states.messages():
+            for gate in self._gates:
+                yield from gate.told(gate.engine.state(t_ns, topic, message))
+
+    def _beat(self, t_ns: int, waiting: bool) -> Iterator[GateAnswer]:
+        if not self._has_begun:  # the states go out at the start, the first beat a period later
+            self._has_begun = True
+            return
+        self._is_starting = self._is_starting and waiting and t_ns < self._grace_ns
+        if self._is_starting:
+            return
+        self._beats += 1
+        if self.heard:
+            for gate in self._gates:
+                yield from gate.told(gate.engine.heartbeat(t_ns, self._beats))
+
+
+class _Gate:
+    """One gate, which tells of what it does when that changes."""
+
+    def __init__(
+        self, gate: Gate, actions: Sequence[Action], store: InterfaceStore, tell_all: bool
+    ) -> None:
+        self.gate = gate
+        self.engine = GateEngine(gate, actions, store)
+        self._tell_all = tell_all
+        self._before: tuple[AnswerKind, tuple[str, ...]] | None = None
+
+    def command(self, t_ns: int, message: Message) -> Iterator[GateAnswer]:
+        """Take a command."""
+        if not is_finite(message):
+            yield GateAnswer(t_ns, "refused", self.gate.target, (_REFUSED,))
+        yield from self.told(self.engine.command(t_ns, message))
+
+    def reset(self, t_ns: int) -> Iterator[GateAnswer]:
+        """Take a reset."""
+        against = [self.gate.lines[index] for index in self.engine.reset(t_ns)]
+        why = tuple(map(_shown, against))
+        event: AnswerKind = "gate_reset_refused" if against else "gate_reset"
+        yield GateAnswer(t_ns, event, self.gate.target, why)
+        self._before = None  # what it is worth is told again
+        yield from self.told(self.engine.advance(t_ns))
+
+    def told(self, outputs: Iterable[Output]) -> Iterator[GateAnswer]:
+        """Yield what is published, once for as long as neither that nor its reasons change."""
+        for output in outputs:
+            told = (_KINDS[output.kind], self._why())
+            if self._tell_all or told != self._before:
+                self._before = told
+                event, why = told
+                yield GateAnswer(output.t_ns, event, self.gate.target, why, output.message)
+
+    def _why(self) -> tuple[str, ...]:
+        """Return what holds commands back, as the diagnostics of a gate say it."""
+        lines = [_shown(line) for line in self.gate.lines]
+        latching = [
+            f"waits for a reset, after {text}"
+            for text, line in zip(lines, self.gate.lines, strict=True)
+            if line.until_reset
+        ]
+        waits = ["waits for a zero command"] if self.gate.resume_on_zero else []
+        applying = zip([*lines, *latching, *waits], self.engine.applying, strict=True)
+        return tuple(text for text, applies in applying if applies)
+
+
+def _shown(line: GateLine) -> str:
+    return one_line(line.span.text).rstrip("; ")
+
+
+class _States:
+    """What the safety node publishes of its bound actions."""
+
+    def __init__(self, program: Program, store: InterfaceStore) -> None:
+        self._active: set[str] = set()
+        self._topics: dict[str, list[tuple[Action, Binding, Any]]] = {}
+        for action in program.actions:
+            binding = action.binding
+            if binding is not None:
+                default = MessageReader(store, binding.type).leaf({}, binding.path)
+                if isinstance(binding.value, bool):
+                    default = not binding.value
+                states = self._topics.setdefault(binding.topic, [])
+                states.append((action, binding, default))
+
+    def follow(self, events: Iterable[Event]) -> None:
+        """Note which actions are active."""
+        for event in events:
+            if event.kind == "trigger":
+                self._active.add(event.action)
+            elif event.kind == "reset":
+                self._active.discard(event.action)
+
+    def messages(self) -> Iterator[tuple[str, Message]]:
+        """Yield each topic with the fields of its message; the action declared first decides."""
+        for topic, states in self._topics.items():
+            message: dict[str, Any] = {}
+            for action, binding, default in reversed(states):
+                path = binding.path
+                if action.name in self._active:
+                    _put(message, path, binding.value)
+                elif not _has(message, path):
+                    _put(message, path, default)
+            yield topic, message
+
+
+def _has(message: dict[str, Any], path: Sequence[str]) -> bool:
+    for step in path:
+        if step not in message:
+            return False
+        message = message[step]
+    return True
+
+
+def _put(message: dict[str, Any], path: Sequence[str], value: Any) -> None:
+    *around, last = path
+    for step in around:
+        message = message.setdefault(step, {})
+    message[last] = value

@@ -1,0 +1,94 @@
+"""``deros simulate``: options, and what it prints."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.support.cli import deros
+
+SYSTEM = """system Robot
+topics
+  external topic /effort : std_msgs.Float64
+  external topic /nav : geometry_msgs.Twist
+  external topic /cmd_vel : geometry_msgs.Twist
+  external topic /stop : std_msgs.Bool
+"""
+RULES = """use "robot.system" import Robot
+action stop publishes true on /stop : std_msgs.Bool latched;
+input effort = topic /effort.data timeout 1 sec
+entity drive { overload: effort > 30 for 0.5 sec; silent: effort.missing(); }
+behaviour protect: if drive.overload or drive.silent then { stop; };
+gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+  stop: zero;
+  lost heartbeat for 0.3 sec: zero until reset;
+  lost input for 0.5 sec: zero;
+  resume on zero command;
+}
+"""
+TRACE = """{"t": "0.2", "topic": "/effort", "data": {"data": 31.2}}
+{"t": "0.3", "topic": "/nav", "data": {}}
+{"t": "0.8", "reset": true}
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return a folder with rules and a trace, in which commands run."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "robot.system").write_text(SYSTEM)
+    (tmp_path / "rules.deros").write_text(RULES)
+    (tmp_path / "trace.jsonl").write_text(TRACE)
+    return tmp_path
+
+
+def simulate(*options: str) -> list[str]:
+    """Run the command, and return the lines that it prints."""
+    done = deros("simulate", "rules.deros", "--trace", "trace.jsonl", *options)
+    assert done.code == 0, done.err
+    return done.out.splitlines()
+
+
+@pytest.mark.parametrize("monitor", ["reference", "python"])
+def test_it_names_the_culprit(monitor: str) -> None:
+    """In a line for people, and in JSON."""
+    cause = "drive.overload: effort 31.2 > 30 for 0.5 sec"
+    assert simulate("--format", "text", "--monitor", monitor) == [
+        f"0.700000000 stop, by protect (rules.deros:5): {cause}",
+        f"0.800000000 stop stays active, called for by protect: {cause}",
+    ]
+    trigger, refused = map(json.loads, simulate("--monitor", monitor))
+    assert trigger["cause"] == cause
+    assert refused["causes"] == {"protect": cause}
+
+
+def test_grace_is_that_of_the_node(folder: Path) -> None:
+    """Without it an input is missing earlier."""
+    (folder / "trace.jsonl").write_text("")
+    times = [
+        simulate("--format", "text", "--until", "4", *grace)[0].split(" ")[0]
+        for grace in ((), ("--grace", "2.5"))
+    ]
+    assert times == ["1.000000000", "3.500000000"]
+
+
+def test_gates_are_shown_when_asked_for() -> None:
+    """What they do when it changes, or every command that they publish."""
+    assert not any("gate" in json.loads(line) for line in simulate())
+    lines = list(map(json.loads, simulate("--gates")))
+    gated = [line for line in lines if line.get("gate") == "/cmd_vel"]
+    assert {line["event"] for line in gated} == {"zero"}
+    assert gated[-1]["why"][0] == "stop: zero"
+    assert gated[0]["data"]["linear"] == {"x": 0.0, "y": 0.0, "z": 0.0}
+    assert len(simulate("--commands")) > len(lines)
+    text = simulate("--gates", "--format", "text")
+    assert "0.000000000 /cmd_vel: zero, stop: zero; lost heartbeat" in text[0]
+
+
+def test_wrong_options_are_usage_errors() -> None:
+    """A time that is none, a frequency of nothing."""
+    for option in (("--grace", "-1"), ("--publish-freq", "0"), ("--format", "xml")):
+        done = deros("simulate", "rules.deros", "--trace", "trace.jsonl", *option)
+        assert done.code == 2

@@ -1,0 +1,284 @@
+"""A trace is played: events with their causes, resets, switches, and what gates do of it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from deros.diagnostics import SourceFile
+from deros.generators.monitor_python.run import GeneratedMonitor
+from deros.monitor.engine import Engine
+from deros.monitor.gate_simulation import GateAnswer, Gates
+from deros.monitor.simulate import Explained, answer_line, event_line, event_record, play
+from deros.monitor.trace import Trace, nanoseconds, read_trace
+from tests.support.rules import embedded_store, program
+
+RULES = """
+action stop publishes true on /stop : std_msgs.Bool latched;
+action slow publishes true on /slow : std_msgs.Bool reset_by go;
+action go;
+input v = topic /speed.data timeout 1 sec
+entity drive {
+  fast: v > 30 for 0.5 sec;
+  silent: v.missing();
+  warm: v > 20;
+  cool: v < 10;
+}
+behaviour protect: if drive.fast or drive.silent then { stop; log_state("halted"); };
+optional behaviour ease: if drive.warm then { slow; };
+if drive.cool then { go; };
+"""
+GATE = """
+gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+  stop: zero;
+  slow: limit linear.x to [-0.1, 0.1] m/s;
+  lost heartbeat for 0.3 sec: zero until reset;
+  lost input for 0.5 sec: zero;
+  resume on zero command;
+}
+"""
+LOST_BEAT = "lost heartbeat for 0.3 sec: zero until reset"
+LOST_INPUT = "lost input for 0.5 sec: zero"
+LIMIT = "slow: limit linear.x to [-0.1, 0.1] m/s"
+PROGRAM = program(RULES + GATE)
+monitors = pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
+
+
+def speed(t: str, value: float) -> dict[str, Any]:
+    """Return the line of a message that the rules read."""
+    return {"t": t, "topic": "/speed", "data": {"data": value}}
+
+
+def command(t: str, value: float | str) -> dict[str, Any]:
+    """Return the line of a command."""
+    return {"t": t, "topic": "/nav", "data": {"linear.x": value}}
+
+
+def read(*lines: dict[str, Any]) -> Trace:
+    """Read lines of a trace."""
+    text = "\n".join(map(json.dumps, lines))
+    return read_trace(SourceFile("trace", text), PROGRAM, embedded_store())
+
+
+def played(
+    monitor: Any, *lines: dict[str, Any], until: str | None = None, gates: Gates | None = None
+) -> list[str]:
+    """Play faultless lines, and return what happens as people read it."""
+    trace = read(*lines)
+    assert not trace.diagnostics, trace.diagnostics
+    until_ns = None if until is None else nanoseconds(until)
+    told = []
+    for each in play(monitor, trace.lines, until_ns, gates):
+        line = (
+            event_line(each.event, each.causes)
+            if isinstance(each, Explained)
+            else answer_line(each)
+        )
+        time, _, rest = line.partition(" ")
+        told.append(f"{time.rstrip('0').rstrip('.')} {rest}")
+    return told
+
+
+def answers(*lines: dict[str, Any], until: str, tell_all: bool = False) -> list[GateAnswer]:
+    """Play lines, and return what the gate does."""
+    gates = Gates(PROGRAM, embedded_store(), tell_all=tell_all)
+    found = play(Engine(PROGRAM), read(*lines).lines, nanoseconds(until), gates)
+    return [each for each in found if isinstance(each, GateAnswer)]
+
+
+@monitors
+def test_each_trigger_has_its_cause(monitor: Any) -> None:
+    """As of its instant, though a message comes in the same call."""
+    place = "(rules.deros:13)"
+    assert played(monitor(PROGRAM), speed("0.1", 31.2), speed("0.8", 5), until="2") == [
+        "0.1 slow, by ease (rules.deros:14): drive.warm: v 31.2 > 20",
+        f"0.6 stop, by protect {place}: drive.fast: v 31.2 > 30 for 0.5 sec",
+        f"0.6 halted, by protect {place}: drive.fast: v 31.2 > 30 for 0.5 sec",
+        "0.8 go, by behaviour_3 (rules.deros:15): drive.cool: v 5.0 < 10",
+        "0.8 slow is reset",
+        f"1.8 stop, by protect {place}: drive.silent: v.missing()",
+        f"1.8 halted, by protect {place}: drive.silent: v.missing()",
+    ]
+
+
+@monitors
+def test_a_reset_is_refused_by_causes_and_then_done(monitor: Any) -> None:
+    """By what holds, with values, and by what is unknown."""
+    told = played(
+        monitor(PROGRAM),
+        {"t": "0.0", "disable": "ease"},
+        speed("0.1", 31.2),
+        {"t": "0.7", "reset": True},
+        speed("0.8", 15),
+        {"t": "0.9", "reset": True},
+        speed("1.0", "NaN"),  # type: ignore[arg-type]
+    )
+    assert told[2:] == [
+        "0.7 stop stays active, called for by protect: drive.fast: v 31.2 > 30 for 0.5 sec",
+        "0.9 stop is reset",
+    ]
+
+
+@monitors
+def test_an_optional_behaviour_is_switched(monitor: Any) -> None:
+    """Enabled while its condition is true, it acts."""
+    lines = [{"t": "0.1", "disable": "ease"}, speed("0.2", 25), {"t": "0.3", "enable": "ease"}]
+    told = played(monitor(PROGRAM), *lines)
+    assert told == ["0.3 slow, by ease (rules.deros:14): drive.warm: v 25.0 > 20"]
+
+
+@monitors
+def test_the_grace_delays_what_is_missing(monitor: Any) -> None:
+    """As the parameter startup_grace of the node does."""
+    told = played(monitor(PROGRAM, grace_ns=2 * 10**9), until="3.5")
+    assert [each.split(" ")[0] for each in told] == ["3", "3"]
+
+
+@monitors
+def test_a_step_of_the_clock_is_explained_before_the_message_that_shows_it(monitor: Any) -> None:
+    """All is unknown then, so nothing holds."""
+    (event, *_) = play(monitor(PROGRAM), read(speed("5", 15), speed("0.1", 25)).lines[1:], None)
+    assert isinstance(event, Explained)
+    told = list(play(monitor(PROGRAM), read(speed("0.5", 15), speed("0.1", 25)).lines))
+    kinds = [(each.event.kind, each.causes) for each in told if isinstance(each, Explained)]
+    assert kinds == [("clock_step", {}), ("trigger", {"ease": "drive.warm: v 25.0 > 20"})]
+
+
+def test_the_record_of_an_event_holds_its_cause() -> None:
+    """Beside action and behaviour; of a refused reset by the behaviour that refuses it."""
+    lines = read(speed("0.1", 31.2), {"t": "0.7", "reset": True}).lines
+    told = [each for each in play(Engine(PROGRAM), lines) if isinstance(each, Explained)]
+    records = [event_record(each.event, each.causes) for each in told]
+    cause = "drive.fast: v 31.2 > 30 for 0.5 sec"
+    assert (records[1]["action"], records[1]["cause"]) == ("stop", cause)
+    assert (records[3]["event"], records[3]["causes"]) == ("refused", {"protect": cause})
+    assert "cause" not in event_record(told[1].event)
+
+
+# Gates --------------------------------------------------------------------------------------------
+
+
+def test_a_gate_tells_what_it_does_and_why() -> None:
+    """From the start, through a reset and a zero command, to limits and to the stop."""
+    gates = Gates(PROGRAM, embedded_store())
+    told = played(
+        Engine(PROGRAM),
+        speed("0.1", 15),
+        command("0.3", 0.0),
+        {"t": "0.4", "reset": "/cmd_vel"},
+        command("0.5", 0.5),
+        command("0.6", 0.0),
+        command("0.65", 0.5),
+        speed("0.7", 31.2),
+        command("0.8", 0.05),
+        command("1.1", 0.4),
+        gates=gates,
+        until="1.25",
+    )
+    gated = [each.replace(" /cmd_vel:", "") for each in told if "/cmd_vel" in each]
+    assert gated == [
+        f"0 zero, stop: zero; {LOST_BEAT}; {LOST_INPUT}",
+        f"0.05 zero, {LOST_BEAT}; {LOST_INPUT}",
+        f"0.25 zero, {LOST_INPUT}; waits for a reset, after {LOST_BEAT}",
+        f"0.35 zero, waits for a reset, after {LOST_BEAT}",
+        "0.4 is reset",
+        "0.45 zero, waits for a zero command",
+        "0.6 commands pass",
+        f"0.7 commands are limited, {LIMIT}",
+        f"0.8 commands pass, {LIMIT}",
+        f"1.1 commands are limited, {LIMIT}",
+        f"1.2 zero, stop: zero; {LIMIT}",
+    ]
+
+
+def test_a_command_that_is_none_is_refused() -> None:
+    """NaN makes the input lost at once."""
+    beaten = [command("0.5", 0.0), {"t": "0.55", "reset": "/cmd_vel"}, command("0.6", 0.0)]
+    *_, refused, lost = answers(speed("0.1", 15), *beaten, command("0.7", "NaN"), until="0.72")
+    assert (refused.event, refused.message) == ("refused", None)
+    assert (lost.event, lost.why) == ("zero", (LOST_INPUT,))
+
+
+def test_a_safety_node_that_is_not_heard_stops_the_robot() -> None:
+    """For as long as it is not, and then until the reset, which is refused before."""
+    told = answers(
+        speed("0.1", 15),
+        command("0.5", 0.0),
+        {"t": "0.55", "reset": "/cmd_vel"},
+        command("0.6", 0.0),
+        {"t": "0.65", "heartbeat": False},
+        speed("0.8", 15),
+        command("0.9", 0.3),
+        {"t": "0.95", "reset": "/cmd_vel"},
+        {"t": "1.0", "heartbeat": True},
+        until="1.3",
+    )
+    after = [(each.event, each.why) for each in told if each.t_ns > 800 * 10**6]
+    assert ("gate_reset_refused", ("stop: zero", LOST_BEAT)) in after
+    assert after[0][0] == "zero"
+    assert after[-1] == ("zero", (f"waits for a reset, after {LOST_BEAT}",))
+
+
+def test_every_command_can_be_told() -> None:
+    """Also zeros that only repeat what was published before, with all their fields."""
+    every = answers(until="0.2", tell_all=True)
+    changed = answers(until="0.2")
+    assert len(every) > len(changed)
+    assert [each.t_ns // 10**6 for each in every] == [0, 50, 100, 150, 200]
+    assert every[0].message == {name: dict.fromkeys("xyz", 0.0) for name in ("linear", "angular")}
+
+
+def test_the_heartbeat_waits_for_inputs_within_the_grace() -> None:
+    """So the gate is closed until they have come."""
+    gates = Gates(PROGRAM, embedded_store(), grace_ns=10**9)
+    lines = read(command("0.1", 0.0), speed("0.6", 15)).lines
+    told = play(Engine(PROGRAM, grace_ns=10**9), lines, 9 * 10**8, gates)
+    closed = [each for each in told if isinstance(each, GateAnswer) and LOST_BEAT in each.why]
+    assert closed[-1].t_ns == 550 * 10**6 or closed[-1].t_ns > 550 * 10**6
+    assert gates.next_ns is not None
+
+
+# Faults in traces ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("line", "place", "message"),
+    [
+        ({"rest": True}, None, "the line lacks 'topic', and is no 'reset'"),
+        ({"reset": 1}, '"reset"', "'reset' is true or a text"),
+        ({"reset": False}, '"reset"', "'reset' is true or a text"),
+        ({"reset": "/cmd_vl"}, '"/cmd_vl"', "no gate leads to '/cmd_vl'"),
+        ({"enable": "eas"}, '"eas"', "no behaviour 'eas'"),
+        ({"disable": "protect"}, '"protect"', "the behaviour 'protect' is not optional"),
+        ({"disable": 1}, '"disable"', "'disable' is the name of an optional behaviour"),
+        ({"heartbeat": 1}, '"heartbeat"', "'heartbeat' is true or false"),
+        ({"reset": True, "enable": "ease"}, '"enable"', "one line has both 'reset' and 'enable'"),
+    ],
+)
+def test_a_line_that_is_nothing_is_reported(
+    line: dict[str, Any], place: str | None, message: str
+) -> None:
+    """At the key or the name that is wrong, and it is left out."""
+    trace = read({"t": "1", **line})
+    (found,) = trace.diagnostics
+    assert found.code.name == "DRS501"
+    assert message in found.message
+    assert place is None or found.span.text == place
+    assert trace.lines == ()
+
+
+def test_what_the_rules_do_not_have_cannot_be_reset() -> None:
+    """Neither an action nor a gate, and nobody hears the heartbeat."""
+    plain = program("action stop; entity e { r: topic /speed.data > 1; } if e.r then { stop; };")
+    for line, message in (
+        ('{"t": 1, "reset": true}', "no action is 'latched'"),
+        ('{"t": 1, "heartbeat": false}', "no gate that hears"),
+    ):
+        (found,) = read_trace(SourceFile("t", line), plain, embedded_store()).diagnostics
+        assert message in found.message
+    free = program(RULES + GATE.replace(" until reset", ""))
+    line = '{"t": 1, "reset": "/cmd_vel"}'
+    (found,) = read_trace(SourceFile("t", line), free, embedded_store()).diagnostics
+    assert "no line 'until reset'" in found.message
