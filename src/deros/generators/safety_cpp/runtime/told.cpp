@@ -36,7 +36,7 @@ std::string because(const std::string & head, const Causes & causes)
   return head + joined(causes, " and ");
 }
 
-std::string unknown_of(const std::string & suffix, const std::vector<Reading> & reads)
+std::string unknown_among(const std::vector<Reading> & reads, const std::string & suffix)
 {
   std::vector<std::string> names;
   for (const Reading & each : reads) {

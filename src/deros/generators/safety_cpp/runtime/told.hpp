@@ -126,13 +126,13 @@ std::string text_of(std::uint32_t place, const std::vector<std::string> & known)
 std::string because(const std::string & head, const Causes & causes);
 
 /// Return the cause that some of the terms that a rule reads have no value.
-std::string unknown_of(const std::string & suffix, const std::vector<Reading> & reads);
+std::string unknown_among(const std::vector<Reading> & reads, const std::string & suffix);
 
 /// The same, with what it reads one by one.
 template<typename ... Readings>
 std::string unknown_of(const std::string & suffix, Readings && ... reads)
 {
-  return unknown_of(suffix, std::vector<Reading>{std::forward<Readings>(reads)...});
+  return unknown_among(std::vector<Reading>{std::forward<Readings>(reads)...}, suffix);
 }
 
 /// Return a time in seconds.

@@ -1,0 +1,71 @@
+"""The node in C++ names the same causes as the reference, whatever the rules and the trace."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.support import c_pairs, cpp_causes
+from tests.support.c_harness import unit
+from tests.support.c_library import needs_c
+from tests.support.c_monitors import CMonitor
+from tests.support.cpp import needs_compiler
+from tests.support.monitors import START_NS
+from tests.support.rules import program
+from tests.support.strategies import ALL_KINDS
+
+pytestmark = [needs_c, needs_compiler]
+
+PROGRAMS = 30
+"""Programs that are drawn per property, of each of which five traces are compared."""
+
+# The monitor in C keeps no text that its rules do not know, and so tells none.
+KINDS = {
+    "all kinds": tuple(each for each in ALL_KINDS if not each.startswith("text")),
+    "few values": ("number", "boolean"),
+}
+
+
+@pytest.mark.parametrize("kinds", KINDS)
+def test_same_causes(kinds: str, tmp_path: Path) -> None:
+    """Of every rule that is true, and of every behaviour that holds, after every call."""
+    cases = c_pairs.cases(KINDS[kinds], PROGRAMS, 1)
+    assert len(cases) > PROGRAMS // 2, "most programs are refused"
+    library = cpp_causes.Told([each.unit for each in cases], tmp_path)
+    told = sum(
+        cpp_causes.compare(library, number, pair)
+        for number, case in enumerate(cases)
+        for pair in case.pairs
+    )
+    assert told > 20 * PROGRAMS, "hardly anything was true"
+
+
+def test_the_texts_of_the_author(tmp_path: Path) -> None:
+    """Units, names of constants and texts are those of the rules; braces and quotes stay whole."""
+    rules = """
+    action stop;
+    const limit = 2.5
+    input u = topic /odom.twist.twist.linear.x
+    input n = topic /name.data
+    input s = topic /status.level
+    entity e {
+      fast: u > 5 km/h for 0 sec;
+      named: n = "a{b}'c\\"" or n != "auto";
+      ill: s = ERROR and not (u <= limit);
+    }
+    behaviour b: if e.fast then { stop; };
+    """
+    built = program(rules)
+    library = cpp_causes.Told([unit(built)], tmp_path)
+    monitor = CMonitor(library, 0, START_NS)
+    leaves = {built.inputs[leaf.input].name: leaf.index for leaf in built.leaves}
+    monitor.message(START_NS, "/odom", {leaves["u"]: 3.0})
+    monitor.message(START_NS, "/name", {leaves["n"]: "a{b}'c\""})
+    monitor.message(START_NS, "/status", {leaves["s"]: 2})
+    assert library.tell(0).splitlines() == [
+        "e.fasttrue\tu 3.0 m/s > 5 km/h for 0 sec",
+        'e.namedtrue\tn = "a{b}\'c""\tn "a{b}\'c"" != "auto"',
+        "e.illtrue\ts = ERROR\tu 3.0 > 2.5",
+        "0\te.fast: u 3.0 m/s > 5 km/h for 0 sec",
+    ]

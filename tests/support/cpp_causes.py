@@ -1,0 +1,153 @@
+"""Many monitors in C with what the node in C++ tells of them, compiled into one library."""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
+
+import deros.generators.safety_cpp.runtime as runtime
+from deros.generators.cpp_source import call, expression
+from deros.generators.safety_cpp.explained import explained_rules
+from deros.generators.safety_cpp.origins import table
+from deros.generators.safety_cpp.whys import why_behaviour, why_rule, whys
+from deros.generators.templates import environment
+from deros.monitor.engine import Engine
+from tests.support.c_harness import Unit
+from tests.support.c_library import LIMIT, Loaded
+from tests.support.c_monitors import CMonitor
+from tests.support.counterexamples import Pair
+from tests.support.monitors import START_NS, remark, timed
+from tests.support.monitors import call as call_monitor
+
+COMPILER = ("g++", "-std=c++17", "-O0", "-fPIC", "-Wall", "-Wextra", "-Werror")
+_ROOM = 1 << 20
+_RUNTIME = Path(str(runtime.__file__)).parent
+_TOLD = """
+extern "C" std::size_t tell_{prefix}(const {prefix}_monitor * m, char * out, std::size_t room)
+{{
+  const auto state = told_{prefix}::explained(*m);
+  std::string text;
+  for (const auto & rule : state.rules) {{
+    text += rule.name + (rule.value ? deros_runtime::shown(*rule.value) : "unknown");
+    for (const auto & cause : rule.causes) {{
+      text += '\\t' + cause;
+    }}
+    text += '\\n';
+  }}
+  for (const std::size_t behaviour : state.holding) {{
+    text += std::to_string(behaviour) + '\\t' + deros_runtime::cause_of(behaviour, state) + '\\n';
+  }}
+  return text.copy(out, room);
+}}
+"""
+
+
+class Told(Loaded):
+    """Monitors that tell why their rules are true, and their behaviours hold."""
+
+    def __init__(self, units: Sequence[Unit], folder: Path) -> None:
+        """Compile the monitors, and what tells of them, in a folder of their own."""
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "deros_runtime").mkdir()
+        (folder / "deros_runtime/runtime").symlink_to(_RUNTIME)
+        for each in units:
+            for name, text in each.texts.items():
+                (folder / name).write_text(text, encoding="utf-8")
+        (folder / "told.cpp").write_text(_source(units), encoding="utf-8")
+        command = [*COMPILER, "-I", ".", "-c", "told.cpp"]
+        done = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=LIMIT, check=False
+        )
+        assert done.returncode == 0, done.stderr
+        super().__init__(units, folder, "-O0", "told.o", "-lstdc++")
+
+    def tell(self, number: int) -> str:
+        """Return what is told of the monitor that was begun last."""
+        function = self._library[f"tell_{self.units[number].prefix}"]
+        function.restype = ctypes.c_size_t
+        out = ctypes.create_string_buffer(_ROOM)
+        count = function(self._monitor, out, ctypes.c_size_t(_ROOM))
+        return out.raw[:count].decode()
+
+
+def compare(library: Told, number: int, pair: Pair) -> int:
+    """Drive the reference and a monitor with the same calls; they must tell the same causes.
+
+    Returns:
+        How many causes were told.
+
+    Raises:
+        AssertionError: they do not.
+    """
+    start = pair.start
+    program = library.units[number].program
+    engine = Engine(program, START_NS, start.grace_ns, start.latched)
+    monitor = CMonitor(library, number, START_NS, start)
+    count = 0
+    for t_ns, step in timed(pair.steps):
+        remark(f"at {t_ns} {step}")
+        call_monitor(engine, t_ns, step)
+        call_monitor(cast("Engine", monitor), t_ns, step)
+        expected = _told(engine, library.units[number])
+        assert library.tell(number) == expected
+        count += expected.count("\t")
+    return count
+
+
+def _told(engine: Engine, unit: Unit) -> str:
+    state = engine.explain()
+    lines = []
+    for rule in state.rules:
+        value = {None: "unknown", True: "true", False: "false"}[rule.value]
+        lines.append("\t".join((f"{rule.name}{value}", *rule.causes)))
+    names = [name for name, _ in unit.view.behaviour_names]
+    for name, causes in state.causes.items():
+        lines.append(f"{names.index(name)}\t{' and '.join(causes)}")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _source(units: Sequence[Unit]) -> str:
+    parts = [
+        '#include "deros_runtime/runtime/told.cpp"',
+        '#include "deros_runtime/runtime/text.cpp"',
+        "#include <cmath>",
+        "#include <limits>",
+    ]
+    for unit in units:
+        parts += [f'#include "{unit.prefix}_monitor.h"', f"namespace told_{unit.prefix} {{"]
+        parts += ["namespace runtime = deros_runtime;", _told_in_cpp(unit), "}"]
+        parts.append(_TOLD.format(prefix=unit.prefix))
+    return "\n".join(parts)
+
+
+def _told_in_cpp(unit: Unit) -> str:
+    """Return what the node has in its ``_origins.cpp``, without the tables."""
+    layout, program = unit.view.layout, unit.program
+    rules = zip(program.rules, explained_rules(program, layout), strict=True)
+    view = SimpleNamespace(
+        package="told",
+        stem="told",
+        header="",
+        rules="",
+        prefix=unit.prefix,
+        macro=layout.macro,
+        origins=["0"],
+        whys=list(whys(program, layout)),
+        explained=[
+            (state, layout.verdicts[rule.index], why_rule(layout, rule.index))
+            for rule, state in rules
+        ],
+        conditions=[
+            (str(number), layout.conditions[number], why_behaviour(layout, number))
+            for number, _ in enumerate(unit.view.behaviour_names)
+        ],
+    )
+    template = environment("deros.generators.safety_cpp").get_template("origins.cpp.j2")
+    text: str = template.render(
+        safety=view, standard=[], call=call, table=table, expression=expression
+    )
+    return text[text.index("/// Tell why") : text.index("}  // namespace told")]
