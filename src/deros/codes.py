@@ -195,7 +195,7 @@ UNKNOWN_METHOD = _declare(408, "name in code written by hand that the model no l
 MANIFEST_LACKS = _declare(409, "package.xml that lacks what the generated code needs", _W)
 
 # Traces
-BAD_TRACE_LINE = _declare(501, "line of a trace that is no message")
+BAD_TRACE_LINE = _declare(501, "line of a trace that means nothing")
 BAD_TRACE_TIME = _declare(502, "time that a trace cannot have")
 UNKNOWN_TRACE_FIELD = _declare(503, "unknown field in a trace's message")
 WRONG_TRACE_VALUE = _declare(504, "value that the field of a trace's message cannot hold")

@@ -197,7 +197,7 @@ def test_a_command_that_is_none_is_refused() -> None:
     """NaN makes the input lost at once."""
     beaten = [command("0.5", 0.0), {"t": "0.55", "reset": "/cmd_vel"}, command("0.6", 0.0)]
     *_, refused, lost = answers(speed("0.1", 15), *beaten, command("0.7", "NaN"), until="0.72")
-    assert (refused.event, refused.message) == ("refused", None)
+    assert (refused.event, refused.message) == ("command_refused", None)
     assert (lost.event, lost.why) == ("zero", (LOST_INPUT,))
 
 

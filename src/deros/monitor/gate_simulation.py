@@ -14,7 +14,9 @@ from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
 from deros.monitor.reads import one_line
 from deros.monitor.trace_values import MessageReader
 
-AnswerKind = Literal["passed", "limited", "zero", "refused", "gate_reset", "gate_reset_refused"]
+AnswerKind = Literal[
+    "passed", "limited", "zero", "command_refused", "gate_reset", "gate_reset_refused"
+]
 
 _KINDS: dict[str, AnswerKind] = {"pass": "passed", "limited": "limited", "zero": "zero"}
 _REFUSED = "the command holds NaN or infinity"
@@ -153,7 +155,7 @@ class _Gate:
     def command(self, t_ns: int, message: Message) -> Iterator[GateAnswer]:
         """Take a command."""
         if not is_finite(message):
-            yield GateAnswer(t_ns, "refused", self.gate.target, (_REFUSED,))
+            yield GateAnswer(t_ns, "command_refused", self.gate.target, (_REFUSED,))
         yield from self.told(self.engine.command(t_ns, message))
 
     def reset(self, t_ns: int) -> Iterator[GateAnswer]:

@@ -215,7 +215,7 @@ _SHOWN = {
     "passed": "commands pass",
     "limited": "commands are limited",
     "zero": "zero",
-    "refused": "a command is refused",
+    "command_refused": "a command is refused",
     "gate_reset": "is reset",
     "gate_reset_refused": "reset refused",
 }
