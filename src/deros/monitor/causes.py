@@ -47,24 +47,25 @@ OPPOSITE: dict[Operator, Operator] = {
 }
 
 
+_LONGEST_TEXT = 40
+_MORE = " …"
+
+
 @dataclass(frozen=True, slots=True)
 class Say:
-    """A cause: texts, and between them terms that stand for their values."""
+    """A cause, where a condition is true, or (``holds`` false) is false.
 
+    ``pieces`` are texts, and between them terms that stand for their values.
+    """
+
+    condition: Condition
+    holds: bool
     pieces: tuple[str | Term, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class SayUnknown:
-    """A cause: those of the terms that have no value. ``suffix`` follows."""
-
-    terms: tuple[Term, ...]
-    suffix: str
-
-
-@dataclass(frozen=True, slots=True)
 class SayRule:
-    """A cause: why a rule is true, or (``holds`` false) why it is false, behind a ``head``."""
+    """A cause, where a rule is true, or (``holds`` false) is false: a ``head``, and why it is."""
 
     rule: int
     holds: bool
@@ -72,17 +73,42 @@ class SayRule:
 
 
 @dataclass(frozen=True, slots=True)
-class When:
-    """What depends on whether a condition is true, or (``holds`` false) whether it is false."""
+class AllOf:
+    """The causes of all parts, where each of them has some."""
 
-    condition: Condition
-    holds: bool
-    then: Plan
-    otherwise: Plan = ()
+    parts: tuple[Plan, ...]
 
 
-Plan = tuple[Say | SayUnknown | SayRule | When, ...]
-"""How to tell the causes of a condition of which is known that it is true, or that it is false."""
+@dataclass(frozen=True, slots=True)
+class AnyOf:
+    """The causes of all parts that have some."""
+
+    parts: tuple[Plan, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class During:
+    """The causes of an interval's operand, which is true while the interval lasts.
+
+    They are some where the interval has lasted long enough or, if not ``reached``, where it has
+    begun and has not.
+    """
+
+    interval: For
+    reached: bool
+    part: Plan
+
+
+@dataclass(frozen=True, slots=True)
+class OrUnknown:
+    """The causes of a part or, where it has none, the cause that some of the terms are unknown."""
+
+    part: Plan
+    terms: tuple[Term, ...]
+
+
+Plan = Say | SayRule | AllOf | AnyOf | During | OrUnknown
+"""How to tell why a condition is true, or why it is false; where it is not, there is no cause."""
 
 
 def causes_of_rule(
@@ -106,8 +132,7 @@ def plan_of_behaviour(program: Program, behaviour: Behaviour) -> Plan:
     around = [behaviour]
     while (parent := around[0].parent) is not None:
         around.insert(0, everyone[parent])
-    parts = (part for each in around for part in plan_of(program, each.condition, True))
-    return tuple(dict.fromkeys(parts))
+    return _all_of([plan_of(program, each.condition, True) for each in around])
 
 
 def negated_rules(program: Program) -> frozenset[int]:
@@ -116,12 +141,14 @@ def negated_rules(program: Program) -> frozenset[int]:
     plans = [plan_of_behaviour(program, each) for each in walk.behaviours(program)]
     plans += [plan_of(program, each.condition, True) for each in program.rules]
     while plans:
-        for part in plans.pop():
-            if isinstance(part, When):
-                plans += [part.then, part.otherwise]
-            elif isinstance(part, SayRule) and not part.holds and part.rule not in found:
-                found.add(part.rule)
-                plans.append(plan_of(program, program.rules[part.rule].condition, False))
+        match plans.pop():
+            case AllOf(parts=parts) | AnyOf(parts=parts):
+                plans += parts
+            case During(part=part) | OrUnknown(part=part):
+                plans.append(part)
+            case SayRule(rule=rule, holds=False) if rule not in found:
+                found.add(rule)
+                plans.append(plan_of(program, program.rules[rule].condition, False))
     return frozenset(found)
 
 
@@ -138,37 +165,53 @@ def plan_of(program: Program, condition: Condition, holds: bool, suffix: str = "
         case Not():
             return plan_of(program, condition.operand, not holds, suffix)
         case And() | Or():
-            plans = [(each, plan_of(program, each, holds, suffix)) for each in condition.operands]
-            if isinstance(condition, And) is holds:  # all operands are so
-                return tuple(part for _, plan in plans for part in plan)
-            return tuple(When(each, holds, plan) for each, plan in plans)
+            plans = [plan_of(program, each, holds, suffix) for each in condition.operands]
+            return _all_of(plans) if isinstance(condition, And) is holds else _any_of(plans)
         case For():
             return _plan_of_interval(program, condition, holds, suffix)
-        case Failsafe() if holds:
-            known = plan_of(program, condition.operand, True, suffix)
-            unknown = SayUnknown(terms(condition.operand), suffix)
-            return (When(condition.operand, True, known, (unknown,)),)
         case Failsafe():
-            return plan_of(program, condition.operand, False, suffix)
+            part = plan_of(program, condition.operand, holds, suffix)
+            return OrUnknown(part, terms(condition.operand)) if holds else part
         case RuleRef():
             name = program.rules[condition.rule].full_name
-            head = f"{'' if holds else 'not '}{name}{suffix}: "
-            return (SayRule(condition.rule, holds, head),)
+            return SayRule(condition.rule, holds, f"{'' if holds else 'not '}{name}{suffix}: ")
         case _:
-            return (Say(tuple(_joined([*_pieces(program, condition, holds), suffix]))),)
+            pieces = [*_pieces(program, condition, holds), suffix]
+            return Say(condition, holds, tuple(_joined(pieces)))
 
 
 def _plan_of_interval(program: Program, condition: For, holds: bool, suffix: str) -> Plan:
+    """Return the plan of an interval; however deep they are nested, each adds as much text."""
     duration = condition.wording or f"{condition.duration_ns / 1e9:.9g} sec"
+    is_deep = suffix.count(" for ") > 1 or suffix.endswith(_MORE)
+    further = f" for {duration}{_MORE if is_deep else suffix}"
     if holds:
-        return plan_of(program, condition.operand, True, f" for {duration}{suffix}")
-    # A plan for what is both true and false doubles with each interval within another.
+        whole = plan_of(program, condition.operand, True, further)
+        return During(condition, True, whole) if condition.duration_ns else whole
+    operand = plan_of(program, condition.operand, False, suffix)
+    if not condition.duration_ns:
+        return operand
     if any(isinstance(part, For) for part in walk.parts(condition.operand)):
-        short: Plan = (Say((f"not yet {one_line(condition.span.text)}{suffix}",)),)
+        written = one_line(condition.span.text)
+        shown = f"{written[:_LONGEST_TEXT]}{_MORE if len(written) > _LONGEST_TEXT else ''}"
+        short: Plan = Say(Truth(Const(True)), True, (f"not yet {shown}{suffix}",))
     else:
         short = plan_of(program, condition.operand, True, f" for less than {duration}{suffix}")
-    operand = plan_of(program, condition.operand, False, suffix)
-    return (When(condition.operand, True, short, operand),)
+    return _any_of([During(condition, False, short), operand])
+
+
+def _all_of(plans: list[Plan]) -> Plan:
+    flat: dict[Plan, None] = {}
+    for each in plans:
+        flat.update(dict.fromkeys(each.parts if isinstance(each, AllOf) else (each,)))
+    return next(iter(flat)) if len(flat) == 1 else AllOf(tuple(flat))
+
+
+def _any_of(plans: list[Plan]) -> Plan:
+    flat: dict[Plan, None] = {}
+    for each in plans:
+        flat.update(dict.fromkeys(each.parts if isinstance(each, AnyOf) else (each,)))
+    return next(iter(flat)) if len(flat) == 1 else AnyOf(tuple(flat))
 
 
 # Comparisons, with their values -------------------------------------------------------------------
@@ -262,30 +305,38 @@ def _joined(pieces: list[str | Term]) -> list[str | Term]:
 
 
 def _tell(program: Program, plan: Plan, state: State, t_ns: int) -> list[str]:
-    found: list[str] = []
-    for part in plan:
-        match part:
-            case Say():
-                texts = (
-                    each if isinstance(each, str) else constant(_known(each, state, t_ns))
-                    for each in part.pieces
-                )
-                found.append("".join(texts))
-            case SayUnknown():
-                names = (
-                    term_name(program, each)
-                    for each in part.terms
-                    if term_value(each, state, t_ns) is None
-                )
-                found.append(f"unknown: {', '.join(names)}{part.suffix}")
-            case SayRule():
-                causes = causes_of_rule(program, part.rule, part.holds, state, t_ns)
-                found.append(part.head + " and ".join(causes))
-            case When():
-                # To evaluate once more what this event has evaluated changes no interval.
-                is_so = evaluate_condition(part.condition, state, t_ns) is part.holds
-                found += _tell(program, part.then if is_so else part.otherwise, state, t_ns)
-    return found
+    # To evaluate once more what this event has evaluated changes no interval.
+    match plan:
+        case Say():
+            if evaluate_condition(plan.condition, state, t_ns) is not plan.holds:
+                return []
+            texts = (
+                each if isinstance(each, str) else constant(_known(each, state, t_ns))
+                for each in plan.pieces
+            )
+            return ["".join(texts)]
+        case SayRule():
+            if state.verdicts[plan.rule] is not plan.holds:
+                return []
+            causes = causes_of_rule(program, plan.rule, plan.holds, state, t_ns)
+            return [plan.head + " and ".join(causes)]
+        case AllOf() | AnyOf():
+            told = [_tell(program, each, state, t_ns) for each in plan.parts]
+            is_so = all(told) or isinstance(plan, AnyOf)
+            return [cause for each in told for cause in each] if is_so else []
+        case During():
+            has_begun = plan.interval.index in state.since
+            has_lasted = evaluate_condition(plan.interval, state, t_ns) is True
+            is_so = has_begun and has_lasted is plan.reached
+            return _tell(program, plan.part, state, t_ns) if is_so else []
+        case OrUnknown():
+            names = [term_name(program, each) for each in plan.terms if _is_unknown(each, state)]
+            unknown = f"unknown: {', '.join(names)}"
+            return _tell(program, plan.part, state, t_ns) or [unknown]
+
+
+def _is_unknown(term: Term, state: State) -> bool:
+    return term_value(term, state, 0) is None
 
 
 def _known(term: Term, state: State, t_ns: int) -> bool | int | float | str:

@@ -14,6 +14,7 @@ MODULE_NAMES = frozenset(
         *("Callable", "Collection", "Sequence", "NamedTuple", "functools", "math", "np"),
         *("Event", "Explanation", "Monitor", "RuleState", "explained", "scan_beams"),
         *("RateWindow", "because", "shown", "stamp_of", "unknown_of"),
+        *("all_of", "any_of", "given"),
         *("NAN", "NEVER", "OPTIONAL", "RULES_OF"),
     }
 )

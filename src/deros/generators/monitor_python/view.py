@@ -71,6 +71,7 @@ class MonitorView:
         whys: the methods that tell why rules are true or false, and why behaviours hold.
         why_holds: the name of each behaviour, its attribute, and the method that tells why.
         says_unknown: whether one of them tells which terms have no value.
+        joins_causes: whether one of them asks whether several parts have causes.
         waiting: the lines of what ``waiting`` returns.
         act: the lines of all behaviours and resets.
         ends: instants, as attributes or sums, that are deadlines while they lie ahead.
@@ -99,6 +100,7 @@ class MonitorView:
     whys: tuple[Why, ...]
     why_holds: tuple[tuple[str, str, str], ...]
     says_unknown: bool
+    joins_causes: bool
     waiting: tuple[str, ...]
     act: tuple[str, ...]
     ends: tuple[str, ...]
@@ -164,6 +166,7 @@ def monitor_view(program: Program) -> MonitorView:
             (each.name, layout.holds[each.index], layout.why_holds[each.index])
             for each in walk.behaviours(program)
         ),
+        joins_causes=any("found += " in line for each in told for line in each.lines),
         says_unknown=any("unknown_of(" in line for each in told for line in each.lines),
         waiting=tuple(waiting_lines(layout)),
     )

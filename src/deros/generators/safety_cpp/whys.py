@@ -9,41 +9,30 @@ from deros.generators.cpp_source import Call, Chain, Expression, cpp_string, lay
 from deros.generators.monitor_c.expressions import SYMBOLS, Conditions, integer, known_of
 from deros.generators.monitor_c.layout import Layout, compared
 from deros.generators.monitor_c.source import flat, lay_out_if
-from deros.generators.monitor_python.logic import (
-    AllOf,
-    AnyOf,
-    Atom,
-    Logic,
-    NoneOf,
-    all_of,
-    any_of,
-)
+from deros.generators.monitor_python import logic
+from deros.generators.monitor_python.logic import Atom, Logic, NoneOf, all_of, any_of
 from deros.generators.safety_cpp.explained import reading, shown_text
 from deros.monitor import walk
 from deros.monitor.causes import (
     OPPOSITE,
+    AllOf,
+    AnyOf,
+    During,
+    OrUnknown,
     Plan,
     Say,
     SayRule,
-    SayUnknown,
-    When,
     negated_rules,
     plan_of,
     plan_of_behaviour,
 )
 from deros.monitor.ir import (
     Age,
-    And,
     Compare,
     Condition,
     Const,
-    Failsafe,
-    For,
     Missing,
-    Not,
-    Or,
     Program,
-    RuleRef,
     Truth,
     Unknown,
     Within,
@@ -102,38 +91,78 @@ class _Emitter:
         self._conditions = Conditions(program, layout)
 
     def body(self, plan: Plan) -> tuple[str, ...]:
-        return ("  runtime::Causes found;", *self._block(2, plan), "  return found;")
+        """Return the statements that tell the causes of what is known to be so."""
+        lines = self._block(2, plan, known=True)
+        return ("  runtime::Causes found;", *lines, "  return found;")
 
-    def _block(self, indent: int, plan: Plan) -> Iterator[str]:
+    # Statements, which append to what was found ---------------------------------------------------
+
+    def _block(self, indent: int, plan: Plan, known: bool) -> Iterator[str]:
+        """Yield the statements of a plan; ``known``: of what is known to be so."""
         blank = " " * indent
-        for part in plan:
-            if not isinstance(part, When):
-                first, *rest = layout(Call("found.push_back", (self._cause(part),)), indent, ";")
-                yield from (blank + first, *rest)
-                continue
-            yield from _if(self._is(part.condition, part.holds), indent)
-            yield from self._block(indent + 2, part.then)
-            if part.otherwise:
-                yield f"{blank}}} else {{"
-                yield from self._block(indent + 2, part.otherwise)
-            yield f"{blank}}}"
+        match plan:
+            case Say() | SayRule() if known:
+                yield from _called("found.push_back", (self._cause(plan),), indent)
+            case Say() | SayRule() | During() if not known:
+                yield from _if(self._test(plan), indent)
+                yield from self._block(indent + 2, plan, True)
+                yield f"{blank}}}"
+            case During():
+                yield from self._block(indent, plan.part, True)
+            case AllOf() if not known:
+                yield from _called("runtime::add", ("found", self._expression(plan, False)), indent)
+            case AllOf() | AnyOf():
+                for each in plan.parts:
+                    yield from self._block(indent, each, isinstance(plan, AllOf))
+            case OrUnknown():
+                yield from self._block(indent, plan.part, False)
+                yield f"{blank}if (found.empty()) {{"
+                reads = (reading(self._program, self._layout, each) for each in plan.terms)
+                unknown = Call("runtime::unknown_of", tuple(reads))
+                yield from _called("found.push_back", (unknown,), indent + 2)
+                yield f"{blank}}}"
 
-    def _cause(self, part: Say | SayUnknown | SayRule | When) -> Expression:
-        match part:
+    # Expressions, of which there is none where one part has none ----------------------------------
+
+    def _expression(self, plan: Plan, known: bool) -> Expression:
+        match plan:
+            case Say() | SayRule():
+                test = "true" if known else _text(self._test(plan))
+                return Call("runtime::given", (test, self._cause(plan)))
+            case During():
+                part = self._expression(plan.part, True)
+                test = _text(self._test(plan))
+                return part if known else Call("runtime::during", (test, part))
+            case AllOf() | AnyOf():
+                sure = known and isinstance(plan, AllOf)
+                head = "runtime::all_of" if isinstance(plan, AllOf) else "runtime::any_of"
+                return Call(head, tuple(self._expression(each, sure) for each in plan.parts))
+            case OrUnknown():
+                raise AssertionError("failsafe is a whole rule, and no part of one")
+
+    def _test(self, plan: Say | SayRule | During) -> Logic:
+        macro = self._layout.macro
+        match plan:
             case Say():
-                pieces = (
-                    cpp_string(each) if isinstance(each, str) else shown_text(self._layout, each)
-                    for each in part.pieces
-                )
-                return Chain("", tuple(pieces), " + ")
-            case SayUnknown():
-                reads = (reading(self._program, self._layout, each) for each in part.terms)
-                return Call("runtime::unknown_of", (cpp_string(part.suffix), *reads))
+                return self._is(plan.condition, plan.holds)
             case SayRule():
-                why = why_rule(self._layout, part.rule, part.holds)
-                return Call("runtime::because", (cpp_string(part.head), f"{why}(m)"))
-            case When():
-                raise AssertionError("a condition is no cause")
+                verdict = f"m.{self._layout.verdicts[plan.rule]}"
+                return Atom(f"{verdict} == {macro}_{str(plan.holds).upper()}")
+            case During():
+                since = f"m.{self._layout.since[plan.interval.index]}"
+                relation = ">=" if plan.reached else "<"
+                lasted = f"m.now - {since} {relation} {integer(plan.interval.duration_ns)}"
+                return all_of((Atom(f"{since} != {macro}_UNSET"), Atom(lasted)))
+
+    def _cause(self, part: Say | SayRule) -> Expression:
+        if isinstance(part, SayRule):
+            why = why_rule(self._layout, part.rule, part.holds)
+            return Call("runtime::because", (cpp_string(part.head), f"{why}(m)"))
+        pieces = (
+            cpp_string(each) if isinstance(each, str) else shown_text(self._layout, each)
+            for each in part.pieces
+        )
+        return Chain("", tuple(pieces), " + ")
 
     # Conditions, as questions whether they are true, or false -------------------------------------
 
@@ -159,18 +188,8 @@ class _Emitter:
                 operator = condition.operator if holds else OPPOSITE[condition.operator]
                 bound = f"{SYMBOLS[operator]} {integer(condition.bound_ns)}"
                 return all_of((Atom(f"m.{fields.came}"), Atom(f"m.now - m.{fields.base} {bound}")))
-            case Not():
-                return self._is(condition.operand, not holds)
-            case And() | Or():
-                join = all_of if isinstance(condition, And) is holds else any_of
-                return join(self._is(each, holds) for each in condition.operands)
-            case For():
-                return self._lasts(condition, holds)
-            case RuleRef():
-                verdict = f"m.{self._layout.verdicts[condition.rule]}"
-                return Atom(f"{verdict} == {self._layout.macro}_{str(holds).upper()}")
-            case Failsafe():
-                raise AssertionError("failsafe is a whole rule, and no part of one")
+            case _:
+                raise AssertionError("no comparison and no question about messages")
 
     def _compares(self, condition: Truth | Compare | Within, holds: bool) -> Logic:
         terms = [self._layout.terms[value] for value in compared(condition)]
@@ -180,39 +199,37 @@ class _Emitter:
         known = [Atom(f"m.{each.known}") for each in terms]
         return all_of((*known, result if holds else NoneOf(result)))
 
-    def _lasts(self, condition: For, holds: bool) -> Logic:
-        since = self._layout.since.get(condition.index)
-        if since is None:
-            return self._is(condition.operand, holds)
-        # While its operand is true, an interval has begun.
-        lasted = f"m.now - m.{since} {'>=' if holds else '<'} {integer(condition.duration_ns)}"
-        whole = all_of((self._is(condition.operand, True), Atom(lasted)))
-        return whole if holds else any_of((self._is(condition.operand, False), whole))
+
+def _called(function: str, arguments: tuple[Expression, ...], indent: int) -> Iterator[str]:
+    first, *rest = layout(Call(function, arguments), indent, ";")
+    yield from (" " * indent + first, *rest)
 
 
-def _if(logic: Logic, indent: int) -> list[str]:
+def _if(asked: Logic, indent: int) -> list[str]:
     """Return the line or lines that open a block where something holds."""
-    if isinstance(logic, AllOf | AnyOf):
-        joint = " && " if isinstance(logic, AllOf) else " || "
-        return lay_out_if(joint, [_inner(each) for each in logic.operands], indent)
-    return lay_out_if("", [_text(logic)], indent)
+    if isinstance(asked, logic.AllOf | logic.AnyOf):
+        return lay_out_if(_joint(asked), [_inner(each) for each in asked.operands], indent)
+    return lay_out_if("", [_text(asked)], indent)
 
 
-def _text(logic: Logic) -> str:
-    match logic:
+def _joint(asked: logic.AllOf | logic.AnyOf) -> str:
+    return " && " if isinstance(asked, logic.AllOf) else " || "
+
+
+def _text(asked: Logic) -> str:
+    match asked:
         case Atom():
-            return logic.text
+            return asked.text
         case NoneOf():
-            simple = isinstance(logic.operand, Atom) and " " not in logic.operand.text
-            inner = _text(logic.operand)
+            simple = isinstance(asked.operand, Atom) and " " not in asked.operand.text
+            inner = _text(asked.operand)
             return f"!{inner}" if simple else f"!({inner})"
-        case AllOf() | AnyOf():
-            joint = " && " if isinstance(logic, AllOf) else " || "
-            return joint.join(map(_inner, logic.operands))
+        case logic.AllOf() | logic.AnyOf():
+            return _joint(asked).join(map(_inner, asked.operands))
 
 
-def _inner(logic: Logic) -> str:
+def _inner(asked: Logic) -> str:
     """Return an operand, in parentheses if it has operators of its own."""
-    text = _text(logic)
-    plain = isinstance(logic, NoneOf) or (isinstance(logic, Atom) and " " not in logic.text)
+    text = _text(asked)
+    plain = isinstance(asked, NoneOf) or (isinstance(asked, Atom) and " " not in asked.text)
     return text if plain else f"({text})"

@@ -36,7 +36,7 @@ std::string because(const std::string & head, const Causes & causes)
   return head + joined(causes, " and ");
 }
 
-std::string unknown_among(const std::vector<Reading> & reads, const std::string & suffix)
+std::string unknown_among(const std::vector<Reading> & reads)
 {
   std::vector<std::string> names;
   for (const Reading & each : reads) {
@@ -44,7 +44,22 @@ std::string unknown_among(const std::vector<Reading> & reads, const std::string 
       names.push_back(each.term);
     }
   }
-  return "unknown: " + joined(names, ", ") + suffix;
+  return "unknown: " + joined(names, ", ");
+}
+
+Causes given(bool condition, const std::string & cause)
+{
+  return condition ? Causes{cause} : Causes();
+}
+
+Causes during(bool condition, const Causes & causes)
+{
+  return condition ? causes : Causes();
+}
+
+void add(Causes & all, const Causes & further)
+{
+  all.insert(all.end(), further.begin(), further.end());
 }
 
 std::string cause_of(std::size_t behaviour, const Explanation & state)

@@ -126,13 +126,38 @@ std::string text_of(std::uint32_t place, const std::vector<std::string> & known)
 std::string because(const std::string & head, const Causes & causes);
 
 /// Return the cause that some of the terms that a rule reads have no value.
-std::string unknown_among(const std::vector<Reading> & reads, const std::string & suffix);
+std::string unknown_among(const std::vector<Reading> & reads);
 
 /// The same, with what it reads one by one.
 template<typename ... Readings>
-std::string unknown_of(const std::string & suffix, Readings && ... reads)
+std::string unknown_of(Readings && ... reads)
 {
-  return unknown_among(std::vector<Reading>{std::forward<Readings>(reads)...}, suffix);
+  return unknown_among(std::vector<Reading>{std::forward<Readings>(reads)...});
+}
+
+/// Return a cause where a condition holds, and none elsewhere.
+Causes given(bool condition, const std::string & cause);
+
+/// Return causes where a condition holds, and none elsewhere.
+Causes during(bool condition, const Causes & causes);
+
+/// Add causes to others.
+void add(Causes & all, const Causes & further);
+
+/// Return the causes of all parts.
+template<typename ... Parts>
+Causes any_of(const Parts & ... parts)
+{
+  Causes all;
+  (add(all, parts), ...);
+  return all;
+}
+
+/// Return the causes of all parts, where each of them has some, and none elsewhere.
+template<typename ... Parts>
+Causes all_of(const Parts & ... parts)
+{
+  return (parts.empty() || ...) ? Causes() : any_of(parts ...);
 }
 
 /// Return a time in seconds.
