@@ -135,7 +135,7 @@ class _Emitter:
                 return part if known else Call("runtime::during", (test, part))
             case AllOf() | AnyOf():
                 sure = known and isinstance(plan, AllOf)
-                head = "runtime::all_of" if isinstance(plan, AllOf) else "runtime::any_of"
+                head = "runtime::all_causes" if isinstance(plan, AllOf) else "runtime::any_causes"
                 return Call(head, tuple(self._expression(each, sure) for each in plan.parts))
             case OrUnknown():
                 raise AssertionError("failsafe is a whole rule, and no part of one")

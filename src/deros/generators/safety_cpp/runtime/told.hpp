@@ -146,7 +146,7 @@ void add(Causes & all, const Causes & further);
 
 /// Return the causes of all parts.
 template<typename ... Parts>
-Causes any_of(const Parts & ... parts)
+Causes any_causes(const Parts & ... parts)
 {
   Causes all;
   (add(all, parts), ...);
@@ -155,9 +155,9 @@ Causes any_of(const Parts & ... parts)
 
 /// Return the causes of all parts, where each of them has some, and none elsewhere.
 template<typename ... Parts>
-Causes all_of(const Parts & ... parts)
+Causes all_causes(const Parts & ... parts)
 {
-  return (parts.empty() || ...) ? Causes() : any_of(parts ...);
+  return (parts.empty() || ...) ? Causes() : any_causes(parts ...);
 }
 
 /// Return a time in seconds.
