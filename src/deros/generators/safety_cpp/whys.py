@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -56,7 +57,11 @@ class Why:
     @property
     def reads(self) -> bool:
         """Whether it looks at the monitor at all."""
-        return any("m." in line or "(m)" in line for line in self.lines)
+        return any(_MONITOR.search(_TEXT.sub("", line)) for line in self.lines)
+
+
+_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_MONITOR = re.compile(r"\bm\b")
 
 
 def why_rule(layout: Layout, rule: int, holds: bool = True) -> str:
