@@ -254,6 +254,22 @@ def test_a_reset_ends_the_duty() -> None:
     assert judge(robot(**brief, **forgets, **switched), whole=False).violations == []
 
 
+def test_a_reset_between_a_heartbeat_and_its_states_is_not_a_failure() -> None:
+    """Manual mode for less than a tenth of a second: the stop ends, and is said again."""
+    close: dict[str, Value] = {
+        "scan": after(1.0, 1.5, 20.0),
+        "says_stop": after(1.1, True, False),
+    }
+    manual = Message(2.52, "arrived", SAFETY, "/plc/mode", say("/plc/mode", 0))
+    ended = Message(2.53, "sent", SAFETY, "/safety/stop", say("/safety/stop", False))
+
+    def judged(*further: Message) -> Verdict:
+        return judge(sorted([*robot(**close), *further], key=lambda each: each.time), whole=False)
+
+    assert judged(manual, ended).violations == []
+    assert duties(judged(ended)) == {"safety node"}
+
+
 def test_a_latched_action_that_is_forgotten_is_seen() -> None:
     """Whether it is never said, or undone by a restart."""
     bumped = {**stopped_at(2.1), "front_bumper": lambda now: 2.0 <= now < 3.0}

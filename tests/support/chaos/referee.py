@@ -59,6 +59,9 @@ KEPT = 0.2
 
 MARGIN = MARGIN_SAFETY + MARGIN_GATE + MARGIN_ARBITER
 
+SAID_AFTER_BEAT = 0.05
+"""Within how many s of a heartbeat the states are there that belong to it."""
+
 
 @dataclass(frozen=True)
 class Violation:
@@ -180,7 +183,8 @@ class Referee:
                         continue
                     if beat - duty.due <= self._held_up(duty.begin, beat):
                         continue
-                    if not _truth_at(self._stops, beat + 0.05):
+                    # The state goes out just after the beat, unless a reset comes in between.
+                    if not _truth_at(self._stops, min(beat + SAID_AFTER_BEAT, duty.end)):
                         yield self._violation(
                             "safety node",
                             beat,
