@@ -64,7 +64,9 @@ def test_goals_of_an_unloaded_node_are_aborted(
             )
         loader.load("breaking", "breaking::Breaker")
         ros_peer.until(client.server_is_ready)
+        feedback.clear()
         send_goal()
+        ros_peer.until(lambda: feedback)  # rclcpp throws if it is shut down while it accepts one
         code, output = stop(container.process, signal.SIGINT)
     client.destroy()
     assert (code, "AddressSanitizer" in output) == (0, False), output
