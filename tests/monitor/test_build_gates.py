@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from deros.interfaces.names import check_node_name
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.metamodels.load import Repository
@@ -217,8 +218,11 @@ def test_optional_behaviour_of_the_program() -> None:
         ("/cmd_vel", "cmd_vel_gate"),
         ("/front/cmd_vel", "front_cmd_vel_gate"),
         ("cmd_vel", "cmd_vel_gate"),
+        ("/_0", "topic_0_gate"),
+        ("/_", "topic_gate"),
     ],
 )
 def test_name_of_the_node(target: str, name: str) -> None:
     """It is made of the target's name."""
     assert gate_node_name(target) == name
+    assert check_node_name(name) is None

@@ -68,8 +68,12 @@ def gate_node_name(target: str) -> str:
 
     >>> gate_node_name("/front/cmd_vel")
     'front_cmd_vel_gate'
+    >>> gate_node_name("/_2")
+    'topic_2_gate'
     """
-    return f"{_NOT_IN_NAMES.sub('_', target).strip('_')}_gate"
+    stem = _NOT_IN_NAMES.sub("_", target).strip("_")
+    stem = stem if stem[:1].isalpha() else f"topic_{stem}".rstrip("_")
+    return f"{stem}_gate"
 
 
 def is_gate_node(name: str, target: str) -> bool:
