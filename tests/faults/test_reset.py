@@ -93,11 +93,20 @@ def test_a_second_reset_finds_nothing_to_reset(robot: Robot) -> None:
         robot.violate()
         robot.until(lambda: robot.reset() == (True, "stop is reset"))
         assert robot.reset() == (True, "no latched action was active")
-        robot.violate()
-        assert robot.is_active("/stop")
-        requests = [robot.call_reset() for _ in range(2)]
-        robot.until(lambda: all(each.done() for each in requests))
-        answers = sorted(each.result().message for each in requests)
+
+        def answers_of_two() -> list[str]:
+            robot.violate()
+            assert robot.is_active("/stop")
+            requests = [robot.call_reset() for _ in range(2)]
+            robot.until(lambda: all(each.done() for each in requests))
+            return sorted(each.result().message for each in requests)
+
+        answers = answers_of_two()
+        for _ in range(20):  # a node that has not heard yet that it is over refuses
+            if not answers[-1].startswith("stop stays active"):
+                break
+            robot.until(lambda: robot.reset()[0])
+            answers = answers_of_two()
         assert answers == ["no latched action was active", "stop is reset"]
 
 
