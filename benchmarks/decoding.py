@@ -24,7 +24,7 @@ from rich.table import Table
 from sensor_msgs.msg import Imu, JointState, LaserScan, PointCloud2, PointField
 from std_msgs.msg import Header
 
-from deros.generators.cdr_python import Topic, render_decoders
+from deros.generators.decoder.python.interface import Topic, render_decoders
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 

@@ -11,8 +11,8 @@ from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
-from deros.generators.monitor_c import render_monitor
-from deros.generators.monitor_c.view import MonitorView, monitor_view
+from deros.generators.monitor.c.interface import render_monitor
+from deros.generators.monitor.c.view import MonitorView, monitor_view
 from deros.monitor import walk
 from deros.monitor.ir import Program
 from support.compiling import compile_c, section_sizes

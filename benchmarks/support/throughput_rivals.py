@@ -13,7 +13,7 @@ import importlib.util
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from deros.generators.monitor_python import monitor_view, render_monitor
+from deros.generators.monitor.python.interface import monitor_view, render_monitor
 from deros.monitor.ir import Program
 from support.throughput_by_hand import OneRuleByHand, RobotByHand
 from support.throughput_rules import (

@@ -82,8 +82,8 @@ def _generate(request: Request, source: Path) -> _Outcome:
     """
     from deros.cli import produce
     from deros.cli.depfile import is_current, stamped, write_if_changed
-    from deros.generators.source_tree import SourceTreeError, package_folder
-    from deros.generators.writer import WriteError
+    from deros.generators.output.source_tree import SourceTreeError, package_folder
+    from deros.generators.output.writer import WriteError
 
     output = source / FOLDER
     stamp, depfile, ros = output / "stamp", output / "depends.d", output / "ament_prefix_path"

@@ -72,8 +72,8 @@ def test_colcon_builds_and_tests_it(package: Path, monkeypatch: pytest.MonkeyPat
 # The same with a generator whose packages CMake alone can build ----------------------------------
 
 PLUGIN = '''\
-from deros.generators.protocol import File, Owner
-from deros.generators.registry import generator
+from deros.generators.api.protocol import File, Owner
+from deros.generators.api.registry import generator
 
 MANIFEST = "<package><name>{0}</name><depend>c</depend></package>"
 SCRIPT = """\\

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import deros
-from deros.generators.monitor_c.names import prefix_of
+from deros.generators.monitor.c.names import prefix_of
 from tests.support.builds import (
     GENERATORS,
     PROGRAM,
@@ -90,7 +90,7 @@ def test_follows_deros_itself(folder: Path, tool: str) -> None:
     """Another deros generates anew, for it may generate something else."""
     project = configured(folder, tool, SCRIPT)
     assert project.generated() == 1
-    touch(frozen_program().parents[1] / "deros/generators/rossystem_script/generate.py")
+    touch(frozen_program().parents[1] / "deros/generators/system/script/generate.py")
     assert project.generated() == 1
     assert project.generated() == 0
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from deros.generators.banner import with_banner
-from deros.generators.protocol import File, Owner
-from deros.generators.source_tree import (
+from deros.generators.api.protocol import File, Owner
+from deros.generators.output.banner import with_banner
+from deros.generators.output.source_tree import (
     Merged,
     SourceTreeError,
     merge,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from deros.generators.builtin import rosnode_python
-from deros.generators.writer import write
+from deros.generators.output.writer import write
 from deros.metamodels.load import Repository
 from tests.support.stand_ins import Run, await_end, load_system, make_prefix, make_script
 from tests.support.systems import CONTEXT

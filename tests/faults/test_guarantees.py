@@ -15,7 +15,7 @@ _NAMED = re.compile(r"`(test_\w+)`(?: in `(tests/[\w/.]+)`)?")
 
 TABLES = {
     "## What the safety node depends on": "tests/faults",
-    "### What it depends on": "tests/generators/gate_python",
+    "### What it depends on": "tests/generators/gate/python",
 }
 """The headings above the tables, and where a test is to be found if its cell does not say."""
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from deros.generators.monitor_c import render_monitor as render_c
-from deros.generators.monitor_python.render import render_monitor as render_python
+from deros.generators.monitor.c.interface import render_monitor as render_c
+from deros.generators.monitor.python.render import render_monitor as render_python
 from deros.monitor.engine import Engine
 from deros.monitor.ir import Program
 from tests.support import timelines

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros import codes
-from deros.generators.rossystem.view import ACTION_PARTS, system_view
+from deros.generators.system.view import ACTION_PARTS, system_view
 from deros.metamodels.flatten import FlatNode, flatten
 from deros.metamodels.node import PortKind
 from deros.metamodels.remapping import wired_apart

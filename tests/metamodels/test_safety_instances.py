@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from deros.generators.protocol import Context
-from deros.generators.registry import discover
-from deros.generators.safety_python.node import program_outline
-from deros.generators.writer import write
+from deros.generators.api.protocol import Context
+from deros.generators.api.registry import discover
+from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.flatten import FlatNode, flatten, nodes_of_rules
 from deros.metamodels.load import Repository
@@ -19,6 +18,7 @@ from deros.metamodels.rules import Rules
 from deros.metamodels.safety_instances import outline
 from deros.metamodels.system import System
 from deros.monitor.build import build
+from deros.monitor.outline import program_outline
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = sorted(

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from deros.diagnostics import SourceFile
-from deros.generators.monitor_python.run import GeneratedMonitor
+from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
 from deros.monitor.gate_simulation import GateAnswer, Gates
 from deros.monitor.simulate import Explained, answer_line, event_line, event_record, play

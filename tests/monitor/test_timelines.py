@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from deros.cli.simulate import simulate as command
-from deros.generators.monitor_python.run import GeneratedMonitor
+from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
 from deros.monitor.ir import Program
 from deros.monitor.simulate import Monitor, seconds, simulate

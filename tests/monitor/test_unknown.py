@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from deros.generators.monitor_python.run import GeneratedMonitor
+from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.monitor import ir
 from deros.monitor.engine import Engine
 from deros.monitor.state import LeafValue

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from deros.generators.monitor_c.handlers import Handler, Parameter
-from deros.generators.monitor_c.view import MonitorView
+from deros.generators.monitor.c.handlers import Handler, Parameter
+from deros.generators.monitor.c.view import MonitorView
 from deros.monitor import walk
 from deros.monitor.ir import Behaviour, For, Trigger
 from tests.support.c_harness import Unit

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from deros.generators.monitor_c import render_monitor
-from deros.generators.monitor_c.handlers import Handler, Parameter
-from deros.generators.monitor_c.view import MonitorView, monitor_view
+from deros.generators.monitor.c.handlers import Handler, Parameter
+from deros.generators.monitor.c.interface import render_monitor
+from deros.generators.monitor.c.view import MonitorView, monitor_view
 from deros.monitor.ir import Program
 
 DRIVER = Path(__file__).with_name("c")

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
-from deros.generators.monitor_c.handlers import Parameter
+from deros.generators.monitor.c.handlers import Parameter
 from deros.monitor.engine import Engine, Event, EventKind
 from deros.monitor.evaluate import evaluate_value
 from deros.monitor.ir import Scalar

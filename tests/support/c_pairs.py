@@ -10,7 +10,7 @@ from pathlib import Path
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
-from deros.generators.protocol import GenerationError
+from deros.generators.api.protocol import GenerationError
 from tests.support import c_monitors
 from tests.support.c_harness import Unit, unit
 from tests.support.c_library import CrashError, Library, Loaded
@@ -20,7 +20,7 @@ from tests.support.strategies import ALL_KINDS, KINDS, MORE_KINDS, programs
 TRACES = 5
 """Traces that are drawn for each program: to compile takes longer than to compare."""
 
-FOLDER = Path(__file__).resolve().parents[1] / "generators" / "monitor_c" / "counterexamples"
+FOLDER = Path(__file__).resolve().parents[1] / "generators/monitor/c/counterexamples"
 """Where pairs are kept on which C and the reference have differed."""
 
 FOCUSES: dict[str, tuple[str, ...]] = {

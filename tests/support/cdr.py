@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from deros.generators.cdr_python import Topic, render_decoders
+from deros.generators.decoder.python.interface import Topic, render_decoders
 from deros.interfaces.types import FieldType, InterfaceType
 from tests.support.messages import STORE, Path, Store, fields
 

@@ -1,7 +1,7 @@
 """Pairs of rules and a trace, on which engines are compared, and their form in files.
 
 Where a comparison fails, ``make property`` writes the pair, as small as it could be made, into
-``tests/generators/monitor_python/counterexamples``. It stays there and is compared in every run of
+``tests/generators/monitor/python/counterexamples``. It stays there and is compared in every run of
 the tests. A file is JSON: an object of the field ``is`` and the fields of the class so named; a
 span is the number of its line; NaN and infinities are written as Python does.
 """
@@ -17,13 +17,13 @@ from typing import Any
 from hypothesis import strategies as st
 
 from deros.diagnostics import Span
-from deros.generators.monitor_python import render_monitor
+from deros.generators.monitor.python.interface import render_monitor
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor import ir
 from tests.support import monitors
 from tests.support.strategies import Start, Step, span, starts, traces
 
-FOLDER = Path(__file__).resolve().parents[1] / "generators" / "monitor_python" / "counterexamples"
+FOLDER = Path(__file__).resolve().parents[1] / "generators/monitor/python/counterexamples"
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
-import deros.generators.safety_cpp.runtime as runtime
-from deros.generators.cpp_source import call, expression
-from deros.generators.safety_cpp.explained import explained_rules
-from deros.generators.safety_cpp.origins import table
-from deros.generators.safety_cpp.whys import why_behaviour, why_rule, whys
-from deros.generators.templates import environment
+import deros.generators.runtime.cpp as runtime
+from deros.generators.safety_node.cpp.explained import explained_rules
+from deros.generators.safety_node.cpp.origins import table
+from deros.generators.safety_node.cpp.whys import why_behaviour, why_rule, whys
+from deros.generators.text.cpp import call, expression
+from deros.generators.text.templates import environment
 from deros.monitor.engine import Engine
 from tests.support.c_harness import Unit
 from tests.support.c_library import LIMIT, Loaded
@@ -146,7 +146,7 @@ def _told_in_cpp(unit: Unit) -> str:
             for number, _ in enumerate(unit.view.behaviour_names)
         ],
     )
-    template = environment("deros.generators.safety_cpp").get_template("origins.cpp.j2")
+    template = environment("deros.generators.safety_node.cpp").get_template("origins.cpp.j2")
     text: str = template.render(
         safety=view, standard=[], call=call, table=table, expression=expression
     )

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from deros.generators.protocol import Context, Files
-from deros.generators.safety_cpp import generate as safety_cpp
-from deros.generators.safety_python import generate as safety_python
-from deros.generators.writer import write
+from deros.generators.api.protocol import Context, Files
+from deros.generators.output.writer import write
+from deros.generators.safety_package.cpp import generate as safety_cpp
+from deros.generators.safety_package.python import generate as safety_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules

@@ -9,13 +9,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from subprocess import Popen
 
-from deros.generators.gate_cpp import gate_files, gate_nodes
-from deros.generators.notice import notice
-from deros.generators.protocol import Files
-from deros.generators.rosnode_cpp.generate import package_files
-from deros.generators.safety_cpp.verbatim import runtime_files
-from deros.generators.safety_python.node import safety_node
-from deros.generators.writer import write
+from deros.generators.api.protocol import Files
+from deros.generators.gate.cpp.interface import gate_files, gate_nodes
+from deros.generators.node.cpp.generate import package_files
+from deros.generators.output.writer import write
+from deros.generators.runtime.interface import cpp_runtime
+from deros.generators.safety_node.cpp.interface import RUNTIME
+from deros.generators.safety_node.node import safety_node
+from deros.generators.text.notice import notice
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
@@ -43,7 +44,7 @@ def gate_package(text: str, options: Mapping[str, str] | None = None, name: str 
     holder = notice(chosen)
     gates = gate_files(built.program, nodes, safety, store, holder)
     package = package_files(gates.nodes, chosen, gates.provided)
-    return {**package, **runtime_files(nodes[0].package, holder), **gates.files}
+    return {**package, **cpp_runtime(nodes[0].package, RUNTIME, holder), **gates.files}
 
 
 @functools.cache

@@ -10,17 +10,17 @@ from pathlib import Path
 from subprocess import Popen
 from typing import Any
 
-from deros.generators.gate_python import gate_files, gate_nodes
-from deros.generators.rosnode_python.generate import package_files
-from deros.generators.safety_python.node import safety_node
-from deros.generators.writer import write
+from deros.generators.gate.python.interface import gate_files, gate_nodes
+from deros.generators.node.python.generate import package_files
+from deros.generators.output.writer import write
+from deros.generators.safety_node.node import safety_node
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
 from deros.monitor.build import build
 from tests.support.ros import Peer, running, with_lease
 
-MODELS = Path(__file__).resolve().parent.parent / "generators" / "gate_python" / "models"
+MODELS = Path(__file__).resolve().parent.parent / "generators/gate/python/models"
 PACKAGE = "gates_safety"
 SAFETY_NODE = "gates_safety_node"
 GATE = "cmd_vel_gate"

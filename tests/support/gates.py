@@ -11,10 +11,10 @@ from typing import Any, Protocol
 from hypothesis import strategies as st
 
 from deros.diagnostics import SourceFile, Span
-from deros.generators.gate_python import gate_nodes
-from deros.generators.gate_python.generate import MODULES, render
-from deros.generators.gate_python.view import GateView, gate_view
-from deros.generators.safety_python.node import safety_node
+from deros.generators.gate.python.generate import MODULES, render
+from deros.generators.gate.python.interface import gate_nodes
+from deros.generators.gate.python.view import GateView, gate_view
+from deros.generators.safety_node.node import safety_node
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType

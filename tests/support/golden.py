@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from deros.generators.banner import with_banner
-from deros.generators.protocol import Files, Owner
-from deros.generators.writer import write
+from deros.generators.api.protocol import Files, Owner
+from deros.generators.output.banner import with_banner
+from deros.generators.output.writer import write
 
 GOLDEN = Path(__file__).resolve().parent.parent / "golden"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from deros.generators.safety_python.description import node_description
+from deros.generators.node.description import node_description
 from deros.metamodels.flatten import nodes_of_rules
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules

@@ -7,9 +7,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
 
-from deros.generators.rosnode_cpp.generate import generate as generate_cpp
-from deros.generators.rosnode_python.generate import generate as generate_python
-from deros.generators.writer import write
+from deros.generators.node.cpp.generate import generate as generate_cpp
+from deros.generators.node.python.generate import generate as generate_python
+from deros.generators.output.writer import write
 from tests.support.breakers import CppBreaker, PythonBreaker
 from tests.support.cpp import colcon_build, overlay, program
 from tests.support.fill_in import fill_in, insert

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from deros.generators.monitor_c.deviations import DEVIATIONS
+from deros.generators.monitor.c.deviations import DEVIATIONS
 
 CPPCHECK = "cppcheck"
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from hypothesis import currently_in_test_context, note
 
-from deros.generators.monitor_python.run import GeneratedMonitor
+from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
 from deros.monitor.ir import Program
 from tests.support.strategies import Start, Step

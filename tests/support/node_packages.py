@@ -12,10 +12,10 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
 
-from deros.generators.protocol import Context, GenerateFunction
-from deros.generators.rosnode_cpp.generate import generate as generate_cpp
-from deros.generators.rosnode_python.generate import generate as generate_python
-from deros.generators.writer import write
+from deros.generators.api.protocol import Context, GenerateFunction
+from deros.generators.node.cpp.generate import generate as generate_cpp
+from deros.generators.node.python.generate import generate as generate_python
+from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
@@ -24,8 +24,8 @@ from tests.support.fill_in import fill_in, insert
 from tests.support.ros import running
 
 _TESTS = Path(__file__).resolve().parent.parent / "generators"
-MODELS = _TESTS / "rosnode_python/models"
-PICKY = _TESTS / "rosnode_cpp/models/picky.rnd"
+MODELS = _TESTS / "node/python/models"
+PICKY = _TESTS / "node/cpp/models/picky.rnd"
 """A node whose parameters are as strict as they can be."""
 
 Start = Callable[..., AbstractContextManager[subprocess.Popen[str]]]

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import pytest
 
-from deros.generators.protocol import Context, Files, GenerateFunction, GenerationError
-from deros.generators.rosnode_cpp.generate import generate as generate_cpp
-from deros.generators.rosnode_python.generate import generate as generate_python
+from deros.generators.api.protocol import Context, Files, GenerateFunction, GenerationError
+from deros.generators.node.cpp.generate import generate as generate_cpp
+from deros.generators.node.python.generate import generate as generate_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType

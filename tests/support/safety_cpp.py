@@ -5,8 +5,8 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from deros.generators.protocol import Files
-from deros.generators.safety_cpp.verbatim import runtime_text
+from deros.generators.api.protocol import Files
+from deros.generators.runtime.interface import cpp_runtime_text
 from tests.support.cpp import compile_cpp, message_flags
 
 HEADERS = ("descriptor", "refusal")
@@ -24,9 +24,9 @@ def runtime_in(folder: Path, package: str) -> list[Path]:
     runtime = folder / package / "runtime"
     runtime.mkdir(parents=True, exist_ok=True)
     for name in (*HEADERS, *PURE, *WITH_MESSAGES):
-        (runtime / f"{name}.hpp").write_text(runtime_text(f"{name}.hpp", package))
+        (runtime / f"{name}.hpp").write_text(cpp_runtime_text(f"{name}.hpp", package))
     for name in (*PURE, *WITH_MESSAGES):
-        (runtime / f"{name}.cpp").write_text(runtime_text(f"{name}.cpp", package))
+        (runtime / f"{name}.cpp").write_text(cpp_runtime_text(f"{name}.cpp", package))
     return [runtime / f"{name}.cpp" for name in (*PURE, *WITH_MESSAGES)]
 
 

@@ -13,17 +13,17 @@ from typing import Any, ClassVar, Literal, NamedTuple
 
 import pytest
 
-from deros.generators.protocol import Context, Files
-from deros.generators.safety_cpp import generate as safety_cpp
-from deros.generators.safety_python import generate as safety_python
-from deros.generators.writer import write
+from deros.generators.api.protocol import Context, Files
+from deros.generators.output.writer import write
+from deros.generators.safety_package.cpp import generate as safety_cpp
+from deros.generators.safety_package.python import generate as safety_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
 from tests.support.cpp import colcon_build, needs_rclcpp, overlay, program
 from tests.support.ros import LIMIT, Peer, running
 
-MODELS = Path(__file__).resolve().parent.parent / "generators/safety_python/models"
+MODELS = Path(__file__).resolve().parent.parent / "generators/safety_node/python/models"
 NODE = "every_thing_safety_node"
 
 Process = subprocess.Popen[str]

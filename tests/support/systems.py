@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from deros.generators.protocol import Context
+from deros.generators.api.protocol import Context
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.system import System
 
-MODELS = Path(__file__).resolve().parent.parent / "generators" / "rossystem" / "models"
+MODELS = Path(__file__).resolve().parent.parent / "generators/system/models"
 
 EVERYTHING = MODELS / "every_thing.system"
 """A system that uses all that the language can say about a node."""

@@ -10,7 +10,7 @@ import struct
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from deros.generators.cpp_source import cpp_header, cpp_type
+from deros.generators.text.cpp import cpp_header, cpp_type
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 

@@ -36,9 +36,9 @@ def test_requirement_without_floor_is_refused() -> None:
 
 def test_missing_source_files_are_named() -> None:
     """Folders that other folders link to were once left out of the source distribution."""
-    tracked = ["src/deros/__init__.py", "src/deros/generators/writer.py", "README.md"]
-    packed = ["src/deros/__init__.py", "generators/writer.py"]
-    assert distribution.missing_files(tracked, packed) == ["src/deros/generators/writer.py"]
+    tracked = ["src/deros/__init__.py", "src/deros/generators/output/writer.py", "README.md"]
+    packed = ["src/deros/__init__.py", "generators/output/writer.py"]
+    assert distribution.missing_files(tracked, packed) == ["src/deros/generators/output/writer.py"]
 
 
 def test_interpreters_that_do_not_start_are_left_out(

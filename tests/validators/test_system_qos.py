@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from deros.diagnostics import Diagnostic
-from deros.generators.gate_python.node import gate_nodes
-from deros.generators.safety_python.node import safety_node
+from deros.generators.gate.nodes import gate_nodes
+from deros.generators.safety_node.node import safety_node
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.flatten import resolve_name
 from deros.metamodels.load import Repository

@@ -18,11 +18,11 @@ from xml.etree import ElementTree
 from deros.cli.formats import render_json
 from deros.cli.options import in_the_way_of_generating
 from deros.diagnostics import Diagnostic, SourceFile, has_errors
-from deros.generators.cdr_python import Topic, render_decoders
-from deros.generators.monitor_python.render import render_monitor
-from deros.generators.monitor_python.run import GeneratedMonitor
-from deros.generators.protocol import Context, Files, GenerationError
-from deros.generators.registry import discover
+from deros.generators.api.protocol import Context, Files, GenerationError
+from deros.generators.api.registry import discover
+from deros.generators.decoder.python.interface import Topic, render_decoders
+from deros.generators.monitor.python.render import render_monitor
+from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import LoadedFile, Repository
 from deros.metamodels.rules import Rules

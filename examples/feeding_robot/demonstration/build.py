@@ -14,9 +14,9 @@ from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
 from deros.diagnostics import Diagnostic, has_errors, in_file_order
-from deros.generators.protocol import Context, Files
-from deros.generators.registry import discover
-from deros.generators.writer import write
+from deros.generators.api.protocol import Context, Files
+from deros.generators.api.registry import discover
+from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import LoadedFile, Repository
 from deros.validators.check import check

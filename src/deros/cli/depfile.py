@@ -10,12 +10,12 @@ from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from deros.generators.writer import WriteError
+from deros.generators.output.writer import WriteError
 from deros.interfaces.files import read_regular
 
 if TYPE_CHECKING:
-    from deros.generators.protocol import Context
-    from deros.generators.registry import Generator
+    from deros.generators.api.protocol import Context
+    from deros.generators.api.registry import Generator
 
 _SPECIAL = re.compile(r"[ \t#]")
 _ESCAPED = re.compile(r"\\([ \t#])|\$(\$)")

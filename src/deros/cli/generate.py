@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from deros.diagnostics import Diagnostic
-    from deros.generators.writer import WriteReport
+    from deros.generators.output.writer import WriteReport
 
 
 class _GenerateCommand(click.Command):
@@ -21,7 +21,7 @@ class _GenerateCommand(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the targets by language."""
-        from deros.generators.registry import discover
+        from deros.generators.api.registry import discover
 
         super().format_epilog(ctx, formatter)
         registry = discover()
@@ -96,8 +96,8 @@ def generate(
     """
     from deros.cli import produce
     from deros.cli.plan import output_of, plan
-    from deros.generators.source_tree import SourceTreeError
-    from deros.generators.writer import WriteError, write
+    from deros.generators.output.source_tree import SourceTreeError
+    from deros.generators.output.writer import WriteError, write
 
     if scaffold is not None and (depfile or stamp or source):
         raise click.UsageError("--scaffold goes without --depfile, --stamp and --source")
@@ -169,7 +169,7 @@ def _show(diagnostics: Sequence[Diagnostic]) -> None:
 
 def _report(written: WriteReport) -> str:
     """Say what became of the files, naming those that were written."""
-    from deros.generators.writer import Outcome
+    from deros.generators.output.writer import Outcome
 
     lines = [f"wrote {written.directory / path}" for path in written.of(Outcome.WRITTEN)]
     for outcome, text in (

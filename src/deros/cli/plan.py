@@ -66,7 +66,7 @@ def output_of(requests: Sequence[Request]) -> Path:
 
 
 def _targets(model: Named, target: str | None) -> tuple[str, ...]:
-    from deros.generators.registry import discover
+    from deros.generators.api.registry import discover
     from deros.metamodels.languages import language_of
 
     language = language_of(model.path)
@@ -117,9 +117,9 @@ def _packages_of_rules(
     rules: Rules, options: Mapping[str, str], store: InterfaceStore
 ) -> Iterator[str]:
     """Return the packages that a safety node, its gates and their descriptions are made in."""
-    from deros.generators.protocol import GenerationError
-    from deros.generators.safety_cpp.node import twin_options
-    from deros.generators.safety_python.node import safety_node
+    from deros.generators.api.protocol import GenerationError
+    from deros.generators.safety_node.cpp.node import twin_options
+    from deros.generators.safety_node.node import safety_node
     from deros.metamodels.safety_nodes import cpp_twin
     from deros.monitor.build import build
 

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from deros.diagnostics import Diagnostic
-    from deros.generators.protocol import Context, File, Files
-    from deros.generators.registry import Generator, Registry
-    from deros.generators.writer import WriteReport
+    from deros.generators.api.protocol import Context, File, Files
+    from deros.generators.api.registry import Generator, Registry
+    from deros.generators.output.writer import WriteReport
     from deros.metamodels.load import LoadedFile
 
 
@@ -82,8 +82,8 @@ def make(*requests: Request) -> Made:
     """
     from deros.cli.project import interfaces_of, projects_of
     from deros.diagnostics import in_file_order
-    from deros.generators.protocol import Context, GenerationError
-    from deros.generators.writer import join
+    from deros.generators.api.protocol import Context, GenerationError
+    from deros.generators.output.writer import join
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
     from deros.validators.check import check as check_loaded
@@ -116,7 +116,7 @@ def make(*requests: Request) -> Made:
 
 
 def _generator(request: Request, loaded: LoadedFile, findings: Sequence[Diagnostic]) -> Generator:
-    from deros.generators.registry import discover
+    from deros.generators.api.registry import discover
 
     assert loaded.language is not None
     generator = discover().find(loaded.language, request.target)
@@ -182,11 +182,17 @@ def put(made: Made, where: Place, started_ns: int) -> tuple[WriteReport, tuple[D
         SourceTreeError: if the source tree lacks a file, or has one that is in the way.
     """
     from deros.cli.depfile import depfile, inputs, stamp, stamped, write_if_changed
-    from deros.generators.claims import Origin, check_claims, record_claims
-    from deros.generators.protocol import GenerationError, Owner
-    from deros.generators.source_tree import Merged, merge, package_folder, place, remove_stale
-    from deros.generators.user_code import review, users_files
-    from deros.generators.writer import write
+    from deros.generators.api.protocol import GenerationError, Owner
+    from deros.generators.output.claims import Origin, check_claims, record_claims
+    from deros.generators.output.source_tree import (
+        Merged,
+        merge,
+        package_folder,
+        place,
+        remove_stale,
+    )
+    from deros.generators.output.writer import write
+    from deros.generators.user_files.review import review, users_files
 
     merged = Merged(made.files, (), ())
     if where.source is not None:
@@ -229,8 +235,8 @@ def put(made: Made, where: Place, started_ns: int) -> tuple[WriteReport, tuple[D
 
 def lacking(made: Made, source: Path) -> tuple[Diagnostic, ...]:
     """Return what the user's files in the source tree of a package lack now."""
-    from deros.generators.source_tree import package_folder
-    from deros.generators.user_code import review, users_files
+    from deros.generators.output.source_tree import package_folder
+    from deros.generators.user_files.review import review, users_files
 
     return tuple(review(made.files, users_files(made.files, source, package_folder(made.files))))
 
@@ -245,8 +251,8 @@ def scaffold_files(made: Made, request: Request, source: Path) -> dict[str, File
 
     The script that has it generated is part of it; it is the user's once it is written.
     """
-    from deros.generators.protocol import File, Owner
-    from deros.generators.source_tree import package_folder, scaffold
+    from deros.generators.api.protocol import File, Owner
+    from deros.generators.output.source_tree import package_folder, scaffold
 
     top = package_folder(made.files)
     model = Path(os.path.relpath(request.file, source)).as_posix()

@@ -180,7 +180,7 @@ def _read(path: str) -> tuple[SourceFile | None, list[Diagnostic]]:
 
 def _monitor(engine: str, program: Program, grace_ns: int) -> Monitor:
     if engine == "python":
-        from deros.generators.monitor_python.run import GeneratedMonitor
+        from deros.generators.monitor.python.run import GeneratedMonitor
 
         return GeneratedMonitor(program, grace_ns=grace_ns)
     from deros.monitor.engine import Engine

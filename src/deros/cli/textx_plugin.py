@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import click
 
     from deros.diagnostics import Diagnostic
-    from deros.generators.protocol import Context
+    from deros.generators.api.protocol import Context
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.languages import Language
     from deros.metamodels.load import LoadedFile
@@ -32,7 +32,7 @@ def add_commands(textx: click.Group) -> None:
 
 def _checked_metamodel(language: Language) -> Any:
     """Return the language's metamodel, whose models are checked before anybody gets them."""
-    from deros.generators.registry import use_front_end
+    from deros.generators.api.registry import use_front_end
     from deros.metamodels.languages import metamodel
 
     result = metamodel(language)

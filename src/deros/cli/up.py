@@ -101,10 +101,10 @@ def _interrupts_at_once() -> Iterator[None]:
 def _run(
     ctx: click.Context, file: str, interfaces: tuple[Path, ...], arguments: Sequence[str]
 ) -> int:
-    from deros.generators.protocol import GenerationError
-    from deros.generators.rossystem.view import system_view
-    from deros.generators.rossystem_script.generate import table
-    from deros.generators.rossystem_script.standalone.command import main
+    from deros.generators.api.protocol import GenerationError
+    from deros.generators.system.script.generate import table
+    from deros.generators.system.script.standalone.command import main
+    from deros.generators.system.view import system_view
 
     try:
         view = system_view(_checked_system(ctx, file, interfaces))

@@ -5,8 +5,8 @@ Each loads its module when it runs, so that listing them costs next to nothing.
 
 from __future__ import annotations
 
-from deros.generators.protocol import Context, Files, Option, Options
-from deros.generators.registry import generator
+from deros.generators.api.protocol import Context, Files, Option, Options
+from deros.generators.api.registry import generator
 from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
@@ -19,7 +19,7 @@ _LICENCE = Option("licence", "licence of the package, as 'BSD-3-Clause' (default
 @generator("rosnode", "python", (_MAINTAINER, _COPYRIGHT, _LICENCE))
 def rosnode_python(model: NodeType, context: Context, options: Options) -> Files:
     """A complete ament_python package: base class, your node, parameters, launch file, tests."""
-    from deros.generators.rosnode_python.generate import generate
+    from deros.generators.node.python.generate import generate
 
     return generate(model, context, options)
 
@@ -27,7 +27,7 @@ def rosnode_python(model: NodeType, context: Context, options: Options) -> Files
 @generator("rosnode", "cpp", (_MAINTAINER, _COPYRIGHT, _LICENCE))
 def rosnode_cpp(model: NodeType, context: Context, options: Options) -> Files:
     """A complete ament_cmake package: base class, your node as a component, parameters, tests."""
-    from deros.generators.rosnode_cpp.generate import generate
+    from deros.generators.node.cpp.generate import generate
 
     return generate(model, context, options)
 
@@ -35,7 +35,7 @@ def rosnode_cpp(model: NodeType, context: Context, options: Options) -> Files:
 @generator("rossystem", "launch")
 def rossystem_launch(model: System, context: Context, options: Options) -> Files:
     """A ROS 2 launch file that starts every node with its parameters and remappings."""
-    from deros.generators.rossystem_launch.generate import generate
+    from deros.generators.system.launch.generate import generate
 
     return generate(model, context, options)
 
@@ -43,7 +43,7 @@ def rossystem_launch(model: System, context: Context, options: Options) -> Files
 @generator("rossystem", "script")
 def rossystem_script(model: System, context: Context, options: Options) -> Files:
     """The launch file's equivalent in one Python file that needs the standard library alone."""
-    from deros.generators.rossystem_script.generate import generate
+    from deros.generators.system.script.generate import generate
 
     return generate(model, context, options)
 
@@ -51,7 +51,7 @@ def rossystem_script(model: System, context: Context, options: Options) -> Files
 @generator("rossystem", "params")
 def rossystem_params(model: System, context: Context, options: Options) -> Files:
     """The parameters of every node as one ROS 2 parameter file (YAML)."""
-    from deros.generators.rossystem_params.generate import generate
+    from deros.generators.system.params.generate import generate
 
     return generate(model, context, options)
 
@@ -68,7 +68,7 @@ _SAFETY = (
 @generator("deros", "python", _SAFETY)
 def deros_python(model: Rules, context: Context, options: Options) -> Files:
     """The safety node: its node description, the pure monitor, the node and your actions."""
-    from deros.generators.safety_python.generate import generate
+    from deros.generators.safety_package.python.generate import generate
 
     return generate(model, context, options)
 
@@ -76,7 +76,7 @@ def deros_python(model: Rules, context: Context, options: Options) -> Files:
 @generator("deros", "cpp", _SAFETY)
 def deros_cpp(model: Rules, context: Context, options: Options) -> Files:
     """The safety node as a composable rclcpp node around the monitor in C; names end in _cpp."""
-    from deros.generators.safety_cpp.generate import generate
+    from deros.generators.safety_package.cpp.generate import generate
 
     return generate(model, context, options)
 
@@ -84,7 +84,7 @@ def deros_cpp(model: Rules, context: Context, options: Options) -> Files:
 @generator("deros", "c")
 def deros_c(model: Rules, context: Context, options: Options) -> Files:
     """The monitor as freestanding C99: a header and a source, for a PLC or a microcontroller."""
-    from deros.generators.monitor_c.generate import generate
+    from deros.generators.monitor.c.generate import generate
 
     assert not options
     return generate(model, context)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from deros.generators.protocol import Context, File, Files, Option, Options
-from deros.generators.registry import generator
+from deros.generators.api.protocol import Context, File, Files, Option, Options
+from deros.generators.api.registry import generator
 from deros.metamodels.flatten import flatten
 from deros.metamodels.node import PortKind
 from deros.metamodels.system import System

@@ -1,0 +1,1 @@
+"""Decoders: read single fields out of serialized messages."""

@@ -1,0 +1,83 @@
+"""What a module of decoders has in common: byte orders, helpers, and the readers of groups."""
+
+from __future__ import annotations
+
+import textwrap
+from dataclasses import dataclass, field
+
+from deros.generators.text.python import LINE_LENGTH
+
+FORMATS: dict[str, tuple[str, int]] = {
+    "bool": ("?", 1),
+    "byte": ("B", 1),
+    "char": ("B", 1),
+    "int8": ("b", 1),
+    "uint8": ("B", 1),
+    "int16": ("h", 2),
+    "uint16": ("H", 2),
+    "int32": ("i", 4),
+    "uint32": ("I", 4),
+    "int64": ("q", 8),
+    "uint64": ("Q", 8),
+    "float32": ("f", 4),
+    "float64": ("d", 8),
+}
+"""The letter of the :mod:`struct` module, and the size, of each primitive that has one."""
+
+_DTYPES = {"B": "u1", "b": "i1", "h": "i2", "H": "u2", "i": "i4", "I": "u4"} | {
+    "q": "i8",
+    "Q": "u8",
+    "f": "f4",
+    "d": "f8",
+}
+_SHARED = {
+    letter: base.upper() for base, (letter, _) in FORMATS.items() if base not in ("byte", "char")
+}
+
+
+@dataclass(slots=True)
+class Parts:
+    """The parts of a module that its decoders turn out to need.
+
+    Attributes:
+        shared: constants that several decoders may use: name to value.
+        helpers: names of the functions and constants of the template that are called.
+    """
+
+    shared: dict[str, str] = field(default_factory=dict)
+    helpers: set[str] = field(default_factory=set)
+
+    def reader(self, letter: str) -> str:
+        """Return the constant that reads one primitive."""
+        name = _SHARED[letter]
+        self.shared[name] = f"both('{letter}')"
+        self.helpers.add("both")
+        return name
+
+    def dtype(self, letter: str) -> str:
+        """Return the constant that holds the NumPy types of a primitive."""
+        name = f"{_SHARED[letter]}_ARRAY"
+        dtype = _DTYPES[letter]
+        self.shared[name] = f"np.dtype('>{dtype}'), np.dtype('<{dtype}')"
+        self.helpers.add("np")
+        return name
+
+    def helper(self, name: str) -> str:
+        """Note that a helper of the template is used, and return its name."""
+        self.helpers.add(name)
+        if name in ("string", "wstring"):
+            self.reader("I")
+        return name
+
+
+def group_lines(name: str, letters: str, fields: list[str]) -> list[str]:
+    """Return the constant that reads a group of fields at once, and what they are."""
+    comment = textwrap.wrap(
+        ", ".join(fields),
+        LINE_LENGTH,
+        initial_indent="# ",
+        subsequent_indent="#   ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return [*comment, f"{name} = both('{letters}')"]

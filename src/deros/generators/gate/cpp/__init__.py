@@ -1,0 +1,1 @@
+"""The gates of safety rules as rclcpp nodes, each beside the safety node in the same package."""

@@ -1,0 +1,142 @@
+"""Gates in C++: their sources, and what the package of their safety node has to know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from deros.generators.api.protocol import File
+from deros.generators.gate.cpp.node import base_node
+from deros.generators.gate.cpp.source import condition, origin_comment, string_lines
+from deros.generators.gate.cpp.view import GateView, gate_view, nanoseconds
+from deros.generators.node.cpp.interface import Provided
+from deros.generators.node.interface import node_description
+from deros.generators.runtime.interface import cpp_runtime, cpp_sources
+from deros.generators.text.cpp import (
+    arguments,
+    call,
+    comment,
+    cpp_header,
+    cpp_string,
+    cpp_type,
+    include_lines,
+    mark_long_lines,
+)
+from deros.generators.text.notice import licensed_cpp
+from deros.generators.text.templates import environment
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.node import NodeType
+from deros.metamodels.safety_nodes import RESET, TRIGGER
+from deros.monitor.ir import Program
+
+_SHARED = (
+    *("agenda", "clock_choice", "instance", "machine", "ports", "process", "publishers"),
+    *("regular_file", "sha256", "simulated", "start_order", "text", "worker"),
+)
+"""The sources that gates have in common with the safety node."""
+
+_OWN = ("gate_report", "gatekeeper", "safety_source", "target_publishers")
+"""Those that are the same for all gates."""
+
+_NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils", "rosgraph_msgs")
+
+
+@dataclass(frozen=True, slots=True)
+class Gates:
+    """The gates of one package.
+
+    Attributes:
+        nodes: what is handed to ``package_files`` of them, and ``provided`` likewise.
+        files: their own, beside those of ``package_files`` and the runtime of the safety node.
+    """
+
+    nodes: list[NodeType] = field(default_factory=list)
+    provided: dict[str, Provided] = field(default_factory=dict)
+    files: dict[str, File] = field(default_factory=dict)
+
+
+def gate_files(
+    program: Program,
+    nodes: Sequence[NodeType],
+    safety_node: NodeType,
+    store: InterfaceStore,
+    copyright_line: str = "",
+) -> Gates:
+    """Return the gates of ``program`` for the package of the safety node in C++.
+
+    Args:
+        program: the rules.
+        nodes: the nodes of its gates, in order, as :func:`gate_nodes` returns them.
+        safety_node: the node whose states and heartbeat they heed, as the Python target has it.
+        store: the message definitions.
+        copyright_line: years and holder for the headers, or nothing.
+    """
+    made = Gates()
+    for gate, node in zip(program.gates, nodes, strict=True):
+        view = gate_view(gate, node, program, store, safety_node)
+        made.nodes.append(base_node(node))
+        made.provided[node.name] = _provided(view, node)
+        made.files[f"{node.package}/{node.name}.rnd"] = File(node_description(node))
+        for path, template in _paths(view).items():
+            made.files[path] = File(licensed_cpp(render(template, view), copyright_line))
+    for package in dict.fromkeys(node.package for node in nodes):
+        made.files.update(cpp_runtime(package, ("gate_numbers", *_OWN), copyright_line))
+    return made
+
+
+def _paths(view: GateView) -> dict[str, str]:
+    """Return the templates of a gate's files, by their paths."""
+    source, include = f"{view.package}/src/{view.name}", include_folder(view.package)
+    return {
+        f"{include}/{view.name}.hpp": "node.hpp",
+        f"{include}/{view.name}_logic.hpp": "logic.hpp",
+        f"{source}.cpp": "node.cpp",
+        f"{source}_logic.cpp": "logic.cpp",
+        f"{source}_main.cpp": "main.cpp",
+    }
+
+
+def _provided(view: GateView, node: NodeType) -> Provided:
+    own = (f"src/{view.name}.cpp", f"src/{view.name}_logic.cpp")
+    packages = {port.type.package for port in node.ports}
+    return Provided(
+        (*own, *cpp_sources((*_SHARED, *_OWN))),
+        tuple(sorted({*_NEEDS, *packages})),
+        (f"src/{view.name}_main.cpp",),
+        default_name=view.node,
+    )
+
+
+def render(template: str, view: GateView) -> str:
+    """Return the text of one file of a gate: ``node``, ``logic`` or ``main``, with its ending."""
+    loaded = environment("deros.generators.gate.cpp").get_template(f"{template}.j2")
+    own = [f"{view.name}_base", f"{view.name}_logic", "runtime/gatekeeper"]
+    if view.heeds_safety_node:
+        own.append("runtime/safety_source")
+    headers = [f"{view.package}/{name}.hpp" for name in own]
+    heard = [view.heartbeat_port.header] if view.heartbeat_port else []
+    if view.latching:
+        heard.append(cpp_header(TRIGGER))
+    text = loaded.render(
+        gate=view,
+        includes=include_lines([*headers, *heard, "rclcpp/rclcpp.hpp"]),
+        arguments=arguments,
+        call=call,
+        comment=comment,
+        condition=condition,
+        nanoseconds=nanoseconds,
+        origin_comment=origin_comment,
+        reset=cpp_string(RESET),
+        trigger=cpp_type(TRIGGER),
+        string_lines=string_lines,
+        taken=("const rclcpp::SerializedMessage & data", "const rclcpp::MessageInfo & info"),
+    )
+    return mark_long_lines(text)
+
+
+# What is the same for all gates -------------------------------------------------------------------
+
+
+def include_folder(package: str) -> str:
+    """Return where the headers of a package are."""
+    return f"{package}/include/{package}"

@@ -1,0 +1,6 @@
+"""What a safety package in C++ needs of the gates."""
+
+from deros.generators.gate.cpp.generate import Gates, gate_files
+from deros.generators.gate.cpp.node import gate_nodes
+
+__all__ = ["Gates", "gate_files", "gate_nodes"]

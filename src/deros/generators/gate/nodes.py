@@ -1,0 +1,39 @@
+"""A gate as a node type: it hears commands, actions and the heartbeat, and commands the robot.
+
+What it is made of is said in :mod:`deros.metamodels.safety_nodes`; here it follows from a program.
+"""
+
+from __future__ import annotations
+
+from deros import codes
+from deros.diagnostics import Related, report
+from deros.generators.api.protocol import GenerationError
+from deros.metamodels.node import NodeType
+from deros.metamodels.safety_nodes import gate_node_types
+from deros.monitor.ir import Gate, Program
+from deros.monitor.outline import program_outline
+from deros.monitor.topics import SystemTopics
+
+
+def gate_nodes(program: Program, topics: SystemTopics, safety_node: NodeType) -> list[NodeType]:
+    """Return the nodes of the program's gates, in the package of the safety node.
+
+    Args:
+        program: the rules.
+        topics: what the used systems tell of the topics, for the QoS of the commands.
+        safety_node: the node whose states and heartbeat the gates heed.
+
+    Raises:
+        GenerationError: if two gates would get one name.
+    """
+    outline = program_outline(program, safety_node.span)
+    nodes = gate_node_types(outline, topics.offers, safety_node)
+    first: dict[str, Gate] = {}
+    for gate, node in zip(program.gates, nodes, strict=True):
+        other = first.setdefault(node.name, gate)
+        if other is not gate:
+            message = f"the gates of {other.target!r} and {gate.target!r} both become {node.name!r}"
+            related = (Related(other.span, f"the gate of {other.target!r} is here"),)
+            hint = "rename one of the topics"
+            raise GenerationError([report(codes.NAME_COLLISION, message, gate.span, hint, related)])
+    return nodes

@@ -1,0 +1,84 @@
+"""The modules of gates, for the package of their safety node."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from deros.generators.api.protocol import File
+from deros.generators.gate.python.view import GateView, gate_view, nanoseconds
+from deros.generators.node.interface import node_description
+from deros.generators.runtime.interface import python_runtime
+from deros.generators.text.notice import licensed_python
+from deros.generators.text.provenance import comment
+from deros.generators.text.python import Text, call, expression, mark_long_lines
+from deros.generators.text.templates import environment
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.node import NodeType
+from deros.monitor.ir import Program
+
+MODULES = ("logic", "message")
+"""The modules of a gate besides that of its node, by the end of their names."""
+
+RUNTIME = (
+    "alarm",
+    "clock_choice",
+    "gate_report",
+    "gate_watch",
+    "instance",
+    "machine",
+    "process",
+    "publishers",
+    "regular_file",
+    "safety_source",
+    "start_order",
+    "target_publishers",
+    "waker",
+)
+"""The modules that are the same for all gates, most of which the safety node has as well."""
+
+
+def gate_files(
+    program: Program,
+    nodes: Sequence[NodeType],
+    safety_node: NodeType,
+    store: InterfaceStore,
+    copyright_line: str = "",
+) -> dict[str, File]:
+    """Return the modules of the gates of ``program``, and the descriptions of their nodes.
+
+    Args:
+        program: the rules.
+        nodes: the nodes of its gates, in order.
+        safety_node: the node whose states and heartbeat they heed.
+        store: the message definitions.
+        copyright_line: years and holder for the headers, or nothing.
+
+    Raises:
+        GenerationError: if two ports of a gate would get one name.
+    """
+    files: dict[str, File] = {}
+    for gate, node in zip(program.gates, nodes, strict=True):
+        view = gate_view(gate, node, program, store, safety_node)
+        root = f"{node.package}/{node.package}/{view.node.module}"
+        files[f"{node.package}/{node.name}.rnd"] = File(node_description(node))
+        files[f"{root}.py"] = File(render("node", view, copyright_line))
+        for module in MODULES:
+            files[f"{root}_{module}.py"] = File(render(module, view, copyright_line))
+    if nodes:
+        files |= python_runtime(nodes[0].package, RUNTIME, copyright_line)
+    return files
+
+
+def render(module: str, view: GateView, copyright_line: str = "") -> str:
+    """Return the text of one module of a gate: its ``node``, or one of :data:`MODULES`."""
+    loaded = environment("deros.generators.gate.python").get_template(f"{module}.py.j2")
+    text = loaded.render(
+        gate=view,
+        node=view.node,
+        Text=Text,
+        call=call,
+        expression=expression,
+        nanoseconds=nanoseconds,
+        origin_comment=comment,
+    )
+    return mark_long_lines(licensed_python(text, copyright_line))

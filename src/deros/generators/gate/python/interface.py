@@ -1,0 +1,6 @@
+"""What a safety package in Python needs of the gates."""
+
+from deros.generators.gate.nodes import gate_nodes
+from deros.generators.gate.python.generate import gate_files
+
+__all__ = ["gate_files", "gate_nodes"]

@@ -1,0 +1,1 @@
+"""Monitors: rules as code without ROS."""

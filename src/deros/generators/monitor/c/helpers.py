@@ -1,0 +1,365 @@
+"""The functions that every monitor's text is made of, those that it does not call left out.
+
+Each text holds its contract. ``@`` stands for the prefix of public types, ``$`` for that of macros.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from deros.generators.monitor.c import quantities, scans, windows
+from deros.generators.monitor.c.layout import ELEMENTS
+from deros.interfaces.types import FLOAT_TYPES
+from deros.monitor import walk
+from deros.monitor.function_texts import C
+from deros.monitor.ir import Apply, Program, Read
+
+_IS_NUMBER = """\
+/* Tells whether a number is one: no comparison holds of a NaN. */
+/*@ assigns \\nothing;
+    ensures \\result == 0 <==> \\is_NaN(value); */
+static bool is_number(double value)
+{
+  return value == value;
+}
+"""
+
+_ARE_NUMBERS = """\
+/* Tells whether no element is a NaN. */
+/*@ requires \\valid_read(values + (0 .. count - 1));
+    assigns \\nothing; */
+static bool are_numbers_BASE(const ELEMENT *values, size_t count)
+{
+  bool numbers = true;
+  /*@ loop invariant 0 <= i <= count;
+      loop assigns i, numbers;
+      loop variant count - i; */
+  for (size_t i = 0U; i < count; ++i) {
+    if (!is_number((double)values[i])) {
+      numbers = false;
+    }
+  }
+  return numbers;
+}
+"""
+
+_IS_TEXT = """\
+/* Tells whether a text is the expected one. */
+/*@ requires \\valid_read(text + (0 .. length - 1));
+    requires \\valid_read(expected + (0 .. expected_length - 1));
+    assigns \\nothing; */
+static bool is_text(
+  const char *text, size_t length, const char *expected, size_t expected_length)
+{
+  bool same = (length == expected_length);
+  /*@ loop invariant 0 <= i <= expected_length;
+      loop assigns i, same;
+      loop variant expected_length - i; */
+  for (size_t i = 0U; i < expected_length; ++i) {
+    if (same) {
+      same = (text[i] == expected[i]);
+    }
+  }
+  return same;
+}
+"""
+
+_TRUTH_OF = """\
+/* What holds, if it is known. */
+/*@ assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> known != 0 && holds != 0;
+    ensures \\result == $_FALSE <==> known != 0 && holds == 0; */
+static @_verdict truth_of(bool known, bool holds)
+{
+  const @_verdict verdict = holds ? $_TRUE : $_FALSE;
+  return known ? verdict : $_UNKNOWN;
+}
+"""
+
+_NEGATED = """\
+/* Kleene's negation. */
+/*@ requires is_verdict(operand);
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> operand == $_FALSE;
+    ensures \\result == $_FALSE <==> operand == $_TRUE; */
+static @_verdict negated(@_verdict operand)
+{
+  @_verdict verdict = $_UNKNOWN;
+  if (operand == $_TRUE) {
+    verdict = $_FALSE;
+  } else if (operand == $_FALSE) {
+    verdict = $_TRUE;
+  } else {
+    /* neither true nor false */
+  }
+  return verdict;
+}
+"""
+
+_BOTH = """\
+/* Kleene's conjunction: the less true of the two. */
+/*@ requires is_verdict(a) && is_verdict(b);
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> a == $_TRUE && b == $_TRUE;
+    ensures \\result == $_FALSE <==> a == $_FALSE || b == $_FALSE; */
+static @_verdict both(@_verdict a, @_verdict b)
+{
+  return (a < b) ? a : b;
+}
+"""
+
+_EITHER = """\
+/* Kleene's disjunction: the truer of the two. */
+/*@ requires is_verdict(a) && is_verdict(b);
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> a == $_TRUE || b == $_TRUE;
+    ensures \\result == $_FALSE <==> a == $_FALSE && b == $_FALSE; */
+static @_verdict either(@_verdict a, @_verdict b)
+{
+  return (a < b) ? b : a;
+}
+"""
+
+_FAILSAFE = """\
+/* A rule that counts as true where it is unknown, but for what is unknown since the start. */
+/*@ requires is_verdict(operand);
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> operand == $_TRUE || (operand == $_UNKNOWN && due != 0);
+    ensures \\result == $_FALSE <==> operand == $_FALSE; */
+static @_verdict failsafe(@_verdict operand, bool due)
+{
+  return ((operand == $_UNKNOWN) && due) ? $_TRUE : operand;
+}
+"""
+
+_LASTING = """\
+/* 'for': true once the operand has been true without a break for so long, since *since. */
+/*@ requires \\valid(since) && \\valid(due) && \\separated(since, due);
+    requires is_verdict(operand) && 0 <= now <= $_LATEST && 0 < duration <= $_LATEST;
+    requires *since == $_UNSET || 0 <= *since <= now;
+    assigns *since, *due;
+    ensures operand != $_TRUE ==> *since == $_UNSET && \\result == operand;
+    ensures operand == $_TRUE && \\old(*since) == $_UNSET ==> *since == now;
+    ensures operand == $_TRUE && \\old(*since) != $_UNSET ==> *since == \\old(*since);
+    ensures operand == $_TRUE && now - *since >= duration ==> \\result == $_TRUE;
+    ensures operand == $_TRUE && now - *since < duration ==> \\result == $_FALSE;
+    ensures operand == $_TRUE && \\old(*since) == $_UNSET
+      ==> *due == \\min(\\old(*due), now + duration);
+    ensures operand != $_TRUE || \\old(*since) != $_UNSET ==> *due == \\old(*due); */
+static @_verdict lasting(
+  @_verdict operand, int64_t duration, int64_t now, int64_t *since, int64_t *due)
+{
+  @_verdict verdict = operand;
+  if (operand != $_TRUE) {
+    *since = $_UNSET;
+  } else {
+    if (*since == $_UNSET) {
+      *since = now;
+      *due = earlier(*due, now + duration);
+    }
+    verdict = ((now - *since) >= duration) ? $_TRUE : $_FALSE;
+  }
+  return verdict;
+}
+"""
+
+_PUT = """\
+/* Stores a value; tells whether it is another one than before, or there was news already. */
+/*@ requires \\valid(place);
+    assigns *place;
+    ensures *place == value;
+    ensures \\result != 0 <==> news != 0 || value != \\old(*place); */
+static bool store_KIND(TYPE *place, TYPE value, bool news)
+{
+  const bool other = (*place != value);
+  *place = value;
+  return news || other;
+}
+"""
+
+_TURNED = """\
+/* Takes a rule's verdict over, and tells whether it is another one than before. */
+/*@ requires \\valid(held) && \\valid(since) && \\separated(held, since);
+    assigns *held, *since;
+    ensures *held == verdict;
+    ensures *since == (verdict != \\old(*held) && (verdict == $_TRUE || \\old(*held) == $_TRUE)
+      ? now : \\old(*since));
+    ensures \\result != 0 <==> verdict != \\old(*held); */
+static bool turned(@_verdict verdict, @_verdict *held, int64_t *since, int64_t now)
+{
+  const bool changed = (verdict != *held);
+  if (changed && ((verdict == $_TRUE) || (*held == $_TRUE))) {
+    *since = now;
+  }
+  *held = verdict;
+  return changed;
+}
+"""
+
+_EARLIER = """\
+/*@ assigns \\nothing;
+    ensures \\result <= a && \\result <= b && (\\result == a || \\result == b); */
+static int64_t earlier(int64_t a, int64_t b)
+{
+  return (a < b) ? a : b;
+}
+"""
+
+_AHEAD = """\
+/* The earlier of two deadlines, of which the second counts only if it lies ahead. */
+/*@ assigns \\nothing;
+    ensures \\result == due || (\\result == end && end > now);
+    ensures \\result <= due && (end > now ==> \\result <= end); */
+static int64_t ahead(int64_t now, int64_t due, int64_t end)
+{
+  return ((end > now) && (end < due)) ? end : due;
+}
+"""
+
+_BOUNDED = """\
+/* A time within the range that the monitor counts in. */
+/*@ assigns \\nothing;
+    ensures \\result == (t < 0 ? 0 : t > $_LATEST ? $_LATEST : t); */
+static int64_t bounded(int64_t t)
+{
+  return (t < 0) ? 0 : earlier(t, $_LATEST);
+}
+"""
+
+_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+_STORED = {"truth": "bool", "integer": "int64_t", "unsigned": "uint64_t", "text": "uint32_t"}
+
+_LOOP = """\
+  /*@ loop invariant 0 <= i <= count;
+      loop assigns LOOP;
+      loop variant count - i; */
+"""
+
+
+def helper_texts(program: Program, text: str) -> list[str]:
+    """Return the definitions that ``text`` needs, in an order in which each can be compiled."""
+    needed: list[str] = []
+    known = dict(_all(program))
+    wanted = _COMMENT.sub("", text)  # which quote the rules
+    for name in reversed(known):
+        if re.search(rf"\b{name}\(", wanted):
+            needed.append(known[name])
+            wanted += _COMMENT.sub("", known[name])
+    return needed[::-1]
+
+
+def helper_names(program: Program) -> frozenset[str]:
+    """Return the names of all functions that the monitor of a program may have beside its own."""
+    return frozenset(name for name, _ in _all(program))
+
+
+def _all(program: Program) -> Iterator[tuple[str, str]]:
+    """Yield every helper by its name; none calls a later one."""
+    yield "is_number", _IS_NUMBER
+    yield "earlier", _EARLIER
+    yield "ahead", _AHEAD
+    yield "bounded", _BOUNDED
+    for base in sorted(FLOAT_TYPES):
+        yield f"are_numbers_{base}", _of_elements(_ARE_NUMBERS, base)
+    yield "is_text", _IS_TEXT
+    for kind, type_ in _STORED.items():
+        yield f"store_{kind}", _PUT.replace("KIND", kind).replace("TYPE", type_)
+    for name in ("length_of", "clamped", "roll", "pitch", "yaw", "tilt", "norm"):
+        yield name, quantities.contract(name, _PARTS.get(name, "")) + C[name]
+    yield "magnitude", _MAGNITUDE + C["magnitude"]
+    yield "rate", _RATE + C["rate"]
+    yield "unwrapped", windows.UNWRAPPED + C["unwrapped"]
+    yield "between", windows.BETWEEN + C["between"]
+    yield "stamp_of", windows.STAMP_OF + C["stamp_of"]
+    yield "base_of", windows.BASE_OF + windows.with_loop("base_of", C["base_of"])
+    yield "drop", windows.DROP + windows.with_loop("drop", C["drop"])
+    yield "keep", windows.KEEP + C["keep"]
+    yield "rate_over", windows.RATE_OVER + C["rate_over"]
+    for base in _extremes(program):
+        for name, call in (("min", "least"), ("max", "greatest")):
+            yield f"{call}_{base}", _of_elements(_ARRAY + _with_loop(C[name], "i, found"), base)
+    yield "beam", scans.BEAM + C["beam"]
+    yield (
+        "nearest",
+        scans.NEAREST + _with_loop(C["nearest"], "i, shortest", scans.NEAREST_LOOP),
+    )
+    yield "valid_range", scans.VALID_RANGE + C["valid_range"]
+    yield (
+        "scan_usable",
+        scans.USABLE + _with_loop(C["scan_usable"], "i, usable", scans.USABLE_LOOP),
+    )
+    yield "truth_of", _TRUTH_OF
+    yield "negated", _NEGATED
+    yield "both", _BOTH
+    yield "either", _EITHER
+    yield "failsafe", _FAILSAFE
+    yield "lasting", _LASTING
+    yield "turned", _TURNED
+
+
+_PARTS = {
+    "length_of": "x, y, z, w",
+    "clamped": "sine",
+    **dict.fromkeys(("roll", "pitch", "yaw"), "ux, uy, uz, uw"),
+}
+"""The parameters of the functions of which it is stated what number they give."""
+
+_ARRAY = """\
+/*@ requires \\valid_read(values + (0 .. count - 1));
+    assigns \\nothing; */
+"""
+
+_MAGNITUDE = """\
+/*@ requires value > INT64_MIN;
+    assigns \\nothing;
+    ensures \\result == \\abs(value); */
+"""
+
+_RATE = """\
+/* The change per second since the message before; none between two of one instant. */
+/*@ requires \\valid(last) && \\valid(last_t) && \\separated(last, last_t);
+    requires 0 <= t <= INT64_MAX && 0 <= *last_t <= INT64_MAX;
+    assigns *last, *last_t;
+    ensures *last_t == t;
+    ensures same(*last, value);
+    check ensures t == \\old(*last_t) ==> \\is_NaN(\\result);
+    check ensures t != \\old(*last_t) ==> same(\\result,
+      CHANGE); */
+""".replace("CHANGE", quantities.change_per_second("\\old(*last)", "t - \\old(*last_t)"))
+
+
+def _extremes(program: Program) -> list[str]:
+    """Return the element types of the arrays whose least or greatest element is asked for."""
+    found: set[str] = set()
+    for value in walk.values(walk.conditions(program)):
+        if isinstance(value, Apply) and value.function in ("min", "max"):
+            read = value.arguments[0]
+            assert isinstance(read, Read)
+            found.add(str(program.leaves[read.leaf].type.base))
+    return sorted(found)
+
+
+def _of_elements(text: str, base: str) -> str:
+    floats = base in FLOAT_TYPES
+    result = "double" if floats else ("uint64_t" if base == "uint64" else "int64_t")
+    return (
+        text.replace("BASE", base)
+        .replace("ELEMENT", ELEMENTS[base])
+        .replace("RESULT", result)
+        .replace("NONE", "NAN" if floats else "0")
+    )
+
+
+def _with_loop(text: str, assigned: str, kept: Iterable[str] = ()) -> str:
+    """Return a function's text with what is to be proved of its loop."""
+    start = text.index("  for (")
+    bounds, rest = _LOOP.replace("LOOP", assigned).split("\n", 1)
+    indented = (each.replace("\n", "\n      ") for each in kept)
+    lines = [bounds, *(f"      loop invariant {each};" for each in indented)]
+    return text[:start] + "\n".join([*lines, rest]) + text[start:]

@@ -1,0 +1,428 @@
+"""What the emitted monitor remembers: the fields of its one struct, and what each stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from deros import codes
+from deros.diagnostics import Span, report
+from deros.generators.api.protocol import GenerationError
+from deros.generators.monitor.c.names import new_names, prefix_of
+from deros.generators.text.unique_names import UniqueNames
+from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, STRING_TYPES, FieldType
+from deros.monitor import walk
+from deros.monitor.functions import FUNCTIONS, Result
+from deros.monitor.ir import (
+    Age,
+    Apply,
+    Compare,
+    Condition,
+    Const,
+    Failsafe,
+    For,
+    Operator,
+    Program,
+    Read,
+    Scale,
+    Truth,
+    Unknown,
+    ValueExpression,
+    Within,
+)
+
+ELEMENTS = {
+    **{base: f"{base}_t" for base in INTEGER_RANGES},
+    "byte": "uint8_t",
+    "char": "uint8_t",
+    "float32": "float",
+    "float64": "double",
+    "bool": "bool",
+}
+"""The C type of an array's element, by the primitive type of ROS 2."""
+
+LATEST = 2**62 - 1
+"""The greatest time, and the greatest duration, in nanoseconds: sums of two stay in 64 bits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A value that conditions read, as the struct keeps it: ``name``, and whether it is ``known``.
+
+    ``type`` is ``double``, ``int64_t``, ``uint64_t``, ``bool``, or ``uint32_t`` for a text, which
+    is kept as its place (from 1) among the ``texts`` that the rules compare it with, else 0.
+    """
+
+    value: ValueExpression
+    input: int
+    name: str
+    known: str
+    type: str
+    texts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What is found of floating-point values when a message brings one: how they compare.
+
+    Rules are then judged without another look at the numbers. ``name`` is its field, ``terms`` are
+    what it compares, ``inputs`` those whose messages settle it anew.
+    """
+
+    name: str
+    terms: tuple[Term, ...]
+    inputs: frozenset[int]
+
+
+@dataclass(frozen=True, slots=True)
+class InputFields:
+    """What is remembered of an input; the names are empty where nothing asks for it.
+
+    Attributes:
+        known: whether it has a value, if conditions read it without a function or ask whether
+            it is unknown.
+        base: from when its timeout counts, and its age if it ``came``.
+        came: whether a message has counted since the start or the last step of the clock.
+        missing: whether its timeout has passed.
+        awaits: whether verdicts depend on its having come or gone missing.
+    """
+
+    known: str
+    base: str
+    came: str
+    missing: str
+    awaits: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What a function remembers; the names are empty where it does not.
+
+    Attributes:
+        last: the value of the message before.
+        last_t: when it came.
+        total: an angle without its jumps.
+        window: the samples of a rate over a span of time.
+    """
+
+    last: str = ""
+    last_t: str = ""
+    total: str = ""
+    window: str = ""
+
+    @property
+    def numbers(self) -> list[str]:
+        """The fields that are numbers."""
+        return [name for name in (self.last, self.last_t, self.total) if name]
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """The names of all that a program's monitor remembers, and of its functions.
+
+    Attributes:
+        prefix: what public names begin with; ``macro`` the same in capitals.
+        terms: by value; a leaf, a function, or either in another unit.
+        memories: of each function that remembers something.
+        findings: of each comparison of floating-point values.
+        inputs: of each input, by index.
+        forgets: of each input with values, the function that makes them unknown.
+        expires: of each input with a timeout, the function that looks whether it has passed.
+        since: of each ``For`` with a duration, since when its operand has been true.
+        verdicts, turned: of each rule, what it is worth, and when it last became true or ceased to.
+        judges: of each rule, the function that judges it; ``behave`` the same of each behaviour.
+        conditions: of each behaviour, what its condition and all around it are worth together;
+            ``enabled`` of each optional one.
+        active: of each action that can be reset; ``ran`` of each that resets another.
+    """
+
+    prefix: str
+    names: UniqueNames
+    terms: dict[ValueExpression, Term] = field(default_factory=dict)
+    memories: dict[Apply, Memory] = field(default_factory=dict)
+    findings: dict[Condition, Finding] = field(default_factory=dict)
+    inputs: dict[int, InputFields] = field(default_factory=dict)
+    forgets: dict[int, str] = field(default_factory=dict)
+    expires: dict[int, str] = field(default_factory=dict)
+    since: dict[int, str] = field(default_factory=dict)
+    verdicts: dict[int, str] = field(default_factory=dict)
+    turned: dict[int, str] = field(default_factory=dict)
+    judges: dict[int, str] = field(default_factory=dict)
+    behave: dict[int, str] = field(default_factory=dict)
+    conditions: dict[int, str] = field(default_factory=dict)
+    enabled: dict[int, str] = field(default_factory=dict)
+    active: dict[int, str] = field(default_factory=dict)
+    ran: dict[int, str] = field(default_factory=dict)
+
+    @property
+    def macro(self) -> str:
+        """What macros and enumerators begin with."""
+        return self.prefix.upper()
+
+    def terms_of(self, index: int) -> list[Term]:
+        """Return the terms that belong to one input."""
+        return [term for term in self.terms.values() if term.input == index]
+
+    def memories_of(self, index: int) -> dict[Apply, Memory]:
+        """Return what the functions of one input remember."""
+        return {value: each for value, each in self.memories.items() if value.input == index}
+
+
+def lay_out(program: Program) -> Layout:
+    """Name all that the monitor of a program remembers, in the program's order.
+
+    Raises:
+        GenerationError: what a rule compares has no place in a monitor of fixed size.
+    """
+    layout = Layout(prefix_of(program.name), new_names())
+    _name_inputs(program, layout)
+    for condition, span in rule_parts(program):
+        for value in compared(condition):
+            _name_term(program, value, layout, span)
+    for value in walk.values(walk.conditions(program)):
+        if isinstance(value, Apply) and value.state is not None and value not in layout.memories:
+            layout.memories[value] = _memory(program, value, layout.names)
+    for condition in walk.conditions(program):
+        _name_finding(condition, layout)
+    for each in program.inputs:
+        terms = layout.terms_of(each.index) or layout.memories_of(each.index)
+        if terms or layout.inputs[each.index].known:
+            layout.forgets[each.index] = layout.names.new("forget", each.name)
+        if each.timeout_ns is not None:
+            layout.expires[each.index] = layout.names.new("expire", each.name)
+    _name_verdicts(program, layout)
+    _name_actions(program, layout)
+    return layout
+
+
+def _memory(program: Program, value: Apply, names: UniqueNames) -> Memory:
+    name = program.inputs[value.input].name
+    match value.function:
+        case "rate_over":
+            return Memory(window=names.new(name, "window"))
+        case "unwrapped":
+            return Memory(names.new(name, "last"), total=names.new(name, "total"))
+        case _:
+            return Memory(names.new(name, "last"), names.new(name, "last_t"))
+
+
+def compared(condition: Condition) -> list[ValueExpression]:
+    """Return the values, constants left out, that a condition itself (no part) compares."""
+    match condition:
+        case Truth(operand=operand):
+            found = [operand]
+        case Compare(left=left, right=right):
+            found = [left, right]
+        case Within(operand=operand, lower=lower, upper=upper):
+            found = [operand, lower, upper]
+        case Unknown(operand=Apply() as function):
+            found = [function]
+        case _:
+            found = []
+    return [value for value in found if not isinstance(value, Const)]
+
+
+def input_of(program: Program, value: ValueExpression) -> int:
+    """Return the input that a value is read from."""
+    match value:
+        case Apply():
+            return value.input
+        case Scale():
+            return input_of(program, value.operand)
+        case Read():
+            return program.leaves[value.leaf].input
+        case Const():
+            raise AssertionError("a constant is read from no input")
+
+
+def type_of(program: Program, value: ValueExpression) -> str:
+    """Return the C type of a value; ``text`` for one."""
+    match value:
+        case Const():
+            return _type_of_constant(value.value)
+        case Scale():
+            return "double"
+        case Read():
+            return c_type(program.leaves[value.leaf].type)
+        case Apply():
+            row = FUNCTIONS[value.function]
+            if row.result is Result.INTEGER:
+                return "int64_t"
+            return (
+                type_of(program, value.arguments[0]) if row.result is Result.ELEMENT else "double"
+            )
+
+
+def c_type(kind: FieldType) -> str:
+    """Return the C type that holds an element of a leaf; ``text`` for one."""
+    base = kind.base
+    if base == "bool":
+        return "bool"
+    if base in FLOAT_TYPES:
+        return "double"
+    if base in STRING_TYPES:
+        return "text"
+    return "uint64_t" if base == "uint64" else "int64_t"
+
+
+def _type_of_constant(value: object) -> str:
+    if isinstance(value, bool):
+        return "bool"
+    if isinstance(value, str):
+        return "text"
+    return "int64_t" if isinstance(value, int) else "double"
+
+
+def rule_parts(program: Program) -> Iterator[tuple[Condition, Span]]:
+    """Yield every condition of the rules, operands before the whole, with the span of its rule."""
+    for rule in program.rules:
+        for part in walk.parts(rule.condition):
+            yield part, rule.span
+
+
+def _name_inputs(program: Program, layout: Layout) -> None:
+    asked = {each.input for each in walk.conditions(program) if isinstance(each, Age)}
+    read = {
+        input_of(program, value)
+        for condition in walk.conditions(program)
+        for value in compared(condition)
+        if isinstance(value, Read)
+    }
+    read |= {
+        each.input
+        for each in walk.conditions(program)
+        if isinstance(each, Unknown) and each.operand is None
+    }
+    awaited = _awaited(program)
+    for each in program.inputs:
+        timed = each.timeout_ns is not None
+        new = layout.names.new
+        layout.inputs[each.index] = InputFields(
+            known=new(each.name, "known") if each.index in read else "",
+            base=new(each.name, "base") if timed or each.index in asked else "",
+            came=new(each.name, "came") if timed or each.index in asked else "",
+            missing=new(each.name, "missing") if timed else "",
+            awaits=each.index in awaited,
+        )
+
+
+def _awaited(program: Program) -> set[int]:
+    """Return the inputs of which a condition asks whether they are awaited."""
+    found: set[int] = set()
+    for condition in walk.conditions(program):
+        if isinstance(condition, Unknown):
+            found.add(condition.input)
+        elif isinstance(condition, Failsafe):
+            found.update(condition.inputs)
+    return found
+
+
+def _name_term(program: Program, value: ValueExpression, layout: Layout, span: Span) -> None:
+    if value in layout.terms:
+        return
+    index = input_of(program, value)
+    fields = layout.inputs[index]
+    kind = type_of(program, value)
+    name = layout.names.new(*_words(program, value))
+    plain = isinstance(value, Read)
+    known = fields.known if plain else layout.names.new(name, "known")
+    texts = _texts(program, value, span) if kind == "text" else ()
+    kind = "uint32_t" if kind == "text" else kind
+    layout.terms[value] = Term(value, index, name, known, kind, texts)
+
+
+_WORDS: dict[Operator, str] = {
+    "=": "is",
+    "!=": "is_not",
+    "<": "below",
+    "<=": "at_most",
+    ">": "above",
+    ">=": "at_least",
+}
+
+
+def _name_finding(condition: Condition, layout: Layout) -> None:
+    """Name what is found by a comparison, if it is one of floating-point values."""
+    values = compared(condition)
+    terms = tuple(dict.fromkeys(layout.terms[value] for value in values))
+    floats = any(term.type == "double" for term in terms)
+    if condition in layout.findings or isinstance(condition, Truth | Unknown) or not floats:
+        return
+    match condition:
+        case Within(operand=operand):
+            words = [*_side(operand, layout), "within"]
+        case Compare(left=left, operator=operator, right=right):
+            words = [*_side(left, layout), _WORDS[operator], *_side(right, layout)]
+        case _:
+            return
+    inputs = frozenset(term.input for term in terms)
+    layout.findings[condition] = Finding(layout.names.new(*words), terms, inputs)
+
+
+def _side(value: ValueExpression, layout: Layout) -> list[str]:
+    """Return how a value stands in the name of a finding."""
+    if not isinstance(value, Const):
+        return [layout.terms[value].name]
+    assert not isinstance(value.value, str)
+    text = f"{float(value.value):.6g}".replace("+", "")
+    return [text.replace("-", "minus_", 1) if text.startswith("-") else text]
+
+
+def _words(program: Program, value: ValueExpression) -> list[str | int]:
+    match value:
+        case Scale():
+            return [*_words(program, value.operand), "scaled"]
+        case Apply():
+            return [program.inputs[value.input].name, value.function]
+        case Read():
+            leaf = program.leaves[value.leaf]
+            each = program.inputs[leaf.input]
+            within = leaf.path[: len(each.path)] == each.path
+            return [each.name, *(leaf.path[len(each.path) :] if within else leaf.path)]
+        case Const():
+            raise AssertionError("a constant is no term")
+
+
+def _texts(program: Program, value: ValueExpression, span: Span) -> tuple[str, ...]:
+    """Return the constants that a text is compared with."""
+    found: dict[str, None] = {}
+    for part in walk.conditions(program):
+        if isinstance(part, Compare) and value in (part.left, part.right):
+            other = part.right if part.left == value else part.left
+            if not isinstance(other, Const):
+                message = "two texts that are read from topics are compared"
+                hint = "a monitor of fixed size cannot keep them: compare each with constants"
+                raise GenerationError([report(codes.UNSUPPORTED_BY_TARGET, message, span, hint)])
+            found[str(other.value)] = None
+    return tuple(found)
+
+
+def _name_verdicts(program: Program, layout: Layout) -> None:
+    new = layout.names.new
+    for rule in program.rules:
+        layout.verdicts[rule.index] = new(rule.entity, rule.name)
+        layout.turned[rule.index] = new(rule.entity, rule.name, "turned")
+        layout.judges[rule.index] = new("judge", rule.entity, rule.name)
+        _name_intervals(rule.condition, layout, rule.entity, rule.name)
+    for behaviour in walk.behaviours(program):
+        layout.conditions[behaviour.index] = new(behaviour.name, "condition")
+        layout.behave[behaviour.index] = new("behave", behaviour.name)
+        if behaviour.optional:
+            layout.enabled[behaviour.index] = new(behaviour.name, "enabled")
+        _name_intervals(behaviour.condition, layout, behaviour.name)
+
+
+def _name_intervals(condition: Condition, layout: Layout, *words: str) -> None:
+    for part in walk.parts(condition):
+        if isinstance(part, For) and part.duration_ns > 0:
+            layout.since[part.index] = layout.names.new(*words, "since")
+
+
+def _name_actions(program: Program, layout: Layout) -> None:
+    for action in program.actions:
+        if action.latched or action.reset_by is not None:
+            layout.active[action.index] = layout.names.new(action.name, "active")
+    for action in program.actions:
+        if action.reset_by is not None and action.reset_by not in layout.ran:
+            name = program.actions[action.reset_by].name
+            layout.ran[action.reset_by] = layout.names.new(name, "ran")

@@ -1,0 +1,108 @@
+"""What rules may say and C cannot do; with what compares two texts, all that is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NoReturn
+
+from deros import codes
+from deros.diagnostics import Span, report
+from deros.generators.api.protocol import GenerationError
+from deros.generators.monitor.c.layout import LATEST, compared, rule_parts, type_of
+from deros.monitor import walk
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import (
+    Age,
+    Apply,
+    Condition,
+    Const,
+    For,
+    Program,
+    Read,
+    Trigger,
+    ValueExpression,
+)
+
+_IN_DOUBLES = ("abs", "rate", "rate_over", "unwrapped")
+
+
+def refuse(program: Program) -> None:
+    """Refuse what would not mean in C what it means.
+
+    Raises:
+        GenerationError: such a thing is in the program.
+    """
+    for condition, span in rule_parts(program):
+        _refuse_wide(program, condition, span)
+        _refuse_mixed(program, condition, span)
+    for duration_ns, span in _durations(program):
+        if duration_ns > LATEST:
+            _refuse("a duration is longer than 146 years", span)
+    for behaviour in walk.behaviours(program):
+        for item in behaviour.body:
+            if isinstance(item, Trigger):
+                _refuse_great(item)
+
+
+def _refuse(message: str, span: Span, hint: str = "") -> NoReturn:
+    raise GenerationError([report(codes.UNSUPPORTED_BY_TARGET, message, span, hint)])
+
+
+def _refuse_wide(program: Program, condition: Condition, span: Span) -> None:
+    """Refuse what C would compute in fewer digits than the meaning asks for."""
+    for term in walk.values([condition]):
+        if not isinstance(term, Apply) or term.function not in _IN_DOUBLES:
+            continue
+        if _is_wide(program, term.arguments[0]):
+            name = "rate" if FUNCTIONS[term.function].memory is not None else term.function
+            _refuse(f"{name}() of a 64-bit integer does not fit the numbers of C", span)
+
+
+def _refuse_mixed(program: Program, condition: Condition, span: Span) -> None:
+    """Refuse comparisons in which C would convert a 64-bit integer to what does not hold it."""
+    values = compared(condition)
+    types = {type_of(program, each) for each in values}
+    if len(types) > 1 and any(_is_wide(program, each) for each in values):
+        message = "a 64-bit integer is compared with a number of another type"
+        _refuse(message, span, "C has no type that holds both: compare each with constants")
+
+
+def _refuse_great(item: Trigger) -> None:
+    for each in item.arguments:
+        if isinstance(each, int) and not -(2**63) <= each < 2**63:
+            _refuse("an argument does not fit the integers of C", item.span)
+
+
+def _is_wide(program: Program, value: ValueExpression) -> bool:
+    """Tell whether a value is an integer that a double does not hold."""
+    match value:
+        case Read():
+            return program.leaves[value.leaf].type.base in ("int64", "uint64")
+        case Apply(function="min" | "max" | "abs"):
+            return _is_wide(program, value.arguments[0])
+        case _:
+            return False
+
+
+def _durations(program: Program) -> Iterator[tuple[int, Span]]:
+    for each in program.inputs:
+        if each.timeout_ns is not None:
+            yield each.timeout_ns, each.span
+    for rule in program.rules:
+        for value in walk.values(walk.parts(rule.condition)):
+            if isinstance(value, Apply) and value.function == "rate_over":
+                span = value.arguments[1]
+                assert isinstance(span, Const)
+                assert isinstance(span.value, int)
+                yield span.value, rule.span
+        yield from _durations_of(rule.condition, rule.span)
+    for behaviour in walk.behaviours(program):
+        yield from _durations_of(behaviour.condition, behaviour.span)
+
+
+def _durations_of(condition: Condition, span: Span) -> Iterator[tuple[int, Span]]:
+    for part in walk.parts(condition):
+        if isinstance(part, For):
+            yield part.duration_ns, span
+        elif isinstance(part, Age):
+            yield part.bound_ns, span

@@ -1,0 +1,221 @@
+"""What is to be proved of the functions that judge rules and run behaviours.
+
+Each says what it reads, changes and ensures by itself, and no more: what it does not mention is
+seen to be as it was wherever it is called.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+
+from deros.generators.monitor.c.changes import (
+    ALL,
+    DONE,
+    INTERVALS_RUN_ON,
+    KEPT_BY_JUDGING,
+    LATCHED_KEPT,
+    VERDICTS_DATED,
+    Changes,
+)
+from deros.generators.monitor.c.contracts import Contract, all_of, iff
+from deros.generators.monitor.c.predicates import SOUND, Predicates
+from deros.generators.monitor.c.view import MessageView, MonitorView
+from deros.monitor import walk
+from deros.monitor.ir import Action, Behaviour, Condition, For, Rule, Trigger
+
+_FIELD = re.compile(r"m->(\w+)")
+
+
+class RuleContracts:
+    """Writes the contracts of what settles an event."""
+
+    def __init__(self, view: MonitorView, predicates: Predicates, changes: Changes) -> None:
+        """Remember what is named how."""
+        self._program = view.program
+        self._layout = view.layout
+        self._predicates = predicates
+        self._changes = changes
+        self.emissions = predicates.emissions
+        self._behaviours = tuple(walk.behaviours(view.program))
+        self._false = predicates.macro("FALSE")
+
+    def judge(self, rule: Rule) -> Contract:
+        """Return that a rule's verdict is what it means, and whether it has changed."""
+        name = self._layout.verdicts[rule.index]
+        fors = self._predicates.fors(rule.condition)
+        contract = Contract(["\\valid(m)"])
+        contract.requires.append(self._ranges(self._read(rule.condition)))
+        changed = self._with_fors([name, self._layout.turned[rule.index]], fors)
+        contract.assigns += [f"m->{each}" for each in changed]
+        contract.ensures += self._predicates.ranges([name])
+        contract.ensures.append(all_of(self._predicates.judged(rule)))
+        contract.ensures.append(iff("\\result != 0", f"m->{name} != \\old(m->{name})"))
+        contract.ensures.append(self._changes.turned(rule))
+        self._with_own_intervals(contract, fors)
+        return contract
+
+    def judge_by(self, message: MessageView) -> Contract:
+        """Return that the rules that read a topic are judged, and whether a verdict changes."""
+        rules = [each for each in self._program.rules if each.index in message.rules]
+        contract = self._judge(rules)
+        changed = self._changes.changed(self._layout.verdicts[each.index] for each in rules)
+        contract.ensures.append(iff("\\result != 0", changed))
+        return contract
+
+    def judge_all(self) -> Contract:
+        """Return that all rules are judged."""
+        return self._judge(self._program.rules)
+
+    def _judge(self, rules: Sequence[Rule]) -> Contract:
+        """Return that some rules are judged; all is written out, as for :meth:`act`."""
+        names = [self._layout.verdicts[each.index] for each in rules]
+        turned = [self._layout.turned[each.index] for each in rules]
+        fors = [each for rule in rules for each in self._predicates.fors(rule.condition)]
+        contract = Contract(["\\valid(m)"], ["*m"])
+        read = [name for rule in rules for name in self._read(rule.condition)]
+        contract.requires.append(self._ranges(read))
+        contract.ensures.append(self._changes.kept_but(self._with_fors([*names, *turned], fors)))
+        contract.ensures.append(all_of(self._predicates.ranges(names)))
+        contract.ensures += [all_of(self._predicates.judged(rule)) for rule in rules]
+        contract.ensures.append(all_of(map(self._changes.turned, rules)))
+        self._with_own_intervals(contract, fors)
+        return contract
+
+    def settle(self, action: Action) -> Contract:
+        """Return that an action is reset if that is asked for and all its causes are over."""
+        active = self._layout.active[action.index]
+        conditions = [self._layout.conditions[each] for each in action.triggered_by]
+        read = [active, *conditions]
+        asked = [f"m->{each} == {self._false}" for each in conditions]
+        if action.reset_by is not None:
+            ran = self._layout.ran[action.reset_by]
+            read.append(ran)
+            asked.append(f"m->{ran} != 0")
+        contract = Contract(["\\valid(m)", all_of(self._predicates.ranges(read))])
+        contract.assigns += [f"m->{active}", "emitted"]
+        reset = all_of(asked) if asked else "\\true"
+        contract.ensures.append(f"m->{active} == ({reset} ? 0 : \\old(m->{active}))")
+        now = self.emissions.by_settling(action, "\\old(emitted)", f"\\old(m->{active})")
+        contract.ensures.append(f"emitted == {now}")
+        return contract
+
+    def behave(self, behaviour: Behaviour) -> Contract:
+        """Return the contract of the function that runs a behaviour, and those within it."""
+        group = self.emissions.closure(behaviour)
+        fors = [each for one in group for each in self._predicates.fors(one.condition)]
+        changed = [self._layout.conditions[each.index] for each in group] + self._touched(group)
+        contract = Contract(["\\valid(m)"], [*(f"m->{name}" for name in changed), "emitted"])
+        contract.assigns += [f"m->{name}" for name in self._with_fors([], fors)]
+        read = [name for each in group for name in self._read(each.condition)]
+        contract.requires.append(self._ranges([*read, *self._guards(group), *changed]))
+        contract.ensures += self._predicates.ranges(changed)
+        contract.ensures += [all_of(self._predicates.acted(each)) for each in group]
+        contract.ensures += self._done(group)
+        contract.ensures.append(
+            f"emitted == {self.emissions.by_behaviour(behaviour, chr(92) + 'old(emitted)')}"
+        )
+        self._with_own_intervals(contract, fors)
+        return contract
+
+    def act(self) -> Contract:
+        """Return that conditions are what they mean, and what is run, reset and emitted.
+
+        All is written out: of what it changes field by field, no predicate is seen to hold.
+        """
+        fors = [part for each in self._behaviours for part in self._predicates.fors(each.condition)]
+        changed = self._with_fors(self._changes.acted_upon(), fors)
+        contract = Contract(["\\valid(m)"], list(ALL))
+        read = [name for each in self._behaviours for name in self._read(each.condition)]
+        read += [*self._guards(self._behaviours), *self._changes.acted_upon()]
+        contract.requires.append(self._ranges(read))
+        contract.requires.append(f"changed == 0 ==> {all_of(self._acted())}")
+        contract.ensures.append(self._changes.kept_but(changed))
+        contract.ensures.append(all_of(self._predicates.ranges(self._changes.acted_upon())))
+        contract.ensures += self._acted()
+        contract.ensures += self._changes.latched_kept()
+        self._with_own_intervals(contract, fors)
+        contract.cases |= {"change": "changed != 0", "none": "changed == 0"}
+        done = [*self._changes.states_done(), *self._changes.emission_done()]
+        contract.of_case["change"] = done
+        contract.of_case["none"] = self._changes.nothing_done()
+        return contract
+
+    def evaluate(self) -> Contract:
+        """Return that all is judged, and acted upon."""
+        contract = Contract(["\\valid(m)", *SOUND, "m->now <= m->due"], list(ALL))
+        contract.ensures += [*SOUND, KEPT_BY_JUDGING, "m->started == 1", "judged(m)", "acted(m)"]
+        contract.ensures += [LATCHED_KEPT, VERDICTS_DATED, *DONE, INTERVALS_RUN_ON]
+        contract.ensures.append("\\old(m->due) > m->now ==> m->due > m->now")
+        return contract
+
+    def _acted(self) -> list[str]:
+        """Return what each behaviour's condition is worth."""
+        return [all_of(self._predicates.acted(each)) for each in self._behaviours]
+
+    def kept_called(self, action: Action) -> Iterator[str]:
+        """Yield that an action stays active unless what triggers it is known to be false."""
+        active = self._layout.active[action.index]
+        for index in action.triggered_by:
+            over = f"m->{self._layout.conditions[index]} == {self._false}"
+            yield f"\\old(m->{active}) != 0 && !({over}) ==> m->{active} != 0"
+
+    def _read(self, condition: Condition) -> list[str]:
+        """Return the fields that a condition reads, those of its intervals among them."""
+        meaning = self._predicates.meaning
+        text = f"m->now {meaning.true(condition)} {meaning.false(condition)}"
+        return [*_FIELD.findall(text), *self._sinces(self._predicates.fors(condition))]
+
+    def _ranges(self, names: Iterable[str]) -> str:
+        """Return that fields are in range, each said once."""
+        return all_of(self._predicates.ranges(dict.fromkeys(names)))
+
+    def _with_own_intervals(self, contract: Contract, fors: Sequence[For]) -> None:
+        """Add what becomes of the intervals of a condition, and of the next deadline.
+
+        They begin now, run on or are cleared, and stay in range and in time.
+        """
+        sinces = self._sinces(fors)
+        if sinces:
+            in_time = self._predicates.ends_in_time("m->due", sinces)
+            contract.requires += in_time
+            contract.ensures += [*self._predicates.ranges(sinces), *in_time]
+            contract.ensures += self._changes.run_on(fors)
+            contract.ensures += EARLIER_DEADLINE
+
+    def _guards(self, group: Iterable[Behaviour]) -> Iterator[str]:
+        """Yield the fields beside its condition by which a behaviour holds."""
+        for each in group:
+            if each.parent is not None:
+                yield self._layout.conditions[each.parent]
+            if each.optional:
+                yield self._layout.enabled[each.index]
+
+    def _touched(self, group: list[Behaviour]) -> list[str]:
+        names: dict[str, None] = {}
+        for each in group:
+            for item in each.body:
+                if isinstance(item, Trigger):
+                    for table in (self._layout.active, self._layout.ran):
+                        if item.action in table:
+                            names[table[item.action]] = None
+        return list(names)
+
+    def _done(self, group: list[Behaviour]) -> Iterator[str]:
+        """Yield that what is run becomes active, and that nothing else changes that."""
+        for table in (self._layout.active, self._layout.ran):
+            for index, name in table.items():
+                rises = [self.emissions.rises(b) for b in self.emissions.callers(index, group)]
+                if rises:
+                    yield f"m->{name} == ({' || '.join(rises)} ? 1 : \\old(m->{name}))"
+
+    def _with_fors(self, names: Iterable[str], fors: Sequence[For]) -> list[str]:
+        """Return fields, and those that intervals change."""
+        return [*names, *self._sinces(fors), *(["due"] if fors else [])]
+
+    def _sinces(self, fors: Iterable[For]) -> list[str]:
+        return [self._layout.since[each.index] for each in fors]
+
+
+EARLIER_DEADLINE = ("m->due <= \\old(m->due)", "\\old(m->due) > m->now ==> m->due > m->now")
+"""The next deadline comes no later than before, and still lies ahead."""

@@ -1,0 +1,444 @@
+"""The view of a program that the templates of the C monitor print."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros.generators.monitor.c.expressions import integer, literal, number
+from deros.generators.monitor.c.handlers import Handler, handlers
+from deros.generators.monitor.c.judging import Function, Sites, behave, judge, settle, sites
+from deros.generators.monitor.c.layout import Layout, compared, input_of, lay_out
+from deros.generators.monitor.c.refusals import refuse
+from deros.generators.text.c import comment
+from deros.monitor import walk
+from deros.monitor.engine import age_changes
+from deros.monitor.ir import Age, Condition, For, Missing, Program, Unknown
+from deros.monitor.memories import SAMPLES
+
+WINDOW_SIZE = 16 * SAMPLES + 16
+"""The bytes of the samples of one rate over a span of time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A field of the struct.
+
+    Attributes:
+        type, name, comment: its declaration.
+        size: in bytes.
+        started: what it is at the start; empty if a restart sets it.
+        restarted: what a start and a step of the clock set it to; empty if they do not.
+    """
+
+    type: str
+    name: str
+    comment: str
+    size: int
+    started: str = ""
+    restarted: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Timeout:
+    """A timeout: its duration, the fields that it concerns, and the function that looks at it."""
+
+    input: str
+    function: str
+    duration_ns: int
+    base: str
+    came: str
+    missing: str
+    forget: str
+
+
+@dataclass(frozen=True, slots=True)
+class Forget:
+    """The function that makes an input's values unknown: the flags it clears, the NaN it stores."""
+
+    function: str
+    input: str
+    known: tuple[str, ...]
+    last: tuple[str, ...]
+    windows: tuple[str, ...]
+
+    @property
+    def counts(self) -> tuple[str, ...]:
+        """The fields that say how many samples there are of a rate."""
+        return tuple(f"{name}.count" for name in self.windows)
+
+    @property
+    def changed(self) -> tuple[str, ...]:
+        """All fields that it sets."""
+        return (*self.known, *self.last, *self.counts)
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """An instant at which a verdict can change: ``base`` + ``wait_ns``, while ``condition``."""
+
+    condition: str
+    base: str
+    wait_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class MessageView:
+    """The function that takes a topic's messages, and what it calls after it.
+
+    Attributes:
+        rules: the indices of the rules that a message can change; ``judges`` their functions.
+        judge: the function that judges them all; empty if there are none.
+        after: the function that does so if there is news; empty if there are none.
+    """
+
+    handler: Handler
+    rules: tuple[int, ...]
+    judges: tuple[str, ...]
+    judge: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True)
+class TextTable:
+    """A text as the rules know it: the places, from 1, of the constants it is compared with."""
+
+    name: str
+    texts: tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ActionView:
+    """An action: its name, and the field that tells whether it is active, if it can be reset."""
+
+    name: str
+    enumerator: str
+    active: str
+    latched: bool
+    settle: str
+    reset_by: str
+    lines: tuple[str, ...]
+    comment: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ArgumentRows:
+    """The table of one call's arguments."""
+
+    name: str
+    lines: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MonitorView:
+    """All that the templates print; see the parts."""
+
+    program: Program
+    layout: Layout
+    sites: Sites
+    fields: tuple[Field, ...]
+    texts: tuple[TextTable, ...]
+    forgets: tuple[Forget, ...]
+    timeouts: tuple[Timeout, ...]
+    ends: tuple[End, ...]
+    rules: tuple[Function, ...]
+    behaviours: tuple[Function, ...]
+    outer: tuple[str, ...]
+    behaviour_names: tuple[tuple[str, str], ...]
+    messages: tuple[MessageView, ...]
+    actions: tuple[ActionView, ...]
+    optional: tuple[tuple[str, str, str], ...]
+
+    @property
+    def prefix(self) -> str:
+        """What public names begin with."""
+        return self.layout.prefix
+
+    @property
+    def macro(self) -> str:
+        """What macros and enumerators begin with."""
+        return self.layout.macro
+
+    @property
+    def title(self) -> str:
+        """The program's name, fit for a comment."""
+        return re.sub(r"[^\w .-]", "_", self.program.name)
+
+    @property
+    def memory(self) -> int:
+        """The greatest size of the struct in bytes, on machines of up to 64 bits."""
+        total = sum(field.size for field in self.fields)
+        return (total + 7) // 8 * 8
+
+    @property
+    def has_instant_timeouts(self) -> bool:
+        """Whether an input is missing from the moment on at which its timeout begins."""
+        return any(each.duration_ns == 0 for each in self.timeouts)
+
+    @property
+    def has_base(self) -> bool:
+        """Whether an input counts time from a restart."""
+        return any(field.restarted == "from" for field in self.fields)
+
+    @property
+    def has_arguments(self) -> bool:
+        """Whether an action is called with arguments."""
+        return any(site.arguments for site in self.sites.rows)
+
+    @property
+    def argument_rows(self) -> Iterator[ArgumentRows]:
+        """The tables of the calls' arguments."""
+        for index, site in enumerate(self.sites.rows):
+            if site.arguments:
+                lines = tuple(_argument(self.macro, each) for each in site.arguments)
+                yield ArgumentRows(f"arguments_{index}", lines)
+
+    @property
+    def site_lines(self) -> Iterator[str]:
+        """The rows of the table of sites."""
+        for index, site in enumerate(self.sites.rows):
+            none = f"{self.macro}_BEHAVIOUR_NONE"
+            behaviour = none if site.behaviour is None else self.behaviour_names[site.behaviour][1]
+            cells = [self.actions[site.action].enumerator, behaviour, f"{site.line}U"]
+            if self.has_arguments:
+                rows = f"arguments_{index}" if site.arguments else "NULL"
+                cells += [rows, f"{len(site.arguments)}U"]
+            yield f"{{{', '.join(cells)}}}"
+
+    def resets_before(self, action: ActionView) -> list[str]:
+        """Return what resets the actions that stand before one."""
+        return [each.reset_by for each in self.actions[: self.actions.index(action)]]
+
+    @property
+    def has_latched(self) -> bool:
+        """Whether an action is latched."""
+        return any(each.latched for each in self.actions)
+
+    @property
+    def samples(self) -> int:
+        """How many samples a rate over a span of time keeps at most; 0 if there is none."""
+        return SAMPLES if any(each.window for each in self.layout.memories.values()) else 0
+
+    @property
+    def has_arrays(self) -> bool:
+        """Whether a message hands in an array."""
+        return any(
+            parameter.form == "array"
+            for message in self.messages
+            for parameter in message.handler.parameters
+        )
+
+
+def monitor_view(program: Program) -> MonitorView:
+    """Return the view of a program.
+
+    Raises:
+        GenerationError: the rules ask for what a monitor of fixed size, or C, cannot do.
+    """
+    refuse(program)
+    layout = lay_out(program)
+    places = sites(program)
+    rules = tuple(judge(program, layout, rule) for rule in program.rules)
+    behaviours = tuple(walk.behaviours(program))
+    return MonitorView(
+        program=program,
+        layout=layout,
+        sites=places,
+        fields=tuple(_fields(program, layout)),
+        texts=tuple(
+            TextTable(t.name, tuple((_c_text(each), len(each.encode())) for each in t.texts))
+            for t in layout.terms.values()
+            if t.texts
+        ),
+        forgets=tuple(_forgets(program, layout)),
+        timeouts=tuple(_timeouts(program, layout)),
+        ends=tuple(ends(program, layout)),
+        rules=rules,
+        behaviours=tuple(behave(program, layout, each, places) for each in reversed(behaviours)),
+        outer=tuple(layout.behave[each.index] for each in program.behaviours),
+        behaviour_names=tuple(
+            (each.name, f"{layout.macro}_BEHAVIOUR_{each.name.upper()}") for each in behaviours
+        ),
+        messages=tuple(_messages(program, layout)),
+        actions=tuple(_actions(program, layout, places)),
+        optional=tuple(
+            (each.name, f"{layout.prefix}_enable_{each.name}", layout.enabled[each.index])
+            for each in behaviours
+            if each.optional
+        ),
+    )
+
+
+def _fields(program: Program, layout: Layout) -> list[Field]:
+    """Return the struct's fields, the widest first."""
+    fields = [
+        Field("void *", "owner", "handed on to the callback", 8, "owner"),
+        Field("int64_t ", "now", "the instant of the last event, or later", 8, "bounded(t)"),
+        Field("int64_t ", "due", "when to call advance at the latest", 8),
+        *_input_fields(program, layout),
+        *_verdict_fields(program, layout),
+    ]
+    return sorted(fields, key=lambda each: -each.size)
+
+
+def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
+    for each in program.inputs:
+        fields = layout.inputs[each.index]
+        if fields.base:
+            what = "when its timeout began" if fields.missing else "when its last message came"
+            yield Field("int64_t ", fields.base, what, 8, "", "from")
+            yield Field("bool ", fields.came, "whether a message has counted", 1, "", "false")
+        if fields.missing:
+            yield Field("bool ", fields.missing, "whether its timeout has passed", 1, "", "false")
+        if fields.known:
+            yield Field("bool ", fields.known, f"whether {each.name} is known", 1, "false")
+    for term in layout.terms.values():
+        size = {"bool": 1, "uint32_t": 4}.get(term.type, 8)
+        initial = {"bool": "false", "uint32_t": "0U", "double": "0.0"}.get(term.type, "0")
+        yield Field(f"{term.type} ", term.name, "as of the last message", size, initial)
+        if term.known != layout.inputs[term.input].known:
+            yield Field("bool ", term.known, "whether it is known", 1, "false")
+    for finding in layout.findings.values():
+        yield Field("bool ", finding.name, "how values compare", 1, "false")
+    for memory in layout.memories.values():
+        if memory.last:
+            yield Field("double ", memory.last, "the value before", 8)
+        if memory.last_t:
+            yield Field("int64_t ", memory.last_t, "when it came", 8, "", "m->now")
+        if memory.total:
+            yield Field("double ", memory.total, "the angle without its jumps", 8, "0.0")
+        if memory.window:
+            yield Field(f"{layout.prefix}_window ", memory.window, "its samples", WINDOW_SIZE)
+
+
+def _verdict_fields(program: Program, layout: Layout) -> Iterator[Field]:
+    verdict, unknown = f"{layout.prefix}_verdict ", f"{layout.macro}_UNKNOWN"
+    unset = f"{layout.macro}_UNSET"
+    for rule in program.rules:
+        name = layout.verdicts[rule.index]
+        yield Field(verdict, name, f"rule {rule.full_name}", 4, unknown)
+        what = "when it last became true or ceased to be"
+        yield Field("int64_t ", layout.turned[rule.index], what, 8, "", "m->now")
+    for name in layout.since.values():
+        yield Field("int64_t ", name, "since when its operand has been true", 8, "", unset)
+    for name in layout.conditions.values():
+        yield Field(verdict, name, "its condition and all around it", 4, unknown)
+    for name in layout.enabled.values():
+        yield Field("bool ", name, "whether it may act", 1, "true")
+    for name in layout.active.values():
+        yield Field("bool ", name, "whether it was run and not reset since", 1, "false")
+    for name in layout.ran.values():
+        yield Field("bool ", name, "whether it ran in this event", 1, "false")
+    yield Field("bool ", "started", "whether there has been an event", 1, "false")
+
+
+def _forgets(program: Program, layout: Layout) -> Iterator[Forget]:
+    for index, function in layout.forgets.items():
+        known = dict.fromkeys(term.known for term in layout.terms_of(index))
+        if layout.inputs[index].known:
+            known[layout.inputs[index].known] = None
+        memories = layout.memories_of(index).values()
+        last = tuple(each.last for each in memories if each.last)
+        windows = tuple(each.window for each in memories if each.window)
+        yield Forget(function, program.inputs[index].name, tuple(known), last, windows)
+
+
+def _timeouts(program: Program, layout: Layout) -> Iterator[Timeout]:
+    for index, function in layout.expires.items():
+        each, fields = program.inputs[index], layout.inputs[index]
+        forget = layout.forgets.get(index, "")
+        assert each.timeout_ns is not None
+        times = (each.timeout_ns, fields.base, fields.came, fields.missing)
+        yield Timeout(each.name, function, *times, forget)
+
+
+def ends(program: Program, layout: Layout) -> Iterator[End]:
+    """Yield the instants, but for timeouts, at which a verdict can change by itself."""
+    for condition in walk.conditions(program):
+        if isinstance(condition, For) and condition.index in layout.since:
+            since = layout.since[condition.index]
+            yield End(f"m->{since} != {layout.macro}_UNSET", since, condition.duration_ns)
+    found: dict[End, None] = {}
+    for condition in walk.conditions(program):
+        if isinstance(condition, Age):
+            fields = layout.inputs[condition.input]
+            for change in age_changes(condition):
+                if change > 0:  # what is no older than that never was
+                    found[End(f"m->{fields.came}", fields.base, change)] = None
+    yield from found
+
+
+def _messages(program: Program, layout: Layout) -> Iterator[MessageView]:
+    for handler in handlers(program, layout):
+        rules = tuple(
+            rule.index
+            for rule in program.rules
+            if inputs_of(program, rule.condition) & set(handler.inputs)
+        )
+        judges = tuple(layout.judges[index] for index in rules)
+        after = handler.observer.replace("observe", "after", 1) if judges else ""
+        judge = handler.observer.replace("observe", "judge_by", 1) if judges else ""
+        yield MessageView(handler, rules, judges, judges[0] if len(judges) == 1 else judge, after)
+
+
+def inputs_of(program: Program, condition: Condition) -> set[int]:
+    """Return the inputs that a rule's condition depends on."""
+    found: set[int] = set()
+    for part in walk.parts(condition):
+        if isinstance(part, Missing | Unknown | Age):
+            found.add(part.input)
+        found |= {input_of(program, value) for value in compared(part)}
+    return found
+
+
+def _actions(program: Program, layout: Layout, places: Sites) -> Iterator[ActionView]:
+    for action in program.actions:
+        enumerator = f"{layout.macro}_ACTION_{action.name.upper()}"
+        active = layout.active.get(action.index, "")
+        lines = settle(layout, action, places) if active else []
+        reset_by = layout.ran[action.reset_by] if action.reset_by is not None else ""
+        how = "is latched"
+        if action.reset_by is not None:
+            how = f"is reset by {program.actions[action.reset_by].name}"
+        title = comment(0, f"Action {action.name} {how}", action.span, "") if action.span else []
+        yield ActionView(
+            action.name,
+            enumerator,
+            active,
+            action.latched,
+            f"settle_{action.name}",
+            reset_by,
+            tuple(lines),
+            tuple(title),
+        )
+
+
+def _argument(macro: str, value: bool | int | float | str) -> str:
+    truth, whole, real, text = "false", "0", "0.0", "NULL"
+    if isinstance(value, bool):
+        kind, truth = "TRUTH", literal(value)
+    elif isinstance(value, int):
+        kind, whole = "INTEGER", integer(value)
+    elif isinstance(value, float):
+        kind, real = "NUMBER", number(value)
+    else:
+        kind, text = "TEXT", f'"{_c_text(value)}"'
+    return f"{{{macro}_{kind}, {truth}, {whole}, {real}, {text}}}"
+
+
+def _c_text(text: str) -> str:
+    """Return what stands between the quotes: all but plain ASCII as octal escapes of its UTF-8.
+
+    No escape stands before a character that could be taken for its continuation.
+    """
+    escapes = {ord('"'): '\\"', ord("\\"): "\\\\", ord("?"): "\\?"}
+    pieces: list[str] = []
+    open_escape = False
+    for byte in text.encode():
+        octal = not 32 <= byte < 127
+        if open_escape and not octal:
+            pieces.append('" "')
+        pieces.append(f"\\{byte:03o}" if octal else escapes.get(byte, chr(byte)))
+        open_escape = octal
+    return "".join(pieces)

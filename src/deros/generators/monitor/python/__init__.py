@@ -1,0 +1,1 @@
+"""The monitor in Python: one pure module, straight-line code with one-shot deadlines."""

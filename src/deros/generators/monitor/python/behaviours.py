@@ -1,0 +1,170 @@
+"""The method that acts: all behaviours from top to bottom, then the resets they ask for.
+
+A behaviour is True or False; one on whose falsehood a reset depends is None while it is unknown.
+"""
+
+from __future__ import annotations
+
+from deros.generators.monitor.python.conditions import Conditions
+from deros.generators.monitor.python.layout import Layout
+from deros.generators.monitor.python.rules import interval_lines
+from deros.generators.text.logic import (
+    Atom,
+    Logic,
+    all_of,
+    any_of,
+    lay_out,
+    lay_out_call,
+)
+from deros.generators.text.provenance import comment, header
+from deros.monitor import walk
+from deros.monitor.ir import Action, Behaviour, Program, RuleRef, Trigger
+
+
+def act_lines(program: Program, layout: Layout) -> list[str]:
+    """Return the body of the method that acts."""
+    return _Writer(program, layout).act()
+
+
+def latched_lines(program: Program, layout: Layout) -> list[str]:
+    """Return what ``reset()`` does to the latched actions."""
+    return _Writer(program, layout).latched()
+
+
+class _Writer:
+    def __init__(self, program: Program, layout: Layout) -> None:
+        self._program = program
+        self._layout = layout
+        self._conditions = Conditions(program, layout)
+        self._names = [each.name for each in walk.behaviours(program)]
+
+    def act(self) -> list[str]:
+        lines = [f"        {name} = self._{name}" for name in self._verdicts()]
+        lines += [f"        {name} = False" for name in self._layout.ran.values()]
+        for behaviour in self._program.behaviours:
+            lines += self._behaviour(behaviour, None)
+        for action in self._program.actions:
+            if action.reset_by is not None:
+                lines += self._reset(action, action.reset_by)
+        return lines[1:] if lines and not lines[0] else lines
+
+    def latched(self) -> list[str]:
+        lines: list[str] = []
+        for action in self._program.actions:
+            if action.latched:
+                active = self._layout.active[action.index]
+                lines += ["", *self._title(action, "is latched")]
+                lines.append(f"        if self._{active}:")
+                lines += self._settle(action)
+                lines.append(f"            done = done and not self._{active}")
+        return lines
+
+    def _verdicts(self) -> list[str]:
+        names: dict[str, None] = {}
+        for behaviour in walk.behaviours(self._program):
+            for part in walk.parts(behaviour.condition):
+                if isinstance(part, RuleRef):
+                    names[self._layout.verdicts[part.rule]] = None
+        return list(names)
+
+    # Behaviours ---------------------------------------------------------------------------------
+
+    def _behaviour(self, behaviour: Behaviour, outer: str | None) -> list[str]:
+        nested = [n for n, item in enumerate(behaviour.body) if isinstance(item, Behaviour)]
+        first = nested[0] if nested else len(behaviour.body)
+        late = any(isinstance(item, Trigger) for item in behaviour.body[first:])
+        holds = f"self._{self._layout.holds[behaviour.index]}"
+        rises = self._layout.names.new(behaviour.name, "rises") if late else ""
+        text = header(behaviour.span.text) if nested else behaviour.span.text
+        lines = [
+            "",
+            *comment(8, f"Behaviour {behaviour.name}", behaviour.span, text),
+            *interval_lines(self._conditions, self._layout, behaviour.condition),
+            *([f"        {rises} = False"] if late else []),
+            *lay_out(8, "if ", self._true(behaviour, outer), ":"),
+            f"            if not {holds}:",
+            f"                {f'{rises} = ' if late else ''}{holds} = True",
+        ]
+        for trigger in behaviour.body[:first]:
+            assert isinstance(trigger, Trigger)
+            lines += self._trigger(16, trigger, behaviour)
+        if behaviour.index in self._layout.refusing:
+            false = self._false(behaviour, outer)
+            lines += [*lay_out(8, "elif ", false, ":"), f"            {holds} = False"]
+            lines += ["        else:", f"            {holds} = None"]
+        else:
+            lines += ["        else:", f"            {holds} = False"]
+        for item in behaviour.body[first:]:
+            if isinstance(item, Behaviour):
+                lines += self._behaviour(item, holds)
+            else:
+                lines += [f"        if {rises}:", *self._trigger(12, item, behaviour)]
+        return lines
+
+    def _true(self, behaviour: Behaviour, outer: str | None) -> Logic:
+        parts = [Atom(outer)] if outer else []
+        if behaviour.optional:
+            parts.append(Atom(f"{behaviour.name!r} not in self._disabled"))
+        return all_of([*parts, self._conditions.true(behaviour.condition)])
+
+    def _false(self, behaviour: Behaviour, outer: str | None) -> Logic:
+        parts = [Atom(f"{outer} is False")] if outer else []
+        if behaviour.optional:
+            parts.append(Atom(f"{behaviour.name!r} in self._disabled"))
+        return any_of([*parts, self._conditions.false(behaviour.condition)])
+
+    def _trigger(self, indent: int, trigger: Trigger, behaviour: Behaviour) -> list[str]:
+        blank = " " * indent
+        lines: list[str] = []
+        if trigger.action in self._layout.active:
+            lines.append(f"{blank}self._{self._layout.active[trigger.action]} = True")
+        if trigger.action in self._layout.ran:
+            lines.append(f"{blank}{self._layout.ran[trigger.action]} = True")
+        name = self._program.actions[trigger.action].name
+        return lines + _emit(
+            indent,
+            ["t", "'trigger'", repr(name), repr(behaviour.name)],
+            [repr(trigger.arguments), str(trigger.span.line)],
+        )
+
+    # Resets -------------------------------------------------------------------------------------
+
+    def _reset(self, action: Action, reset_by: int) -> list[str]:
+        active, ran = self._layout.active[action.index], self._layout.ran[reset_by]
+        return [
+            "",
+            *self._title(action, f"is reset by {self._program.actions[reset_by].name}"),
+            f"        if {ran} and self._{active}:",
+            *self._settle(action),
+        ]
+
+    def _title(self, action: Action, what: str) -> list[str]:
+        assert action.span is not None
+        return comment(8, f"Action {action.name} {what}", action.span, "")
+
+    def _settle(self, action: Action) -> list[str]:
+        """Return the statements that reset an action, if nothing that triggers it refuses it."""
+        assert action.span is not None
+        name, line = repr(action.name), str(action.span.line)
+        holds = [f"self._{self._layout.holds[each]}" for each in action.triggered_by]
+        indent = 16 if holds else 12
+        reset = [
+            f"{' ' * indent}self._{self._layout.active[action.index]} = False",
+            *_emit(indent, ["t", "'reset'", name], ["''", "()", line]),
+        ]
+        if not holds:
+            return reset
+        calls = [
+            f"({self._names[index]!r}, {held})"
+            for index, held in zip(action.triggered_by, holds, strict=True)
+        ]
+        return [
+            *lay_out(12, "if ", all_of(Atom(f"{held} is False") for held in holds), ":"),
+            *reset,
+            "            else:",
+            *lay_out_call(16, "self._refuse(", ["t", name, line, *calls]),
+        ]
+
+
+def _emit(indent: int, start: list[str], rest: list[str]) -> list[str]:
+    return lay_out_call(indent, "self._emit(Event(", [*start, *rest], "))")

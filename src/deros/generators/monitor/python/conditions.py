@@ -1,0 +1,258 @@
+"""Three-valued conditions as two-valued questions: is it true, is it false?
+
+Both answers are no where the condition is unknown. As unknown numbers are held as NaN, with which
+every comparison is false, most conditions need no test for *unknown* at all: ``speed > 0.5`` is the
+question whether it is true, ``speed <= 0.5`` whether it is false.
+"""
+
+from __future__ import annotations
+
+import math
+
+from deros.generators.monitor.python.layout import Layout
+from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of
+from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
+from deros.monitor.evaluate import COMPARE
+from deros.monitor.functions import FUNCTIONS, Result
+from deros.monitor.ir import (
+    Age,
+    And,
+    Apply,
+    Compare,
+    Condition,
+    Const,
+    Failsafe,
+    For,
+    Missing,
+    Not,
+    Operator,
+    Or,
+    Program,
+    Read,
+    RuleRef,
+    Scalar,
+    Scale,
+    Truth,
+    Unknown,
+    ValueExpression,
+    Within,
+)
+
+_OPPOSITE: dict[Operator, Operator] = {
+    "=": "!=",
+    "!=": "=",
+    "<": ">=",
+    "<=": ">",
+    ">": "<=",
+    ">=": "<",
+}
+
+
+class Conditions:
+    """Emits the conditions of one program. Names stand for local copies of what is remembered."""
+
+    def __init__(self, program: Program, layout: Layout) -> None:
+        """Emit for ``program`` with the names of ``layout``."""
+        self._program = program
+        self._layout = layout
+
+    def true(self, condition: Condition) -> Logic:
+        """Return the question whether a condition is true."""
+        match condition:
+            case Truth():
+                return self._truth(condition.operand, True)
+            case Compare():
+                return self._compare(condition.left, condition.operator, condition.right)
+            case Within():
+                return self._within(condition)
+            case Missing():
+                return Atom(self._layout.missing[condition.input])
+            case Unknown():
+                return self._is_unknown(condition)
+            case Age():
+                return self._age(condition, condition.operator)
+            case Not():
+                return self.false(condition.operand)
+            case And():
+                return all_of(self.true(each) for each in condition.operands)
+            case Or():
+                return any_of(self.true(each) for each in condition.operands)
+            case For():
+                return Atom(f"t >= {self._layout.dues[condition.index]}")
+            case Failsafe():
+                unknown = [NoneOf(self.false(condition.operand))]
+                expected = [self._is_not_awaited(index) for index in condition.inputs]
+                return any_of((self.true(condition.operand), all_of([*unknown, *expected])))
+            case RuleRef():
+                return Atom(self._layout.verdicts[condition.rule])
+
+    def false(self, condition: Condition) -> Logic:
+        """Return the question whether a condition is false."""
+        match condition:
+            case Truth():
+                return self._truth(condition.operand, False)
+            case Compare():
+                opposite = _OPPOSITE[condition.operator]
+                return self._compare(condition.left, opposite, condition.right)
+            case Within():
+                return self._outside(condition)
+            case Missing():
+                return Atom(f"not {self._layout.missing[condition.input]}")
+            case Unknown():
+                return self._is_not_unknown(condition)
+            case Age():
+                return self._age(condition, _OPPOSITE[condition.operator])
+            case Not():
+                return self.true(condition.operand)
+            case And():
+                return any_of(self.false(each) for each in condition.operands)
+            case Or():
+                return all_of(self.false(each) for each in condition.operands)
+            case For():
+                waiting = Atom(f"t < {self._layout.dues[condition.index]} < NEVER")
+                return any_of((waiting, self.false(condition.operand)))
+            case Failsafe():
+                return self.false(condition.operand)
+            case RuleRef():
+                return Atom(f"{self._layout.verdicts[condition.rule]} is False")
+
+    # Unknown ------------------------------------------------------------------------------------
+
+    def _is_unknown(self, condition: Unknown) -> Logic:
+        """Return the question whether a value is unknown: it is missing, or came without one."""
+        silent, missing = self._silence(condition.input)
+        if condition.operand is None:
+            unknown = f"not {self._layout.known[condition.input]}"
+        else:
+            value = self.value(condition.operand)
+            unknown = f"{value} != {value}"  # NaN differs from itself
+        return any_of((Atom(missing), all_of((Atom(f"not {silent}"), Atom(unknown)))))
+
+    def _is_not_unknown(self, condition: Unknown) -> Logic:
+        silent, missing = self._silence(condition.input)
+        if condition.operand is None:
+            known = self._layout.known[condition.input]
+        else:
+            value = self.value(condition.operand)
+            known = f"{value} == {value}"
+        return all_of((Atom(f"not {missing}"), any_of((Atom(silent), Atom(known)))))
+
+    def _silence(self, index: int) -> tuple[str, str]:
+        return self._layout.silent[index], self._layout.missing[index]
+
+    def _is_not_awaited(self, index: int) -> Logic:
+        """Return the question whether an input has come, or is missing."""
+        silent, missing = self._layout.silent[index], self._layout.missing[index]
+        return any_of((Atom(f"not {silent}"), Atom(missing)))
+
+    # Comparisons --------------------------------------------------------------------------------
+
+    def _truth(self, operand: ValueExpression, wanted: bool) -> Logic:
+        if isinstance(operand, Const):
+            return Atom(str(bool(operand.value) is wanted))
+        name = self.value(operand)
+        return Atom(name if wanted else f"{name} is False")
+
+    def _compare(self, left: ValueExpression, operator: Operator, right: ValueExpression) -> Logic:
+        if isinstance(left, Const):
+            left, operator, right = right, _MIRRORED[operator], left
+        if isinstance(left, Const) and isinstance(right, Const):
+            return Atom(str(COMPARE[operator](left.value, right.value)))
+        if self._is_number(left):
+            return _compare_numbers(self.value(left), operator, self.value(right))
+        if isinstance(right, Const) and isinstance(right.value, bool):
+            return self._truth(left, right.value is (operator == "="))
+        sides = [self.value(each) for each in (left, right) if not isinstance(each, Const)]
+        if operator == "=":
+            sides.pop()  # None equals nothing that is known
+        known = [Atom(f"{side} is not None") for side in sides]
+        sign = "==" if operator == "=" else operator
+        return all_of([*known, Atom(f"{self.value(left)} {sign} {self.value(right)}")])
+
+    def _within(self, condition: Within) -> Logic:
+        lower, operand, upper = self._interval(condition)
+        above = "<=" if condition.lower_closed else "<"
+        below = "<=" if condition.upper_closed else "<"
+        return Atom(f"{lower} {above} {operand} {below} {upper}")
+
+    def _outside(self, condition: Within) -> Logic:
+        lower, operand, upper = self._interval(condition)
+        below = Atom(f"{operand} {'<' if condition.lower_closed else '<='} {lower}")
+        above = Atom(f"{operand} {'>' if condition.upper_closed else '>='} {upper}")
+        # Beyond one bound is not outside while the other bound is unknown; NaN differs from itself.
+        known = [
+            Atom(f"{self.value(bound)} == {self.value(bound)}")
+            for bound in (condition.lower, condition.upper)
+            if not isinstance(bound, Const)
+        ]
+        return all_of([any_of((below, above)), *known])
+
+    def _interval(self, condition: Within) -> tuple[str, str, str]:
+        return (
+            self.value(condition.lower),
+            self.value(condition.operand),
+            self.value(condition.upper),
+        )
+
+    def _age(self, condition: Age, operator: Operator) -> Logic:
+        age = f"t - {self._layout.counted[condition.input]}"
+        return _compare_numbers(age, operator, f"{condition.bound_ns:_}")
+
+    # Values -------------------------------------------------------------------------------------
+
+    def value(self, value: ValueExpression) -> str:
+        """Return the text of a value; scaled ones are written out."""
+        match value:
+            case Const():
+                return literal(value.value)
+            case Scale():
+                return scaled(self.value(value.operand), value)
+            case _:
+                return self._layout.values[value].name
+
+    def _is_number(self, value: ValueExpression) -> bool:
+        match value:
+            case Const():
+                return not isinstance(value.value, bool | str)
+            case Scale():
+                return True
+            case Apply():
+                return FUNCTIONS[value.function].result is not Result.BOOLEAN
+            case Read():
+                base = self._program.leaves[value.leaf].type.base
+                return base in INTEGER_RANGES or base in FLOAT_TYPES
+
+
+_MIRRORED: dict[Operator, Operator] = {
+    "=": "=",
+    "!=": "!=",
+    "<": ">",
+    "<=": ">=",
+    ">": "<",
+    ">=": "<=",
+}
+
+
+def _compare_numbers(left: str, operator: Operator, right: str) -> Logic:
+    if operator == "!=":  # NaN differs from everything, but unknown is not known to differ
+        return any_of((Atom(f"{left} < {right}"), Atom(f"{left} > {right}")))
+    sign = "==" if operator == "=" else operator
+    return Atom(f"{left} {sign} {right}")
+
+
+def literal(value: Scalar) -> str:
+    """Return a constant as Python writes it."""
+    if isinstance(value, float) and math.isinf(value):
+        return "math.inf" if value > 0 else "-math.inf"
+    return repr(value)
+
+
+def scaled(operand: str, scale: Scale) -> str:
+    """Return ``operand * factor + offset`` for an operand given as text."""
+    if isinstance(scale.operand, Scale) and scale.operand.offset:
+        operand = f"({operand})"
+    product = f"{operand} * {literal(scale.factor)}"
+    if not scale.offset:
+        return product
+    sign = "-" if scale.offset < 0 else "+"
+    return f"{product} {sign} {literal(abs(scale.offset))}"

@@ -1,0 +1,71 @@
+"""What the emitted monitor tells of itself: its rules' states, and whether it is waiting."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros.generators.monitor.python.layout import Layout
+from deros.generators.text.logic import Atom, all_of, any_of, lay_out, lay_out_call
+from deros.monitor import walk
+from deros.monitor.ir import Age, Missing, Program, RuleRef, Unknown
+from deros.monitor.reads import Term, one_line, term_name, terms
+
+
+def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield each behaviour's name with those of the rules that its condition names."""
+    for behaviour in walk.behaviours(program):
+        names = {
+            program.rules[part.rule].full_name: None
+            for part in walk.parts(behaviour.condition)
+            if isinstance(part, RuleRef)
+        }
+        yield behaviour.name, tuple(names)
+
+
+def explained_lines(program: Program, layout: Layout) -> list[str]:
+    """Return the items of the tuple that ``explain()`` returns, one call a rule."""
+    lines: list[str] = []
+    for rule in program.rules:
+        reads = [
+            f"({term_name(program, term)!r}, {value_text(term, layout)})"
+            for term in terms(rule.condition)
+        ]
+        arguments = [
+            repr(rule.full_name),
+            str(rule.span.line),
+            repr(one_line(rule.span.text)),
+            f"self._{layout.verdicts[rule.index]}",
+            f"self._{layout.since[rule.index]}",
+            f"self._{layout.why[rule.index]}",
+            *reads,
+        ]
+        lines += lay_out_call(12, "explained(", arguments, "),")
+    return lines
+
+
+def waiting_lines(layout: Layout) -> list[str]:
+    """Return the statement that tells whether an input has yet to come for the first time."""
+    inputs = [
+        all_of((Atom(f"self._{layout.silent[n]}"), Atom(f"not self._{layout.missing[n]}")))
+        for n in layout.silent
+    ]
+    return lay_out(8, "return ", any_of(inputs) if inputs else Atom("False"))
+
+
+def value_text(term: Term, layout: Layout) -> str:
+    """Return the expression of a term's value, with NaN or None for unknown."""
+    match term:
+        case Missing():
+            return f"self._{layout.missing[term.input]}"
+        case Unknown():
+            if term.operand is None:
+                known = f"self._{layout.known[term.input]}"
+            else:
+                value = f"self._{layout.values[term.operand].name}"
+                known = f"{value} == {value}"
+            silent, missing = layout.silent[term.input], layout.missing[term.input]
+            return f"self._{missing} or not (self._{silent} or {known})"
+        case Age():
+            return f"(self._now - self._{layout.counted[term.input]}) / 1e9"
+        case _:
+            return f"self._{layout.values[term].name}"

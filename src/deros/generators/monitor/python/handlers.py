@@ -1,0 +1,373 @@
+"""What a message does to its inputs: one handler per topic."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from deros.generators.monitor.python.conditions import literal, scaled
+from deros.generators.monitor.python.layout import Layout, input_of
+from deros.generators.monitor.python.names import RESERVED
+from deros.generators.monitor.python.rules import Judge
+from deros.generators.text.logic import (
+    MAX_LINE,
+    Atom,
+    Logic,
+    all_of,
+    any_of,
+    lay_out,
+    lay_out_call,
+)
+from deros.generators.text.provenance import comment
+from deros.generators.text.unique_names import UniqueNames
+from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
+from deros.monitor import walk
+from deros.monitor.engine import age_changes
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import Age, Apply, Const, Input, Leaf, Program, Read, Scale, ValueExpression
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One argument of a handler: a field of the topic's message.
+
+    Attributes:
+        name: the parameter's name.
+        annotation: its type, as Python writes it.
+        path: the field, from the message's root. Where the path has an index that the message's
+            array does not have, the caller passes NaN.
+        leaves: the leaves of the program that it feeds.
+    """
+
+    name: str
+    annotation: str
+    path: tuple[str | int, ...]
+    leaves: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Handler:
+    """The method that takes a topic's messages.
+
+    Attributes:
+        topic: the topic as the rules name it.
+        type: its message type, as ROS 2 writes it.
+        method: the method's name; its arguments are the time in ns, then ``parameters``.
+        parameters: the fields it takes, in order.
+        signature: its first line or lines.
+        lines: what it does to the inputs.
+        judges: the methods that it calls then, for the rules that depend on the topic.
+    """
+
+    topic: str
+    type: str
+    method: str
+    parameters: tuple[Parameter, ...]
+    signature: tuple[str, ...]
+    lines: tuple[str, ...]
+    judges: tuple[str, ...]
+
+
+_FRESH = "fresh = True"
+
+
+def handlers(
+    program: Program, layout: Layout, judges: Sequence[Judge], known_at_start: bool
+) -> tuple[Handler, ...]:
+    """Return the handlers of a program, in the order of its topics.
+
+    Those judge nothing when a message says nothing new, unless something is ``known_at_start``:
+    then the first message, whatever it says, is the first event.
+    """
+    methods = UniqueNames(frozenset())
+    return tuple(
+        _Writer(program, layout, topic, known_at_start).handler(
+            methods.new("on", topic), tuple(each.method for each in judges if topic in each.topics)
+        )
+        for topic in program.topics
+    )
+
+
+class _Writer:
+    """Writes the handler of one topic."""
+
+    def __init__(self, program: Program, layout: Layout, topic: str, at_first: bool) -> None:
+        self._program = program
+        self._layout = layout
+        self._topic = topic
+        self._inputs = [each for each in program.inputs if each.topic == topic]
+        self._names = UniqueNames(RESERVED)
+        self._parameters = self._name_parameters()
+        self._locals: dict[ValueExpression, str] = {}
+        ages = any(each.index in layout.counted for each in self._inputs)
+        self._tells_news = not ages and not at_first
+        """Whether a message that says nothing new can be told; an age always changes."""
+        read = [each for each in self._inputs if self._is_observed(each)]
+        self._counts_news = self._tells_news and len(read) > 1
+
+    def handler(self, method: str, judges: tuple[str, ...]) -> Handler:
+        lines: list[str] = []
+        for each in self._inputs:
+            lines += self._input(each)
+        if self._counts_news:
+            lines = ["        fresh = False", *lines, "        if not fresh:", "            return"]
+        parameters = tuple(self._parameters.values())
+        signature = ["self", "t: int", *(f"{each.name}: {each.annotation}" for each in parameters)]
+        return Handler(
+            self._topic,
+            str(self._program.topics[self._topic]),
+            method,
+            parameters,
+            tuple(lay_out_call(4, f"def {method}(", signature, ") -> None:")),
+            tuple(lines),
+            judges,
+        )
+
+    def _name_parameters(self) -> dict[tuple[str | int, ...], Parameter]:
+        leaves: dict[tuple[str | int, ...], list[Leaf]] = {}
+        for each in self._inputs:
+            for index in each.leaves:
+                leaf = self._program.leaves[index]
+                leaves.setdefault(leaf.path, []).append(leaf)
+        return {
+            path: Parameter(
+                self._names.new(*path),
+                _annotation(group[0].type),
+                path,
+                tuple(leaf.index for leaf in group),
+            )
+            for path, group in leaves.items()
+        }
+
+    # One input ----------------------------------------------------------------------------------
+
+    def _input(self, each: Input) -> list[str]:
+        tests = [*self._presence(each), *self._guards(each)]
+        indent = 12 if tests else 8
+        observed = [*self._functions(each, indent), *self._observe(each, indent)]
+        if not observed:
+            return []
+        lines = comment(8, f"Input {each.name}", each.span)
+        if not tests:
+            return lines + observed
+        lines += [*lay_out(8, "if ", all_of(tests), ":"), *observed]
+        if each.index in self._layout.forget:
+            lines += ["        else:", f"            self._{self._layout.forget[each.index]}()"]
+            lines += [f"            {_FRESH}"] if self._counts_news else []
+        return lines
+
+    def _presence(self, each: Input) -> list[Logic]:
+        """Return the tests for NaN: a sensor's, or the caller's for an element not there."""
+        tests: list[Logic] = []
+        for index in each.leaves:
+            leaf = self._program.leaves[index]
+            name = self._parameters[leaf.path].name
+            is_float = leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown
+            if leaf.type.is_array and is_float:
+                tests.append(Atom(f"not np.isnan({name}).any()"))
+            elif leaf.type.is_array and _has_index(leaf):
+                tests.append(Atom(f"not isinstance({name}, float)"))
+            elif not leaf.type.is_array and (is_float or _has_index(leaf)):
+                tests.append(Atom(f"{name} == {name}"))
+        return tests
+
+    def _guards(self, each: Input) -> list[Logic]:
+        tests: dict[Logic, None] = {}
+        for function in self._functions_of(each):
+            guard = FUNCTIONS[function.function].guard
+            if guard is not None:
+                arguments = [self._value(function.arguments[n]) for n in guard.arguments]
+                tests[Atom(f"{guard.python_call}({', '.join(arguments)})")] = None
+        return list(tests)
+
+    def _functions(self, each: Input, indent: int) -> list[str]:
+        """Return the statements that compute the functions of an input, into local names."""
+        lines: list[str] = []
+        blank = " " * indent
+        units: set[tuple[ValueExpression, ...]] = set()
+        for function in self._functions_of(each):
+            row = FUNCTIONS[function.function]
+            if row.python_of_unit:
+                if function.arguments not in units:
+                    units.add(function.arguments)
+                    lines += self._of_quaternion(each, function.arguments, indent)
+                continue
+            slot = self._layout.values[function].name
+            name = self._locals[function] = self._names.new(slot)
+            arguments = [self._value(argument) for argument in function.arguments]
+            call = row.python_call
+            if function in self._layout.windows:
+                call = f"self._{self._layout.windows[function]}.rate"
+                arguments = [arguments[0], _stamp(arguments[2:]), arguments[1]]
+            elif function.state is not None:
+                last, last_t = self._layout.last[function]
+                before = f"t - self._{last_t}" if last_t else f"self._{slot}"
+                arguments += [f"self._{last}", before]
+            lines += lay_out_call(indent, f"{name} = {call}(", arguments)
+            if function in self._layout.last:
+                lines.append(f"{blank}self._{last} = {arguments[0]}")
+                lines += [f"{blank}self._{last_t} = t"] if last_t else []
+            if row.python and function.function != "unwrapped":
+                lines += [f"{blank}if {name} is None:", f"{blank}    {name} = NAN"]
+        return lines
+
+    def _of_quaternion(
+        self, each: Input, parts: tuple[ValueExpression, ...], indent: int
+    ) -> list[str]:
+        """Return the statements for all functions of one quaternion, normalised once."""
+        blank = " " * indent
+        texts = [self._value(part) for part in parts]
+        results: list[str] = []
+        names: list[str] = []
+        for function in self._functions_of(each):
+            row = FUNCTIONS[function.function]
+            if row.python_of_unit and function.arguments == parts:
+                name = self._locals[function] = self._names.new(self._layout.values[function].name)
+                results += [f"{blank}    {line}" for line in row.python_of_unit[:-1]]
+                results.append(f"{blank}    {name} = {row.python_of_unit[-1]}")
+                names.append(name)
+        return [
+            *_lay_out_length(indent, texts),
+            f"{blank}if 0.0 < length < math.inf:",
+            *(
+                f"{blank}    {unit} = {part} / length"
+                for unit, part in zip(("ux", "uy", "uz", "uw"), texts, strict=True)
+            ),
+            *results,
+            f"{blank}else:",
+            f"{blank}    {' = '.join(names)} = NAN",
+        ]
+
+    def _observe(self, each: Input, indent: int) -> list[str]:
+        """Return the statements that remember a message, and find whether it says anything new."""
+        layout, index = self._layout, each.index
+        statements: list[str] = []
+        if index in layout.counted:
+            statements.append(f"self._{layout.counted[index]} = t")
+            soonest = min(self._changes(each), default=None)
+            statements += _call_at(soonest) if soonest is not None else []
+        slots = [
+            (f"self._{slot.name}", self._local(value))
+            for value, slot in layout.values.items()
+            if input_of(self._program, value) == index
+        ]
+        if index in layout.known:
+            slots.append((f"self._{layout.known[index]}", "True"))
+        if each.timeout_ns is not None:
+            statements += self._heard(each, each.timeout_ns, bool(slots))
+        lines = [f"{' ' * indent}{statement}" for statement in statements]
+        return lines + self._news(slots, indent)
+
+    def _heard(self, each: Input, timeout_ns: int, has_values: bool) -> list[str]:
+        """Return the statements that start the timeout anew."""
+        silent, missing = self._layout.silent[each.index], self._layout.missing[each.index]
+        lines = [
+            f"self._{self._layout.heard[each.index]} = t",
+            f"if self._{silent}:",
+            f"    self._{silent} = self._{missing} = False",
+            *(f"    {line}" for line in _call_at(timeout_ns)),
+        ]
+        if has_values:
+            return lines  # unknown values tell that it was silent
+        if self._counts_news:
+            return [*lines, f"    {_FRESH}"]
+        return [*lines, "else:", "    return"] if self._tells_news else lines
+
+    def _news(self, slots: Sequence[tuple[str, str]], indent: int) -> list[str]:
+        """Return the statements that take the values over, after a look whether they differ."""
+        blank = " " * indent
+        stores = [f"{blank}{attribute} = {local}" for attribute, local in slots]
+        if not slots or not self._tells_news:
+            return stores
+        if self._counts_news:
+            test: Logic = any_of(_is_new(attribute, local) for attribute, local in slots)
+            inner = [*stores, f"{blank}{_FRESH}"]
+            return [*lay_out(indent, "if ", test, ":"), *(f"    {line}" for line in inner)]
+        test = all_of(_is_old(attribute, local) for attribute, local in slots)
+        return [*lay_out(indent, "if ", test, ":"), f"{blank}    return", *stores]
+
+    def _local(self, value: ValueExpression) -> str:
+        if value in self._locals:
+            return self._locals[value]
+        assert isinstance(value, Read)
+        return self._parameters[self._program.leaves[value.leaf].path].name
+
+    def _changes(self, each: Input) -> Iterator[int]:
+        """Yield the ages of a message at which a verdict can change without another message."""
+        for condition in walk.conditions(self._program):
+            if isinstance(condition, Age) and condition.input == each.index:
+                yield from (change for change in age_changes(condition) if change > 0)
+
+    def _is_observed(self, each: Input) -> bool:
+        has_values = each.index in self._layout.forget
+        return has_values or each.timeout_ns is not None or each.index in self._layout.counted
+
+    def _functions_of(self, each: Input) -> list[Apply]:
+        return [
+            value
+            for value in self._layout.values
+            if isinstance(value, Apply) and value.input == each.index
+        ]
+
+    def _value(self, value: ValueExpression) -> str:
+        """Return the text of a function's argument, from the parameters."""
+        match value:
+            case Const():
+                return literal(value.value)
+            case Read():
+                return self._parameters[self._program.leaves[value.leaf].path].name
+            case Scale():
+                return scaled(self._value(value.operand), value)
+            case Apply():
+                return self._locals[value]
+
+
+def needed_texts(function: Apply) -> tuple[str, ...]:
+    """Return the names of the texts that the text of a function, or its call, needs beside it."""
+    if function.function != "rate_over":
+        return ()
+    return ("rate", "stamp_of") if len(function.arguments) > 2 else ("rate",)
+
+
+def _stamp(header: Sequence[str]) -> str:
+    """Return when a message was stamped, or if it has no header, when it came."""
+    return f"stamp_of({', '.join(header)})" if header else "t"
+
+
+def _lay_out_length(indent: int, parts: Sequence[str]) -> list[str]:
+    """Return the statement that computes the length of a quaternion, as the reference does."""
+    blank = " " * indent
+    squares = [f"{part} * {part}" for part in parts]
+    line = f"{blank}length = math.sqrt({' + '.join(squares)})"
+    if len(line) <= MAX_LINE:
+        return [line]
+    first, *rest = squares
+    lines = [f"{blank}    {first}", *(f"{blank}    + {square}" for square in rest)]
+    return [f"{blank}length = math.sqrt(", *lines, f"{blank})"]
+
+
+def _is_new(attribute: str, local: str) -> Logic:
+    return Atom(f"not {attribute}" if local == "True" else f"{local} != {attribute}")
+
+
+def _is_old(attribute: str, local: str) -> Logic:
+    return Atom(attribute if local == "True" else f"{local} == {attribute}")
+
+
+def _call_at(wait_ns: int) -> list[str]:
+    """Return the statements that make the deadline one that is so long after now."""
+    return [f"if t + {wait_ns:_} < self._due:", f"    self._due = t + {wait_ns:_}"]
+
+
+def _has_index(leaf: Leaf) -> bool:
+    return any(isinstance(step, int) for step in leaf.path)
+
+
+def _annotation(type_: FieldType) -> str:
+    if type_.base in FLOAT_TYPES:
+        scalar = "float"
+    elif type_.base in INTEGER_RANGES:
+        scalar = "int"
+    else:
+        scalar = "bool" if type_.base == "bool" else "str"
+    return f"Sequence[{scalar}]" if type_.is_array else scalar

@@ -1,0 +1,7 @@
+"""What other parts of the generators use of the monitor in Python."""
+
+from deros.generators.monitor.python.handlers import Handler, Parameter
+from deros.generators.monitor.python.render import render_monitor
+from deros.generators.monitor.python.view import MonitorView, monitor_view
+
+__all__ = ["Handler", "MonitorView", "Parameter", "monitor_view", "render_monitor"]

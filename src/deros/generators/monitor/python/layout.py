@@ -1,0 +1,225 @@
+"""What the emitted monitor remembers: which attribute holds what, and what it is called."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from deros.generators.monitor.python.names import RESERVED
+from deros.generators.text.unique_names import UniqueNames
+from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
+from deros.monitor import causes, walk
+from deros.monitor.functions import FUNCTIONS, Result
+from deros.monitor.ir import (
+    Age,
+    Apply,
+    Condition,
+    For,
+    Not,
+    Program,
+    Read,
+    RuleRef,
+    Unknown,
+    ValueExpression,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """One remembered value: the attribute is ``_name``, a local copy of it ``name``.
+
+    ``unknown`` is how *unknown* is written: ``NAN`` for numbers, with which every comparison is
+    false, and ``None`` for all else.
+    """
+
+    name: str
+    unknown: str
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """The names of all that a program's monitor remembers.
+
+    Attributes:
+        names: of them all, and of the methods.
+        values: what the conditions read of the inputs' messages, and every function of them.
+        last: of a function with a memory, what the message before gave, and when it came; the
+            latter is empty where it does not matter.
+        windows: of a rate over a span of time, its samples.
+        heard: of an input with a timeout, from when it counts: the last counted message, or the
+            start.
+        silent: of such an input, whether it waits for its first message, or for the first after its
+            timeout.
+        missing: of such an input, whether its timeout has passed.
+        known: of an input whose unknown() is asked for, whether it has a value.
+        counted: of an input that an ``age()`` asks for, when its last counted message came.
+        dues: of each ``For``, when it becomes true.
+        verdicts: of each rule.
+        since: of each rule, when it last became true or ceased to be.
+        three_valued: the rules whose falsehood matters, not only their truth.
+        refusing: the behaviours whose falsehood matters, because a reset depends on it.
+        holds: of each behaviour.
+        active: of each action that can be reset.
+        ran: of each action that resets another, whether it ran in the present event.
+        forget: of each input with values, the method that makes them unknown.
+        why: of each rule, the method that tells why it is true.
+        why_not: of each rule that a behaviour negates, the method that tells why it is false.
+        why_holds: of each behaviour, the method that tells why it holds.
+    """
+
+    names: UniqueNames
+    values: dict[ValueExpression, Slot] = field(default_factory=dict)
+    last: dict[ValueExpression, tuple[str, str]] = field(default_factory=dict)
+    windows: dict[ValueExpression, str] = field(default_factory=dict)
+    heard: dict[int, str] = field(default_factory=dict)
+    silent: dict[int, str] = field(default_factory=dict)
+    missing: dict[int, str] = field(default_factory=dict)
+    known: dict[int, str] = field(default_factory=dict)
+    counted: dict[int, str] = field(default_factory=dict)
+    dues: dict[int, str] = field(default_factory=dict)
+    verdicts: dict[int, str] = field(default_factory=dict)
+    since: dict[int, str] = field(default_factory=dict)
+    three_valued: frozenset[int] = frozenset()
+    refusing: frozenset[int] = frozenset()
+    holds: dict[int, str] = field(default_factory=dict)
+    active: dict[int, str] = field(default_factory=dict)
+    ran: dict[int, str] = field(default_factory=dict)
+    forget: dict[int, str] = field(default_factory=dict)
+    why: dict[int, str] = field(default_factory=dict)
+    why_not: dict[int, str] = field(default_factory=dict)
+    why_holds: dict[int, str] = field(default_factory=dict)
+
+
+def lay_out_memory(program: Program) -> Layout:
+    """Name all that the monitor of a program remembers, in the program's order."""
+    layout = Layout(
+        UniqueNames(RESERVED),
+        three_valued=frozenset(_three_valued(program)),
+        refusing=walk.refusing(program),
+    )
+    conditions = tuple(walk.conditions(program))
+    for value in walk.values(conditions):
+        if isinstance(value, Apply):
+            _name_value(program, value, layout)
+    for condition in conditions:
+        for value in walk.terminals(condition):
+            _name_value(program, value, layout)
+    _name_inputs(program, layout)
+    _name_verdicts(program, layout)
+    _name_actions(program, layout)
+    _name_causes(program, layout)
+    return layout
+
+
+def slots_of(layout: Layout, program: Program, index: int) -> list[Slot]:
+    """Return the slots that hold values of one input."""
+    return [slot for value, slot in layout.values.items() if input_of(program, value) == index]
+
+
+def input_of(program: Program, value: ValueExpression) -> int:
+    """Return the input that a leaf or a function belongs to."""
+    if isinstance(value, Apply):
+        return value.input
+    assert isinstance(value, Read)
+    return program.leaves[value.leaf].input
+
+
+def _name_inputs(program: Program, layout: Layout) -> None:
+    asked = {
+        each.input
+        for each in walk.conditions(program)
+        if isinstance(each, Unknown) and each.operand is None
+    }
+    for each in program.inputs:
+        if each.timeout_ns is not None:
+            layout.heard[each.index] = layout.names.new(each.name, "heard")
+            layout.silent[each.index] = layout.names.new(each.name, "silent")
+            layout.missing[each.index] = layout.names.new(each.name, "missing")
+        if each.index in asked:
+            layout.known[each.index] = layout.names.new(each.name, "known")
+        if each.index in asked or slots_of(layout, program, each.index):
+            layout.forget[each.index] = layout.names.new("forget", each.name)
+    for condition in walk.conditions(program):
+        if isinstance(condition, Age) and condition.input not in layout.counted:
+            name = program.inputs[condition.input].name
+            layout.counted[condition.input] = layout.names.new(name, "counted")
+
+
+def _name_verdicts(program: Program, layout: Layout) -> None:
+    for rule in program.rules:
+        layout.verdicts[rule.index] = layout.names.new(rule.entity, rule.name)
+        layout.since[rule.index] = layout.names.new(rule.entity, rule.name, "since")
+        for part in walk.parts(rule.condition):
+            if isinstance(part, For):
+                layout.dues[part.index] = layout.names.new(rule.entity, rule.name, "due")
+    for behaviour in walk.behaviours(program):
+        layout.holds[behaviour.index] = layout.names.new(behaviour.name)
+        for part in walk.parts(behaviour.condition):
+            if isinstance(part, For):
+                layout.dues[part.index] = layout.names.new(behaviour.name, "due")
+
+
+def _name_actions(program: Program, layout: Layout) -> None:
+    for action in program.actions:
+        if action.latched or action.reset_by is not None:
+            layout.active[action.index] = layout.names.new(action.name, "active")
+    for action in program.actions:
+        if action.reset_by is not None and action.reset_by not in layout.ran:
+            reset_by = program.actions[action.reset_by]
+            layout.ran[reset_by.index] = layout.names.new(reset_by.name, "ran")
+
+
+def _name_causes(program: Program, layout: Layout) -> None:
+    negated = causes.negated_rules(program)
+    for rule in program.rules:
+        layout.why[rule.index] = layout.names.new("why", rule.entity, rule.name)
+        if rule.index in negated:
+            layout.why_not[rule.index] = layout.names.new("why_not", rule.entity, rule.name)
+    for behaviour in walk.behaviours(program):
+        layout.why_holds[behaviour.index] = layout.names.new("why", behaviour.name)
+
+
+def _name_value(program: Program, value: ValueExpression, layout: Layout) -> None:
+    if value in layout.values:
+        return
+    slot = layout.values[value] = _slot(program, value, layout.names)
+    if isinstance(value, Apply) and value.state is not None:
+        if value.function == "rate_over":
+            layout.windows[value] = layout.names.new(slot.name, "window")
+            return
+        last = layout.names.new(slot.name, "last")
+        timed = value.function == "rate"
+        layout.last[value] = (last, layout.names.new(slot.name, "last_t") if timed else "")
+
+
+def _slot(program: Program, value: ValueExpression, names: UniqueNames) -> Slot:
+    if isinstance(value, Apply):
+        unknown = "None" if FUNCTIONS[value.function].result is Result.BOOLEAN else "NAN"
+        return Slot(names.new(program.inputs[value.input].name, value.function), unknown)
+    assert isinstance(value, Read)
+    leaf = program.leaves[value.leaf]
+    each = program.inputs[leaf.input]
+    rest = leaf.path[len(each.path) :] if leaf.path[: len(each.path)] == each.path else leaf.path
+    number = leaf.type.base in INTEGER_RANGES or leaf.type.base in FLOAT_TYPES
+    return Slot(names.new(each.name, *rest), "NAN" if number else "None")
+
+
+def _three_valued(program: Program) -> set[int]:
+    """Return the rules of which some behaviour, or a reset, asks whether they are false."""
+    found: set[int] = set()
+    refusing = walk.refusing(program)
+
+    def ask(condition: Condition, for_truth: bool, for_falsehood: bool) -> None:
+        match condition:
+            case RuleRef(rule=rule) if for_falsehood:
+                found.add(rule)
+            case Not(operand=operand):
+                ask(operand, for_falsehood, for_truth)
+            case For(operand=operand):
+                ask(operand, True, for_falsehood)
+            case _:
+                for operand in getattr(condition, "operands", ()):
+                    ask(operand, for_truth, for_falsehood)
+
+    for behaviour in walk.behaviours(program):
+        ask(behaviour.condition, True, behaviour.index in refusing)
+    return found

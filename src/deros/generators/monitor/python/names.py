@@ -1,0 +1,34 @@
+"""Names of the emitted module that nothing made from a model gets."""
+
+from __future__ import annotations
+
+from deros.generators.text.identifiers import PYTHON_WORDS
+from deros.monitor.functions import FUNCTIONS
+
+MODULE_NAMES = frozenset(
+    {
+        *("Callable", "Collection", "Sequence", "NamedTuple", "functools", "math", "np"),
+        *("Event", "Explanation", "Monitor", "RuleState", "explained", "scan_beams"),
+        *("RateWindow", "because", "shown", "stamp_of", "unknown_of"),
+        *("all_of", "any_of", "given"),
+        *("NAN", "NEVER", "OPTIONAL", "RULES_OF"),
+    }
+)
+METHOD_NAMES = frozenset(
+    {
+        *("act", "advance", "catch_up", "earliest", "enable", "evaluate", "explain", "refuse"),
+        *("disabled", "reset", "restart", "rules_of", "waiting"),
+    }
+)
+LOCAL_NAMES = frozenset(
+    {
+        *("changed", "due", "emit", "fresh", "now", "self", "started", "t", "verdict"),
+        *("causes", "found", "rules"),
+        *("cosine", "length", "sine", "ux", "uy", "uz", "uw"),
+    }
+)
+
+_FUNCTION_NAMES = {row.python_call for row in FUNCTIONS.values()} | {
+    row.guard.python_call for row in FUNCTIONS.values() if row.guard
+}
+RESERVED = MODULE_NAMES | METHOD_NAMES | LOCAL_NAMES | _FUNCTION_NAMES | PYTHON_WORDS

@@ -1,0 +1,24 @@
+"""The text of the Python monitor."""
+
+from __future__ import annotations
+
+from deros.generators.monitor.python.view import monitor_view
+from deros.generators.text.logic import MAX_LINE
+from deros.generators.text.templates import environment
+from deros.monitor.ir import Program
+
+
+def render_monitor(program: Program) -> str:
+    """Return the text of a module that monitors a program.
+
+    The module needs the standard library alone: no ROS, nothing of this package. Its class
+    ``Monitor`` is driven as :class:`deros.monitor.engine.Engine` is, with one method per topic.
+    """
+    template = environment("deros.generators.monitor.python").get_template("monitor.py.j2")
+    text: str = template.render(monitor=monitor_view(program))
+    return "".join(f"{_exempt(line)}\n" for line in text.rstrip("\n").split("\n"))
+
+
+def _exempt(line: str) -> str:
+    """Excuse a line that cannot be broken, such as a long text, from the linter's limit."""
+    return line if len(line) <= MAX_LINE else f"{line}  # noqa: E501"

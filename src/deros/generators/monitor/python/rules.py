@@ -1,0 +1,158 @@
+"""The methods that evaluate rules: one for the rules of the same topics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from deros.generators.monitor.python.conditions import Conditions
+from deros.generators.monitor.python.layout import Layout, input_of
+from deros.generators.text.logic import lay_out
+from deros.generators.text.provenance import comment
+from deros.monitor import walk
+from deros.monitor.ir import Age, Condition, Failsafe, For, Missing, Program, Rule, Unknown
+
+
+@dataclass(frozen=True, slots=True)
+class Judge:
+    """A method that evaluates the rules that depend on the same topics.
+
+    Attributes:
+        method: its name, without the leading ``_``.
+        topics: on which its rules depend.
+        lines: of its body.
+    """
+
+    method: str
+    topics: tuple[str, ...]
+    lines: tuple[str, ...]
+
+    @property
+    def subject(self) -> str:
+        """What its rules are about, in a few words."""
+        if not self.topics:
+            return "constants"
+        return self.topics[0] if len(self.topics) == 1 else f"{len(self.topics)} topics together"
+
+
+def judges(program: Program, layout: Layout) -> tuple[Judge, ...]:
+    """Return the methods for all rules, in the order of their first rules."""
+    groups: dict[tuple[str, ...], list[Rule]] = {}
+    for rule in program.rules:
+        groups.setdefault(_topics(program, rule.condition), []).append(rule)
+    return tuple(
+        Judge(
+            layout.names.new("judge", *_joined(topics)),
+            topics,
+            tuple(_lines(program, layout, rules)),
+        )
+        for topics, rules in groups.items()
+    )
+
+
+def _joined(topics: tuple[str, ...]) -> list[str]:
+    """Return the words of a method's name; with more than three topics it would be too long."""
+    return " and ".join(topics).split() if len(topics) <= 3 else ["several"]
+
+
+def _topics(program: Program, condition: Condition) -> tuple[str, ...]:
+    found = {program.inputs[index].topic for index in _inputs(program, condition)}
+    return tuple(topic for topic in program.topics if topic in found)
+
+
+def _inputs(program: Program, condition: Condition) -> set[int]:
+    found: set[int] = set()
+    for part in walk.parts(condition):
+        if isinstance(part, Missing | Unknown | Age):
+            found.add(part.input)
+        found |= {input_of(program, value) for value in walk.terminals(part)}
+    return found
+
+
+def _lines(program: Program, layout: Layout, rules: list[Rule]) -> list[str]:
+    conditions = Conditions(program, layout)
+    lines = [f"        {name} = self._{name}" for name in _remembered(layout, rules)]
+    lines.append("        changed = False")
+    for rule in rules:
+        lines.append("")
+        lines += comment(8, f"Rule {rule.full_name}", rule.span)
+        lines += interval_lines(conditions, layout, rule.condition)
+        lines += _verdict(conditions, layout, rule)
+    return lines
+
+
+def _remembered(layout: Layout, rules: list[Rule]) -> list[str]:
+    """Return the names that the rules read, in order, each once."""
+    names: dict[str, None] = {}
+    for rule in rules:
+        for part in walk.parts(rule.condition):
+            if isinstance(part, Missing):
+                names[layout.missing[part.input]] = None
+            elif isinstance(part, Age):
+                names[layout.counted[part.input]] = None
+            elif isinstance(part, Unknown):
+                names.update(dict.fromkeys(_awaited(layout, part.input)))
+                if part.operand is None:
+                    names[layout.known[part.input]] = None
+            elif isinstance(part, Failsafe):
+                for index in part.inputs:
+                    names.update(dict.fromkeys(_awaited(layout, index)))
+            for value in walk.terminals(part):
+                names[layout.values[value].name] = None
+    return list(names)
+
+
+def _awaited(layout: Layout, index: int) -> tuple[str, str]:
+    """Return the names that tell whether an input is awaited."""
+    return layout.silent[index], layout.missing[index]
+
+
+def interval_lines(conditions: Conditions, layout: Layout, condition: Condition) -> list[str]:
+    """Return the statements that start and clear the intervals of a condition, inner ones first."""
+    lines: list[str] = []
+    for part in walk.parts(condition):
+        if isinstance(part, For):
+            due = layout.dues[part.index]
+            lines += [
+                f"        {due} = self._{due}",
+                *lay_out(8, "if ", conditions.true(part.operand), ":"),
+                f"            if {due} is NEVER:",
+                f"                {due} = t + {part.duration_ns:_}",
+                f"                self._{due} = {due}",
+                f"                if {due} < self._due:",
+                f"                    self._due = {due}",
+                f"        elif {due} is not NEVER:",
+                f"            {due} = self._{due} = NEVER",
+            ]
+    return lines
+
+
+def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:
+    """Return the statements that find a rule's verdict, and note when it changes."""
+    held, since = f"self._{layout.verdicts[rule.index]}", f"self._{layout.since[rule.index]}"
+    true = conditions.true(rule.condition)
+    if rule.index not in layout.three_valued:
+        return [
+            *lay_out(8, "if ", true, ":"),
+            f"            if not {held}:",
+            *_turned(16, held, "True", since),
+            f"        elif {held}:",
+            *_turned(12, held, "False", since),
+        ]
+    return [
+        *lay_out(8, "if ", true, ":"),
+        "            verdict = True",
+        *lay_out(8, "elif ", conditions.false(rule.condition), ":"),
+        "            verdict = False",
+        "        else:",
+        "            verdict = None",
+        f"        if verdict != {held}:",
+        f"            if verdict or {held}:",
+        f"                {since} = t",
+        f"            {held} = verdict",
+        "            changed = True",
+    ]
+
+
+def _turned(indent: int, held: str, verdict: str, since: str) -> list[str]:
+    blank = " " * indent
+    return [f"{blank}{held} = {verdict}", f"{blank}{since} = t", f"{blank}changed = True"]

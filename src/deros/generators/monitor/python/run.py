@@ -1,0 +1,118 @@
+"""Running the generated monitor in this process, driven and answering as the reference engine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from deros.diagnostics import Span
+from deros.generators.monitor.python.render import render_monitor
+from deros.generators.monitor.python.view import monitor_view
+from deros.monitor import walk
+from deros.monitor.engine import Event
+from deros.monitor.explain import Explanation, RuleState
+from deros.monitor.ir import Program, Trigger
+from deros.monitor.state import LeafValue
+
+
+class GeneratedMonitor:
+    """The generated Python monitor of a program, with the methods of the reference engine.
+
+    Attributes:
+        events: all that has happened since the start, in order.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        start_ns: int = 0,
+        text: str | None = None,
+        grace_ns: int = 0,
+        latched: Collection[str] = (),
+    ) -> None:
+        """Generate the monitor, or take its ``text``, and start it at ``start_ns``."""
+        self.events: list[Event] = []
+        module: dict[str, Any] = {"__name__": "generated_monitor"}
+        exec(compile(text or render_monitor(program), "<generated monitor>", "exec"), module)
+        self._spans = _spans(program)
+        self._monitor = module["Monitor"](start_ns, self._take, grace_ns, latched)
+        self._handlers = {each.topic: each for each in monitor_view(program).handlers}
+
+    @property
+    def next_deadline(self) -> int | None:
+        """When to call :meth:`advance` at the latest."""
+        due: int | None = self._monitor.next_deadline
+        return due
+
+    @property
+    def waiting(self) -> bool:
+        """Whether an input with a timeout waits for its first message and is not missing yet."""
+        waiting: bool = self._monitor.waiting
+        return waiting
+
+    def message(self, t_ns: int, topic: str, leaves: Mapping[int, LeafValue]) -> list[Event]:
+        """Take a message and return what happened.
+
+        Raises:
+            KeyError: no input of the program is on ``topic``.
+        """
+        before = len(self.events)
+        handler = self._handlers[topic]
+        values = [leaves[parameter.leaves[0]] for parameter in handler.parameters]
+        present = [math.nan if value is None else value for value in values]
+        getattr(self._monitor, handler.method)(t_ns, *present)
+        return self.events[before:]
+
+    def advance(self, t_ns: int) -> list[Event]:
+        """Settle all that is due up to and including ``t_ns`` and return what happened."""
+        before = len(self.events)
+        self._monitor.advance(t_ns)
+        return self.events[before:]
+
+    def reset(self, t_ns: int) -> bool:
+        """Reset every latched action that is active; tell whether none was refused."""
+        done: bool = self._monitor.reset(t_ns)
+        return done
+
+    def enable(self, t_ns: int, behaviour: str, enabled: bool) -> list[Event]:
+        """Enable or disable an optional behaviour and return what happened."""
+        before = len(self.events)
+        self._monitor.enable(t_ns, behaviour, enabled)
+        return self.events[before:]
+
+    def explain(self) -> Explanation:
+        """Return what each rule is worth since the last event, and why each behaviour holds."""
+        told = self._monitor.explain()
+        return Explanation(tuple(RuleState(*each) for each in told.rules), told.causes)
+
+    def _take(self, event: Any) -> None:
+        span = self._spans.get((event.action, event.behaviour, event.line))
+        behaviour = event.behaviour or None
+        self.events.append(
+            Event(
+                event.t,
+                event.kind,
+                event.action,
+                behaviour,
+                event.arguments,
+                span,
+                event.holding,
+                event.unknown,
+            )
+        )
+
+
+def _spans(program: Program) -> dict[tuple[str, str, int], Span]:
+    """Return the places that events name by action, behaviour and line."""
+    spans = {
+        (action.name, "", action.span.line): action.span
+        for action in program.actions
+        if action.span
+    }
+    for behaviour in walk.behaviours(program):
+        for item in behaviour.body:
+            if isinstance(item, Trigger):
+                name = program.actions[item.action].name
+                spans[name, behaviour.name, item.span.line] = item.span
+    return spans

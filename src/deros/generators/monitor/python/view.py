@@ -1,0 +1,265 @@
+"""The view of a program that the template of the Python monitor prints."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from deros.generators.monitor.python.behaviours import act_lines, latched_lines
+from deros.generators.monitor.python.explained import explained_lines, rules_of, waiting_lines
+from deros.generators.monitor.python.handlers import Handler, handlers, needed_texts
+from deros.generators.monitor.python.layout import Layout, lay_out_memory, slots_of
+from deros.generators.monitor.python.rules import Judge, judges
+from deros.generators.monitor.python.whys import Why, whys
+from deros.monitor import walk
+from deros.monitor.engine import age_changes
+from deros.monitor.evaluate import evaluate_condition
+from deros.monitor.function_texts import PYTHON
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import Age, Apply, Program
+from deros.monitor.state import State
+
+_LONGEST_TITLE = 31
+
+
+@dataclass(frozen=True, slots=True)
+class Forget:
+    """The method that makes an input's values unknown: pairs of an attribute and its value."""
+
+    method: str
+    input: str
+    unknown: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Timeout:
+    """An input's timeout: what is remembered of it, and what to do when it passes."""
+
+    duration_ns: int
+    heard: str
+    silent: str
+    missing: str
+    forget: str | None
+
+    @property
+    def end(self) -> str:
+        """The instant at which it passes."""
+        return f"self._{self.heard} + {self.duration_ns:_}"
+
+
+@dataclass(frozen=True, slots=True)
+class MonitorView:
+    """All that the template prints.
+
+    Attributes:
+        name: of the program, as the first line of the module has room for it.
+        functions: definitions of the functions that the rules use.
+        uses_sequences: whether an array comes into a handler or a function.
+        uses_numpy: whether its numbers are looked at.
+        uses_cache: whether something computed of it is kept.
+        slots: the names of the attributes, in order.
+        initial: pairs of attribute and value at the start, of what a clock step leaves alone.
+        restarted: the same of what it does not.
+        forgets, timeouts: of the inputs.
+        handlers: one per topic.
+        judges: the methods that evaluate rules, and by topic which of them a message calls.
+        behaviours: the name of each, and the attribute that tells whether its condition holds.
+        refusing: the same of those that can refuse a reset.
+        rules_of: the name of each, and the rules that its condition names.
+        optional: the names of those that can be disabled.
+        explained: the lines of what ``explain()`` says of each rule.
+        whys: the methods that tell why rules are true or false, and why behaviours hold.
+        why_holds: the name of each behaviour, its attribute, and the method that tells why.
+        says_unknown: whether one of them tells which terms have no value.
+        joins_causes: whether one of them asks whether several parts have causes.
+        waiting: the lines of what ``waiting`` returns.
+        act: the lines of all behaviours and resets.
+        ends: instants, as attributes or sums, that are deadlines while they lie ahead.
+        known_at_start: whether a verdict can be known before any message, so that the first event,
+            whichever it is, must evaluate all rules.
+        latched: the lines of ``reset()``.
+    """
+
+    name: str
+    functions: tuple[str, ...]
+    uses_sequences: bool
+    uses_numpy: bool
+    uses_cache: bool
+    slots: tuple[str, ...]
+    initial: tuple[tuple[str, str], ...]
+    restarted: tuple[tuple[str, str], ...]
+    forgets: tuple[Forget, ...]
+    timeouts: tuple[Timeout, ...]
+    handlers: tuple[Handler, ...]
+    judges: tuple[Judge, ...]
+    behaviours: tuple[tuple[str, str], ...]
+    refusing: tuple[tuple[str, str], ...]
+    rules_of: tuple[tuple[str, tuple[str, ...]], ...]
+    optional: tuple[str, ...]
+    explained: tuple[str, ...]
+    whys: tuple[Why, ...]
+    why_holds: tuple[tuple[str, str, str], ...]
+    says_unknown: bool
+    joins_causes: bool
+    waiting: tuple[str, ...]
+    act: tuple[str, ...]
+    ends: tuple[str, ...]
+    known_at_start: bool
+    latched: tuple[str, ...]
+
+
+def monitor_view(program: Program) -> MonitorView:
+    """Return the view of a program; the glue of a node finds the handlers' signatures in it."""
+    layout = lay_out_memory(program)
+    functions = _function_texts(layout)
+    methods = judges(program, layout)
+    known_at_start = _known_at_start(program, layout)
+    made = handlers(program, layout, methods, known_at_start)
+    annotations = [each.annotation for handler in made for each in handler.parameters]
+    arrays = [*functions, *(line for handler in made for line in handler.lines)]
+    told = tuple(whys(program, layout))
+    initial = _initial(program, layout, known_at_start)
+    restarted = _restarted(layout)
+    forgets = _forgets(program, layout)
+    timeouts = _timeouts(program, layout)
+    attributes = [
+        *(name for name, _ in initial),
+        *(name for forget in forgets for name, _ in forget.unknown),
+        *(last_t for _, last_t in layout.last.values() if last_t),
+        *(
+            name
+            for timeout in timeouts
+            for name in (timeout.heard, timeout.silent, timeout.missing)
+        ),
+        *(name for name, _ in restarted),
+    ]
+    return MonitorView(
+        name=_title(program.name),
+        functions=functions,
+        uses_sequences=any("Sequence" in each for each in (*functions, *annotations)),
+        uses_numpy=any("np." in each for each in arrays),
+        uses_cache=any("functools." in each for each in functions),
+        slots=tuple(dict.fromkeys(attributes)),
+        initial=initial,
+        restarted=restarted,
+        forgets=forgets,
+        timeouts=timeouts,
+        handlers=made,
+        judges=methods,
+        behaviours=tuple(
+            (each.name, layout.holds[each.index]) for each in walk.behaviours(program)
+        ),
+        refusing=tuple(
+            (each.name, layout.holds[each.index])
+            for each in walk.behaviours(program)
+            if each.index in layout.refusing
+        ),
+        act=tuple(act_lines(program, layout)),
+        ends=_ends(program, layout),
+        known_at_start=known_at_start,
+        latched=tuple(latched_lines(program, layout)),
+        rules_of=tuple(rules_of(program)),
+        optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
+        explained=tuple(explained_lines(program, layout)),
+        whys=told,
+        why_holds=tuple(
+            (each.name, layout.holds[each.index], layout.why_holds[each.index])
+            for each in walk.behaviours(program)
+        ),
+        joins_causes=any("found += " in line for each in told for line in each.lines),
+        says_unknown=any("unknown_of(" in line for each in told for line in each.lines),
+        waiting=tuple(waiting_lines(layout)),
+    )
+
+
+def _title(name: str) -> str:
+    title = re.sub(r"[^\w .-]", "_", name)
+    return title if len(title) <= _LONGEST_TITLE else f"{title[: _LONGEST_TITLE - 3]}..."
+
+
+def _function_texts(layout: Layout) -> tuple[str, ...]:
+    texts: dict[str, None] = {}
+    for value in layout.values:
+        if isinstance(value, Apply):
+            row = FUNCTIONS[value.function]
+            if row.guard is not None:
+                texts[row.guard.python] = None
+            for name in needed_texts(value):
+                texts[PYTHON[name]] = None
+            texts[row.python] = None
+    return tuple(each for each in texts if each)
+
+
+def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tuple[str, str], ...]:
+    pairs = [
+        (name, "None" if rule in layout.three_valued else "False")
+        for rule, name in layout.verdicts.items()
+    ]
+    pairs += [
+        (name, "None" if index in layout.refusing else "False")
+        for index, name in layout.holds.items()
+    ]
+    for index, name in layout.active.items():
+        action = program.actions[index]
+        pairs.append((name, f"{action.name!r} in latched" if action.latched else "False"))
+    if any(each.optional for each in walk.behaviours(program)):
+        pairs.append(("disabled", "set()"))
+    pairs += [(last_t, "start") for _, last_t in layout.last.values() if last_t]
+    if known_at_start:
+        pairs.append(("started", "False"))
+    return tuple(pairs)
+
+
+def _restarted(layout: Layout) -> tuple[tuple[str, str], ...]:
+    pairs = [(name, "NAN") for name in layout.counted.values()]
+    pairs += [(name, "NEVER") for name in layout.dues.values()]
+    pairs += [(name, "t") for name in layout.since.values()]
+    return tuple(pairs)
+
+
+def _forgets(program: Program, layout: Layout) -> tuple[Forget, ...]:
+    found: list[Forget] = []
+    for index, method in layout.forget.items():
+        unknown = [(slot.name, slot.unknown) for slot in slots_of(layout, program, index)]
+        if index in layout.known:
+            unknown.append((layout.known[index], "False"))
+        for value, (last, _) in layout.last.items():
+            if isinstance(value, Apply) and value.input == index:
+                unknown.append((last, "NAN"))
+        for value, window in layout.windows.items():
+            if isinstance(value, Apply) and value.input == index:
+                unknown.append((window, "RateWindow()"))
+        found.append(Forget(method, program.inputs[index].name, tuple(unknown)))
+    return tuple(found)
+
+
+def _timeouts(program: Program, layout: Layout) -> tuple[Timeout, ...]:
+    return tuple(
+        Timeout(
+            each.timeout_ns,
+            layout.heard[each.index],
+            layout.silent[each.index],
+            layout.missing[each.index],
+            layout.forget.get(each.index),
+        )
+        for each in program.inputs
+        if each.timeout_ns is not None
+    )
+
+
+def _ends(program: Program, layout: Layout) -> tuple[str, ...]:
+    ends = [f"self._{name}" for name in layout.dues.values()]
+    for condition in walk.conditions(program):
+        if isinstance(condition, Age):
+            counted = layout.counted[condition.input]
+            ends += [f"self._{counted} + {change:_}" for change in age_changes(condition)]
+    return tuple(dict.fromkeys(ends))
+
+
+def _known_at_start(program: Program, layout: Layout) -> bool:
+    state = State(program, 0, len(layout.holds))
+    for rule in program.rules:
+        verdict = evaluate_condition(rule.condition, state, 0)
+        if verdict or state.since or (verdict is False and rule.index in layout.three_valued):
+            return True
+    return False

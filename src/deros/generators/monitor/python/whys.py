@@ -1,0 +1,233 @@
+"""The methods that tell why a rule is true, or false, and why a behaviour holds."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from deros.generators.monitor.python.conditions import Conditions
+from deros.generators.monitor.python.explained import value_text
+from deros.generators.monitor.python.layout import Layout
+from deros.generators.text.logic import MAX_LINE, Atom, Logic, lay_out, lay_out_call, text
+from deros.monitor import walk
+from deros.monitor.causes import (
+    AllOf,
+    AnyOf,
+    During,
+    OrUnknown,
+    Plan,
+    Say,
+    SayRule,
+    plan_of,
+    plan_of_behaviour,
+)
+from deros.monitor.ir import Program
+from deros.monitor.reads import term_name
+
+_TIME = re.compile(r"(?<![\w.])t [<>-]")
+_PLACE = "\0"  # stands for a value while a text is quoted
+
+Key = TypeVar("Key")
+
+
+@dataclass(frozen=True, slots=True)
+class Why:
+    """A method that tells why something is as it is.
+
+    Attributes:
+        method: its name, without the leading ``_``.
+        subject: what it tells the causes of.
+        lines: of its body.
+    """
+
+    method: str
+    subject: str
+    lines: tuple[str, ...]
+
+
+def whys(program: Program, layout: Layout) -> Iterator[Why]:
+    """Yield the methods of all rules, then of all behaviours."""
+    emitter = _Emitter(program, layout)
+    for rule in program.rules:
+        for methods, holds in ((layout.why, True), (layout.why_not, False)):
+            if rule.index in methods:
+                lines = emitter.body(plan_of(program, rule.condition, holds))
+                subject = f"{rule.full_name} is {str(holds).lower()}"
+                yield Why(methods[rule.index], subject, tuple(lines))
+    for behaviour in walk.behaviours(program):
+        lines = emitter.body(plan_of_behaviour(program, behaviour))
+        yield Why(layout.why_holds[behaviour.index], f"{behaviour.name} holds", tuple(lines))
+
+
+class _Emitter:
+    """Emits plans. Conditions read the attributes themselves, as causes are told seldom."""
+
+    def __init__(self, program: Program, layout: Layout) -> None:
+        self._program = program
+        self._layout = layout
+        self._own = replace(
+            layout,
+            values={
+                value: replace(slot, name=f"self._{slot.name}")
+                for value, slot in layout.values.items()
+            },
+            silent=_of_self(layout.silent),
+            missing=_of_self(layout.missing),
+            known=_of_self(layout.known),
+            counted=_of_self(layout.counted),
+            dues=_of_self(layout.dues),
+            verdicts=_of_self(layout.verdicts),
+        )
+        self._conditions = Conditions(program, self._own)
+        self._parts = 0  # local variables of a method
+
+    def body(self, plan: Plan) -> list[str]:
+        """Return the statements that tell the causes of what is known to be so."""
+        self._parts = 0
+        tests = list(self._tests(plan))
+        if not tests:
+            return _tuple_of([self._cause(each) for each in _sayings(plan)])
+        lines = ["        t = self._now"] if any(map(_TIME.search, tests)) else []
+        lines += ["        found = []", *self._block(8, plan, known=True)]
+        return [*lines, "        return tuple(found)"]
+
+    def _tests(self, plan: Plan, known: bool = True) -> Iterator[str]:
+        """Yield the conditions that telling asks for."""
+        match plan:
+            case Say() | SayRule():
+                if not known:
+                    yield text(self._test(plan))
+            case AllOf():
+                for each in plan.parts:
+                    yield from self._tests(each, known)
+            case AnyOf():
+                for each in plan.parts:
+                    yield from self._tests(each, False)
+            case During():
+                if not known:
+                    yield text(self._test(plan))
+                yield from self._tests(plan.part)
+            case OrUnknown():
+                yield from self._tests(plan.part, False)
+
+    # Statements, which append to what was found ---------------------------------------------------
+
+    def _block(self, indent: int, plan: Plan, known: bool) -> list[str]:
+        """Return the statements of a plan; ``known``: of what is known to be so."""
+        match plan:
+            case Say() | SayRule() if known:
+                return lay_out_call(indent, "found.append(", [self._cause(plan)])
+            case Say() | SayRule() | During() if not known:
+                return [
+                    *lay_out(indent, "if ", self._test(plan), ":"),
+                    *self._block(indent + 4, plan, True),
+                ]
+            case During():
+                return self._block(indent, plan.part, True)
+            case AllOf() if not known:
+                lines: list[str] = []
+                parts = [self._expression(indent, each, False, lines) for each in plan.parts]
+                return [*lines, *lay_out_call(indent, "found += all_of(", parts)]
+            case AllOf() | AnyOf():
+                sure = isinstance(plan, AllOf)
+                return [line for each in plan.parts for line in self._block(indent, each, sure)]
+            case OrUnknown():
+                return [
+                    *self._block(indent, plan.part, False),
+                    f"{' ' * indent}if not found:",
+                    *lay_out_call(indent + 4, "found.append(", [self._unknown(plan)]),
+                ]
+        raise AssertionError("every plan is one of these")
+
+    # Expressions, of which there is none where one part has none ----------------------------------
+
+    def _expression(self, indent: int, plan: Plan, known: bool, before: list[str]) -> str:
+        """Return the expression of a plan; of what it consists of is added to the lines before."""
+        match plan:
+            case Say() | SayRule():
+                test = "True" if known else text(self._test(plan))
+                return f"given({test}, {self._cause(plan)})"
+            case During():
+                if known:
+                    return self._expression(indent, plan.part, True, before)
+                test = text(self._test(plan))
+                if isinstance(plan.part, Say | SayRule):
+                    return f"given({test}, {self._cause(plan.part)})"
+                return f"given({test}, *{self._expression(indent, plan.part, True, before)})"
+            case AllOf() | AnyOf():
+                sure = known and isinstance(plan, AllOf)
+                head = "all_of" if isinstance(plan, AllOf) else "any_of"
+                parts = [self._expression(indent, each, sure, before) for each in plan.parts]
+                self._parts += 1
+                name = f"part_{self._parts}"
+                before += lay_out_call(indent, f"{name} = {head}(", parts)
+                return name
+            case OrUnknown():
+                raise AssertionError("failsafe is a whole rule, and no part of one")
+
+    def _test(self, plan: Say | SayRule | During) -> Logic:
+        match plan:
+            case Say():
+                asked = self._conditions.true if plan.holds else self._conditions.false
+                return asked(plan.condition)
+            case SayRule():
+                verdict = f"self._{self._layout.verdicts[plan.rule]}"
+                return Atom(verdict if plan.holds else f"{verdict} is False")
+            case During():
+                due = self._own.dues[plan.interval.index]
+                return Atom(f"t >= {due}" if plan.reached else f"t < {due} < NEVER")
+
+    def _cause(self, part: Say | SayRule) -> str:
+        if isinstance(part, SayRule):
+            method = (self._layout.why if part.holds else self._layout.why_not)[part.rule]
+            return f"because({part.head!r}, self._{method}())"
+        values = [
+            f"shown({value_text(each, self._layout)})"
+            for each in part.pieces
+            if not isinstance(each, str)
+        ]
+        pieces = [each if isinstance(each, str) else _PLACE for each in part.pieces]
+        return _text(pieces, values)
+
+    def _unknown(self, plan: OrUnknown) -> str:
+        reads = (
+            f"({term_name(self._program, each)!r}, {value_text(each, self._layout)})"
+            for each in plan.terms
+        )
+        return f"unknown_of({', '.join(reads)})"
+
+
+def _sayings(plan: Plan) -> Iterator[Say | SayRule]:
+    """Yield the causes of a plan without alternatives."""
+    match plan:
+        case Say() | SayRule():
+            yield plan
+        case AllOf() | AnyOf():
+            for each in plan.parts:
+                yield from _sayings(each)
+        case During() | OrUnknown():
+            yield from _sayings(plan.part)
+
+
+def _tuple_of(causes: list[str]) -> list[str]:
+    if len(causes) > 1:
+        return lay_out_call(8, "return (", causes)
+    line = f"        return ({causes[0]},)"
+    if len(line) <= MAX_LINE:
+        return [line]
+    return ["        return (", f"            {causes[0]},", "        )"]
+
+
+def _of_self(names: dict[Key, str]) -> dict[Key, str]:
+    return {key: f"self._{name}" for key, name in names.items()}
+
+
+def _text(pieces: list[str], values: list[str]) -> str:
+    """Return a string literal, with a value in each place."""
+    if not values:
+        return repr("".join(pieces))
+    quoted = repr("".join(each.replace("{", "{{").replace("}", "}}") for each in pieces))
+    first, *rest = quoted.split(repr(_PLACE)[1:-1])
+    return f"f{first}" + "".join(f"{{{v}}}{t}" for v, t in zip(values, rest, strict=True))

@@ -1,0 +1,1 @@
+"""Nodes: node descriptions to packages in Python and in C++."""

@@ -1,0 +1,169 @@
+"""What the templates of a node see in every language: its names, its notes and what it has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from deros.generators.node.parameter_maps import emitted_fields, emitted_members, parameter_maps
+from deros.generators.text.identifiers import Emitted, check_collisions
+from deros.generators.text.prose import sentence
+from deros.metamodels.node import NodeType, Parameter, Port, PortKind, Timer
+
+_HOOKS = ("on_parameters_changed",)
+_LIFECYCLE_HOOKS = (
+    "on_activate",
+    "on_cleanup",
+    "on_configure",
+    "on_deactivate",
+    "on_error",
+    "on_shutdown",
+)
+_METHODS = {
+    PortKind.PUBLISHER: ("publish_{}",),
+    PortKind.SUBSCRIPTION: ("on_{}",),
+    PortKind.SERVICE: ("handle_{}",),
+    PortKind.CLIENT: ("call_{}",),
+    PortKind.ACTION: ("accept_{}", "execute_{}", "cancel_{}"),
+    PortKind.ACTION_CLIENT: ("send_{}",),
+}
+_HANDLES = (PortKind.CLIENT, PortKind.ACTION_CLIENT)
+_UNITS_OF_TIME = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
+
+PortT = TypeVar("PortT")
+TimerT = TypeVar("TimerT")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NodeBase(Generic[PortT, TimerT]):
+    """What the views of a node have in common.
+
+    Attributes:
+        source: file name of the node description.
+    """
+
+    name: str
+    class_name: str
+    lifecycle: bool
+    source: str
+    summary: str
+    publishers: tuple[PortT, ...]
+    subscriptions: tuple[PortT, ...]
+    services: tuple[PortT, ...]
+    clients: tuple[PortT, ...]
+    actions: tuple[PortT, ...]
+    action_clients: tuple[PortT, ...]
+    timers: tuple[TimerT, ...]
+
+    @property
+    def base_class(self) -> str:
+        """Class that the generator owns."""
+        return f"{self.class_name}Base"
+
+    @property
+    def has_handlers(self) -> bool:
+        """Whether the user's class has something to fill in."""
+        return bool(self.subscriptions or self.timers or self.services or self.actions)
+
+    @property
+    def gated(self) -> bool:
+        """Whether there are callbacks that rest while a managed node is not active."""
+        return self.lifecycle and bool(self.subscriptions or self.timers)
+
+
+# Names --------------------------------------------------------------------------------------------
+
+
+def check_names(
+    model: NodeType,
+    class_name: str,
+    parameters: str,
+    identifier: Callable[[str], str],
+    hooks: Iterable[str] = (),
+) -> None:
+    """Refuse a node whose class would have two methods, or two fields of parameters, of one name.
+
+    Args:
+        model: the node.
+        class_name: the class that it becomes.
+        parameters: the structure of its parameters: ``class Parameters``.
+        identifier: turns names of ROS 2 into those of the language.
+        hooks: methods that the class has only in this language.
+
+    Raises:
+        GenerationError: at the second of two ports, timers or parameters.
+    """
+    check_collisions(_methods(model, identifier, hooks), f"the methods of class {class_name}")
+    check_collisions(emitted_fields(model, identifier), f"the {parameters}")
+    maps = parameter_maps(model)
+    for each in maps:
+        check_collisions(emitted_members(each, identifier), f"the values of {each.shown!r}")
+    structs = [
+        Emitted(each.struct, f"the map {each.shown!r}", each.parameters[0].name_span)
+        for each in maps
+        if each.struct is not None
+    ]
+    if structs:
+        taken = [Emitted("Parameters", "the structure of all parameters", model.name_span)]
+        check_collisions([*taken, *structs], f"the types of class {class_name}")
+
+
+def _methods(
+    model: NodeType, identifier: Callable[[str], str], hooks: Iterable[str]
+) -> Iterator[Emitted]:
+    """Yield every method that the base class gets, the hooks first."""
+    for hook in (*_HOOKS, *hooks, *(_LIFECYCLE_HOOKS if model.lifecycle else ())):
+        yield Emitted(hook, f"the hook {hook!r}", model.name_span)
+    for port in model.ports:
+        origin = f"{port.kind.word} {port.name!r}"
+        for method in _METHODS[port.kind]:
+            name = method.format(identifier(port.name))
+            yield Emitted(name, origin, port.name_span)
+        if port.kind in _HANDLES:
+            yield Emitted(f"{handle(port, model, identifier)}", origin, port.name_span)
+    for timer in model.timers:
+        name = f"on_{identifier(timer.name)}"
+        yield Emitted(name, f"timer {timer.name!r}", timer.name_span)
+
+
+def handle(port: Port, model: NodeType, identifier: Callable[[str], str]) -> str:
+    """Return the name of the attribute with the client of a service, or of an action.
+
+    Both are ``client_<name>``; the client of an action is ``action_client_<name>`` where the node
+    has a client of a service whose name becomes the same.
+    """
+    name = identifier(port.name)
+    services = {identifier(each.name) for each in model.ports_of(PortKind.CLIENT)}
+    is_second = port.kind is PortKind.ACTION_CLIENT and name in services
+    return f"{'action_' if is_second else ''}client_{name}"
+
+
+# Text ---------------------------------------------------------------------------------------------
+
+
+def topic_parameter(port: Port, model: NodeType) -> Parameter | None:
+    """Return the parameter that names a port's topic at start; ``None`` if no parameter does."""
+    return None if port.via is None else model.parameter(port.via)
+
+
+def port_notes(port: Port, model: NodeType) -> tuple[str, ...]:
+    """Return what is to be said of a port: its description, units and where its name comes from."""
+    notes = [sentence(port.description)]
+    if port.units:
+        listed = ", ".join(f"{unit.path} [{unit.unit}]" for unit in port.units)
+        notes.append(f"Units: {listed}.")
+    if parameter := topic_parameter(port, model):
+        notes.append(f"The parameter {parameter.name} gives the topic's name at start.")
+    return tuple(filter(None, notes))
+
+
+def timer_notes(timer: Timer) -> tuple[str, ...]:
+    """Return what is to be said of a timer: its description, if there is one."""
+    return tuple(filter(None, [sentence(timer.description)]))
+
+
+def duration_text(nanoseconds: int) -> str:
+    """Return a duration in the greatest unit that needs no fraction, ``20 ms``."""
+    size, unit = next((s, u) for s, u in _UNITS_OF_TIME if nanoseconds % s == 0)
+    return f"{nanoseconds // size} {unit}"

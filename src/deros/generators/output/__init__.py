@@ -1,0 +1,1 @@
+"""The way of generated files to the disk."""

@@ -1,1 +1,0 @@
-"""The safety node as an rclcpp node around the monitor in C, with the gates beside it."""

@@ -1,0 +1,1 @@
+"""The safety node: the node around a monitor."""

@@ -1,0 +1,1 @@
+"""The safety node as an rclcpp node around the monitor in C."""

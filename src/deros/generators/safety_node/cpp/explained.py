@@ -1,0 +1,91 @@
+"""What the monitor in C is worth, for people: its verdicts and terms out of its struct."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from deros.generators.monitor.c.interface import Layout, known_of
+from deros.generators.monitor.c.interface import Term as Field
+from deros.generators.text.cpp import Call, Expression, Text, cpp_double, cpp_string
+from deros.monitor.ir import Age, Missing, Program, Rule, Scale, Unknown
+from deros.monitor.reads import Term, one_line, term_name, terms
+from deros.monitor.wordings import quoted
+
+
+def explained_rules(program: Program, layout: Layout) -> Iterator[Expression]:
+    """Yield the expression of the state of each rule; the monitor's struct is ``m``."""
+    for rule in program.rules:
+        yield Call("runtime::explained", tuple(_arguments(program, layout, rule)))
+
+
+def _arguments(program: Program, layout: Layout, rule: Rule) -> Iterator[Expression]:
+    yield cpp_string(rule.full_name)
+    yield str(rule.span.line)
+    yield Text(one_line(rule.span.text))
+    yield f"m.{layout.verdicts[rule.index]} == {layout.macro}_TRUE"
+    yield f"m.{layout.turned[rule.index]}"
+    for term in terms(rule.condition):
+        yield reading(program, layout, term)
+
+
+def reading(program: Program, layout: Layout, term: Term) -> Expression:
+    """Return the expression of a term with its value."""
+    name = cpp_string(term_name(program, term))
+    return Call("runtime::Reading", (name, _value(layout, term)))
+
+
+def shown_text(layout: Layout, term: Term) -> str:
+    """Return the expression of the text that causes tell the value of a term by."""
+    if isinstance(term, Age):
+        fields = layout.inputs[term.input]
+        return f"runtime::shown(runtime::seconds(m.now - m.{fields.base}))"
+    field, scale = _field(layout, term)
+    if field.texts:
+        return _chosen(f"m.{field.name}", map(quoted, field.texts))
+    return f"runtime::shown({_unscaled(field, scale)})"
+
+
+def _value(layout: Layout, term: Term) -> str:
+    match term:
+        case Missing():
+            return f"runtime::value_of(true, m.{layout.inputs[term.input].missing})"
+        case Unknown():
+            fields, known = layout.inputs[term.input], known_of(layout, term)
+            unknown = f"(m.{fields.came} || m.{fields.missing}) && !m.{known}"
+            return f"runtime::value_of(true, {unknown})"
+        case Age():
+            fields = layout.inputs[term.input]
+            return f"runtime::value_of(m.{fields.came}, runtime::seconds(m.now - m.{fields.base}))"
+        case _:
+            return _known(*_field(layout, term))
+
+
+def _field(layout: Layout, term: Term) -> tuple[Field, Scale | None]:
+    """Return the field that holds a term, and in which unit if not in its own."""
+    if term in layout.terms:
+        return layout.terms[term], None
+    return next(
+        (field, value)
+        for value, field in layout.terms.items()
+        if isinstance(value, Scale) and value.operand == term
+    )
+
+
+def _known(field: Field, scale: Scale | None) -> str:
+    value = _unscaled(field, scale)
+    if field.texts:
+        value = _chosen(value, field.texts)
+    return f"runtime::value_of(m.{field.known}, {value})"
+
+
+def _chosen(place: str, texts: Iterable[str]) -> str:
+    return f"runtime::text_of({place}, {{{', '.join(map(cpp_string, texts))}}})"
+
+
+def _unscaled(field: Field, scale: Scale | None) -> str:
+    """Return a value in its own unit."""
+    value = f"m.{field.name}"
+    if scale is None:
+        return value
+    offset = f"({value} - {cpp_double(scale.offset)})" if scale.offset else value
+    return f"{offset} / {cpp_double(scale.factor)}"

@@ -1,0 +1,7 @@
+"""What a safety package in C++ needs of the safety node."""
+
+from deros.generators.safety_node.cpp.generate import RUNTIME, node_files, provided
+from deros.generators.safety_node.cpp.node import twin_options
+from deros.generators.safety_node.cpp.view import SafetyView, safety_view
+
+__all__ = ["RUNTIME", "SafetyView", "node_files", "provided", "safety_view", "twin_options"]

@@ -1,0 +1,16 @@
+"""The C++ twins of the nodes that the Python target makes: other type names, all else the same."""
+
+from __future__ import annotations
+
+from deros.generators.api.protocol import Options
+from deros.metamodels.safety_nodes import CPP_SUFFIX
+
+
+def twin_options(options: Options) -> dict[str, str]:
+    """Return the options that name the Python twin: ``guard`` is that of ``guard_cpp``."""
+    named = {
+        name: options[name].removesuffix(CPP_SUFFIX)
+        for name in ("package", "node")
+        if name in options
+    }
+    return {**options, **named}

@@ -1,0 +1,367 @@
+"""What the templates of the safety node in C++ see: the program in terms of rclcpp."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from deros import codes
+from deros.diagnostics import report
+from deros.generators.api.protocol import GenerationError
+from deros.generators.monitor.c.interface import MonitorView, monitor_view
+from deros.generators.safety_node.cpp.explained import explained_rules
+from deros.generators.safety_node.cpp.messages import arguments, literal
+from deros.generators.safety_node.cpp.origins import Item, origins_view
+from deros.generators.safety_node.cpp.whys import Why, why_behaviour, why_rule, whys
+from deros.generators.safety_node.messages import is_stamped
+from deros.generators.safety_node.node import bound_actions
+from deros.generators.safety_node.view import (
+    ChannelView,
+    FieldView,
+    action_notes,
+    argument_types,
+    calls,
+    needs_code,
+    only_resets,
+    origin_file,
+    states_by_path,
+)
+from deros.generators.text.cpp import (
+    Call,
+    Expression,
+    cpp_double,
+    cpp_header,
+    cpp_identifier,
+    cpp_int64,
+    cpp_string,
+    cpp_type,
+)
+from deros.generators.text.identifiers import Emitted, camel_case, check_collisions
+from deros.generators.text.prose import sentence
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.node import NodeType, Port, PortKind
+from deros.metamodels.rules import Rules
+from deros.metamodels.safety_nodes import DIAGNOSTICS_TYPE, RESET, enabled_parameter
+from deros.monitor.ir import Action, Binding, Program, Scalar
+
+_PARAMETER_TYPES = {
+    "bool": "bool",
+    "int": "std::int64_t",
+    "float": "double",
+    "str": "const std::string &",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class HandlerView:
+    """What is done with the messages of one topic: ``call`` hands them to the monitor."""
+
+    identifier: str
+    type: str
+    topic: str
+    ros_type: str
+    call: Call
+
+    @property
+    def is_read(self) -> bool:
+        """Whether the monitor is handed anything of the message."""
+        return len(self.call.arguments) > 2
+
+
+@dataclass(frozen=True, slots=True)
+class ActionView:
+    """An action whose code the user writes; ``calls`` are the sites with the call of each.
+
+    One that is ``optional`` may well do nothing.
+    """
+
+    name: str
+    enumerator: str
+    method: str
+    parameters: tuple[str, ...]
+    notes: tuple[str, ...]
+    calls: tuple[tuple[int, Expression], ...]
+    optional: bool
+
+    @property
+    def unnamed(self) -> list[str]:
+        """The parameters of a body that does not use them."""
+        words = (each.rpartition(" ") for each in self.parameters)
+        return [f"{kind} /*{name}*/" for kind, _, name in words]
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyView:
+    """All that the templates print.
+
+    Attributes:
+        package: also the namespace.
+        stem: of the node's files; ``class_name`` of its classes.
+        node_name: of the node at run time.
+        rules: the file name of the rules.
+        headers: of the messages and services that the node's class speaks of;
+            ``message_headers`` without the services.
+        monitor: the view of the monitor in C.
+        shared: the watched topics that may have several publishers.
+        explained: the expressions of the rules' states, each with the monitor's field of the
+            verdict, and the function that tells why the rule is true.
+        whys: these functions, and those of behaviours and of what behaviours negate.
+        origins: the tables of behaviours, actions and sites.
+        latched: name and enumerator of each latched action.
+        optional: enumerator of each behaviour that can be disabled, the function that does it, and
+            the field of its parameter.
+        reset: whether there is a service to reset the latched actions.
+    """
+
+    package: str
+    stem: str
+    class_name: str
+    node_name: str
+    rules: str
+    summary: str
+    headers: tuple[str, ...]
+    message_headers: tuple[str, ...]
+    monitor: MonitorView
+    handlers: tuple[HandlerView, ...]
+    shared: frozenset[str]
+    channels: tuple[ChannelView, ...]
+    actions: tuple[ActionView, ...]
+    explained: tuple[tuple[Expression, str, str], ...]
+    whys: tuple[Why, ...]
+    origins: list[Item]
+    latched: tuple[tuple[str, str], ...]
+    optional: tuple[tuple[str, str, str], ...]
+    diagnostics: str
+    reset: bool
+
+    @property
+    def prefix(self) -> str:
+        """What the names of the monitor's functions begin with."""
+        return self.monitor.prefix
+
+    @property
+    def macro(self) -> str:
+        """The same of its constants."""
+        return self.monitor.macro
+
+    @property
+    def header(self) -> str:
+        """The monitor's header."""
+        return f"{self.prefix}_monitor.h"
+
+    @property
+    def required_actions(self) -> tuple[ActionView, ...]:
+        """The actions without which something is left undone."""
+        return tuple(action for action in self.actions if not action.optional)
+
+    @property
+    def actions_class(self) -> str:
+        """Class of the user's action bodies."""
+        return f"{self.class_name}Actions"
+
+    @property
+    def actions_stem(self) -> str:
+        """Of its files."""
+        return f"{self.stem}_actions"
+
+    @property
+    def conditions(self) -> list[tuple[str, str, str]]:
+        """The enumerator of each behaviour, the monitor's field of its condition, and its why."""
+        layout = self.monitor.layout
+        return [
+            (name, layout.conditions[i], why_behaviour(layout, i))
+            for i, (_, name) in enumerate(self.monitor.behaviour_names)
+        ]
+
+    @property
+    def bound(self) -> list[tuple[str, str]]:
+        """The enumerator of each bound action, with the channel that shows it."""
+        return [(action, each.identifier) for each in self.channels for action in each.actions]
+
+
+def safety_view(
+    model: Rules,
+    program: Program,
+    python: NodeType,
+    node: NodeType,
+    store: InterfaceStore,
+    shared: frozenset[str],
+) -> SafetyView:
+    """Return the view of the safety node ``node`` that runs ``program``.
+
+    Args:
+        model: the rules as written.
+        program: the same with all names resolved.
+        python: the Python twin, by whose name the node goes at run time.
+        node: the node type in C++.
+        store: for the fields of the messages.
+        shared: the watched topics that may have several publishers.
+
+    Raises:
+        GenerationError: if the rules cannot be told in C++.
+    """
+    monitor = monitor_view(program)
+    described = {action.name.text: action.description for action in model.actions}
+    code = [each for each in program.actions if needs_code(each)]
+    actions = tuple(_action(each, program, monitor, described.get(each.name, "")) for each in code)
+    _check_names(actions, code, node)
+    taken = tuple(node.ports_of(PortKind.SUBSCRIPTION))
+    published = node.ports_of(PortKind.PUBLISHER)
+    bound = [port for port in published if bound_actions(program, port.name)]
+    stem = cpp_identifier(python.name)
+    diagnostics = next(port for port in node.ports if port.type == DIAGNOSTICS_TYPE)
+    return SafetyView(
+        package=node.package,
+        stem=stem,
+        class_name=camel_case(python.name),
+        node_name=python.name,
+        rules=origin_file(model),
+        summary=sentence(node.description),
+        headers=_headers(taken, bound, node.ports_of(PortKind.SERVICE)),
+        message_headers=_headers(taken, bound),
+        monitor=monitor,
+        handlers=tuple(_handlers(program, monitor, store)),
+        shared=shared,
+        channels=tuple(_channels(program, node, monitor, store)),
+        actions=actions,
+        explained=tuple(
+            (state, monitor.layout.verdicts[rule.index], why_rule(monitor.layout, rule.index))
+            for rule, state in zip(
+                program.rules, explained_rules(program, monitor.layout), strict=True
+            )
+        ),
+        whys=tuple(whys(program, monitor.layout)),
+        origins=origins_view(model, program, monitor, f"{stem}_actions.cpp"),
+        latched=tuple((a.name, a.enumerator) for a in monitor.actions if a.latched),
+        optional=tuple(_optional(monitor)),
+        diagnostics=cpp_identifier(diagnostics.name),
+        reset=node.port(RESET) is not None,
+    )
+
+
+def _headers(*ports: Iterable[Port]) -> tuple[str, ...]:
+    return tuple(sorted({cpp_header(port.type) for group in ports for port in group}))
+
+
+def _check_names(actions: tuple[ActionView, ...], code: list[Action], node: NodeType) -> None:
+    reserved = Emitted("node", "the accessor of the class itself", node.name_span)
+    methods = [
+        Emitted(view.method, f"action {view.name!r}", action.span or node.name_span)
+        for view, action in zip(actions, code, strict=True)
+    ]
+    check_collisions([reserved, *methods], "the class of the actions")
+
+
+# Messages -----------------------------------------------------------------------------------------
+
+
+def _handlers(
+    program: Program, monitor: MonitorView, store: InterfaceStore
+) -> Iterator[HandlerView]:
+    for message in monitor.messages:
+        handler = message.handler
+        kind = program.topics[handler.topic]
+        values = [text for each in handler.parameters for text in arguments(store, kind, each)]
+        yield HandlerView(
+            cpp_identifier(handler.topic),
+            cpp_type(kind),
+            handler.topic,
+            str(kind),
+            Call(handler.function, ("&m", "now", *values)),
+        )
+
+
+def _channels(
+    program: Program, node: NodeType, monitor: MonitorView, store: InterfaceStore
+) -> Iterator[ChannelView]:
+    enumerators = {each.name: each.enumerator for each in monitor.actions}
+    for port in node.ports_of(PortKind.PUBLISHER):
+        actions = tuple(enumerators[name] for name in bound_actions(program, port.name))
+        if not actions:
+            continue
+        yield ChannelView(
+            cpp_identifier(port.name),
+            cpp_type(port.type),
+            port.name,
+            actions,
+            is_stamped(store, port.type),
+            tuple(
+                _field(port.type, path, [(enumerators[a.name], b) for a, b in states], store)
+                for path, states in states_by_path(program, port.name).items()
+            ),
+        )
+
+
+def _field(
+    kind: InterfaceType,
+    path: tuple[str, ...],
+    bound: list[tuple[str, Binding]],
+    store: InterfaceStore,
+) -> FieldView:
+    states = tuple((name, literal(store, kind, path, b.value)) for name, b in bound)
+    name, first = bound[0]
+    inactive, single = f"{cpp_type(kind)}().{'.'.join(path)}", None
+    if isinstance(first.value, bool):
+        inactive = "false" if first.value else "true"
+        active = f"active[{name}]" if first.value else f"!active[{name}]"
+        single = active if len(bound) == 1 else None
+    return FieldView(f"msg.{'.'.join(path)}", inactive, single, states)
+
+
+def _optional(monitor: MonitorView) -> Iterator[tuple[str, str, str]]:
+    enumerators = dict(monitor.behaviour_names)
+    for name, function, _ in monitor.optional:
+        yield enumerators[name], function, cpp_identifier(enabled_parameter(name))
+
+
+# Actions ------------------------------------------------------------------------------------------
+
+
+def _action(action: Action, program: Program, monitor: MonitorView, description: str) -> ActionView:
+    types = _argument_types(action, program)
+    method = cpp_identifier(action.name)
+    return ActionView(
+        action.name,
+        monitor.actions[action.index].enumerator,
+        method,
+        tuple(
+            f"{_PARAMETER_TYPES[kind]} {cpp_identifier(name)}"
+            for name, kind in zip(action.parameters, types, strict=True)
+        ),
+        tuple(action_notes(action, program, description)),
+        tuple(
+            (site, Call(f"actions_.{method}", tuple(map(_argument, call.arguments, types))))
+            for site, call in enumerate(calls(program))
+            if call.action == action.index
+        ),
+        only_resets(action, program),
+    )
+
+
+def _argument_types(action: Action, program: Program) -> list[str]:
+    """Return the type of each parameter, which is that of all arguments given for it.
+
+    Raises:
+        GenerationError: if one is a number here and a text there.
+    """
+    found: list[str] = []
+    for name, types in zip(action.parameters, argument_types(action, program), strict=True):
+        if len(types) > 1:
+            message = (
+                f"parameter {name!r} of action {action.name!r} is given values of several types: "
+                f"{', '.join(sorted(types))}"
+            )
+            span = list(types.values())[-1].span
+            hint = "C++ needs one type: give all calls the same"
+            raise GenerationError([report(codes.UNSUPPORTED_BY_TARGET, message, span, hint)])
+        found.append(next(iter(types), "float"))
+    return found
+
+
+def _argument(value: Scalar, kind: str) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return cpp_string(value)
+    return cpp_double(value) if kind == "float" else cpp_int64(int(value))

@@ -1,0 +1,246 @@
+"""The functions that tell why a rule is true, or false, and why a behaviour holds, in C++."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros.generators.monitor.c.interface import (
+    SYMBOLS,
+    Conditions,
+    Layout,
+    compared,
+    integer,
+    known_of,
+)
+from deros.generators.safety_node.cpp.explained import reading, shown_text
+from deros.generators.text import logic
+from deros.generators.text.c import flat, lay_out_if
+from deros.generators.text.cpp import Call, Chain, Expression, cpp_string, layout
+from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of
+from deros.monitor import walk
+from deros.monitor.causes import (
+    OPPOSITE,
+    AllOf,
+    AnyOf,
+    During,
+    OrUnknown,
+    Plan,
+    Say,
+    SayRule,
+    negated_rules,
+    plan_of,
+    plan_of_behaviour,
+)
+from deros.monitor.ir import (
+    Age,
+    Compare,
+    Condition,
+    Const,
+    Missing,
+    Program,
+    Truth,
+    Unknown,
+    Within,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Why:
+    """A function that tells why something is as it is.
+
+    Attributes:
+        function: its name.
+        subject: what it tells the causes of.
+        lines: of its body.
+    """
+
+    function: str
+    subject: str
+    lines: tuple[str, ...]
+
+    @property
+    def reads(self) -> bool:
+        """Whether it looks at the monitor at all."""
+        return any(_MONITOR.search(_TEXT.sub("", line)) for line in self.lines)
+
+
+_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_MONITOR = re.compile(r"\bm\b")
+
+
+def why_rule(layout: Layout, rule: int, holds: bool = True) -> str:
+    """Return the function that tells why a rule is true, or false."""
+    return f"why_{str(holds).lower()}_{layout.verdicts[rule]}"
+
+
+def why_behaviour(layout: Layout, behaviour: int) -> str:
+    """Return the function that tells why a behaviour holds."""
+    return f"why_holds_{layout.conditions[behaviour]}"
+
+
+def whys(program: Program, layout: Layout) -> Iterator[Why]:
+    """Yield the functions of all rules, then of all behaviours; the monitor's struct is ``m``."""
+    emitter = _Emitter(program, layout)
+    negated = negated_rules(program)
+    for rule in program.rules:
+        for holds in (True, False) if rule.index in negated else (True,):
+            plan = plan_of(program, rule.condition, holds)
+            subject = f"{rule.full_name} is {str(holds).lower()}"
+            yield Why(why_rule(layout, rule.index, holds), subject, emitter.body(plan))
+    for behaviour in walk.behaviours(program):
+        plan = plan_of_behaviour(program, behaviour)
+        name = why_behaviour(layout, behaviour.index)
+        yield Why(name, f"{behaviour.name} holds", emitter.body(plan))
+
+
+class _Emitter:
+    def __init__(self, program: Program, layout: Layout) -> None:
+        self._program = program
+        self._layout = layout
+        self._conditions = Conditions(program, layout)
+
+    def body(self, plan: Plan) -> tuple[str, ...]:
+        """Return the statements that tell the causes of what is known to be so."""
+        lines = self._block(2, plan, known=True)
+        return ("  runtime::Causes found;", *lines, "  return found;")
+
+    # Statements, which append to what was found ---------------------------------------------------
+
+    def _block(self, indent: int, plan: Plan, known: bool) -> Iterator[str]:
+        """Yield the statements of a plan; ``known``: of what is known to be so."""
+        blank = " " * indent
+        match plan:
+            case Say() | SayRule() if known:
+                yield from _called("found.push_back", (self._cause(plan),), indent)
+            case Say() | SayRule() | During() if not known:
+                yield from _if(self._test(plan), indent)
+                yield from self._block(indent + 2, plan, True)
+                yield f"{blank}}}"
+            case During():
+                yield from self._block(indent, plan.part, True)
+            case AllOf() if not known:
+                yield from _called("runtime::add", ("found", self._expression(plan, False)), indent)
+            case AllOf() | AnyOf():
+                for each in plan.parts:
+                    yield from self._block(indent, each, isinstance(plan, AllOf))
+            case OrUnknown():
+                yield from self._block(indent, plan.part, False)
+                yield f"{blank}if (found.empty()) {{"
+                reads = (reading(self._program, self._layout, each) for each in plan.terms)
+                unknown = Call("runtime::unknown_of", tuple(reads))
+                yield from _called("found.push_back", (unknown,), indent + 2)
+                yield f"{blank}}}"
+
+    # Expressions, of which there is none where one part has none ----------------------------------
+
+    def _expression(self, plan: Plan, known: bool) -> Expression:
+        match plan:
+            case Say() | SayRule():
+                test = "true" if known else _text(self._test(plan))
+                return Call("runtime::given", (test, self._cause(plan)))
+            case During():
+                part = self._expression(plan.part, True)
+                test = _text(self._test(plan))
+                return part if known else Call("runtime::during", (test, part))
+            case AllOf() | AnyOf():
+                sure = known and isinstance(plan, AllOf)
+                head = "runtime::all_causes" if isinstance(plan, AllOf) else "runtime::any_causes"
+                return Call(head, tuple(self._expression(each, sure) for each in plan.parts))
+            case OrUnknown():
+                raise AssertionError("failsafe is a whole rule, and no part of one")
+
+    def _test(self, plan: Say | SayRule | During) -> Logic:
+        macro = self._layout.macro
+        match plan:
+            case Say():
+                return self._is(plan.condition, plan.holds)
+            case SayRule():
+                verdict = f"m.{self._layout.verdicts[plan.rule]}"
+                return Atom(f"{verdict} == {macro}_{str(plan.holds).upper()}")
+            case During():
+                since = f"m.{self._layout.since[plan.interval.index]}"
+                relation = ">=" if plan.reached else "<"
+                lasted = f"m.now - {since} {relation} {integer(plan.interval.duration_ns)}"
+                return all_of((Atom(f"{since} != {macro}_UNSET"), Atom(lasted)))
+
+    def _cause(self, part: Say | SayRule) -> Expression:
+        if isinstance(part, SayRule):
+            why = why_rule(self._layout, part.rule, part.holds)
+            return Call("runtime::because", (cpp_string(part.head), f"{why}(m)"))
+        pieces = (
+            cpp_string(each) if isinstance(each, str) else shown_text(self._layout, each)
+            for each in part.pieces
+        )
+        return Chain("", tuple(pieces), " + ")
+
+    # Conditions, as questions whether they are true, or false -------------------------------------
+
+    def _is(self, condition: Condition, holds: bool) -> Logic:
+        match condition:
+            case Truth(operand=Const() as fixed):
+                return Atom(str(bool(fixed.value) is holds).lower())
+            case Truth() | Compare() | Within():
+                return self._compares(condition, holds)
+            case Missing():
+                missing = Atom(f"m.{self._layout.inputs[condition.input].missing}")
+                return missing if holds else NoneOf(missing)
+            case Unknown():
+                fields, known = (
+                    self._layout.inputs[condition.input],
+                    known_of(self._layout, condition),
+                )
+                come = any_of((Atom(f"m.{fields.came}"), Atom(f"m.{fields.missing}")))
+                unknown = all_of((come, NoneOf(Atom(f"m.{known}"))))
+                return unknown if holds else NoneOf(unknown)
+            case Age():
+                fields = self._layout.inputs[condition.input]
+                operator = condition.operator if holds else OPPOSITE[condition.operator]
+                bound = f"{SYMBOLS[operator]} {integer(condition.bound_ns)}"
+                return all_of((Atom(f"m.{fields.came}"), Atom(f"m.now - m.{fields.base} {bound}")))
+            case _:
+                raise AssertionError("no comparison and no question about messages")
+
+    def _compares(self, condition: Truth | Compare | Within, holds: bool) -> Logic:
+        terms = [self._layout.terms[value] for value in compared(condition)]
+        finding = self._layout.findings.get(condition)
+        held = f"m->{finding.name}" if finding else flat(self._conditions.holds(condition))
+        result = Atom(held.replace("m->", "m."))
+        known = [Atom(f"m.{each.known}") for each in terms]
+        return all_of((*known, result if holds else NoneOf(result)))
+
+
+def _called(function: str, arguments: tuple[Expression, ...], indent: int) -> Iterator[str]:
+    first, *rest = layout(Call(function, arguments), indent, ";")
+    yield from (" " * indent + first, *rest)
+
+
+def _if(asked: Logic, indent: int) -> list[str]:
+    """Return the line or lines that open a block where something holds."""
+    if isinstance(asked, logic.AllOf | logic.AnyOf):
+        return lay_out_if(_joint(asked), [_inner(each) for each in asked.operands], indent)
+    return lay_out_if("", [_text(asked)], indent)
+
+
+def _joint(asked: logic.AllOf | logic.AnyOf) -> str:
+    return " && " if isinstance(asked, logic.AllOf) else " || "
+
+
+def _text(asked: Logic) -> str:
+    match asked:
+        case Atom():
+            return asked.text
+        case NoneOf():
+            simple = isinstance(asked.operand, Atom) and " " not in asked.operand.text
+            inner = _text(asked.operand)
+            return f"!{inner}" if simple else f"!({inner})"
+        case logic.AllOf() | logic.AnyOf():
+            return _joint(asked).join(map(_inner, asked.operands))
+
+
+def _inner(asked: Logic) -> str:
+    """Return an operand, in parentheses if it has operators of its own."""
+    text = _text(asked)
+    plain = isinstance(asked, NoneOf) or (isinstance(asked, Atom) and " " not in asked.text)
+    return text if plain else f"({text})"

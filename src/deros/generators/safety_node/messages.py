@@ -1,0 +1,13 @@
+"""What the safety node asks of the messages that it receives."""
+
+from __future__ import annotations
+
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.monitor.commands import HEADER
+
+
+def is_stamped(store: InterfaceStore, kind: InterfaceType) -> bool:
+    """Tell whether messages of a type have a header with a time stamp."""
+    definition = store.message(kind)
+    return definition is not None and definition.field("header") == FieldType(HEADER)

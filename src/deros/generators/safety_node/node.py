@@ -1,0 +1,79 @@
+"""The safety node as a node type: what it subscribes to, publishes and serves.
+
+What it is made of is said in :mod:`deros.metamodels.safety_nodes`; here it follows from a program.
+"""
+
+from __future__ import annotations
+
+from deros import codes
+from deros.diagnostics import Related, SourceFile, Span, report
+from deros.generators.api.protocol import GenerationError, Options
+from deros.interfaces.names import check_node_name, check_package_name
+from deros.metamodels.node import NodeType
+from deros.metamodels.rules import Rules
+from deros.metamodels.safety_instances import stated_package
+from deros.metamodels.safety_nodes import (
+    node_name,
+    package_name,
+    safety_node_type,
+)
+from deros.monitor.ir import Program
+from deros.monitor.outline import program_outline
+from deros.monitor.topics import SystemTopics
+
+
+def safety_node(
+    program: Program, topics: SystemTopics, options: Options, rules_source: SourceFile
+) -> NodeType:
+    """Return the node that runs ``program``.
+
+    Args:
+        program: the rules.
+        topics: what the used systems tell of the topics, for the QoS of the subscriptions.
+        options: ``package`` and ``node``, which else come from the name of the rules.
+        rules_source: for the places that diagnostics about the node speak of.
+
+    Raises:
+        GenerationError: if the rules watch a topic that they publish.
+        ValueError: if an option is no name that ROS 2 accepts.
+    """
+    _check_ends(program)
+    package = options.get("package", package_name(program.name))
+    if "package" in options and (why := check_package_name(package)) is not None:
+        raise ValueError(f"package name {package!r} {why}")
+    name = options.get("node", node_name(package))
+    if (why := check_node_name(name)) is not None:
+        raise ValueError(f"node name {name!r} {why}")
+    start = Span(rules_source, 0, 0)
+    return safety_node_type(program_outline(program, start), topics.offers, package, name)
+
+
+def package_options(rules: Rules, options: Options, target: str) -> Options:
+    """Return the options with the package that the used system states, unless they name one."""
+    package = stated_package(rules, target)
+    if package is None or "package" in options:
+        return options
+    return {**options, "package": package}
+
+
+def _check_ends(program: Program) -> None:
+    """Refuse a topic with both ends in this node: its own state would come back as an input."""
+    watched = {each.topic: each.span for each in reversed(program.inputs)}
+    found = [
+        report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"the rules both publish and watch '{action.binding.topic}'",
+            action.span,
+            hint="where the topic is watched, use the conditions that trigger the action",
+            related=(Related(watched[action.binding.topic], "watched here"),),
+        )
+        for action in program.actions
+        if action.binding is not None and action.span and action.binding.topic in watched
+    ]
+    if found:
+        raise GenerationError(found)
+
+
+def bound_actions(program: Program, topic: str) -> list[str]:
+    """Return the names of the actions whose states a topic carries, in the order declared."""
+    return [a.name for a in program.actions if a.binding is not None and a.binding.topic == topic]

@@ -1,0 +1,1 @@
+"""The safety node as an rclpy node around the generated monitor."""

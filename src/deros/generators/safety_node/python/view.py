@@ -1,0 +1,366 @@
+"""What the templates of the safety node see: the program in terms of rclpy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros.generators.decoder.python.interface import Topic
+from deros.generators.monitor.python.interface import monitor_view
+from deros.generators.node.python.interface import NodeView, interface_imports, node_view
+from deros.generators.safety_node.messages import is_stamped
+from deros.generators.safety_node.node import bound_actions
+from deros.generators.safety_node.view import (
+    BehaviourView,
+    ChannelView,
+    FieldView,
+    action_notes,
+    argument_types,
+    behaviour_views,
+    calls,
+    lasts,
+    needs_code,
+    only_resets,
+    origin_file,
+    states_by_path,
+)
+from deros.generators.text.identifiers import Emitted, check_collisions, python_identifier
+from deros.generators.text.prose import one_line
+from deros.generators.text.python import import_lines, wrapped
+from deros.generators.text.python_fields import literal
+from deros.interfaces.fields import format_path
+from deros.interfaces.message_fields import field_type
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.node import NodeType, PortKind
+from deros.metamodels.rules import Rules
+from deros.metamodels.safety_nodes import HEARTBEAT, RESET, enabled_parameter
+from deros.monitor import walk
+from deros.monitor.actions import LOG_STATE
+from deros.monitor.ir import Action, Binding, Program, Scalar
+
+RUNTIME = (
+    "alarm",
+    "clock_choice",
+    "diagnostics",
+    "events",
+    "instance",
+    "machine",
+    "process",
+    "publishers",
+    "regular_file",
+    "reports",
+    "siblings",
+    "start_order",
+    "waker",
+    "watch",
+)
+"""The modules of every safety node that are the same for all programs."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandlerView:
+    """What is done with the messages of one topic.
+
+    Attributes:
+        identifier: of the port: the node's method is ``on_<identifier>``.
+        method: the monitor's method.
+        fields: what the decoder returns: one ``value``, or a tuple ``fields``.
+        decoded: the fields that are decoded.
+    """
+
+    identifier: str
+    topic: str
+    method: str
+    fields: str
+    decoded: Topic
+
+    @property
+    def arguments(self) -> str:
+        """What the monitor's method takes."""
+        return "now, value" if self.fields == "value" else "now, *fields"
+
+
+@dataclass(frozen=True, slots=True)
+class ActionView:
+    """An action whose code the user writes; one that is ``optional`` may well do nothing."""
+
+    name: str
+    method: str
+    signature: str
+    notes: tuple[tuple[str, ...], ...]
+    optional: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyView:
+    """All that the templates print.
+
+    Attributes:
+        rules: the file name of the rules.
+        imports: the statements that import the interfaces.
+        shared: the watched topics that may have several publishers.
+        channels_of: of each bound action, the channel that carries its state.
+        lasting: of each action, whether it has a state.
+        latched: the latched actions, with the arguments that the rules call each with first.
+        optional: the behaviours that can be disabled, with the field of their parameter.
+        callers: of each latched action, the behaviours that trigger it.
+        trigger: the service class of ``~/reset`` as the module names it; empty without latches.
+    """
+
+    package: str
+    node: NodeView
+    rules: str
+    name: str
+    imports: tuple[str, ...]
+    handlers: tuple[HandlerView, ...]
+    shared: tuple[str, ...]
+    channels: tuple[ChannelView, ...]
+    channels_of: tuple[tuple[str, str], ...]
+    actions: tuple[ActionView, ...]
+    lasting: tuple[tuple[str, bool], ...]
+    latched: tuple[tuple[str, tuple[Scalar, ...]], ...]
+    optional: tuple[tuple[str, str], ...]
+    behaviours: tuple[BehaviourView, ...]
+    callers: tuple[tuple[str, tuple[str, ...]], ...]
+    heartbeat: str
+    trigger: str
+    rule_count: int
+
+    @property
+    def runtime(self) -> tuple[str, ...]:
+        """The modules that are the same for every program that needs them."""
+        needed = {
+            "latches": bool(self.latched),
+            "states": bool(self.channels),
+        }
+        return (*RUNTIME, *(module for module, is_needed in needed.items() if is_needed))
+
+    @property
+    def latched_code(self) -> bool:
+        """Whether a latched action is robot code."""
+        return bool({name for name, _ in self.latched} & {action.name for action in self.actions})
+
+    @property
+    def actions_module(self) -> str:
+        """Module of the user's action bodies."""
+        return f"{self.node.module}_actions"
+
+    @property
+    def actions_class(self) -> str:
+        """Class of the user's action bodies."""
+        return f"{self.node.class_name}Actions"
+
+    @property
+    def actions_imports(self) -> list[str]:
+        """The import statement of the user's module."""
+        module = f"{self.package}.{self.actions_module}_base"
+        names = {f"{self.actions_class}Base"}
+        if not all(action.optional for action in self.actions):
+            names.add("not_filled_in")
+        return import_lines({module: names})
+
+
+def safety_view(
+    model: Rules,
+    program: Program,
+    node: NodeType,
+    store: InterfaceStore,
+    shared: frozenset[str],
+) -> SafetyView:
+    """Return the view of the safety node ``node`` that runs ``program``.
+
+    Args:
+        model: the rules as written.
+        program: the same with all names resolved.
+        node: the node type.
+        store: for the fields of the messages.
+        shared: the watched topics that may have several publishers.
+
+    Raises:
+        GenerationError: if two topics, actions or modules would get one name.
+    """
+    base = node_view(node, raw=True)
+    handlers = tuple(_handlers(program, base))
+    channels = tuple(_channels(program, base, node, store))
+    described = {action.name.text: action.description for action in model.actions}
+    actions = tuple(
+        _action(each, program, described.get(each.name, ""))
+        for each in program.actions
+        if needs_code(each)
+    )
+    view = SafetyView(
+        package=node.package,
+        node=base,
+        rules=origin_file(model),
+        name=one_line(program.name),
+        imports=tuple(_imports(program, base, node, channels, bool(actions))),
+        handlers=handlers,
+        shared=tuple(sorted(shared)),
+        channels=channels,
+        channels_of=tuple((name, c.identifier) for c in channels for name in c.actions),
+        actions=actions,
+        lasting=tuple((a.name, lasts(a)) for a in program.actions if a.name != LOG_STATE),
+        latched=tuple(_latched(program)),
+        optional=tuple(_optional(program)),
+        behaviours=tuple(behaviour_views(program)),
+        callers=tuple(_callers(program)),
+        heartbeat=_alias(base, node, HEARTBEAT),
+        trigger=_alias(base, node, RESET),
+        rule_count=len(program.rules),
+    )
+    _check_names(view, program, node)
+    return view
+
+
+def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
+    spans = {action.name: action.span or node.name_span for action in program.actions}
+    reserved = [
+        Emitted(name, f"{name!r} of the class itself", node.name_span)
+        for name in ("node", "unfilled")
+    ]
+    methods = [Emitted(a.method, f"action {a.name!r}", spans[a.name]) for a in view.actions]
+    check_collisions([*reserved, *methods], f"the class {view.actions_class}")
+    modules = ["monitor", "origins", *view.runtime, view.node.module, view.node.base_module]
+    if view.handlers:
+        modules.append("decoding")
+    if view.actions:
+        modules += [view.actions_module, f"{view.actions_module}_base"]
+    emitted = (Emitted(name, f"module {name!r}", node.name_span) for name in modules)
+    check_collisions(emitted, f"package {view.package}", files=True)
+
+
+def _imports(
+    program: Program,
+    base: NodeView,
+    node: NodeType,
+    channels: tuple[ChannelView, ...],
+    has_actions: bool,
+) -> list[str]:
+    named = {channel.topic for channel in channels} | {HEARTBEAT, RESET}
+    used = [port.type for port in node.ports if port.name in named]
+    imports = interface_imports(dict(base.interfaces), used)
+    package = node.package
+    imports |= {
+        "rclpy.clock": {"Clock"},
+        "rclpy.clock_type": {"ClockType"},
+        package: {"machine", "monitor", "process"},
+        f"{package}.alarm": {"Alarm"},
+        f"{package}.diagnostics": {"Diagnostics"},
+        f"{package}.events": {"Events", "OK", "WARN", "ERROR"},
+        f"{package}.instance": {"claim"},
+        f"{package}.origins": {"ACTIONS", "BEHAVIOURS", "RULES"},
+        f"{package}.publishers": {"Publishers"},
+        f"{package}.reports": {"Reports"},
+        f"{package}.siblings": {"Siblings"},
+        f"{package}.watch": {"Watch"},
+        f"{package}.{base.base_module}": {base.base_class},
+    }
+    if base.subscriptions:
+        imports[package].add("decoding")
+    if channels:
+        imports[f"{package}.states"] = {"StateTopic"}
+    if any(action.latched for action in program.actions):
+        imports[f"{package}.instance"].add("file_stem")
+        imports[f"{package}.latches"] = {"LatchFile", "Latches", "default_path"}
+        imports[f"{package}.origins"] |= {"CALLERS", "LATCHED"}
+    if any(each.optional for each in walk.behaviours(program)):
+        imports[f"{package}.{base.base_module}"].add("Parameters")
+    if has_actions:
+        imports[f"{package}.{base.module}_actions"] = {f"{base.class_name}Actions"}
+    return import_lines(imports)
+
+
+def _alias(base: NodeView, node: NodeType, port_name: str) -> str:
+    port = node.port(port_name)
+    return dict(base.interfaces)[port.type] if port else ""
+
+
+# Messages in --------------------------------------------------------------------------------------
+
+
+def _handlers(program: Program, base: NodeView) -> Iterator[HandlerView]:
+    ports = {port.name: port for port in base.subscriptions}
+    for handler in monitor_view(program).handlers:
+        identifier = ports[handler.topic].identifier
+        paths = [each.path for each in handler.parameters]
+        topic = Topic(identifier, program.topics[handler.topic], paths)
+        fields = "value" if len(paths) == 1 else "fields"
+        yield HandlerView(identifier, handler.topic, handler.method, fields, topic)
+
+
+# States out ---------------------------------------------------------------------------------------
+
+
+def _channels(
+    program: Program, base: NodeView, node: NodeType, store: InterfaceStore
+) -> Iterator[ChannelView]:
+    types = {port.name: port.type for port in node.ports_of(PortKind.PUBLISHER)}
+    for port in base.publishers:
+        actions = tuple(bound_actions(program, port.name))
+        if not actions:
+            continue
+        kind = types[port.name]
+        fields = tuple(
+            _field(kind, path, states, store)
+            for path, states in states_by_path(program, port.name).items()
+        )
+        yield ChannelView(
+            port.identifier, port.type, port.name, actions, is_stamped(store, kind), fields
+        )
+
+
+def _field(
+    kind: InterfaceType,
+    path: tuple[str, ...],
+    bound: list[tuple[Action, Binding]],
+    store: InterfaceStore,
+) -> FieldView:
+    type_ = field_type(store, kind, path)
+    states = tuple((action.name, literal(type_, binding.value)) for action, binding in bound)
+    action, first = bound[0]
+    inactive, single = None, None
+    if isinstance(first.value, bool):
+        inactive = repr(not first.value)
+        active = f"{action.name!r} {'in' if first.value else 'not in'} active"
+        single = active if len(bound) == 1 else None
+    return FieldView(f"msg.{format_path(path)}", inactive, single, states)
+
+
+# Actions and behaviours ---------------------------------------------------------------------------
+
+
+def _action(action: Action, program: Program, description: str) -> ActionView:
+    types = (" | ".join(sorted(each)) or "object" for each in argument_types(action, program))
+    parameters = zip(action.parameters, types, strict=True)
+    arguments = ["self", *(f"{python_identifier(name)}: {kind}" for name, kind in parameters)]
+    method = python_identifier(action.name)
+    return ActionView(
+        action.name,
+        method,
+        f"def {method}({', '.join(arguments)}) -> None:",
+        tuple(
+            tuple(wrapped(text, indent=8)) for text in action_notes(action, program, description)
+        ),
+        only_resets(action, program),
+    )
+
+
+def _latched(program: Program) -> Iterator[tuple[str, tuple[Scalar, ...]]]:
+    for action in program.actions:
+        if action.latched:
+            first = (call.arguments for call in calls(program) if call.action == action.index)
+            yield action.name, next(first, ())
+
+
+def _optional(program: Program) -> Iterator[tuple[str, str]]:
+    for each in walk.behaviours(program):
+        if each.optional:
+            yield each.name, python_identifier(enabled_parameter(each.name))
+
+
+def _callers(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
+    names = {each.index: each.name for each in walk.behaviours(program)}
+    for action in program.actions:
+        if action.latched:
+            yield action.name, tuple(names[index] for index in action.triggered_by)

@@ -1,0 +1,182 @@
+"""What the templates of a safety node see in every language: its states, actions, behaviours."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros.generators.text.identifiers import file_label
+from deros.generators.text.prose import one_line, sentence
+from deros.generators.text.provenance import header, origin
+from deros.metamodels.rules import Rules
+from deros.monitor import walk
+from deros.monitor.actions import LOG_STATE
+from deros.monitor.ir import Action, Binding, Program, RuleRef, Trigger
+from deros.monitor.topics import SystemTopics
+
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_CONDITION = re.compile(r"\bif\b(.*?)\bthen\b", re.DOTALL)
+_SHARED_BY_CONVENTION = frozenset(
+    {"/diagnostics", "/parameter_events", "/rosout", "/tf", "/tf_static"}
+)
+
+
+def origin_file(model: Rules) -> str:
+    """Return the file name of the rules, without the folder: no output depends on the machine."""
+    return file_label(model.source.path)
+
+
+# States out ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class FieldView:
+    """A field that carries states: each action, as the code names it, with what it publishes there.
+
+    ``single`` is a boolean field of one action, written without a choice; ``inactive`` what the
+    field is set to while none is active, if it has to be.
+    """
+
+    target: str
+    inactive: str | None
+    single: str | None
+    states: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelView:
+    """A topic that carries the states of bound ``actions``, as the code names them."""
+
+    identifier: str
+    type: str
+    topic: str
+    actions: tuple[str, ...]
+    stamped: bool
+    fields: tuple[FieldView, ...]
+
+
+def states_by_path(
+    program: Program, topic: str
+) -> dict[tuple[str, ...], list[tuple[Action, Binding]]]:
+    """Return the actions whose states a topic carries, by the paths of the fields they are in."""
+    by_path: dict[tuple[str, ...], list[tuple[Action, Binding]]] = {}
+    for action in program.actions:
+        if action.binding is not None and action.binding.topic == topic:
+            by_path.setdefault(action.binding.path, []).append((action, action.binding))
+    return by_path
+
+
+# Actions ------------------------------------------------------------------------------------------
+
+
+def shared_topics(program: Program, topics: SystemTopics) -> frozenset[str]:
+    """Return the watched topics on which more than one publisher is no fault.
+
+    Several nodes publish some topics by convention, and others because the used systems say so.
+    """
+    return frozenset(
+        each.topic
+        for each in program.inputs
+        if each.topic in _SHARED_BY_CONVENTION
+        or ((known := topics.get(each.topic)) is not None and len(known.publishers) > 1)
+    )
+
+
+def needs_code(action: Action) -> bool:
+    """Tell whether an action is robot code."""
+    return action.binding is None and action.name != LOG_STATE
+
+
+def only_resets(action: Action, program: Program) -> bool:
+    """Tell whether an action is there to reset others: running it is all that it has to do.
+
+    It may have code all the same; that it has none is no mistake. With parameters, or a state of
+    its own, it is for more than that.
+    """
+    resets = any(other.reset_by == action.index for other in program.actions)
+    return resets and needs_code(action) and not lasts(action) and not action.parameters
+
+
+def lasts(action: Action) -> bool:
+    """Tell whether an action has a state, and is not just run."""
+    return action.binding is not None or action.latched or action.reset_by is not None
+
+
+def refusing_behaviours(action: Action) -> tuple[int, ...]:
+    """Return the behaviours, by index, that keep an action from being reset while they hold."""
+    return action.triggered_by if action.latched or action.reset_by is not None else ()
+
+
+def calls(program: Program) -> list[Trigger]:
+    """Return the calls of actions, top to bottom."""
+    return [
+        item
+        for behaviour in walk.behaviours(program)
+        for item in behaviour.body
+        if isinstance(item, Trigger)
+    ]
+
+
+def action_notes(action: Action, program: Program, description: str) -> list[str]:
+    """Return what the one who writes an action's code is told: what it is for, and who runs it."""
+    callers = [b.name for b in walk.behaviours(program) if b.index in action.triggered_by]
+    place = f"Declared in {origin(action.span)}" if action.span else "Declared"
+    note = f"{place}, run by {', '.join(callers) if callers else 'no behaviour'}."
+    notes = [text for text in (sentence(description), note) if text]
+    if only_resets(action, program):
+        reset = [other.name for other in program.actions if other.reset_by == action.index]
+        notes.append(f"Running it resets {', '.join(reset)}; it need not do anything else.")
+    return notes
+
+
+def argument_types(action: Action, program: Program) -> list[dict[str, Trigger]]:
+    """Return, for each parameter, the types of the arguments given for it, each with a call.
+
+    An ``int`` given where other calls give a ``float`` is one, too.
+    """
+    given = [call for call in calls(program) if call.action == action.index]
+    found = [
+        {type(call.arguments[place]).__name__: call for call in given}
+        for place in range(len(action.parameters))
+    ]
+    for types in found:
+        if "float" in types:
+            types.pop("int", None)
+    return found
+
+
+# Behaviours ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class BehaviourView:
+    """What people want to know of a behaviour.
+
+    Attributes:
+        origin: file and line.
+        condition: as written, on one line.
+        rules: those that it depends on, also through the behaviours around it.
+    """
+
+    name: str
+    origin: str
+    condition: str
+    rules: tuple[str, ...]
+
+
+def behaviour_views(program: Program) -> Iterator[BehaviourView]:
+    """Yield what people want to know of each behaviour, from top to bottom."""
+    rules: dict[int, tuple[str, ...]] = {}
+    for each in walk.behaviours(program):
+        around = rules[each.parent] if each.parent is not None else ()
+        own = (
+            program.rules[part.rule].full_name
+            for part in walk.parts(each.condition)
+            if isinstance(part, RuleRef)
+        )
+        rules[each.index] = tuple(dict.fromkeys((*around, *own)))
+        text = _COMMENT.sub(" ", header(each.span.text))
+        condition = _CONDITION.search(text)
+        shown = one_line(condition[1] if condition else text)
+        yield BehaviourView(each.name, origin(each.span), shown, rules[each.index])

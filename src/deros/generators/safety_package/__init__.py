@@ -1,0 +1,1 @@
+"""The packages of safety rules: safety node, monitor and gates together."""

@@ -1,0 +1,1 @@
+"""The target ``cpp`` of safety rules: an ament_cmake package."""

@@ -1,0 +1,1 @@
+"""The target ``python`` of safety rules: an ament_python package."""

@@ -1,0 +1,83 @@
+"""The parameter file: what the system sets, keyed by the full names of the nodes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from deros.generators.api.protocol import Context, File, Files, Options
+from deros.generators.system.literals import comment
+from deros.generators.system.script.standalone.command_line import yaml
+from deros.generators.system.view import NodeView, SystemView, system_view
+from deros.metamodels.common import Value
+from deros.metamodels.system import System
+
+Tree = dict[str, "Tree | _Leaf"]
+_INDENT = "  "
+_PLAIN_KEY = re.compile(r"/?[A-Za-z_][\w./-]*", re.ASCII)
+_YAML_WORDS = frozenset(("true", "false", "yes", "no", "on", "off", "y", "n", "null"))
+
+
+class _Leaf:
+    """A value's text, told apart from the mappings of names."""
+
+    def __init__(self, value: Value) -> None:
+        self.text = yaml(value)
+
+
+def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
+    """Return the one parameter file.
+
+    Raises:
+        GenerationError: if a parameter has a value that the file cannot say.
+    """
+    view = system_view(model)
+    return {f"{view.stem}.params.yaml": File(render(view))}
+
+
+def render(view: SystemView) -> str:
+    """Return the file's text; nodes that the system gives no parameters are not in it."""
+    lines = [comment(f"Parameters of the system {view.name}")]
+    for node in view.nodes:
+        if node.parameters:
+            lines += ["", *_node(node)]
+    return "\n".join(lines) + "\n"
+
+
+def _node(node: NodeView) -> Iterator[str]:
+    yield f"{_key(node.full_name)}:"
+    yield f"{_INDENT}ros__parameters:"
+    yield from _lines(_tree(node.parameters), 2)
+
+
+def _tree(parameters: tuple[tuple[str, Value], ...]) -> Tree:
+    """Nest ``a.b`` under ``a``, unless ``a`` is a parameter itself: ROS 2 reads either form."""
+    names = {name for name, _ in parameters}
+    root: Tree = {}
+    for name, value in parameters:
+        words = name.split(".")
+        depth = len(words) - 1
+        if any(".".join(words[:end]) in names for end in range(1, depth + 1)):
+            depth = 0
+        tree = root
+        for word in words[:depth]:
+            branch = tree.setdefault(word, {})
+            assert isinstance(branch, dict)
+            tree = branch
+        tree[".".join(words[depth:])] = _Leaf(value)
+    return root
+
+
+def _lines(tree: Tree, depth: int) -> Iterator[str]:
+    for name, below in tree.items():
+        head = f"{_INDENT * depth}{_key(name)}:"
+        if isinstance(below, _Leaf):
+            yield f"{head} {below.text}"
+        else:
+            yield head
+            yield from _lines(below, depth + 1)
+
+
+def _key(name: str) -> str:
+    plain = _PLAIN_KEY.fullmatch(name) and name.lower() not in _YAML_WORDS
+    return name if plain else yaml(name)

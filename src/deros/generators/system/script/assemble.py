@@ -1,0 +1,72 @@
+"""The texts of the standalone modules, put together to one."""
+
+from __future__ import annotations
+
+import ast
+import functools
+from collections.abc import Iterable
+from dataclasses import dataclass
+from importlib.resources import files
+
+PARTS = (
+    "node",
+    "command_line",
+    "programs",
+    "output",
+    "guard",
+    "process",
+    "supervisor",
+    "command",
+)
+"""The modules, each after those it needs; the first one defines the rows of the table."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What is left of a module without its imports: what it is about, and its code."""
+
+    title: str
+    code: str
+
+
+@dataclass(frozen=True, slots=True)
+class Runtime:
+    """All modules in one: the imports that they need together, and the parts."""
+
+    imports: str
+    parts: tuple[Part, ...]
+
+
+@functools.cache
+def runtime() -> Runtime:
+    """Read the modules; imports of each other are dropped, all others merged."""
+    package = files("deros.generators.system.script.standalone")
+    parts: list[Part] = []
+    imports: list[ast.Import | ast.ImportFrom] = []
+    for name in PARTS:
+        text = (package / f"{name}.py").read_text(encoding="utf-8")
+        module = ast.parse(text)
+        own = [s for s in module.body if isinstance(s, (ast.Import, ast.ImportFrom))]
+        imports += own
+        code = "\n".join(text.split("\n")[own[-1].end_lineno :]).strip("\n")
+        title = (ast.get_docstring(module) or "").rstrip(".")
+        parts.append(Part(title, code))
+    return Runtime(_merged(imports), tuple(parts))
+
+
+def _merged(imports: Iterable[ast.Import | ast.ImportFrom]) -> str:
+    """Write import statements in the order that ament asks for: by module, whatever the form."""
+    plain: set[str] = set()
+    members: dict[str, set[str]] = {}
+    for statement in imports:
+        names = {alias.name for alias in statement.names}
+        if isinstance(statement, ast.Import):
+            plain |= names
+        elif statement.level == 0 and statement.module:
+            members.setdefault(statement.module, set()).update(names)
+    first = members.pop("__future__", set())
+    lines = {name: f"import {name}" for name in plain}
+    for module, names in members.items():
+        lines[module] = f"from {module} import {', '.join(sorted(names, key=str.lower))}"
+    future = f"from __future__ import {', '.join(sorted(first))}\n\n" if first else ""
+    return future + "\n".join(lines[module] for module in sorted(lines, key=str.lower))

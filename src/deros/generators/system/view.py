@@ -1,0 +1,228 @@
+"""A system as its targets see it: the nodes to start, each with what it is to be told."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Span, report
+from deros.generators.api.protocol import GenerationError
+from deros.generators.text.identifiers import Emitted, check_collisions
+from deros.metamodels.common import Value
+from deros.metamodels.flatten import FlatNode, flatten, resolve_name
+from deros.metamodels.node import NodeType, Parameter, ParameterType
+from deros.metamodels.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
+from deros.metamodels.system import NodeInstance, Subsystem, System
+
+NANOSECONDS = 1_000_000_000
+
+ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
+"""Services and topics that an action consists of (ROS 2 design, "Actions")."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodeView:
+    """One node to start.
+
+    Attributes:
+        parameters: what the system sets, each value of the type that the node declares.
+        remappings: pairs of a name in the node's code and a graph name, only where they differ;
+            the first may start with ``rostopic://`` or ``rosservice://``.
+        respawn_delay: seconds until it is started again; ``None``: it is not.
+        respawn_max: how often that is done; ``None``: without limit.
+    """
+
+    name: str
+    namespace: str
+    package: str
+    executable: str
+    lifecycle: bool
+    parameters: tuple[tuple[str, Value], ...]
+    remappings: tuple[tuple[str, str], ...]
+    log_level: str | None
+    respawn_delay: float | None
+    respawn_max: int | None
+    description: str
+
+    @property
+    def full_name(self) -> str:
+        """The node's name in the ROS graph."""
+        return resolve_name(self.name, self.namespace)
+
+    @property
+    def logger(self) -> str:
+        """The name of the node's own logger, as rcl makes it from the full name."""
+        return self.full_name.removeprefix("/").replace("/", ".")
+
+
+@dataclass(frozen=True, slots=True)
+class GroupView:
+    """Nodes that follow each other in one subsystem; the path of the system's own is empty."""
+
+    path: tuple[str, ...]
+    description: str
+    nodes: tuple[NodeView, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SystemView:
+    """All nodes of a system, in the order written.
+
+    Attributes:
+        name: of the system.
+        stem: the start of the names of files made from it.
+        description: the first line of what its author says about it, or nothing.
+    """
+
+    name: str
+    stem: str
+    description: str
+    groups: tuple[GroupView, ...]
+
+    @property
+    def nodes(self) -> Iterator[NodeView]:
+        """All nodes of all groups."""
+        return itertools.chain.from_iterable(group.nodes for group in self.groups)
+
+
+def system_view(system: System) -> SystemView:
+    """Work out what is to be started.
+
+    Raises:
+        GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
+            be given a parameter that ROS 2 has no way to give at start.
+    """
+    flat = flatten(system)
+    found = [diagnostic for node in flat.nodes for diagnostic in _unsupported(node)]
+    if found:
+        raise GenerationError(found)
+    check_collisions(map(_emitted, flat.nodes), "the ROS graph")
+    groups = []
+    for path, nodes in itertools.groupby(flat.nodes, key=lambda node: node.path):
+        views = tuple(_node(node, node.type) for node in nodes if node.type)
+        groups.append(GroupView(path, _description(system, path), views))
+    return SystemView(
+        system.name, snake_case(system.name), one_line(system.description), tuple(groups)
+    )
+
+
+def snake_case(name: str) -> str:
+    """Return a name in lower case with its words parted: ``RobotSafety`` is ``robot_safety``."""
+    parted = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name)
+    return re.sub(r"_+", "_", parted).lower()
+
+
+def one_line(text: str) -> str:
+    """Return a description with every line break and run of blanks as one blank."""
+    return " ".join(text.split())
+
+
+def _emitted(node: FlatNode) -> Emitted:
+    name = node.instance.name
+    return Emitted(node.full_name, f"node {name!r}", node.instance.name_span)
+
+
+def _node(node: FlatNode, node_type: NodeType) -> NodeView:
+    instance = node.instance
+    respawn = instance.respawn
+    return NodeView(
+        name=instance.name,
+        namespace=node.namespace,
+        package=node_type.package,
+        executable=node_type.executable_name,
+        lifecycle=node_type.lifecycle,
+        parameters=tuple(_parameters(node, node_type)),
+        remappings=tuple(_remappings(node)),
+        log_level=instance.log_level,
+        respawn_delay=respawn.delay_ns / NANOSECONDS if respawn else None,
+        respawn_max=respawn.max_restarts if respawn else None,
+        description=one_line(instance.description or node_type.description),
+    )
+
+
+def _parameters(node: FlatNode, node_type: NodeType) -> Iterator[tuple[str, Value]]:
+    for name, value in node.parameters:
+        declared = node_type.parameter_for(name)
+        if not _is_default_that_has_no_spelling(declared, value):
+            yield name, _as_declared(value, declared)
+
+
+def _as_declared(value: Value, declared: Parameter | None) -> Value:
+    """Turn whole numbers into doubles where the node declares doubles: ROS 2 tells them apart."""
+    if declared is None:
+        return value
+    if declared.type is ParameterType.DOUBLE and isinstance(value, int):
+        return float(value)
+    if declared.type is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
+        return tuple(float(element) for element in value)
+    return value
+
+
+def _remappings(node: FlatNode) -> Iterator[tuple[str, str]]:
+    """Yield the remappings, those of an action with all its parts.
+
+    rcl learned to remap an action's own name only after Jazzy; there its parts have to be remapped.
+    """
+    actions = {port.port.name for port in node.ports if port.port.kind in ACTION_KINDS}
+    for source, target in node.remappings:
+        scheme, _, name = source.rpartition("://")
+        if resolve_name(name, node.namespace, node.instance.name) == target:
+            continue
+        yield source, target
+        if name in actions and scheme != "rosservice":
+            for part in ACTION_PARTS:
+                yield f"{name}/_action/{part}", f"{target}/_action/{part}"
+
+
+def _description(system: System, path: tuple[str, ...]) -> str:
+    """Return what the model says about a subsystem, or else about the system that it uses."""
+    members: tuple[NodeInstance | Subsystem, ...] = system.members
+    description = ""
+    for name in path:
+        inside = [m for m in members if isinstance(m, Subsystem) and m.name == name]
+        used = [subsystem.system for subsystem in inside if subsystem.system]
+        said = [*(s.description for s in inside), *(s.description for s in used)]
+        description = next(filter(None, said), "")
+        members = (
+            *itertools.chain.from_iterable(s.members for s in inside),
+            *itertools.chain.from_iterable(s.members for s in used),
+        )
+    return one_line(description)
+
+
+# What cannot be done ------------------------------------------------------------------------------
+
+
+def _unsupported(node: FlatNode) -> Iterator[Diagnostic]:
+    instance = node.instance
+    if node.type is None:
+        message = f"unknown node type '{instance.type_name}'"
+        yield report(codes.UNKNOWN_NODE_TYPE, message, instance.type_span)
+        return
+    yield from wired_apart(node)
+    spans = {setting.name: setting.value_span for setting in instance.parameters}
+    for name, value in node.parameters:
+        declared = node.type.parameter_for(name)
+        if _has_spelling(declared, value) or _is_default_that_has_no_spelling(declared, value):
+            continue
+        span: Span = spans.get(name, instance.name_span)
+        what = "a byte array" if value else "an empty array"
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"parameter '{name}' cannot be set to {what}: ROS 2 has no spelling for it",
+            span,
+            hint="make it the default in the node description, or set it when the node runs",
+        )
+
+
+def _has_spelling(declared: Parameter | None, value: Value) -> bool:
+    """Tell whether rcl's YAML can say the value: of an empty array it cannot tell the type."""
+    bytes_wanted = declared is not None and declared.type is ParameterType.BYTE_ARRAY
+    return value != () and not bytes_wanted
+
+
+def _is_default_that_has_no_spelling(declared: Parameter | None, value: Value) -> bool:
+    return declared is not None and declared.default == value and not _has_spelling(declared, value)

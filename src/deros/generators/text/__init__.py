@@ -1,0 +1,1 @@
+"""Pieces of emitted text that several generators need, by the language of the text."""

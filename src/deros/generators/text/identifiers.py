@@ -1,0 +1,106 @@
+"""Names of ROS 2 turned into names of a programming language, and the collisions this can cause."""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.generators.api.protocol import GenerationError
+
+_NOT_IN_IDENTIFIERS = re.compile(r"\W+", re.ASCII)
+_PLAIN_IN_FILE_NAMES = " _.+-@"
+PYTHON_WORDS = frozenset(keyword.kwlist) | {name for name in dir(builtins) if name.islower()}
+"""What no name in emitted Python may be: keywords, and builtins that code calls."""
+
+
+def file_label(path: str) -> str:
+    """Return the name of a file as generated text may show it, without its folder.
+
+    A file may be named anything but ``/`` and NUL: quotes, line breaks and comment signs in a name
+    would otherwise become code. Letters, digits, spaces and ``_.+-@`` stay, every other character
+    becomes ``%`` and the hexadecimal number of each byte, as in a URL.
+    """
+    return "".join(
+        character
+        if character.isalnum() or character in _PLAIN_IN_FILE_NAMES
+        else "".join(f"%{byte:02X}" for byte in character.encode("utf-8", "surrogateescape"))
+        for character in PurePosixPath(path).name
+    )
+
+
+def python_identifier(name: str) -> str:
+    """Return the Python identifier for a ROS 2 name.
+
+    A leading ``/`` or ``~/`` is dropped, every other run of characters that no identifier may hold
+    becomes ``_``: ``/fmInformation/imu`` is ``fmInformation_imu``. Keywords get a ``_`` at the end,
+    names that start with a digit one at the front.
+    """
+    return _legal(_NOT_IN_IDENTIFIERS.sub("_", name.removeprefix("~").removeprefix("/")) or "_")
+
+
+def camel_case(name: str) -> str:
+    """Return the class name for a ROS 2 name: ``vectornav_vn100_node`` is ``VectornavVn100Node``.
+
+    Capitals within a word stay, so ``fmSensors`` is ``FmSensors``.
+    """
+    words = [word for word in python_identifier(name).split("_") if word]
+    text = "".join(word[0].upper() + word[1:] for word in words) or "_"
+    return _legal(text)
+
+
+def _legal(text: str) -> str:
+    if text[0].isdigit():
+        return f"_{text}"
+    return f"{text}_" if keyword.iskeyword(text) else text
+
+
+@dataclass(frozen=True, slots=True)
+class Emitted:
+    """One name that a target emits: the identifier, what it stands for in the model, and where."""
+
+    identifier: str
+    origin: str
+    span: Span
+
+
+def check_collisions(emitted: Iterable[Emitted], within: str, *, files: bool = False) -> None:
+    """Refuse a model of which two things would get one name in ``within``.
+
+    Args:
+        emitted: the names, in the order of the model.
+        within: what must not hold a name twice, for the message.
+        files: whether the names are those of files, which some file systems do not tell apart by
+            case.
+
+    Raises:
+        GenerationError: with one ``DRS401`` for each name that is taken already.
+    """
+    first: dict[str, Emitted] = {}
+    found: list[Diagnostic] = []
+    for item in emitted:
+        key = item.identifier.casefold() if files else item.identifier
+        other = first.setdefault(key, item)
+        if other is item:
+            continue
+        both = f"{item.origin} and {other.origin}"
+        message = f"{both} both become {item.identifier!r} in {within}"
+        if item.identifier != other.identifier:
+            names = f"{item.identifier!r} and {other.identifier!r}"
+            message = f"{both} become {names} in {within}, one file where case does not count"
+        found.append(
+            report(
+                codes.NAME_COLLISION,
+                message,
+                item.span,
+                hint="rename one of them",
+                related=(Related(other.span, f"{other.origin} is here"),),
+            )
+        )
+    if found:
+        raise GenerationError(found)

@@ -1,0 +1,20 @@
+"""Fields of messages as rclpy takes them."""
+
+from __future__ import annotations
+
+import math
+
+from deros.interfaces.types import FLOAT_TYPES, FieldType
+from deros.monitor.ir import Scalar
+
+
+def literal(kind: FieldType, value: Scalar) -> str:
+    """Return the literal that rclpy takes for a field."""
+    if kind.base == "byte":
+        assert isinstance(value, int)
+        return repr(bytes([value]))
+    if kind.base in FLOAT_TYPES:
+        assert not isinstance(value, str)
+        number = float(value)
+        return repr(number) if math.isfinite(number) else f"float({str(number)!r})"
+    return repr(value)

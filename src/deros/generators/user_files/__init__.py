@@ -1,0 +1,1 @@
+"""What the files that belong to users lack of what newly generated code needs."""

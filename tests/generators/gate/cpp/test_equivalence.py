@@ -1,0 +1,134 @@
+"""The gate in C++ does what the reference gate does, whatever the gate and whatever happens."""
+
+from __future__ import annotations
+
+import os
+import random
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from deros.generators.gate.cpp.messages import type_views
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.monitor.commands import HEADER, LAYOUT
+from deros.monitor.gate import GateEngine
+from deros.monitor.ir import Gate, GateLine, Limit
+from tests.support.cpp import needs_compiler
+from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded, needs_clang
+from tests.support.gate_traces import (
+    MORE_COMMANDS,
+    Trace,
+    limitable,
+    random_gate,
+    random_trace,
+)
+from tests.support.gates import ACTIONS, QUIET, STORE, Happening, message_type, play, span
+from tests.support.messages import message_types
+
+pytestmark = needs_compiler
+
+EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "3000"))
+"""Traces in all; set, gates and traces are drawn anew in every run, else always the same."""
+
+SEED = random.randrange(2**32) if "DEROS_EXAMPLES" in os.environ else 4
+START_NS = 100
+TRACES_OF_A_TYPE = 8
+
+PACKAGES = (
+    "builtin_interfaces",
+    "diagnostic_msgs",
+    "geometry_msgs",
+    "nav_msgs",
+    "sensor_msgs",
+    "std_msgs",
+    "test_msgs",
+    "trajectory_msgs",
+)
+
+
+def check(players: Players, gates: Sequence[Gate], number: int, seed: int) -> int:
+    """Play one random trace; return how many commands were published in it."""
+    trace = random_trace(random.Random(seed), gates[number], START_NS)
+    return check_trace(players, gates, number, trace)
+
+
+def check_trace(players: Players, gates: Sequence[Gate], number: int, trace: Trace) -> int:
+    """Play a trace; return how many commands were published in it."""
+    gate = gates[number]
+    engine = GateEngine(gate, ACTIONS, STORE, START_NS)
+    answers = players.play(number, START_NS, trace)
+    for step, ((t_ns, happening), answer) in enumerate(zip(trace, answers, strict=True)):
+        before = len(engine.outputs)
+        against = play(engine, t_ns, happening)
+        assert answer.is_done == (not against) or not gate.is_latching
+        assert not engine.outputs or answer.applying == engine.applying
+        expected = tuple(
+            (each.t_ns, each.kind, encoded(gate.type, each.message))
+            for each in engine.outputs[before:]
+        )
+        assert answer.outputs == expected, f"{gate}\nstep {step} of {trace}"
+        assert answer.next_deadline is None or answer.next_deadline > t_ns
+    return len(engine.outputs)
+
+
+def test_zeros_are_no_command_that_is_executed(tmp_path: Path) -> None:
+    """What a limit left in them is not limited again when the zero line has ended."""
+    kind = message_type("std_msgs.Int32")
+    data = FieldType("int32")
+    lines = (
+        GateLine(2, None, None, (Limit(("data",), data, -3, 3),), span(2)),
+        GateLine(0, None, None, (), span(3)),
+        GateLine(3, None, None, (Limit(("data",), data, -1, 1),), span(4)),
+    )
+    gates = [Gate(0, "/wish", "/robot/command", kind, 10, lines, span(1))]
+    happens = [
+        *QUIET,
+        Happening(1, "state", {"data": 1}, "/mode"),
+        Happening(1, "command", {"data": 9}),
+        Happening(1, "state", {"data": True}, "/stop"),
+        Happening(1, "state", {"data": False}, "/stop"),
+        Happening(1, "state", {"data": 2}, "/mode"),
+    ]
+    trace = [(START_NS + number, each) for number, each in enumerate(happens)]
+    with Players(compiled(gates, tmp_path, "c++", "-O0"), gates) as players:
+        assert check_trace(players, gates, 0, trace) == 3  # at the start, limited, and zero
+
+
+@pytest.mark.parametrize(
+    ("compiler", "flags", "gates_of_a_type"),
+    [
+        pytest.param("c++", SANITIZED, 2, id="sanitized"),
+        pytest.param("clang++", ("-O2",), 1, id="optimised", marks=needs_clang),
+    ],
+)
+def test_same_commands(
+    compiler: str, flags: tuple[str, ...], gates_of_a_type: int, tmp_path: Path
+) -> None:
+    """Both publish the same messages at the same nanosecond; timers may be late, clocks step."""
+    rng = random.Random(f"{SEED} {compiler}")
+    gates = [random_gate(rng, name) for name in MORE_COMMANDS for _ in range(gates_of_a_type)]
+    published = 0
+    with Players(compiled(gates, tmp_path, compiler, *flags), gates) as players:
+        for example in range(EXAMPLES // 2):
+            published += check(players, gates, example % len(gates), rng.randrange(2**48))
+    assert published > EXAMPLES  # several in each
+
+
+def commands() -> list[InterfaceType]:
+    """Return all message types of some packages that can be commands."""
+    no_commands = (HEADER, LAYOUT)  # parts of messages that say how to read the rest
+    kinds = (kind for kind in message_types(*PACKAGES) if kind not in no_commands)
+    return [kind for kind in kinds if type_views(STORE, kind)]
+
+
+def test_commands_of_every_type(tmp_path: Path) -> None:
+    """Each float is looked at, each number made zero or limited, and the rest stays as it was."""
+    rng = random.Random(f"{SEED} types")
+    kinds = commands()
+    assert len(kinds) > 100
+    gates = [random_gate(rng, kind.short, limitable(rng, kind)) for kind in kinds]
+    with Players(compiled(gates, tmp_path, "c++", "-O0"), gates) as players:
+        for number in range(len(gates)):
+            for _ in range(TRACES_OF_A_TYPE):
+                check(players, gates, number, rng.randrange(2**48))

@@ -1,0 +1,173 @@
+"""The files of gates in C++, for the package of their safety node."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.generators.api.protocol import Files, GenerationError, Owner
+from deros.generators.output.writer import write
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType
+from tests.support.cpp import message_flags, needs_compiler
+from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.gate_cpp import STRICT, needs_clang
+from tests.support.gate_cpp_nodes import PACKAGE, gate_package
+from tests.support.gate_nodes import MODELS
+from tests.support.golden import Golden
+
+GATES = ("cmd_vel_gate", "arm_command_gate", "wheels_command_gate", "lamp_command_gate")
+HEAD = """
+use "robot.system" import Robot
+action stop publishes true on /stop : std_msgs.Bool latched;
+action slow publishes 1 on /mode : std_msgs.UInt8 latched;
+action hold publishes false on /limit : std_msgs.Bool latched;
+action follow publishes "a \\\\ ??/ b" on /class : std_msgs.String latched;
+action far publishes 0.1 on /far : std_msgs.Float32 latched;
+action deep publishes -9223372036854775808 on /deep : std_msgs.Int64 latched;
+input v = topic /speed.data
+entity e { r: v > 0.5 m/s; }
+if e.r then { stop; slow; hold; follow; far; deep; };
+"""
+
+KINDS = [
+    "geometry_msgs.Twist rate 20 Hz { stop: zero; }",
+    "geometry_msgs.TwistStamped rate 20 Hz { hold: limit twist.linear.x to [0, 1]; }",
+    "std_msgs.Int32 rate 5 Hz { slow: limit data to [-3, 3]; follow: zero; far: zero; }",
+    "std_msgs.Byte rate 5 Hz { slow: limit data to [0, 3]; }",
+    "std_msgs.Float32 rate 5 Hz { deep: limit data to [-0.1, 1e30]; stop: zero; }",
+    "std_msgs.UInt64 rate 5 Hz { stop: limit data to [0, 18446744073709551615]; }",
+    "std_msgs.Int64 rate 5 Hz { stop: limit data to [-9223372036854775808, 0]; }",
+    "std_msgs.Float64MultiArray rate 5 Hz { lost input for 1 sec: zero; }",
+    "std_msgs.Float64MultiArray rate 5 Hz {"
+    " lost heartbeat for 1 sec: limit data[0] to [-1, 1], data[12] to [0, 1];"
+    " lost heartbeat for 2 sec: zero; stop: zero; hold: zero; slow: limit data[3] to [0, 1]; }",
+    "sensor_msgs.JointState rate 5 Hz {"
+    " lost input for 1 sec: limit velocity[0] to [-1, 1], velocity[1] to [-1, 1],"
+    " velocity[2] to [-1, 1], velocity[3] to [-1, 1], effort[0] to [-1, 1],"
+    " effort[1] to [-1, 1], effort[2] to [-1, 1], effort[3] to [-1, 1]; }",
+    "nav_msgs.Odometry rate 5 Hz { stop: limit twist.covariance[3] to [-1, 1]; }",
+    "diagnostic_msgs.DiagnosticArray rate 5 Hz { stop: zero; }",
+    "trajectory_msgs.MultiDOFJointTrajectory rate 1000 Hz { stop: zero;"
+    " lost input for 9000000000 sec: limit points[0].velocities[0].linear.x to [-1, 1]; }",
+]
+"""Gates of every combination of lines and types."""
+
+
+@pytest.fixture(scope="module")
+def files() -> Files:
+    """Give the files of the model with gates of all kinds."""
+    return gate_package((MODELS / "gates.deros").read_text(encoding="utf-8"))
+
+
+def test_the_files_are_as_kept(golden: Golden, files: Files) -> None:
+    """Logic, node, program and description have the text that was reviewed."""
+    own = {f"{gate}{end}" for gate in GATES[:3] for end in (".hpp", ".cpp", "_cpp.rnd")}
+    own |= {f"{gate}_logic{end}" for gate in GATES[:3] for end in (".hpp", ".cpp")}
+    own.add("cmd_vel_gate_main.cpp")
+    kept = {path: file for path, file in files.items() if Path(path).name in own}
+    assert len(kept) == len(own)
+    golden.check("gate_cpp/gates", kept)
+
+
+def write_kinds(folder: Path) -> None:
+    """Write gates of all kinds, and those of the model."""
+    for number, kind in enumerate(KINDS):
+        text = f"{HEAD}gate /wish/of/somebody -> /command : {kind}"
+        write(gate_package(text, name=f"kind_{number}"), folder)
+    write(gate_package((MODELS / "gates.deros").read_text(encoding="utf-8")), folder)
+
+
+def test_the_linters_of_ament_find_nothing(tmp_path: Path) -> None:
+    """uncrustify, cpplint and cppcheck with ament's settings pass all files of gates."""
+    write_kinds(tmp_path)
+    for shared in tmp_path.glob("kind_*/**/runtime/*"):
+        shared.unlink()  # it is there once, in the package of the model
+    assert_cpp_lint_clean(tmp_path)
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    "compiler", ["g++", pytest.param("clang++", marks=needs_clang)], ids=["gcc", "clang"]
+)
+def test_every_kind_of_logic_compiles_strictly(compiler: str, tmp_path: Path) -> None:
+    """No combination of lines and types makes a compiler warn of anything; nor does the model."""
+    write_kinds(tmp_path)
+    sources = sorted(tmp_path.rglob("*_logic.cpp"))
+    assert len(sources) == len(KINDS) + len(GATES)
+    packages = sorted(path for path in tmp_path.iterdir() if path.is_dir())
+    folders = [flag for path in packages for flag in ("-I", str(path / "include"))]
+    # In one file all headers are read but once; the model's gates share their helpers' names.
+    for group in ([s for s in sources if "kind_" in s.parts[-3]], *([s] for s in sources[:3])):
+        together = tmp_path / "together.cpp"
+        together.write_text("".join(f'#include "{each}"\n' for each in group), encoding="utf-8")
+        command = [compiler, "-std=c++17", "-fsyntax-only", *STRICT]
+        command += [*folders, *message_flags(), str(together)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+        assert done.returncode == 0, done.stderr[:5000]
+
+
+def test_a_gate_is_the_twin_of_the_one_in_python(files: Files) -> None:
+    """Its type's name ends in _cpp; its ports, their QoS and its parameters are the same."""
+    for gate in GATES:
+        text = files[f"{PACKAGE}/{gate}_cpp.rnd"].text
+        loaded = Repository().load_text(f"{gate}_cpp.rnd", text)
+        assert loaded.diagnostics == ()
+        assert isinstance(loaded.model, NodeType)
+        assert (loaded.model.name, loaded.model.package) == (f"{gate}_cpp", PACKAGE)
+        golden = Path(__file__).parents[3] / f"golden/gate_python/gates/gates_safety/{gate}.rnd"
+        if golden.exists():
+            python = Repository().load(golden).model
+            assert isinstance(python, NodeType)
+            assert loaded.model.ports == python.ports
+            assert loaded.model.parameters == python.parameters
+
+
+def test_it_runs_by_the_name_of_its_twin(files: Files) -> None:
+    """So lock, topics and remappings are those of the gate in Python."""
+    base = files[f"{PACKAGE}/src/cmd_vel_gate_base.cpp"].text
+    assert 'Node("cmd_vel_gate", options)' in base
+
+
+def test_every_line_is_found_in_the_logic(files: Files) -> None:
+    """Each line of the rules stands above the code that came from it, with its place."""
+    logic = files[f"{PACKAGE}/src/cmd_vel_gate_logic.cpp"].text
+    rules = (MODELS / "gates.deros").read_text(encoding="utf-8").splitlines()
+    for number in range(24, 29):
+        following = logic.partition(f"(gates.deros:{number})\n")[2]
+        assert following.startswith(f"  //   {rules[number - 1].strip()}"[:60])
+
+
+def test_the_middleware_keeps_out_of_shared_memory(files: Files) -> None:
+    """The program chooses UDP before anything of ROS 2 begins, unless told otherwise."""
+    main = files[f"{PACKAGE}/src/cmd_vel_gate_main.cpp"].text
+    chosen, _, rest = main.partition('::setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4", 0);')
+    assert "run<" not in chosen
+    assert "run<" in rest
+
+
+def test_nobody_edits_a_gate(files: Files) -> None:
+    """All files of a gate but the manifest belong to the generator: there is nothing to fill in."""
+    owned = {path for path, file in files.items() if file.owner is Owner.USER}
+    assert owned == {"gates_safety_cpp/package.xml"}
+
+
+def test_the_licence_stands_above_every_source() -> None:
+    """With a holder of the copyright, each C++ file names it."""
+    text = (MODELS / "gates.deros").read_text(encoding="utf-8")
+    made = gate_package(text, {"copyright": "2026 A. Robot"})
+    for path, file in made.items():
+        if path.endswith((".cpp", ".hpp")):
+            assert file.text.startswith("// Copyright 2026 A. Robot"), path
+
+
+def test_topics_that_differ_in_slashes_alone_are_refused() -> None:
+    """Two ports of one gate cannot share the names that are made from them."""
+    text = f"{HEAD}gate /mode/x -> /mode_x : std_msgs.Int32 rate 5 Hz {{ stop: zero; }}\n"
+    with pytest.raises(GenerationError) as caught:
+        gate_package(text)
+    (found,) = caught.value.diagnostics
+    assert found.code is codes.NAME_COLLISION

@@ -1,0 +1,142 @@
+"""Whatever ends the safety node, the gate stops the robot in time; again and again."""
+
+from __future__ import annotations
+
+import os
+import random
+import statistics
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+from subprocess import Popen
+
+import pytest
+
+from deros.generators.api.protocol import Context
+from deros.generators.output.writer import write
+from deros.generators.safety_package.python.generate import generate
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from tests.support.gate_nodes import (
+    MODELS,
+    PACKAGE,
+    SAFETY_NODE,
+    Drive,
+    with_shared_memory,
+)
+from tests.support.gate_runners import LANGUAGES, RunGate
+from tests.support.processes import freeze, thaw
+from tests.support.ros import DEFAULT_LEASE_S, Peer, running
+
+pytestmark = pytest.mark.ros
+
+REPEATS = int(os.environ.get("DEROS_REPEATS", "5"))
+"""How often each thing happens; a proof takes a hundred."""
+
+LIMIT_S = 0.3 + 0.05
+"""The time of the line about the heartbeat, and what the machine may add."""
+
+StartSafety = Callable[..., AbstractContextManager[Popen[str]]]
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """Give the package of the safety node and its gates."""
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(MODELS / "gates.deros").model
+    assert isinstance(model, Rules)
+    write(generate(model, context, {}), tmp_path)
+    return tmp_path / PACKAGE
+
+
+@pytest.fixture(params=LANGUAGES)
+def drive(
+    request: pytest.FixtureRequest, ros_env: dict[str, str], ros_peer: Peer, tmp_path: Path
+) -> Iterator[Drive]:
+    """Give a robot whose gate runs, in either language, and whose safety node is to come."""
+    run_gate: RunGate = request.param(tmp_path / "gates")
+    with run_gate("cmd_vel_gate", ros_env):
+        yield Drive(ros_peer)
+
+
+@pytest.fixture
+def start_safety(package: Path, ros_env: dict[str, str], tmp_path: Path) -> StartSafety:
+    """Give a function that runs the safety node, which has shared memory, as it has by default.
+
+    Its lease is shorter than by default unless it is said, so that one that was killed is forgotten
+    soon: a gate in Python waits for that.
+    """
+    command = [sys.executable, "-m", f"{PACKAGE}.{SAFETY_NODE}"]
+    env = {**ros_env, "PYTHONPATH": str(package)}
+    return lambda *lease_s: running(command, {**env, **with_shared_memory(tmp_path, *lease_s)})
+
+
+def report(what: str, delays: list[float]) -> None:
+    """Print how long it took, and hold the longest to the limit."""
+    milliseconds = sorted(1000 * delay for delay in delays)
+    print(
+        f"\n{what}, {len(delays)} times: zero after {milliseconds[0]:.1f} ms at least,"
+        f" {statistics.median(milliseconds):.1f} in the median, {milliseconds[-1]:.1f} at most"
+    )
+    assert milliseconds[-1] <= 1000 * LIMIT_S
+
+
+def at_some_moment(drive: Drive) -> None:
+    """Let part of the time between two heartbeats pass, as chance will have it."""
+    end = time.monotonic() + random.uniform(0.0, 0.1)
+    drive.peer.until(lambda: time.monotonic() > end)
+
+
+def test_a_killed_safety_node(drive: Drive, start_safety: StartSafety) -> None:
+    """SIGKILL: from then on, zero within 0.3 s and 50 ms, every time; a new one takes over."""
+    delays: list[float] = []
+    for _ in range(REPEATS):
+        with start_safety() as safety:
+            drive.until_moving()
+            at_some_moment(drive)
+            delays.append(drive.until_zero(safety.kill))
+            safety.wait()
+            safety.returncode = 0  # as it was meant
+    report("killed", delays)
+
+
+def test_a_killed_safety_node_with_the_default_lease(
+    drive: Drive, start_safety: StartSafety
+) -> None:
+    """Zero in time as well, and until the middleware has forgotten it; then the new one counts."""
+    with start_safety(DEFAULT_LEASE_S) as safety:
+        drive.until_moving()
+        report("killed", [drive.until_zero(safety.kill)])
+        safety.wait()
+        safety.returncode = 0  # as it was meant
+    with start_safety(DEFAULT_LEASE_S):
+        drive.until_moving()
+
+
+def test_a_stopped_safety_node(drive: Drive, start_safety: StartSafety) -> None:
+    """SIGSTOP: the same; once it goes on, its next states are believed again."""
+    delays: list[float] = []
+    with start_safety() as safety:
+        for _ in range(REPEATS):
+            drive.until_moving()
+            at_some_moment(drive)
+            delays.append(drive.until_zero(lambda: freeze(safety.pid)))
+            thaw(safety.pid)
+    report("stopped", delays)
+
+
+def test_a_rule_that_is_broken(drive: Drive, start_safety: StartSafety) -> None:
+    """From the sensor's message to the zero, through safety node and gate, in a moment."""
+    delays: list[float] = []
+    with start_safety():
+        drive.until_watched()
+        for _ in range(REPEATS):
+            drive.until_moving()
+            at_some_moment(drive)
+            delays.append(drive.until_zero(lambda: drive.measure(2.0)))
+            drive.speed = 0.05
+    report("rule broken", delays)
+    assert statistics.median(delays) < 0.02

@@ -1,0 +1,154 @@
+"""The files of gates, in the package of their safety node."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.generators.api.protocol import Context, Files, GenerationError, Owner
+from deros.generators.output.writer import write
+from deros.generators.safety_package.python.generate import generate
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType
+from deros.metamodels.rules import Rules
+from tests.support.gate_nodes import MODELS, write_gates
+from tests.support.golden import Golden
+from tests.support.lint import assert_lint_clean
+
+GATES = ("cmd_vel_gate", "arm_command_gate", "wheels_command_gate", "lamp_command_gate")
+HEAD = """
+use "robot.system" import Robot
+action stop publishes true on /stop : std_msgs.Bool latched;
+action slow publishes 1 on /mode : std_msgs.UInt8 latched;
+action go publishes false on /hold : std_msgs.Bool latched;
+input v = topic /speed.data
+entity e { r: v > 0.5 m/s; }
+if e.r then { stop; slow; go; };
+"""
+
+
+def files_of(text: str, **options: str) -> Files:
+    """Return what is generated for rules that stand beside the models."""
+    context = Context(InterfaceStore(), Repository())
+    loaded = context.repository.load_text(str(MODELS / "text.deros"), text)
+    assert loaded.diagnostics == ()
+    assert isinstance(loaded.model, Rules)
+    return generate(loaded.model, context, options)
+
+
+@pytest.fixture(scope="module")
+def files() -> Files:
+    """Give the files of the model with gates of all kinds."""
+    return files_of((MODELS / "gates.deros").read_text(encoding="utf-8"))
+
+
+def test_the_files_are_as_kept(golden: Golden) -> None:
+    """Logic, messages, node and description have the text that was reviewed."""
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(MODELS / "gates.deros").model
+    assert isinstance(model, Rules)
+    made = generate(model, context, {})
+    ends = (".py", ".rnd", "_logic.py", "_message.py")
+    own = {f"{gate}{end}" for gate in GATES[:3] for end in ends}
+    kept = {path: file for path, file in made.items() if Path(path).name in own}
+    assert len(kept) == len(own)
+    golden.check("gate_python/gates", kept)
+
+
+def test_the_linters_of_ament_find_nothing(tmp_path: Path) -> None:
+    """flake8 and pep257 with ament's settings pass all files of gates."""
+    assert_lint_clean(write_gates(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "gate",
+    [
+        "geometry_msgs.Twist rate 20 Hz { stop: zero; }",
+        "geometry_msgs.TwistStamped rate 20 Hz { go: limit twist.linear.x to [0, 1]; }",
+        "std_msgs.Int32 rate 5 Hz { slow: limit data to [-3, 3]; }",
+        "std_msgs.Byte rate 5 Hz { slow: limit data to [0, 3]; }",
+        "std_msgs.Float64MultiArray rate 5 Hz { lost input for 1 sec: zero; }",
+        "std_msgs.Float64MultiArray rate 5 Hz {"
+        " lost heartbeat for 1 sec: limit data[0] to [-1, 1], data[12] to [0, 1];"
+        " lost heartbeat for 2 sec: zero; stop: zero; go: zero; slow: limit data[3] to [0, 1]; }",
+        "sensor_msgs.JointState rate 5 Hz {"
+        " lost input for 1 sec: limit velocity[0] to [-1, 1], velocity[1] to [-1, 1],"
+        " velocity[2] to [-1, 1], velocity[3] to [-1, 1], effort[0] to [-1, 1],"
+        " effort[1] to [-1, 1], effort[2] to [-1, 1], effort[3] to [-1, 1]; }",
+        "nav_msgs.Odometry rate 5 Hz { stop: limit twist.covariance[3] to [-1, 1]; }",
+        "diagnostic_msgs.DiagnosticArray rate 5 Hz { stop: zero; }",
+        "trajectory_msgs.MultiDOFJointTrajectory rate 1000 Hz { stop: zero; lost input for 1 s:"
+        " limit points[0].velocities[0].linear.x to [-1, 1]; }",
+    ],
+)
+def test_every_kind_of_gate_is_lint_clean(gate: str, tmp_path: Path) -> None:
+    """No combination of lines and types leaves an unused import, name or empty block behind."""
+    write(files_of(f"{HEAD}gate /wish/of/somebody -> /command : {gate}"), tmp_path)
+    assert_lint_clean(tmp_path / "text_safety")
+
+
+def test_a_gate_is_a_node_of_the_package(files: Files) -> None:
+    """It has a program, a launch file, and a description that is read back as it was."""
+    setup = files["text_safety/setup.py"].text
+    for gate in GATES:
+        assert f"'{gate} = text_safety.{gate}:main'" in setup
+        assert f"text_safety/launch/{gate}.launch.py" in files
+        text = files[f"text_safety/{gate}.rnd"].text
+        loaded = Repository().load_text(f"{gate}.rnd", text)
+        assert loaded.diagnostics == ()
+        assert isinstance(loaded.model, NodeType)
+        assert loaded.model.name == gate
+    assert "<exec_depend>trajectory_msgs</exec_depend>" in files["text_safety/package.xml"].text
+
+
+def test_the_ports_are_those_of_the_lines(files: Files) -> None:
+    """Commands in and out, the topics of the actions named, the heartbeat where a line needs it."""
+    text = files["text_safety/lamp_command_gate.rnd"].text
+    node = Repository().load_text("lamp_command_gate.rnd", text).model
+    assert isinstance(node, NodeType)
+    names = [port.name for port in node.ports]
+    assert names == ["/lamp/command", "/diagnostics", "/lamp/goal", "/stop"]
+    text = files["text_safety/cmd_vel_gate.rnd"].text
+    assert "topic text_safety_node/heartbeat : std_msgs.UInt64 qos reliable depth 10" in text
+    assert "topic /cmd_vel_nav : geometry_msgs.Twist qos reliable depth 10" in text
+    assert "topic /lamp/goal : std_msgs.Int32 qos best_effort depth 10" in (
+        files["text_safety/lamp_command_gate.rnd"].text
+    )
+
+
+def test_every_line_is_found_in_the_logic(files: Files) -> None:
+    """Each line of the rules stands above the code that came from it, with its place."""
+    logic = files["text_safety/text_safety/cmd_vel_gate_logic.py"].text
+    rules = (MODELS / "gates.deros").read_text(encoding="utf-8").splitlines()
+    for number in range(24, 29):
+        title = f"(text.deros:{number})\n"
+        assert title in logic
+        following = logic.partition(title)[2]
+        assert following.startswith(f"        #   {rules[number - 1].strip()}"[:60])
+
+
+def test_nobody_edits_a_gate(files: Files) -> None:
+    """All files of a gate belong to the generator: there is nothing to fill in."""
+    for path, file in files.items():
+        if "_gate" in path:
+            assert file.owner is Owner.GENERATOR
+
+
+def test_no_gates_no_files() -> None:
+    """Rules without gates get nothing of them."""
+    assert not [path for path in files_of(HEAD) if "gate" in path]
+
+
+def test_two_gates_of_one_name_are_refused() -> None:
+    """Topics that differ in slashes alone would be guarded by one node type."""
+    text = "gate /a -> /b/c : std_msgs.Int32 rate 5 Hz { stop: zero; }\n"
+    text += "gate /d -> /b_c : std_msgs.Int32 rate 5 Hz { stop: zero; }"
+    with pytest.raises(GenerationError) as caught:
+        files_of(HEAD + text)
+    (found,) = caught.value.diagnostics
+    assert found.code is codes.NAME_COLLISION
+    assert "'/b/c'" in found.message
+    assert "'/b_c'" in found.message

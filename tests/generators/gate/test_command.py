@@ -1,0 +1,68 @@
+"""What gates of all languages do to the fields of a command."""
+
+from __future__ import annotations
+
+from deros.generators.gate.command import command_types, limited_paths
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import FieldType
+from deros.monitor.ir import Gate, GateLine, Limit
+from tests.support.gates import message_type, span
+
+STORE = InterfaceStore()
+
+
+def names(kind: str) -> dict[str, tuple[list[str], list[str]]]:
+    """Return, of each type in a command, the fields to look at and those that zero changes."""
+    return {
+        each.type.name: ([name for name, _ in each.finite], [name for name, _ in each.zeros])
+        for each in command_types(STORE, message_type(kind))
+    }
+
+
+def test_the_types_in_a_command_come_innermost_first() -> None:
+    """Of a header zero changes the stamp; the header itself is no command."""
+    assert list(names("geometry_msgs.TwistStamped").items()) == [
+        ("Vector3", (["x", "y", "z"], ["x", "y", "z"])),
+        ("Twist", (["linear", "angular"], ["linear", "angular"])),
+        ("TwistStamped", (["twist"], ["header", "twist"])),
+    ]
+
+
+def test_texts_and_layouts_stay() -> None:
+    """Nobody looks at them, and zero changes nothing of them."""
+    assert names("std_msgs.String") == {}
+    assert names("std_msgs.Int32MultiArray") == {"Int32MultiArray": ([], ["data"])}
+
+
+def test_a_message_around_a_stamped_one_is_stamped() -> None:
+    """Whoever makes zeros of it has to know the time."""
+    types = command_types(STORE, message_type("nav_msgs.Path"))
+    assert {each.type.name: each.stamped for each in types} == {
+        "Point": False,
+        "Quaternion": False,
+        "Pose": False,
+        "PoseStamped": True,
+        "Path": True,
+    }
+
+
+def test_zero_says_no_rotation() -> None:
+    """Only the w of a quaternion becomes 1."""
+    types = {e.type.name: e for e in command_types(STORE, message_type("geometry_msgs.Pose"))}
+    assert [name for name, _ in types["Quaternion"].zeros if types["Quaternion"].is_one(name)] == [
+        "w"
+    ]
+    assert not types["Point"].is_one("x")
+
+
+def test_each_limited_field_counts_once() -> None:
+    """Several lines may limit the same one."""
+    kind = message_type("geometry_msgs.Twist")
+
+    def line(*paths: tuple[str, ...]) -> GateLine:
+        limits = tuple(Limit(path, FieldType("float64"), -1.0, 1.0) for path in paths)
+        return GateLine(0, None, None, limits, span(2))
+
+    lines = (line(("angular", "z"), ("linear", "x")), line(), line(("linear", "x")))
+    gate = Gate(0, "/wish", "/command", kind, 10, lines, span(1))
+    assert limited_paths(gate) == (("angular", "z"), ("linear", "x"))

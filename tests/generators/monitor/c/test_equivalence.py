@@ -1,0 +1,59 @@
+"""The monitor in C does what the reference engine does, whatever the rules and the trace."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from deros.generators.api.protocol import GenerationError
+from deros.generators.monitor.c.interface import render_monitor
+from tests.support import c_pairs, counterexamples
+from tests.support.c_library import Loaded, needs_c
+
+PROGRAMS = int(os.environ.get("DEROS_C_PROGRAMS", "90"))
+"""Programs that are drawn per property, of each of which five traces are compared.
+
+The programs are the same in every run; others are drawn by ``make property``.
+"""
+
+KEPT = sorted([*counterexamples.FOLDER.glob("*.json"), *c_pairs.FOLDER.glob("*.json")])
+
+
+@needs_c
+@pytest.mark.parametrize("focus", c_pairs.FOCUSES)
+def test_same_events(focus: str, tmp_path: Path) -> None:
+    """Both give the same events at the same nanosecond, and know the same after every call."""
+    cases = c_pairs.cases(c_pairs.FOCUSES[focus], PROGRAMS, 1)
+    assert len(cases) > PROGRAMS // 2, "most programs are refused"
+    library = Loaded([each.unit for each in cases], tmp_path, "-O0")
+    for pair, error in c_pairs.differences(library, cases):
+        raise AssertionError(f"{error}\nof {pair}") from error
+
+
+@needs_c
+@pytest.mark.parametrize("path", KEPT, ids=lambda path: path.stem)
+def test_counterexample(path: Path) -> None:
+    """Wherever a generated monitor once differed C does not, if it has such a monitor."""
+    pair = counterexamples.read(path)
+    try:
+        render_monitor(pair.program)
+    except GenerationError:
+        pytest.skip("C refuses these rules")
+    c_pairs.compare_alone(pair)
+
+
+@needs_c
+def test_difference_is_shortened(tmp_path: Path) -> None:
+    """A pair that differs is told without the steps that it does not need."""
+    cases = c_pairs.cases(("number", "boolean"), 20, 1)
+    units = [each.unit for each in cases]
+    for each in units:  # every action runs while its behaviour holds
+        name = f"{each.prefix}_monitor.c"
+        each.texts[name] = each.texts[name].replace("&& (!held)", "|| held")
+    found = [pair for pair, _ in c_pairs.differences(Loaded(units, tmp_path), cases)]
+    assert found
+    assert min(len(pair.steps) for pair in found) <= 3
+    kept = counterexamples.write(found[0], tmp_path / "kept")
+    assert counterexamples.read(kept).program == found[0].program

@@ -1,0 +1,218 @@
+"""The emitted C as text: clean for every compiler, bounded, deterministic, self-contained."""
+
+from __future__ import annotations
+
+import functools
+import re
+import shutil
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from deros.generators.api.protocol import File, GenerationError
+from deros.generators.monitor.c.deviations import DEVIATIONS
+from deros.generators.monitor.c.interface import render_monitor
+from deros.monitor import walk
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.ir import Apply, Condition, Program
+from tests.support import c_pairs, misra
+from tests.support.c_everything import RULES, built, everything, examples
+from tests.support.golden import Golden
+
+PROGRAMS = {each.name: each for each in (everything(), *examples())}
+
+WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Wcast-qual", "-Werror")
+
+COMPILERS = {
+    "gcc": ("gcc", "-std=c99"),
+    "gcc, optimising": ("gcc", "-std=c99", "-O2"),
+    "gcc, C++": ("gcc", "-x", "c++", "-std=c++17"),
+    "clang": ("clang", "-std=c99"),
+    "clang, C++": ("clang", "-x", "c++", "-std=c++17"),
+    "Cortex-M4": ("arm-none-eabi-gcc", "-std=c99", "-ffreestanding", "-mcpu=cortex-m4"),
+}
+
+LIBM = {"fabs", "sqrt", "atan2", "asin", "fmod", "remainder"}
+"""What the functions of rules need of the mathematical library."""
+
+
+@functools.cache
+def random_texts() -> tuple[Mapping[str, str], ...]:
+    """Return the texts of some random programs of all kinds."""
+    return tuple(
+        each.unit.texts
+        for number, kinds in enumerate(c_pairs.FOCUSES.values())
+        for each in c_pairs.cases(kinds, 4, 2, traces=1, first=100 * number)
+    )
+
+
+def compiled(
+    texts: Mapping[str, str], folder: Path, command: tuple[str, ...], *flags: str
+) -> list[Path]:
+    """Compile monitors, warnings being errors, and return the objects."""
+    if shutil.which(command[0]) is None:
+        pytest.skip(f"no {command[0]}")
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    sources = [name for name in texts if name.endswith(".c")]
+    done = subprocess.run(
+        [*command, *WARNINGS, *flags, "-c", *sources],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return [folder / name.replace(".c", ".o") for name in sources]
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_no_compiler_warns(compiler: str, tmp_path: Path) -> None:
+    """Whatever the compiler and the rules, there is nothing that it would warn of."""
+    texts = [*map(render_monitor, PROGRAMS.values()), *random_texts()]
+    together = {name: text for each in texts for name, text in each.items()}
+    compiled(together, tmp_path, COMPILERS[compiler])
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_needs_the_callback_and_libm_alone(name: str, tmp_path: Path) -> None:
+    """A monitor links with its owner's callback and functions of the mathematical library."""
+    (made,) = compiled(render_monitor(PROGRAMS[name]), tmp_path, ("gcc", "-std=c99", "-O1"))
+    done = subprocess.run(["nm", "-u", str(made)], capture_output=True, text=True, check=True)
+    needed = set(re.findall(r"\bU (\w+)", done.stdout))
+    assert needed - LIBM == {f"{name}_emit"}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_only_public_names_are_seen(name: str, tmp_path: Path) -> None:
+    """What else a monitor defines begins with its prefix, so that several link together."""
+    (made,) = compiled(render_monitor(PROGRAMS[name]), tmp_path, ("gcc", "-std=c99"))
+    command = ["nm", "-g", "--defined-only", str(made)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    defined = re.findall(r"\b[A-Z] (\w+)", done.stdout)
+    assert defined
+    assert all(each.startswith(f"{name}_") for each in defined)
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_stack_is_bounded(name: str, tmp_path: Path) -> None:
+    """No function takes stack that depends on its arguments, none takes much, none recurs."""
+    flags = ("-fstack-usage", "-fcallgraph-info")
+    compiled(render_monitor(PROGRAMS[name]), tmp_path, ("gcc", "-std=c99", "-O0"), *flags)
+    usage = (tmp_path / f"{name}_monitor.su").read_text().splitlines()
+    sizes = [line.split("\t")[1:] for line in usage]
+    assert sizes
+    assert {kind for _, kind in sizes} == {"static"}
+    assert max(int(size) for size, _ in sizes) <= 512
+    graph = (tmp_path / f"{name}_monitor.ci").read_text()
+    edges = re.findall(r'edge: \{ sourcename: "([^"]*)" targetname: "([^"]*)"', graph)
+    assert edges
+    assert _has_no_circle(edges)
+
+
+def _has_no_circle(edges: list[tuple[str, str]]) -> bool:
+    """Tell whether functions can be put in an order in which each calls later ones only."""
+    left = set(edges)
+    while left:
+        callers = {caller for caller, _ in left}
+        settled = {edge for edge in left if edge[1] not in callers}
+        if not settled:
+            return False
+        left -= settled
+    return True
+
+
+def test_circles_are_found() -> None:
+    """A function that calls itself, if by another one, is told from one that does not."""
+    assert _has_no_circle([("a", "b"), ("b", "c"), ("a", "c")])
+    assert not _has_no_circle([("a", "b"), ("b", "a"), ("b", "c")])
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_no_line_is_too_long(name: str) -> None:
+    """No line but of what is to be proved is longer than 99 characters."""
+    for text in render_monitor(PROGRAMS[name]).values():
+        plain = re.sub(r"/\*@.*?\*/", "", text, flags=re.DOTALL)
+        assert max(map(len, plain.splitlines())) <= 99
+
+
+def test_same_text_every_time() -> None:
+    """Two renderings of one program are equal, and name no folder of this machine."""
+    texts = [render_monitor(everything()) for _ in range(2)]
+    assert texts[0] == texts[1]
+    assert "/tmp" not in "".join(texts[0].values())
+
+
+@pytest.mark.skipif(not misra.has_cppcheck(), reason=f"no {misra.CPPCHECK}")
+def test_follows_misra(tmp_path: Path) -> None:
+    """Of MISRA C:2012 no rule is violated but those advisory ones that the text names."""
+    texts = [render_monitor(each) for each in PROGRAMS.values()]
+    found = misra.violations(texts, tmp_path)
+    assert [str(each) for each in found if not each.is_allowed] == []
+    assert any(each.is_allowed for each in found)
+
+
+@pytest.mark.skipif(not misra.has_cppcheck(), reason=f"no {misra.CPPCHECK}")
+def test_misra_is_checked(tmp_path: Path) -> None:
+    """A required rule that is violated is found, and told from an advisory one."""
+    text = "#define UNUSED 1\nint f(int a);\nint f(int a)\n{\n  return a + 017;\n}\n"
+    found = misra.violations([{"wrong.c": text}], tmp_path)
+    assert {"required", "advisory"} == {each.category for each in found}
+    assert not any(each.is_allowed for each in found)
+
+
+def test_deviations_are_told() -> None:
+    """The head of every source names each guideline that it does not follow, all advisory."""
+    for program in PROGRAMS.values():
+        source = render_monitor(program)[f"{program.name}_monitor.c"]
+        head = " ".join(source[: source.index("*/")].replace(" * ", " ").split())
+        assert all(f"{each.guideline}: {each.reason}" in head for each in DEVIATIONS)
+    assert misra.ALLOWED <= misra.ADVISORY
+
+
+REFUSED = {
+    "two texts that are read": ("both: state = names_of;", "two texts"),
+    "a rate of 64 bits": ("quick: ticks.rate() > 1;", "64-bit"),
+    "a 64-bit integer and another": ("like: ticks > beats;", "of another type"),
+    "a long duration": ("long: enabled for 60000 d;", "146 years"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_refusal(case: str) -> None:
+    """What a monitor of fixed size, or C, cannot do is an error with its place."""
+    rule, why = REFUSED[case]
+    named = "input names_of = topic /joints.header.frame_id\n"
+    rules = RULES.replace("entity drive {", f"{named}entity drive {{\n  {rule}", 1)
+    with pytest.raises(GenerationError) as raised:
+        render_monitor(_program(rules))
+    (diagnostic,) = raised.value.diagnostics
+    assert (diagnostic.code.name, why in diagnostic.message) == ("DRS402", True)
+    assert diagnostic.span.text.startswith(rule[:4])
+
+
+def _program(rules: str) -> Program:
+    return built(rules, "refused")
+
+
+def test_the_program_has_every_construct() -> None:
+    """What is new in the language is compiled, linted and kept, too."""
+    conditions = list(walk.conditions(everything()))
+    called = {
+        term.function
+        for value in walk.values(conditions)
+        for term in walk.terms(value)
+        if isinstance(term, Apply)
+    }
+    assert called == {row.name for row in FUNCTIONS.values() if row.evaluate or row.memory}
+    assert {type(each) for each in conditions} == set(get_args(Condition))
+
+
+def test_the_files_are_as_kept(golden: Golden) -> None:
+    """The text of a program with every construct is as it was kept."""
+    files = {name: File(text) for name, text in render_monitor(everything()).items()}
+    golden.check("monitor_c", files)

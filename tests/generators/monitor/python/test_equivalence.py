@@ -1,0 +1,141 @@
+"""The generated monitor does what the reference engine does, whatever the rules and the trace."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, note, settings
+from hypothesis import strategies as st
+
+from deros.generators.monitor.python.interface import render_monitor
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from deros.monitor.build import build
+from deros.monitor.engine import Engine, Event
+from deros.monitor.ir import Program
+from tests.support import counterexamples
+from tests.support.counterexamples import Pair, pairs
+from tests.support.monitors import START_NS, call, compare, timed
+from tests.support.rules_text import NODE_TEXT, SYSTEM_TEXT, rules_text
+from tests.support.strategies import Step, programs, traces
+
+EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "500"))
+"""Examples per property; set, they are drawn anew in every run, else they are always the same.
+
+There are four properties; many more examples are drawn by ``make property``.
+"""
+
+COUNTEREXAMPLES = sorted(counterexamples.FOLDER.glob("*.json"))
+
+thorough = settings(
+    max_examples=EXAMPLES,
+    deadline=None,
+    derandomize="DEROS_EXAMPLES" not in os.environ,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+
+
+@thorough
+@given(programs().flatmap(pairs))
+def test_same_events(pair: Pair) -> None:
+    """Both give the same events, at the same nanosecond, in the same order."""
+    pair.compare()
+
+
+@thorough
+@given(programs(kinds=("scan", "array", "element")).flatmap(pairs))
+def test_same_events_of_arrays(pair: Pair) -> None:
+    """That holds of arrays as messages bring them, and of what is not in them."""
+    pair.compare()
+
+
+@thorough
+@given(programs(kinds=("number", "boolean")).flatmap(pairs))
+def test_same_events_of_few_values(pair: Pair) -> None:
+    """That holds where conditions often change, and messages often repeat what was known."""
+    pair.compare()
+
+
+@thorough
+@given(programs(kinds=("stamped", "number", "quaternion")).flatmap(pairs))
+def test_same_events_of_rates(pair: Pair) -> None:
+    """That holds of what is remembered over several messages, and of stamps that go astray."""
+    pair.compare()
+
+
+@pytest.mark.parametrize("path", COUNTEREXAMPLES, ids=lambda path: path.stem)
+def test_counterexample(path: Path) -> None:
+    """Wherever the two once differed they do not any more."""
+    counterexamples.read(path).compare()
+
+
+def test_counterexamples_can_be_kept(tmp_path: Path) -> None:
+    """What is read is what was written."""
+
+    @settings(thorough, max_examples=50, derandomize=True)
+    @given(programs().flatmap(pairs))
+    def check(pair: Pair) -> None:
+        path = counterexamples.write(pair, tmp_path)
+        kept = counterexamples.read(path)
+        assert kept.program == pair.program
+        assert counterexamples.write(kept, tmp_path) == path  # whose name tells the content
+
+    check()
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a system with every topic of the random programs."""
+    folder = tmp_path_factory.mktemp("robot")
+    (folder / "robot.rnd").write_text(NODE_TEXT)
+    (folder / "robot.system").write_text(SYSTEM_TEXT)
+    return folder
+
+
+def _build(text: str, folder: Path) -> Program:
+    repository = Repository()
+    model = repository.load_text(folder / "random.deros", text).model
+    assert isinstance(model, Rules), repository.diagnostics
+    result = build(model, InterfaceStore())
+    assert result.program is not None, result.diagnostics
+    return result.program
+
+
+@settings(thorough, max_examples=EXAMPLES)
+@given(data=st.data())
+def test_same_events_from_text(data: st.DataObject, robot: Path) -> None:
+    """Rules written as a text mean what they were written from, and so does what they generate."""
+    meant = data.draw(programs(writable=True))
+    text = rules_text(meant)
+    note(text)
+    built = _build(text, robot)
+    steps = [each for each in data.draw(traces(meant)) if each.topic in ("", *built.topics)]
+    read = [_as_read_by(meant, built, each) for each in steps]
+    assert _happened(meant, steps) == _happened(built, read)
+    compare(built, read, render_monitor(built))
+
+
+def _as_read_by(meant: Program, built: Program, step: Step) -> Step:
+    """Return a step with its message's leaves as another program numbers them."""
+    fields = {
+        (meant.inputs[leaf.input].topic, leaf.path): step.leaves[leaf.index]
+        for leaf in meant.leaves
+        if leaf.index in step.leaves
+    }
+    leaves = {
+        leaf.index: fields[built.inputs[leaf.input].topic, leaf.path]
+        for leaf in built.leaves
+        if built.inputs[leaf.input].topic == step.topic
+    }
+    return replace(step, leaves=leaves)
+
+
+def _happened(program: Program, steps: list[Step]) -> list[Event]:
+    engine = Engine(program, START_NS)
+    for t_ns, step in timed(steps):
+        call(engine, t_ns, step)
+    return engine.events

@@ -1,0 +1,76 @@
+"""The comparison with the reference engine can fail: it finds each slip put into the code."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from deros.generators.monitor.python.interface import render_monitor
+from tests.support.monitors import compare
+from tests.support.strategies import programs, starts, traces
+
+SLIPS = {
+    "for is exclusive": (r"t >= (\w+_due)", r"t > \1"),
+    "an interval restarts at every event": (r"if \w+_due is NEVER:", "if True:"),
+    "an interval is never cleared": (r"(\w+_due) = self\._\w+_due = NEVER", r"\1 = NEVER"),
+    "a comparison includes its bound": (r" > ", " >= "),
+    "unknown counts as false": (r" is False", " is not True"),
+    "and for or": (r" or ", " and "),
+    "or for and": (r"^( +if .*) and (?=.*:$)", r"\1 or "),
+    "NaN is taken as a value": (r"^        if (\w+) == \1\b.*:", "        if True:"),
+    "an input is not forgotten": (r"^            self\._forget_\w+\(\)$", "            pass"),
+    "deadlines are missed": (r"^            self\._catch_up\(t\)", "            pass"),
+    "behaviours act at every event": (r"if not self\._behaviour_\d+:", "if True:"),
+    "a nested behaviour ignores the outer": (r"if self\._behaviour_\d+ and ", "if "),
+    "a reset is never refused": (r"^            if self\._behaviour_.*:", "            if False:"),
+    "messages do not count": (r"^            self\._\w+_heard = t$", "            pass"),
+    "intervals survive a step back": (
+        r"^        self\.(_\w+_due) = NEVER$",
+        r"        self.\1 = getattr(self, '\1', NEVER)",
+    ),
+    "the first event is not the first": (r"^        if not self\._started:", "        if False:"),
+    "the grace is not given": (r"_heard = t \+ grace$", "_heard = t"),
+    "a latch is lost": (r"'\w+' in latched$", "False"),
+    "a disabled behaviour acts": (r"'\w+' not in self\._disabled", "True"),
+    "to enable is no event": (r"^( +)self\._disabled\.remove\(behaviour\)$", r"\g<0>\n\1return"),
+    "news are overlooked": (r"^( +)if (?:not fresh|\w+ == self\._\w+):$", r"\1if True:"),
+    "what was missing stays so": (r"_silent = self\._\w+_missing = False", "_silent = False"),
+    "a scan's form is kept": (r"scan_beams\(len\(ranges\), ", "scan_beams(4, "),
+    "a rule's change has no time": (r"^( {12,})self\._\w+_since = t$", r"\g<1>pass"),
+    "rates look at the wrong time": (r"t - self\._(\w+_last_t)", r"t + self._\1"),
+}
+"""Slips by name: a pattern of the generated text, and what it is replaced by."""
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+def test_slip_is_found(slip: str) -> None:
+    """Some random program and trace tells the mutated monitor from the reference."""
+    pattern, replacement = SLIPS[slip]
+
+    @settings(
+        max_examples=3000,
+        deadline=None,
+        database=None,
+        derandomize=True,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+        report_multiple_bugs=False,
+    )
+    @given(st.data())
+    def search(data: st.DataObject) -> None:
+        program = data.draw(programs())
+        text = render_monitor(program)
+        mutant = re.sub(pattern, replacement, text, flags=re.MULTILINE)
+        if mutant == text:
+            return
+        trace, start = data.draw(traces(program)), data.draw(starts(program))
+        try:
+            compare(program, trace, mutant, start)
+        except (ArithmeticError, LookupError, TypeError) as error:
+            raise AssertionError("the mutant ends in an exception") from error
+
+    with pytest.raises(AssertionError):
+        search()

@@ -1,0 +1,260 @@
+"""The generated monitor as text: readable, deterministic, clean, and without foreign names."""
+
+from __future__ import annotations
+
+import ast
+import keyword
+import math
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from deros.diagnostics import SourceFile, Span
+from deros.generators.api.protocol import File
+from deros.generators.monitor.python.interface import monitor_view, render_monitor
+from deros.generators.monitor.python.run import GeneratedMonitor
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.monitor import ir
+from tests.support import timelines
+from tests.support.golden import Golden
+
+EVERYTHING = """use "robot.system" import Robot
+action stop publishes true on /stop : std_msgs.Bool reset_by ok;
+action motor_stop publishes true on /motor_stop : std_msgs.Bool latched;
+action ok;
+action beep(times);
+const max_speed = 0.5 m/s
+input speed = topic /odom.twist.twist.linear.x timeout 0.5 sec
+input attitude = topic /imu.orientation timeout 0.1 sec
+input turn = topic /imu.angular_velocity
+input mode = topic /mode.data
+input enabled = topic /flag.data
+input scan = topic /scan
+entity drive {
+  // the comment stays with the rule
+  too_fast: speed > max_speed for 2 sec;
+  jerky: speed.rate() > 2 and not enabled;
+  silent: speed.missing() or scan.age() > 1 sec;
+}
+entity body {
+  tilted: attitude.roll() not in [-10 deg, 10 deg] or
+          attitude.pitch() not in [-10 deg, 10 deg);
+  turning: turn.norm() >= 90 deg/s;
+  near: scan.nearest(-30 deg, 30 deg) < 0.4;
+}
+entity controller { manual: mode = 0; auto: mode != 0 and enabled; }
+entity doubt {
+  blind: attitude.tilt().unknown() or speed.unknown() or mode = 3;
+  failsafe hidden: (attitude.tilt() > 20 deg and speed in [-max_speed, max_speed]) for 0.2 sec;
+}
+if drive.too_fast and controller.auto then { stop; log_state("too fast: don't"); };
+behaviour tilt: if body.tilted for 0.4 sec then {
+  motor_stop;
+  if not controller.manual for 1 sec then { beep(3); };
+  stop;
+};
+if body.near or body.turning or drive.silent or drive.jerky then { stop; };
+if controller.manual then { ok; };
+if doubt.blind or doubt.hidden then { stop; };
+"""
+
+
+def _lint(folder: Path) -> str:
+    """Return what flake8, with ament's settings, and pydocstyle say of a folder."""
+    settings = [
+        "--isolated",
+        "--extend-ignore=B902,C816,D100,D101,D102,D103,D104,D105,D106,D107,D203,D212,D404,I202",
+        "--import-order-style=google",
+        "--max-line-length=99",
+    ]
+    ignored = "D100,D101,D102,D103,D104,D105,D106,D107,D203,D212,D404"
+    commands = [["flake8", *settings, "."], ["pydocstyle", f"--ignore={ignored}", "."]]
+    results = [
+        subprocess.run(
+            [sys.executable, "-m", *command],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        for command in commands
+    ]
+    return "".join(each.stdout + each.stderr for each in results)
+
+
+def test_golden(golden: Golden) -> None:
+    """The text of a program with every construct is as it was kept."""
+    text = render_monitor(timelines.program(EVERYTHING, "everything"))
+    golden.check("monitor_python", {"everything.py": File(text)})
+
+
+def test_linters_find_nothing(tmp_path: Path) -> None:
+    """Whatever the rules, flake8 and pep257 with ament's settings are content."""
+    programs = [case.program() for case in timelines.ALL]
+    programs.append(timelines.program(EVERYTHING, "everything"))
+    for number, program in enumerate([*programs, _awkward()]):
+        (tmp_path / f"monitor_{number}.py").write_text(render_monitor(program))
+    assert _lint(tmp_path) == ""
+
+
+def test_linters_do_find_something(tmp_path: Path) -> None:
+    """The settings are in force: a needless import and a long line are found."""
+    (tmp_path / "bad.py").write_text(f'import os\n\ntext = "{"x" * 100}"\n')
+    found = _lint(tmp_path)
+    assert all(code in found for code in ("F401", "E501", "Q000"))
+
+
+def test_same_text_every_time() -> None:
+    """Two renderings of one program are equal."""
+    texts = {render_monitor(timelines.program(EVERYTHING, "everything")) for _ in range(3)}
+    assert len(texts) == 1
+
+
+def _imported(text: str) -> set[str | None]:
+    tree = ast.parse(text)
+    return {
+        name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for name in (
+            [each.name for each in node.names] if isinstance(node, ast.Import) else [node.module]
+        )
+    }
+
+
+def test_needs_the_standard_library_alone() -> None:
+    """Nothing of ROS and nothing of this package is imported; numpy where arrays are read."""
+    text = render_monitor(timelines.program(EVERYTHING))
+    assert _imported(text) == {"collections.abc", "functools", "math", "numpy", "typing"}
+    lines = [line for line in EVERYTHING.splitlines(keepends=True) if "scan" not in line]
+    small = "".join(lines).replace("body.near or", "").replace("drive.silent or", "")
+    assert _imported(render_monitor(timelines.program(small))) == {
+        "collections.abc",
+        "math",
+        "typing",
+    }
+
+
+def test_each_rule_names_its_source() -> None:
+    """Above the code of a rule stand its name, its line and its text."""
+    text = render_monitor(timelines.program(EVERYTHING, "everything"))
+    assert "# Rule drive.too_fast (everything.deros:15)\n" in text
+    assert "#   too_fast: speed > max_speed for 2 sec" in text
+    assert "# Behaviour tilt (everything.deros:31)\n" in text
+    assert str(timelines.DIRECTORY) not in text
+
+
+def _awkward() -> ir.Program:
+    """Return a program whose names are keywords, builtins and each other's, and very long."""
+    source = SourceFile("/some/where/awkward.deros", "x" * 300)
+    span = Span(source, 0, 300)
+    kind = InterfaceType("std_msgs", "msg", "Float64")
+    fields = ("from", "self", "t", "due", "max", "math", "class", "NAN")
+    names = ("in", "in_", "due", "emit", "t", "now", "rate_per_second", "Monitor")
+    topics = ("/a/b", "/a_b", "~/a/b", "/class", "/class", "/t", "/now", "/act")
+    leaves = tuple(ir.Leaf(n, n, (field,), FieldType("float64")) for n, field in enumerate(fields))
+    inputs = tuple(
+        ir.Input(n, name, topics[n], kind, (), (n,), 5, span) for n, name in enumerate(names)
+    )
+    conditions: list[ir.Condition] = [
+        ir.Compare(ir.Apply("rate", (ir.Read(n),), n, n), ">", ir.Read(n)) for n in range(8)
+    ]
+    long = ir.Or((*conditions, ir.And((*conditions, ir.Or(tuple(conditions[:4]))))))
+    rules = (
+        ir.Rule(0, "emit", "t", long, span),
+        ir.Rule(1, "in", "", ir.Missing(0), span),
+        ir.Rule(2, "a" * 60, "b" * 60, ir.For(0, ir.Not(long), 5, span), span),
+    )
+    texts = ('it\'s "so" ' * 20, "\n\t\\", "ünï")
+    body = tuple(ir.Trigger(0, (text,), span) for text in texts)
+    condition = ir.And((ir.RuleRef(0), ir.Not(ir.RuleRef(2)), ir.RuleRef(1)))
+    behaviours = (
+        ir.Behaviour(0, "emit_t", condition, body, None, span),
+        ir.Behaviour(1, "evaluate", ir.For(1, condition, 3, span), body, None, span),
+    )
+    actions = (ir.Action(0, "log_state", (), None, 0, False, (0, 1), span),)
+    return ir.Program('odd """ name', leaves, inputs, rules, behaviours, actions)
+
+
+def test_names_do_not_collide() -> None:
+    """Keywords, builtins and equal names get identifiers of their own, and the monitor runs."""
+    program = _awkward()
+    view = monitor_view(program)
+    assert len(set(view.slots)) == len(view.slots)
+    methods = [each.method for each in view.handlers]
+    assert methods == ["on_a_b", "on_a_b_2", "on_a_b_3", "on_class", "on_t", "on_now", "on_act"]
+    for handler in view.handlers:
+        parameters = [each.name for each in handler.parameters]
+        assert len({"self", "t", *parameters}) == len(parameters) + 2
+        assert not any(keyword.iskeyword(name) for name in parameters)
+    monitor = GeneratedMonitor(program)
+    for n, each in enumerate(program.inputs):
+        monitor.message(n, each.topic, dict.fromkeys(range(len(program.leaves)), 1.0))
+    monitor.advance(100)
+
+
+@pytest.mark.parametrize("present", [1.0, None])
+def test_absent_element_is_given_as_nan(present: float | None) -> None:
+    """Where a parameter's path has an index, the caller passes NaN for "no such element"."""
+    case = next(each for each in timelines.ALL if each.name == "element_of_an_array")
+    program = case.program()
+    (handler,) = monitor_view(program).handlers
+    assert [(each.name, each.path) for each in handler.parameters] == [("ranges_2", ("ranges", 2))]
+    monitor = GeneratedMonitor(program)
+    monitor.message(1, "/scan", {0: present})
+    assert len(monitor.events) == (present is not None)
+
+
+@pytest.mark.parametrize("function", ["count", "min"])
+def test_absent_array_is_given_as_nan(function: str) -> None:
+    """So is an array in an element that is not there: the input is unknown then, like any other."""
+    rules = f"""use "robot.system" import Robot
+action stop publishes true on /stop : std_msgs.Bool latched;
+input ranges = topic /scan.ranges timeout 1 sec
+entity e {{ some: ranges.{function}() > 0; none: ranges.missing(); }}
+if e.some or e.none then {{ stop; }};
+"""
+    program = timelines.program(rules)
+    leaves = (replace(program.leaves[0], path=("scans", 0, "ranges")),)
+    monitor = GeneratedMonitor(replace(program, leaves=leaves))
+    monitor.message(1, "/scan", {0: None})
+    assert not monitor.events
+    monitor.advance(1_000_000_000)
+    assert [each.action for each in monitor.events] == ["stop"]
+
+
+REPEATED = """use "robot.system" import Robot
+action stop;
+input v = topic /speed.data timeout 1 sec
+input on = topic /flag.data
+entity e { fast: v > 0.5 for 2 sec; on: on; }
+if e.fast or e.on then { stop; };
+"""
+
+
+def test_message_that_repeats_is_not_judged() -> None:
+    """Where nothing new is said no rule is evaluated; the timeout starts anew all the same."""
+    text = render_monitor(timelines.program(REPEATED))
+    module: dict[str, Any] = {}
+    exec(text.replace("Evaluate the rules on", 'Evaluate"""; JUDGED.append(t); """'), module)
+    judged = module["JUDGED"] = []
+    monitor = module["Monitor"](0, [].append)
+    for t, value in enumerate((0.4, 0.4, 0.4, 0.6, 0.6, math.nan, math.nan, 0.6)):
+        monitor.on_speed(t, value)
+    assert judged == [0, 3, 5, 6, 7]
+    assert monitor.next_deadline == 10**9
+    monitor.advance(10**9)
+    assert monitor.next_deadline == 10**9 + 7
+
+
+def test_rules_of_behaviours() -> None:
+    """A monitor says which rules the condition of each behaviour names."""
+    module: dict[str, Any] = {}
+    exec(render_monitor(timelines.program(EVERYTHING)), module)
+    assert module["Monitor"].rules_of is module["RULES_OF"]
+    assert module["RULES_OF"]["behaviour_1"] == ("drive.too_fast", "controller.auto")
+    assert module["RULES_OF"]["behaviour_3"] == ("controller.manual",)

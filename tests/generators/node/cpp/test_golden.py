@@ -1,0 +1,162 @@
+"""The generated packages, compared with golden files and held against ament's linters."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from deros.generators.api.protocol import Context, Files, Owner
+from deros.generators.node.cpp.generate import generate
+from deros.generators.output.writer import write
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType
+from tests.support.cpp import colcon_build, has_package, needs_rclcpp
+from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.golden import Golden
+from tests.support.lint import assert_lint_clean
+
+SHARED = Path(__file__).resolve().parents[1] / "python/models"
+MODELS = {
+    **{
+        n: SHARED / f"{n}.rnd"
+        for n in ("odometry_node", "valve", "dock", "talker", "counter", "mapper")
+    },
+    "picky": Path(__file__).resolve().parent / "models/picky.rnd",
+}
+COPYRIGHT = {"copyright": "2026 Jane Doe", "maintainer": "Jane Doe <jane@example.org>"}
+
+
+def files_of(name: str, options: dict[str, str] | None = None) -> Files:
+    """Return what is generated for one of the models."""
+    context = Context(InterfaceStore(), Repository())
+    loaded = context.repository.load(MODELS[name])
+    assert loaded.diagnostics == ()
+    assert isinstance(loaded.model, NodeType)
+    return generate(loaded.model, context, options or {})
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_package_is_as_kept(name: str, golden: Golden) -> None:
+    """Every generated file has the text that was reviewed."""
+    golden.check(f"rosnode_cpp/{name}", files_of(name))
+
+
+def test_the_order_of_a_packages_nodes_is_of_no_matter() -> None:
+    """Either node of a package leads to the same package, both nodes included."""
+    context = Context(InterfaceStore(), Repository())
+    listener = context.repository.load(SHARED / "listener.rnd").model
+    assert isinstance(listener, NodeType)
+    assert files_of("talker") == generate(listener, context, {})
+    cmake = files_of("talker")["chat/CMakeLists.txt"].text
+    assert "rclcpp_components_register_nodes(listener_component chat::Listener)" in cmake
+    assert "rclcpp_components_register_nodes(talker_component chat::Talker)" in cmake
+
+
+def test_generation_is_deterministic() -> None:
+    """Another interpreter, with other hashes, gives the same text to the byte."""
+    script = (
+        "import sys; sys.path.insert(0, '.');"
+        "from deros.generators.builtin import rosnode_cpp as g;"
+        "from deros.generators.api.protocol import Context;"
+        "from deros.metamodels.load import Repository; r = Repository();"
+        f"f = g(r.load({str(MODELS['odometry_node'])!r}).model, Context(None, r));"
+        "print('\\0'.join(p + '\\0' + f[p].text for p in f), end='')"
+    )
+    outputs = {
+        subprocess.run(
+            [sys.executable, "-c", script],
+            env={"PYTHONHASHSEED": seed, "PATH": "/usr/bin:/bin", "HOME": "/nonexistent"},
+            cwd=SHARED,
+            capture_output=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(outputs) == 1
+    assert str(SHARED).encode() not in outputs.pop()
+
+
+def test_the_users_files_are_the_users() -> None:
+    """Exactly the manifest, and header and source of the node's own class, are the user's."""
+    files = files_of("odometry_node")
+    users = [path for path, file in files.items() if file.owner is Owner.USER]
+    assert users == [
+        "differential_odometry/package.xml",
+        "differential_odometry/include/differential_odometry/odometry_node.hpp",
+        "differential_odometry/src/odometry_node.cpp",
+    ]
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_users_class_fills_in_every_handler(name: str) -> None:
+    """The user's class overrides each pure virtual function, with the same parameters."""
+    files = files_of(name)
+    for path in (p for p in files if p.endswith("_base.hpp")):
+        user = files[path.replace("_base.hpp", ".hpp")].text
+        pure = re.findall(r"virtual ([^;]+) = 0;", files[path].text)
+        assert pure == re.findall(r" (void [^;]+) override;", user)
+
+
+# Linters ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("options", [{}, COPYRIGHT], ids=["plain", "copyright"])
+@pytest.mark.parametrize("name", MODELS)
+def test_ament_has_nothing_to_say(name: str, options: dict[str, str], tmp_path: Path) -> None:
+    """The linters of ament for C++ and Python find nothing in any file."""
+    write(files_of(name, options), tmp_path)
+    (package,) = tmp_path.iterdir()
+    assert_cpp_lint_clean(package)
+    assert_lint_clean(package)
+
+
+@needs_rclcpp
+@pytest.mark.skipif(not has_package("ament_lint_auto"), reason="no ament_lint_auto")
+def test_the_packages_own_tests_pass(tmp_path: Path) -> None:
+    """What ``colcon test`` runs, XML, CMake and copyright included, passes."""
+    for name in ("picky", "valve"):
+        write(files_of(name, COPYRIGHT), tmp_path)
+    colcon_build(tmp_path, testing=True)
+
+
+# Other files --------------------------------------------------------------------------------------
+
+
+def test_package_xml_names_what_is_needed() -> None:
+    """The manifest is of format 3, and depends on each message package and the client library."""
+    root = ElementTree.fromstring(
+        files_of("odometry_node")["differential_odometry/package.xml"].text
+    )
+    assert root.get("format") == "3"
+    depends = {element.text for element in root.findall("depend")}
+    assert depends == {
+        *("nav_msgs", "rcl_interfaces", "rclcpp", "rclcpp_components", "sensor_msgs"),
+        *("std_msgs", "std_srvs"),
+    }
+    assert root.findtext("buildtool_depend") == "ament_cmake"
+    assert [element.text for element in root.findall("license")] == ["Apache-2.0"]
+
+
+def test_a_managed_node_needs_its_library() -> None:
+    """A lifecycle node is linked with rclcpp_lifecycle, an action with rclcpp_action."""
+    assert "rclcpp_lifecycle::rclcpp_lifecycle" in files_of("valve")["process/CMakeLists.txt"].text
+    assert "rclcpp_action::rclcpp_action" in files_of("counter")["counting/CMakeLists.txt"].text
+
+
+def test_parameter_and_launch_files_are_those_of_the_python_target() -> None:
+    """Either language of the node is started the same way."""
+    from deros.generators.node.python.generate import generate as generate_python
+
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(MODELS["odometry_node"]).model
+    assert isinstance(model, NodeType)
+    python = generate_python(model, context, {})
+    for path in ("config/odometry_node.yaml", "launch/odometry_node.launch.py"):
+        shared = f"differential_odometry/{path}"
+        assert files_of("odometry_node")[shared] == python[shared]

@@ -1,0 +1,444 @@
+"""Generated packages in either language build with colcon, and their nodes run where installed."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import Popen
+from typing import Any
+
+import pytest
+
+from deros.generators.api.protocol import Context
+from deros.generators.system.params.generate import generate as generate_params
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from tests.support.cpp import needs_rclcpp
+from tests.support.node_packages import MODELS, CppPackages, NodePackages, PythonPackages, Start
+from tests.support.ros import LIMIT, Peer, read_line, set_parameter, stop
+from tests.support.systems import load_text
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(PythonPackages, id="python"),
+        pytest.param(CppPackages, id="cpp", marks=needs_rclcpp),
+    ],
+)
+def packages(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> NodePackages:
+    """Give the built packages, in one language after the other."""
+    built: NodePackages = request.param(tmp_path_factory.mktemp("workspace"))
+    return built
+
+
+@pytest.fixture
+def start(packages: NodePackages, ros_env: dict[str, str]) -> Start:
+    """Give a function that runs a program of the packages."""
+    return packages.starting(ros_env)
+
+
+# Messages, services, parameters -------------------------------------------------------------------
+
+
+def odometry_for(peer: Peer, count: int) -> Callable[[], float]:
+    """Return a function that sends a count and waits for the position that comes back."""
+    from nav_msgs.msg import Odometry
+    from rclpy.duration import Duration
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from std_msgs.msg import Int32
+
+    received: list[float] = []
+    latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    peer.node.create_subscription(
+        Odometry, "/odom", lambda msg: received.append(msg.pose.pose.position.x), latched
+    )
+    lively = QoSProfile(depth=5, liveliness_lease_duration=Duration(seconds=1))
+    ticks = peer.node.create_publisher(Int32, "/ticks", lively)
+    peer.until(lambda: ticks.get_subscription_count() and peer.node.count_publishers("/odom"))
+
+    def exchange() -> float:
+        received.clear()
+        ticks.publish(Int32(data=count))
+        return float(peer.until(lambda: received)[-1])
+
+    return exchange
+
+
+def test_messages_parameters_and_the_end(
+    packages: NodePackages, start: Start, ros_peer: Peer
+) -> None:
+    """The node answers a message, refuses bad parameters with a reason, and ends with 0."""
+    with start("differential_odometry", "odometry_node") as process:
+        exchange = odometry_for(ros_peer, 3)
+        assert exchange() == 3.0
+
+        (good,) = set_parameter(ros_peer, "odometry_node", scale=2.0)
+        assert good.successful
+        assert exchange() == 6.0
+
+        refusals = {
+            "scale": (0.0, "scale must lie in (0.0, 2.0]"),
+            "mode": ("idle", "mode must be one of 'auto', 'manual'"),
+            "gains": ([1.0], "gains must have 3 elements"),
+            "ticks_per_turn": (0, packages.out_of_range["ticks_per_turn"]),
+            "wheel_base": (1.0, "read-only"),
+            "imu_topic": ("/other", "read-only"),
+            "frames": (1.5, "Wrong parameter type"),
+        }
+        for name, (value, reason) in refusals.items():
+            (result,) = set_parameter(ros_peer, "odometry_node", **{name: value})
+            assert not result.successful, name
+            assert reason in result.reason
+        assert exchange() == 6.0
+
+        code, output = stop(process, signal.SIGINT)
+    assert (code, "Traceback" in output) == (0, False), output
+    assert output.count("scale was 1 and is 2") == 1
+    assert output.count("on_control does nothing yet") == 1
+
+
+PEER = "/test_peer"
+UNKNOWN = "a node that is not known yet"
+"""What a node is called whose topics have been discovered before its name."""
+
+
+def until_printed(process: Popen[str], text: str) -> str:
+    """Read what a program prints up to the line that holds a text, and return that."""
+    while text not in (line := read_line(process)):
+        assert line, f"it ended without printing {text!r}"
+    return line
+
+
+def test_a_subscription_that_asks_for_more_is_told(start: Start, ros_peer: Peer) -> None:
+    """The error names topic, node and each policy; no message would ever come."""
+    from rclpy.duration import Duration
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from std_msgs.msg import String
+
+    asked = QoSProfile(
+        depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, deadline=Duration(seconds=1)
+    )
+    with start("chat", "talker") as process:
+        ros_peer.until(lambda: ros_peer.node.count_publishers("/chatter"))
+        ros_peer.node.create_subscription(String, "/chatter", lambda _: None, asked)
+        line = until_printed(process, "/chatter does not reach ")
+    assert "[ERROR]" in line
+    assert f"reach {PEER}: " in line or f"reach {UNKNOWN}: " in line
+    assert "Volatile publisher and transient local subscription; " in line
+    assert "Subscription" in line.partition("; ")[2]  # the deadline, in the words of each library
+
+
+def test_a_publisher_that_offers_less_is_told(start: Start, ros_peer: Peer) -> None:
+    """Of one that matches, nothing is said."""
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+    from std_msgs.msg import String
+
+    ros_peer.node.create_publisher(String, "/chatter", 1)
+    with start("chat", "listener") as process:
+        ros_peer.until(lambda: ros_peer.node.count_subscribers("/chatter"))
+        offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        ros_peer.node.create_publisher(String, "/chatter", offered)
+        line = until_printed(process, "/chatter is not heard from ")
+        assert "[ERROR]" in line
+        assert f"from {PEER}: " in line or f"from {UNKNOWN}: " in line
+        assert "Best effort publisher and reliable subscription" in line
+        code, output = stop(process, signal.SIGINT)
+    assert (code, "[ERROR]" in output) == (0, False), output
+
+
+def test_parameters_set_together_are_checked_together(start: Start, ros_peer: Peer) -> None:
+    """One bad value in an atomic request leaves all parameters as they were."""
+    from rcl_interfaces.srv import GetParameters, SetParametersAtomically
+    from rclpy.parameter import Parameter
+
+    with start("differential_odometry", "odometry_node"):
+        node = "/odometry_node"
+        setter = ros_peer.node.create_client(
+            SetParametersAtomically, f"{node}/set_parameters_atomically"
+        )
+        values = {"scale": 2.0, "gains": [1.0, 2.0, 11.0]}
+        wanted = [Parameter(n, value=value).to_parameter_msg() for n, value in values.items()]
+        request = SetParametersAtomically.Request(parameters=wanted)
+        result = ros_peer.call(setter, request).result
+        assert not result.successful
+        assert result.reason == "gains must have all elements in [0.0, 10.0]"
+        getter = ros_peer.node.create_client(GetParameters, f"{node}/get_parameters")
+        found = ros_peer.call(getter, GetParameters.Request(names=["scale", "gains"])).values
+        assert (found[0].double_value, list(found[1].double_array_value)) == (1.0, [1.0, 0.1, 0.0])
+
+
+def test_descriptors_tell_what_a_parameter_is(start: Start, ros_peer: Peer) -> None:
+    """Description with unit, range and constraints can be asked for at run time."""
+    from rcl_interfaces.msg import ParameterType
+    from rcl_interfaces.srv import DescribeParameters
+
+    with start("differential_odometry", "odometry_node"):
+        client = ros_peer.node.create_client(
+            DescribeParameters, "/odometry_node/describe_parameters"
+        )
+        names = ["wheel_base", "scale", "mode", "frames", "pid.lambda"]
+        found = ros_peer.call(client, DescribeParameters.Request(names=names)).descriptors
+    wheel_base, scale, mode, frames, bytes_ = found
+    assert wheel_base.description == "Distance between the wheels [m]"
+    assert wheel_base.read_only
+    (bounds,) = wheel_base.floating_point_range
+    assert (bounds.from_value, bounds.to_value) == (0.1, 2.0)
+    assert scale.additional_constraints == "must lie in (0.0, 2.0]"
+    assert mode.additional_constraints == "must be one of 'auto', 'manual'"
+    assert frames.type == ParameterType.PARAMETER_STRING_ARRAY
+    assert bytes_.type == ParameterType.PARAMETER_BYTE_ARRAY
+
+
+def test_parameters_at_start_come_from_the_file(
+    packages: NodePackages, start: Start, ros_peer: Peer
+) -> None:
+    """The generated parameter file is read, and the topic's name follows its parameter."""
+    config = packages.share("differential_odometry") / "config/odometry_node.yaml"
+    arguments = ["--ros-args", "--params-file", str(config), "-p", "imu_topic:=/other_imu"]
+    with start("differential_odometry", "odometry_node", *arguments):
+        ros_peer.until(lambda: ros_peer.node.count_subscribers("/other_imu"))
+        assert ros_peer.node.count_subscribers("/fmInformation/imu") == 0
+
+
+def test_an_empty_topic_parameter_leaves_the_ports_own_name(start: Start, ros_peer: Peer) -> None:
+    """A port whose parameter holds no name keeps the one of the node description."""
+    arguments = ["--ros-args", "-p", "imu_topic:=''"]
+    with start("differential_odometry", "odometry_node", *arguments):
+        ros_peer.until(lambda: ros_peer.node.count_subscribers("/imu"))
+
+
+def refused_at_start(start: Start, setting: str) -> str:
+    """Return what a node prints that is given a forbidden value, and so does not start."""
+    with start("differential_odometry", "odometry_node", "--ros-args", "-p", setting) as node:
+        output, _ = node.communicate(timeout=LIMIT)
+    assert node.returncode == 1, output
+    return output
+
+
+@pytest.mark.parametrize(
+    ("setting", "reason"),
+    [
+        ("gains:=[1.0, 2.0]", "gains must have 3 elements"),
+        ("mode:=idle", "mode must be one of 'auto', 'manual'"),
+        ("scale:=fast", "scale"),
+    ],
+)
+def test_a_bad_value_at_start_is_refused(start: Start, setting: str, reason: str) -> None:
+    """A node that is given a forbidden value does not start, and says why."""
+    assert reason in refused_at_start(start, setting)
+
+
+def test_a_value_out_of_range_at_start_is_refused(packages: NodePackages, start: Start) -> None:
+    """What the client library refuses itself is told in its own words."""
+    assert packages.out_of_range["scale"] in refused_at_start(start, "scale:=2.5")
+
+
+def test_a_service_is_answered_and_sigterm_ends_the_node(start: Start, ros_peer: Peer) -> None:
+    """An unfilled service handler answers with an empty response; SIGTERM ends with 0."""
+    from std_srvs.srv import Trigger
+
+    with start("differential_odometry", "odometry_node") as process:
+        client = ros_peer.node.create_client(Trigger, "/reset")
+        assert ros_peer.call(client, Trigger.Request()) == Trigger.Response()
+        assert ros_peer.call(client, Trigger.Request()) == Trigger.Response()
+        code, output = stop(process, signal.SIGTERM)
+    assert (code, "Traceback" in output) == (0, False), output
+    assert output.count("handle_reset does nothing yet") == 1
+
+
+# Managed nodes, actions ---------------------------------------------------------------------------
+
+
+def test_a_managed_node_rests_until_activated(start: Start, ros_peer: Peer) -> None:
+    """Handlers and publishers of a lifecycle node work while it is active, and only then."""
+    from lifecycle_msgs.msg import Transition
+    from lifecycle_msgs.srv import ChangeState
+    from std_msgs.msg import Bool
+
+    with start("process", "valve") as process:
+        client = ros_peer.node.create_client(ChangeState, "/valve/change_state")
+
+        def change(transition: int) -> bool:
+            request = ChangeState.Request(transition=Transition(id=transition))
+            return bool(ros_peer.call(client, request).success)
+
+        states: list[bool] = []
+        ros_peer.node.create_subscription(Bool, "/state", lambda msg: states.append(msg.data), 10)
+        command = ros_peer.node.create_publisher(Bool, "/command", 10)
+        ros_peer.until(
+            lambda: command.get_subscription_count() and ros_peer.node.count_publishers("/state")
+        )
+        command.publish(Bool(data=True))  # nobody acts on this one
+        assert change(Transition.TRANSITION_CONFIGURE)
+        assert change(Transition.TRANSITION_ACTIVATE)
+        command.publish(Bool(data=False))
+        ros_peer.until(lambda: states)
+        assert states == [False]
+        assert "on_report does nothing yet" in read_line(process)  # the timer's handler
+        assert change(Transition.TRANSITION_DEACTIVATE)
+        code, output = stop(process, signal.SIGINT)
+    assert (code, "Traceback" in output) == (0, False), output
+
+
+def test_nodes_of_one_package_share_it(start: Start, ros_peer: Peer) -> None:
+    """Both programs of a package run, each under its own name."""
+    with start("chat", "talker"), start("chat", "listener"):
+        names = ros_peer.until(
+            lambda: {"talker", "listener"} <= set(ros_peer.node.get_node_names())
+        )
+    assert names
+
+
+@pytest.mark.parametrize(("order", "outcome"), [(5, 0 + 1 + 2 + 3 + 4), (0, -1)])
+def test_a_goal_runs_beside_the_other_handlers(
+    order: int, outcome: int, start: Start, ros_peer: Peer
+) -> None:
+    """A message reaches the server while a goal is pursued; a goal left open is aborted."""
+    from std_msgs.msg import Empty, Int32
+
+    with start("counting", "counter") as counter, start("counting", "asker") as asker:
+        outcomes: list[int] = []
+        ros_peer.node.create_subscription(
+            Int32, "/outcome", lambda msg: outcomes.append(msg.data), 10
+        )
+        ask = ros_peer.node.create_publisher(Int32, "/ask", 10)
+        release = ros_peer.node.create_publisher(Empty, "/release", 10)
+        ros_peer.until(
+            lambda: (
+                ask.get_subscription_count()
+                and release.get_subscription_count()
+                and ros_peer.node.count_publishers("/outcome")
+                and ros_peer.node.count_publishers("/count/_action/feedback")
+                and ros_peer.node.count_subscribers("/count/_action/feedback")
+            )
+        )
+        ask.publish(Int32(data=order))
+        assert "feedback [0]" in read_line(asker)
+        release.publish(Empty())
+        ros_peer.until(lambda: outcomes)
+        assert outcomes == [outcome]
+        for process in (counter, asker):
+            code, output = stop(process, signal.SIGINT)
+            assert (code, "Traceback" in output) == (0, False), output
+
+
+# Ports of one name, parameters of every kind ------------------------------------------------------
+
+
+def shown_by(peer: Peer, service: str) -> list[str]:
+    """Return what the mapper says of its parameters."""
+    from std_srvs.srv import Trigger
+
+    client = peer.node.create_client(Trigger, service)
+    words = str(peer.call(client, Trigger.Request()).message).split()
+    peer.node.destroy_client(client)
+    return words
+
+
+def test_a_node_publishes_and_subscribes_one_name(start: Start, ros_peer: Peer) -> None:
+    """Both ends move with a topic's remapping, server and client with a service's own."""
+    from std_msgs.msg import String
+
+    received: list[str] = []
+    ros_peer.node.create_subscription(String, "/world", lambda m: received.append(m.data), 10)
+    publisher = ros_peer.node.create_publisher(String, "/world", 10)
+    rules = ("-r", "rostopic://map:=/world", "-r", "rosservice://map:=/show")
+    with start("mapping", "mapper", "--ros-args", "-p", "needed:=1.0", *rules):
+        ros_peer.until(lambda: ros_peer.node.count_subscribers("/world") == 2)
+        ros_peer.until(lambda: publisher.get_subscription_count() == 2)
+        publisher.publish(String(data="ping"))
+        ros_peer.until(lambda: "pong" in received)
+        assert shown_by(ros_peer, "/show")
+        clients = dict(ros_peer.node.get_client_names_and_types_by_node("mapper", "/"))
+        assert {"/show", "/count", "/count/_action/send_goal"} <= clients.keys()
+        assert not ros_peer.node.count_publishers("/map")
+
+
+def test_nan_infinity_and_odd_names_arrive_from_a_systems_parameter_file(
+    start: Start, ros_peer: Peer, tmp_path: Path
+) -> None:
+    """What ``param`` says is what the node has; what it does not say is the default."""
+    system = """
+        system Test imports import "*.rnd" topics topic /map
+        node mapper : mapper
+        parameters
+          param offset = -inf
+          param corners = [nan, inf, -1]
+          param joints = ["wrist", "elbow"]
+          param gains.wrist.p = inf
+          param limits.elbow = [1, 2]
+          param max-age./tf = -2
+          param "3d" = false
+          param needed = nan
+        wirings connect map to /map
+    """
+    made = load_text(tmp_path, system, mapper=(MODELS / "mapper.rnd").read_text())
+    file = tmp_path / "test.params.yaml"
+    context = Context(InterfaceStore(), Repository())
+    file.write_text(generate_params(made, context, {})[file.name].text)
+    with start("mapping", "mapper", "--ros-args", "--params-file", str(file)):
+        words = shown_by(ros_peer, "/map")
+    expected = "inf -inf nan inf -1 elbow=1 wrist=inf elbow:2 wrist:0 -2 0"
+    assert words == expected.split()
+
+
+CONSTRAINTS: list[tuple[str, list[Any], str, list[Any]]] = [
+    ("range.max", [0.0, float("nan"), -1.0], "range.max must be > 0.0", [1e-9, float("inf")]),
+    ("corners", [[1.0]], "must have at least 2 elements", [[float("nan")] * 2]),
+    ("corners", [[1.0] * 5], "must have at most 4 elements", [[1.0] * 4]),
+    ("label", [""], "must not be empty", ["a"]),
+    ("label", ["abcde", "öööö!"], "must have at most 4 characters", ["öööö"]),
+    ("code", ["a", "abc", "ö"], "must have 2 characters", ["öä"]),
+    ("levels", [[1, 2, 1]], "must have no element twice", [[3, 4]]),
+    ("levels", [[6]], "must have all elements <= 5", [[5, -6]]),
+    ("shares", [[0.5, 0.1, 0.5]], "must have no element twice", [[0.5, 0.1]]),
+    ("shares", [[1.0], [float("nan")]], "must have all elements < 1.0", [[float("-inf")]]),
+    ("teeth", [7], "teeth must be even", [8]),
+    ("teeth", [102], "teeth must be small", [100]),
+    ("teeth", [2], "", [4]),
+    ("max-age./tf", [1.5, float("nan"), float("inf")], "must be < 1.5", [1.4999999, -1.0]),
+    ("gains.elbow.p", [-1e-9, float("nan")], "gains.elbow.p must be >= 0.0", [0.0]),
+    ("limits.elbow", [[1.0] * 3], "must have at most 2 elements", [[1.0, 2.0]]),
+    ("joints", [["wrist"]], "read-only", []),
+]
+"""Parameter, values that are refused, the reason, and values that are not."""
+
+
+def test_each_constraint_is_enforced(start: Start, ros_peer: Peer) -> None:
+    """A change is refused with the reason, and made where nothing speaks against it."""
+    with start("mapping", "mapper", "--ros-args", "-p", "needed:=1.0"):
+        for parameter, refused, reason, accepted in CONSTRAINTS:
+            for value in refused:
+                (result,) = set_parameter(ros_peer, "mapper", **{parameter: value})
+                assert not result.successful, (parameter, value)
+                assert reason in result.reason or "range" in result.reason
+            for value in accepted:
+                (result,) = set_parameter(ros_peer, "mapper", **{parameter: value})
+                assert result.successful, (parameter, value, result.reason)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        ((), "needed"),
+        (("needed:=1.0", 'label:=""'), "label"),
+        (("needed:=1.0", "teeth:=13"), "teeth"),
+        (("needed:=1.0", "gains.elbow.p:=-1.0"), "gains.elbow.p"),
+        (("needed:=1.0", "joints:=[shoulder, knee]"), "joints"),
+    ],
+)
+def test_a_bad_value_at_the_start_ends_it(
+    start: Start, arguments: tuple[str, ...], named: str
+) -> None:
+    """The program fails, and names the parameter."""
+    given = [word for argument in arguments for word in ("-p", argument)]
+    with start("mapping", "mapper", "--ros-args", *given) as process:
+        output = process.communicate(timeout=LIMIT)[0]
+    assert process.returncode != 0
+    assert named in output

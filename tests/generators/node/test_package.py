@@ -1,0 +1,73 @@
+"""What no package of nodes can be made of, and which nodes belong to it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.generators.api.protocol import Context, GenerateFunction, GenerationError, Owner
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType
+from tests.support.node_targets import files_of, in_each_language, refusal
+
+
+@in_each_language
+def test_an_existing_program_needs_no_skeleton(generate: GenerateFunction) -> None:
+    """A node with a binary of its own is refused with the way out."""
+    code, message, line = refusal(generate, 'node odometry : wheels\nexecutable "odom"')
+    assert (code, line) == ("DRS402", 1)
+    assert "'odom'" in message
+
+
+@in_each_language
+@pytest.mark.parametrize(
+    ("beside", "refused"),
+    [
+        ("node listener : chat subscribes topic", True),
+        ("node listener : other subscribes topic", False),
+        ("\0 : no text", False),
+        ('node listener : chat executable "there_already"', False),
+    ],
+)
+def test_a_broken_node_of_the_package_is_not_dropped(
+    beside: str, refused: bool, generate: GenerateFunction, tmp_path: Path
+) -> None:
+    """A description beside the model that cannot be read stops the run if it is of the package."""
+    (tmp_path / "talker.rnd").write_text("node talker : chat")
+    (tmp_path / "listener.rnd").write_text(beside)
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(tmp_path / "talker.rnd").model
+    assert isinstance(model, NodeType)
+    if refused:
+        with pytest.raises(GenerationError) as raised:
+            generate(model, context, {})
+        assert [d.code.name for d in raised.value.diagnostics] == ["DRS003"]
+    else:
+        files = generate(model, context, {})
+        users = {Path(path).stem for path, file in files.items() if file.owner is Owner.USER}
+        assert users == {"package", "talker"}
+        assert not [path for path in files if "listener" in path]
+
+
+@in_each_language
+@pytest.mark.parametrize("name", ["use_sim_time", "start_type_description_service"])
+def test_parameters_that_every_node_has_are_refused(name: str, generate: GenerateFunction) -> None:
+    """Declaring them again would stop the node at start."""
+    text = f"node a : b parameters\nname {name} : bool = true"
+    assert refusal(generate, text)[::2] == ("DRS402", 2)
+
+
+@in_each_language
+def test_qos_of_an_action_is_refused(generate: GenerateFunction) -> None:
+    """One profile for the five ends of an action has no meaning in a client library."""
+    text = "node a : b actions\naction dock : test_msgs.Fibonacci qos reliable"
+    assert refusal(generate, text)[::2] == ("DRS402", 2)
+
+
+@in_each_language
+def test_a_maintainer_must_have_an_address(generate: GenerateFunction) -> None:
+    """package.xml needs an address, so the option is checked."""
+    with pytest.raises(ValueError, match="'Jane' does not read 'Name <address>'"):
+        files_of(generate, "node a : b", {"maintainer": "Jane"})

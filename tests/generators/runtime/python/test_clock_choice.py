@@ -1,0 +1,25 @@
+"""The clock that a node starts with is the one that it keeps."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from deros.generators.runtime.python.clock_choice import refuse_clock_change
+from tests.support.ros import Peer
+
+
+def test_a_change_of_the_clock_is_refused_with_a_reason(ros_peer: Peer) -> None:
+    """And nothing of it is done; setting what is set already, and all else, stays allowed."""
+    from rclpy.parameter import Parameter
+
+    node = ros_peer.node
+    node.declare_parameter("other", 1)
+    refuse_clock_change(node)
+    (refused,) = node.set_parameters([Parameter("use_sim_time", value=True)])
+    assert not refused.successful
+    assert "use_sim_time cannot change" in refused.reason
+    assert "/clock" not in [each.topic_name for each in node.subscriptions]
+    for allowed in (Parameter("use_sim_time", value=False), Parameter("other", value=2)):
+        assert node.set_parameters([allowed])[0].successful

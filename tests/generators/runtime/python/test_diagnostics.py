@@ -1,0 +1,181 @@
+"""The present state of a safety node, as operators see it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
+from unittest.mock import Mock
+
+import pytest
+
+pytest.importorskip("rclpy")
+pytest.importorskip("diagnostic_msgs.msg")
+
+from deros.generators.runtime.python.diagnostics import CHUNK, Diagnostics
+from deros.generators.runtime.python.events import Behaviour
+
+OK, WARN, ERROR, STALE = range(4)
+
+
+class Rule(NamedTuple):
+    """The state of a rule, as the monitor explains it."""
+
+    name: str
+    value: bool | None
+    line: int = 1
+    text: str = "fast: speed > 1;"
+    since: int = 0
+    reads: tuple[tuple[str, Any], ...] = (("speed", 2.0),)
+    causes: tuple[str, ...] = ()
+
+
+class Explanation(NamedTuple):
+    """What a monitor explains."""
+
+    rules: tuple[Rule, ...] = ()
+    causes: Mapping[str, tuple[str, ...]] = MappingProxyType({})
+
+
+class Event(NamedTuple):
+    """An event of the monitor."""
+
+    kind: str
+    action: str
+    behaviour: str = "stopping"
+    t: int = 5_000_000_000
+
+
+class Shown:
+    """Diagnostics of a node with some rules, and what they publish."""
+
+    def __init__(
+        self, *rules: Rule, holding: tuple[str, ...] = (), named: tuple[str, ...] = ()
+    ) -> None:
+        """Begin to publish."""
+        self.messages: list[Any] = []
+        self.node = Mock()
+        self.node.get_fully_qualified_name.return_value = "/safety"
+        self.node.get_clock.return_value.now.return_value.to_msg = _no_time
+        behaviours = {"stopping": Behaviour("robot.deros:7", "drive.fast", named)}
+        actions = {"stop": True, "beep": False}
+        self.diagnostics = Diagnostics(
+            self.node, Mock(), behaviours, actions, self.messages.append, 1.0, lambda: 0
+        )
+        self.unready = ""
+        explained = Explanation(rules, dict.fromkeys(holding, ("why",)))
+        self.diagnostics.begin(lambda: explained, lambda: 6_000_000_000, lambda: self.unready)
+
+    def ring(self) -> dict[str, Any]:
+        """Publish now, and return the statuses by the last part of their name."""
+        self.diagnostics._alarm.ring()
+        return {each.name.rpartition(": ")[2]: each for each in self.messages[-1].status}
+
+    @property
+    def wait(self) -> float:
+        """In how many seconds the next message is due."""
+        due: int = self.diagnostics._alarm.due
+        return (due - time.monotonic_ns()) / 1e9
+
+
+def _no_time() -> Any:
+    from builtin_interfaces.msg import Time
+
+    return Time()
+
+
+@pytest.mark.parametrize(
+    ("value", "holding", "level"),
+    [
+        (False, (), OK),
+        (True, (), WARN),
+        (True, ("stopping",), ERROR),
+        (None, (), STALE),
+        (None, ("stopping",), STALE),
+    ],
+)
+def test_the_level_of_a_rule_says_what_follows_from_it(
+    value: bool | None, holding: tuple[str, ...], level: int
+) -> None:
+    """Red is what holds the robot; what is unknown is stale."""
+    shown = Shown(Rule("drive.fast", value), holding=holding, named=("drive.fast",)).ring()
+    assert shown["drive.fast"].level[0] == level
+
+
+def test_only_the_rules_that_are_true_are_to_blame() -> None:
+    """Of 'a or b', the one that is false does not hold the robot."""
+    rules = (Rule("a.a", True), Rule("b.b", False))
+    shown = Shown(*rules, holding=("stopping",), named=("a.a", "b.b")).ring()
+    assert [shown[name].level[0] for name in ("a.a", "b.b")] == [ERROR, OK]
+
+
+def test_a_rule_that_has_to_be_false_is_to_blame_for_it() -> None:
+    """Of 'not ready', the false rule holds the robot."""
+    rule = Rule("self.ready", False)
+    shown = Shown(rule, holding=("stopping",), named=("self.ready",)).ring()
+    assert shown["self.ready"].level[0] == ERROR
+
+
+def test_an_action_shows_cause_and_time() -> None:
+    """Since when, by what; a further trigger does not move the start."""
+    shown = Shown()
+    why = Explanation((), {"stopping": ("a.a: speed 2.0 > 1", "b.b: lidar.missing()")})
+    shown.diagnostics.ordered(Event("trigger", "stop"), why)
+    shown.diagnostics.ordered(Event("trigger", "stop", "another", 5_500_000_000), why)
+    status = shown.ring()["action stop"]
+    values = {each.key: each.value for each in status.values}
+    assert (status.level[0], status.message) == (WARN, "active")
+    assert values == {
+        "runs": "2",
+        "cause": "stopping",
+        "because": "a.a: speed 2.0 > 1 and b.b: lidar.missing()",
+        "since": "1.000 s ago",
+        "since_ns": "5000000000",
+    }
+    shown.diagnostics.ordered(Event("refused", "stop"), Explanation())
+    assert shown.ring()["action stop"].message == "active"
+    shown.diagnostics.ordered(Event("reset", "stop"), Explanation())
+    assert shown.ring()["action stop"].message == "inactive"
+
+
+def test_a_true_rule_shows_its_true_parts() -> None:
+    """Beside the values of all that it reads."""
+    rule = Rule("drive.fast", True, causes=("speed 2.0 > 1", "lidar.missing()"))
+    values = {each.key: each.value for each in Shown(rule).ring()["drive.fast"].values}
+    assert values["speed"] == "2.0"
+    assert values["cause"] == "speed 2.0 > 1 and lidar.missing()"
+
+
+def test_a_fault_is_red_until_it_is_gone() -> None:
+    """The node's own status carries it; only news is news."""
+    shown = Shown()
+    assert shown.diagnostics.fault("/imu", "is not heard")
+    assert not shown.diagnostics.fault("/imu", "is not heard")
+    status = shown.ring()["/safety"]
+    assert (status.level[0], status.message) == (ERROR, "is not heard")
+    assert shown.diagnostics.fault("/imu", "")
+    assert not shown.diagnostics.fault("/imu", "")
+    shown.unready = "starting"
+    assert shown.ring()["/safety"].level[0] == WARN
+
+
+def test_a_change_is_shown_soon_and_otherwise_after_the_period() -> None:
+    """Within 50 ms, or after a second."""
+    shown = Shown()
+    shown.ring()
+    assert 0.9 < shown.wait <= 1.0
+    shown.diagnostics.changed()
+    assert shown.wait <= 0.05
+
+
+def test_many_rules_are_shown_in_portions() -> None:
+    """A thousand statuses in one message would keep the rules waiting for tens of ms."""
+    rules = [Rule(f"e.r{number}", False) for number in range(3 * CHUNK)]
+    shown = Shown(*rules)
+    shown.ring()
+    while shown.wait < 0.5:
+        shown.ring()
+    assert max(len(message.status) for message in shown.messages) == CHUNK
+    names = {each.name for message in shown.messages for each in message.status}
+    assert len(names) == 3 * CHUNK + 3

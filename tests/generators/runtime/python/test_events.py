@@ -1,0 +1,96 @@
+"""What a safety node tells of an event, in its log and on its topic."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+from unittest.mock import Mock
+
+import pytest
+
+pytest.importorskip("rclpy")
+pytest.importorskip("diagnostic_msgs.msg")
+
+from deros.generators.runtime.python.events import Behaviour, Events
+
+
+class Event(NamedTuple):
+    """An event of the monitor."""
+
+    kind: str
+    t: int = 5
+    action: str = "stop"
+    behaviour: str = ""
+    arguments: tuple[Any, ...] = ()
+    line: int = 3
+    holding: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
+
+
+class Rule(NamedTuple):
+    """The state of a rule, as the monitor explains it."""
+
+    name: str
+    value: bool | None
+    reads: tuple[tuple[str, Any], ...]
+
+
+class Explanation(NamedTuple):
+    """What a monitor explains."""
+
+    rules: tuple[Rule, ...]
+    causes: dict[str, tuple[str, ...]]
+
+
+BEHAVIOURS = {
+    "halt": Behaviour("robot.deros:7", "drive.fast or body.near", ("drive.fast", "body.near")),
+    "back": Behaviour("robot.deros:9", "body.near", ("body.near",)),
+}
+RULES = (
+    Rule("drive.fast", True, (("speed", 2.0),)),
+    Rule("body.near", None, (("scan.nearest(-1, 1)", None),)),
+)
+HOLDING = Explanation(RULES, {"halt": ("drive.fast: speed 2.0 > 1", "body.near: x")})
+
+
+def told(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
+    """Return the line in the log, and the values on the topic."""
+    node, published = Mock(), list[Any]()
+    node.get_fully_qualified_name.return_value = "/safety"
+    node.get_clock.return_value.now.return_value.nanoseconds = 9
+    Events(node, "robot.deros", BEHAVIOURS, published.append).ordered(event, 6, after)
+    (status,) = published
+    log = node.get_logger.return_value
+    ((line,), _) = next(
+        each for each in (log.info, log.warning, log.error) if each.called
+    ).call_args
+    assert line == status.message
+    return line, {each.key: each.value for each in status.values}
+
+
+def test_a_trigger_names_its_cause() -> None:
+    """In place of the condition in the log, beside it on the topic."""
+    line, values = told(Event("trigger", behaviour="halt"), HOLDING)
+    cause = "drive.fast: speed 2.0 > 1 and body.near: x"
+    assert line == f"stop, by halt (robot.deros:7): {cause}"
+    assert (values["cause"], values["condition"]) == (cause, "drive.fast or body.near")
+    assert (values["rule drive.fast"], values["value speed"]) == ("true", "2.0")
+
+
+def test_a_trigger_whose_behaviour_has_ceased_is_told_with_its_condition() -> None:
+    """It may have turned true at a step of the clock, and false with the message that shows it."""
+    line, values = told(Event("trigger", behaviour="halt"), Explanation(RULES, {}))
+    assert line == "stop, by halt (robot.deros:7: if drive.fast or body.near)"
+    assert values["cause"] == ""
+
+
+def test_a_refused_reset_names_what_holds_and_what_is_unknown() -> None:
+    """Each with its cause, or with the terms without a value."""
+    line, values = told(Event("refused", holding=("halt",), unknown=("back",)), HOLDING)
+    cause = "drive.fast: speed 2.0 > 1 and body.near: x"
+    assert line == (
+        f"stop stays active, called for by halt (robot.deros:7): {cause}; not known to be false:"
+        " back (robot.deros:9: if body.near), unknown: scan.nearest(-1, 1)"
+    )
+    assert (values["holding"], values["unknown"]) == ("halt", "back")
+    assert values["cause halt"] == cause
+    assert "cause back" not in values

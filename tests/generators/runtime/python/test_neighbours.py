@@ -1,0 +1,112 @@
+"""Publishers that a node cannot hear, those that are too many, and those that use its name."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import Mock
+
+import pytest
+
+pytest.importorskip("rclpy")
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+from deros.generators.runtime.python.instance import Refusal
+from deros.generators.runtime.python.publishers import Publishers
+from deros.generators.runtime.python.siblings import Siblings
+
+RELIABLE = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
+BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+def publisher(kind: str = "std_msgs/msg/Bool", qos: QoSProfile = RELIABLE) -> Any:
+    """Return what the middleware tells of a publisher."""
+    return SimpleNamespace(
+        node_name="driver", node_namespace="/arm", topic_type=kind, qos_profile=qos
+    )
+
+
+def report(*publishers: Any, shared: tuple[str, ...] = ()) -> tuple[str, str]:
+    """Return what is reported of a topic with some publishers."""
+    from std_msgs.msg import Bool
+
+    subscription = SimpleNamespace(topic_name="/go", msg_type=Bool, qos_profile=RELIABLE)
+    node = Mock(subscriptions=[subscription])
+    node.get_publishers_info_by_topic.return_value = list(publishers)
+    found = Mock()
+    Publishers(node, found, shared).look()
+    topic, text = found.call_args.args
+    return topic, text
+
+
+def test_a_publisher_that_is_heard_is_no_fault() -> None:
+    """Nothing is wrong with it, nor with a topic that has none."""
+    assert report(publisher()) == ("/go", "")
+    assert report() == ("/go", "")
+
+
+def test_another_type_and_a_lesser_quality_are_faults() -> None:
+    """Each is named, with its node."""
+    _, text = report(publisher("std_msgs/msg/String"), publisher(qos=BEST_EFFORT), publisher())
+    first, second = text.split("; ", 1)
+    assert first == "/arm/driver publishes std_msgs/msg/String on it, which is not heard"
+    assert second.startswith("/arm/driver offers a QoS on it that is not heard:")
+
+
+def test_a_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
+    """Only those that are heard count; one whose node is not known yet counts, too."""
+    unnamed = publisher()
+    unnamed.node_name = "_NODE_NAME_UNKNOWN_"
+    _, text = report(publisher(), publisher("std_msgs/msg/String"), unnamed)
+    assert text.endswith(
+        "; 2 publishers where one is expected: /arm/driver, a node that is not known yet"
+    )
+    assert report(publisher(), publisher(), shared=("/go",)) == ("/go", "")
+
+
+def test_a_node_without_subscriptions_has_nothing_to_look_at() -> None:
+    """It just looks on."""
+    Publishers(Mock(subscriptions=[]), Mock(side_effect=AssertionError)).look()
+
+
+def _told(found: Mock, topic: str) -> list[str]:
+    """Return what was reported of a topic."""
+    return [call.args[1] for call in found.call_args_list if call.args[0] == topic]
+
+
+def test_a_second_heartbeat_is_reported_and_ends_the_node_that_started_last() -> None:
+    """It is a fault until it is known which of the two that is."""
+    node, found = Mock(), Mock()
+    node.get_publishers_info_by_topic.return_value = []  # nor is anybody known to read
+    node.count_publishers.return_value = 2
+    siblings = Siblings(node, "/safety/heartbeat", [], found)
+    siblings._order = Mock()
+    siblings._order.gives_way.return_value = False
+    siblings.look()
+    assert siblings._order.gives_way.call_args.args[0]
+    assert _told(found, "/safety/heartbeat")[-1].startswith("another node publishes this heartbeat")
+    siblings._order.gives_way.return_value = True
+    with pytest.raises(Refusal, match="this one started last"):
+        siblings.look()
+    siblings._order.gives_way.return_value = False
+    node.count_publishers.return_value = 1
+    siblings.look()
+    assert not siblings._order.gives_way.call_args.args[0]
+    assert _told(found, "/safety/heartbeat")[-1] == ""
+
+
+def test_another_publisher_of_a_state_is_named() -> None:
+    """One topic at a time; the node itself is none of the others."""
+    node, found = Mock(), Mock()
+    node.get_subscriptions_info_by_topic.return_value = []
+    counts = {"/safety/heartbeat": 1, "/stop": 2, "/slow": 1}
+    node.count_publishers = counts.__getitem__
+    node.get_fully_qualified_name.return_value = "/safety"
+    own = SimpleNamespace(node_name="safety", node_namespace="/")
+    node.get_publishers_info_by_topic.return_value = [own, publisher()]
+    siblings = Siblings(node, "/safety/heartbeat", ["/stop", "/slow"], found)
+    for _ in range(3):
+        siblings.look()
+    text = "published by /arm/driver, too: whoever obeys it cannot tell them apart"
+    assert _told(found, "/stop") == [text, text]
+    assert _told(found, "/slow") == [""]

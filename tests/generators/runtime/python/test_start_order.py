@@ -1,0 +1,75 @@
+"""Of two nodes of one name, the one that started last gives way."""
+
+from __future__ import annotations
+
+import pytest
+
+from deros.generators.runtime.python.start_order import PATIENCE, YOUNG, StartOrder
+
+LOOK = 100_000_000
+"""From one look at the graph to the next, in ns."""
+
+SEC = 1_000_000_000
+
+
+def age_at_end(met: int, last: int = 20 * SEC) -> int | None:
+    """Return at which age a node ends that meets another one at an age; None if it stays."""
+    order = StartOrder(0)
+    ages = range(0, last, LOOK)
+    return next((age for age in ages if order.gives_way(age >= met, age)), None)
+
+
+def remaining(lag: int, found: int) -> tuple[bool, bool]:
+    """Run two nodes, the second one started ``lag`` later; return whether each of them is left.
+
+    Args:
+        lag: in ns.
+        found: how long after its start the second one finds the first one, and is found.
+    """
+    orders = [StartOrder(0), StartOrder(lag)]
+    ends: list[int | None] = [None, None]
+    for now, which in sorted(
+        [(t, 0) for t in range(0, 20 * SEC, LOOK)] + [(t, 1) for t in range(lag, 20 * SEC, LOOK)]
+    ):
+        other = ends[1 - which]
+        if ends[which] is None:
+            has_double = now >= lag + found and (other is None or now < other + LOOK // 2)
+            if orders[which].gives_way(has_double, now):
+                ends[which] = now
+    return ends[0] is None, ends[1] is None
+
+
+@pytest.mark.parametrize(
+    ("lag", "found"),
+    [
+        (lag, found)
+        for lag in (3 * LOOK, 5 * LOOK + 1, SEC, 2 * SEC + 3, 4 * SEC, 6 * SEC, 19 * SEC // 2)
+        for found in (0, LOOK // 3, 3 * LOOK, SEC)
+    ],
+)
+def test_the_first_one_goes_on(lag: int, found: int) -> None:
+    """However young it is itself, and in whichever phase the two look."""
+    assert remaining(lag, found) == (True, False)
+
+
+def test_a_node_waits_as_long_again_as_it_has_run() -> None:
+    """And a little longer, since the other one may be just ending."""
+    for met in (0, SEC, 3 * SEC):
+        assert age_at_end(met) == 2 * met + PATIENCE
+
+
+def test_an_old_node_never_gives_way() -> None:
+    """Two that meet late both stay; that is for people to mend."""
+    assert age_at_end(YOUNG) is None
+    assert age_at_end(YOUNG - LOOK) is not None
+
+
+def test_one_that_goes_in_time_ends_nobody() -> None:
+    """It was just ending; another one that comes later is met anew."""
+    order = StartOrder(0)
+    assert not order.gives_way(True, SEC)
+    assert not order.gives_way(True, 2 * SEC)
+    assert not order.gives_way(False, 2 * SEC + LOOK)
+    assert not order.gives_way(True, 3 * SEC)
+    assert not order.gives_way(True, 6 * SEC)
+    assert order.gives_way(True, 6 * SEC + PATIENCE)

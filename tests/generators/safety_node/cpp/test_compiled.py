@@ -1,0 +1,114 @@
+"""What of the C++ safety node needs no rclcpp: compiled against the wheels' messages, and run."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from deros.generators.api.protocol import Context
+from deros.generators.monitor.python.interface import render_monitor
+from deros.generators.safety_package.cpp.generate import generate
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from deros.monitor.build import build
+from tests.support.cpp import needs_compiler
+from tests.support.safety_cpp import compiled
+
+pytestmark = needs_compiler
+
+HERE = Path(__file__).resolve().parent
+MODEL = HERE.parent / "python/models/every_thing.deros"
+NAN = float("nan")
+MESSAGES = [
+    ("speed", 10_000_000, 0.25),
+    ("mode", 20_000_000, 1.0),
+    ("speed", 30_000_000, 0.8999999761581421),
+    ("joints", 40_000_000, 2.5),
+    ("imu", 50_000_000, 0.4),
+    ("speed", 200_000_000, 0.9),
+    ("level", 210_000_000, 2.0),
+    ("no_joint", 250_000_000, 1.0),
+    ("imu", 300_000_000, 0.4),
+    ("speed", 310_000_000, NAN),
+    ("mode", 900_000_000, 0.0),
+    ("speed", 100_000_000, 0.1),
+]
+
+
+@pytest.fixture(scope="module")
+def model() -> tuple[Rules, Context]:
+    """Give the rules, and where they were read."""
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(MODEL).model
+    assert isinstance(model, Rules)
+    return model, context
+
+
+def test_nothing_is_allocated_while_it_watches(
+    model: tuple[Rules, Context], tmp_path: Path
+) -> None:
+    """From message to state, over hundreds of triggers and resets."""
+    program = compiled(HERE / "hot_path.cpp", tmp_path, generate(*model, {}))
+    done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=False)
+    assert done.stdout == "acted, 0 allocations\n"
+
+
+def test_it_explains_what_the_python_monitor_explains(
+    model: tuple[Rules, Context], tmp_path: Path
+) -> None:
+    """The diagnostics of both nodes say the same after the same messages."""
+    program = compiled(HERE / "explained.cpp", tmp_path, generate(*model, {}))
+    lines = "".join(f"{topic} {t} {value}\n" for topic, t, value in MESSAGES if value == value)
+    told = subprocess.run(
+        [program], input=lines, capture_output=True, text=True, timeout=60, check=True
+    ).stdout
+    assert told == "".join(_explained(*model))
+
+
+def _explained(model: Rules, context: Context) -> list[str]:
+    """Return the lines that tell what the monitor in Python is worth after each message."""
+    program = build(model, context.store).program
+    assert program is not None
+    names: dict[str, Any] = {}
+    exec(compile(render_monitor(program), "monitor.py", "exec"), names)
+    monitor = names["Monitor"](0, lambda _: None)
+    told: list[str] = []
+    for topic, t, value in MESSAGES:
+        if value != value:
+            continue  # no stream of C++ reads NaN
+        _take(monitor, topic, t, value)
+        state = monitor.explain()
+        for rule in state.rules:
+            reads = (f"{term}={_shown(read)}" for term, read in rule.reads)
+            words = (rule.name, str(rule.line), rule.text, _shown(rule.value), str(rule.since))
+            told.append("\t".join((*words, *reads, *rule.causes)) + "\n")
+        assert tuple(state.causes) == monitor.holding
+        told += [f"holds\t{name}\t{' and '.join(why)}\n" for name, why in state.causes.items()]
+        told.append(".\n")
+    return told
+
+
+def _take(monitor: Any, topic: str, t: int, value: float) -> None:
+    match topic:
+        case "speed":
+            monitor.on_speed(t, value)
+        case "mode":
+            monitor.on_mode(t, int(value))
+        case "level":
+            monitor.on_diagnostics(t, int(value))
+        case "imu":
+            monitor.on_imu(t, value, 0.0, 0.0, 1.0, value)
+        case "joints":
+            monitor.on_joints(t, value)
+        case _:
+            monitor.on_joints(t, NAN)
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return "unknown"
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,0 +1,155 @@
+"""The safety node as a node type."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.diagnostics import SourceFile, Span
+from deros.generators.safety_node.node import safety_node
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import InterfaceType
+from deros.metamodels.common import QosProfile
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType, PortKind
+from deros.metamodels.rules import Rules
+from deros.monitor.build import build
+from deros.monitor.ir import Program
+from deros.monitor.topics import SystemTopics
+
+MODELS = Path(__file__).resolve().parent / "models"
+RULES = SourceFile("rules.deros", "")
+
+
+def node_of(name: str, **options: str) -> NodeType:
+    """Return the safety node of one of the models."""
+    loaded = Repository().load(MODELS / f"{name}.deros")
+    assert isinstance(loaded.model, Rules)
+    built = build(loaded.model, InterfaceStore())
+    assert built.program is not None
+    return safety_node(built.program, built.topics, options, loaded.model.source)
+
+
+def named(name: str, **options: str) -> NodeType:
+    """Return the safety node of an empty program of that name."""
+    program = Program(name, (), (), (), (), ())
+    return safety_node(program, SystemTopics(()), options, RULES)
+
+
+@pytest.mark.parametrize(
+    ("stem", "package"),
+    [
+        ("robot", "robot_safety"),
+        ("robot_safety", "robot_safety"),
+        ("My-Robot.v2", "my_robot_v2_safety"),
+        ("2wheels", "rules_2wheels_safety"),
+        ("__", "rules_safety"),
+    ],
+)
+def test_the_package_is_named_after_the_rules(stem: str, package: str) -> None:
+    """Whatever the file is called, package and node have names that ROS 2 accepts."""
+    node = named(stem)
+    assert (node.package, node.name) == (package, f"{package}_node")
+
+
+def test_options_name_package_and_node() -> None:
+    """The node's name follows the package's unless it is given, too."""
+    assert named("robot", package="guard").name == "guard_node"
+    node = named("robot", package="guard", node="watchdog")
+    assert (node.package, node.name) == ("guard", "watchdog")
+
+
+@pytest.mark.parametrize("options", [{"package": "No-Package"}, {"node": "a/b"}])
+def test_a_bad_name_is_refused_with_the_reason(options: dict[str, str]) -> None:
+    """The error says what ROS 2 does not take."""
+    with pytest.raises(ValueError, match="contains"):
+        named("robot", **options)
+
+
+def test_it_has_the_ports_that_the_rules_ask_for() -> None:
+    """One publisher per bound topic, a heartbeat, one subscription per input topic, a reset."""
+    node = node_of("every_thing")
+    assert [(port.kind, port.name, port.type.short) for port in node.ports] == [
+        (PortKind.PUBLISHER, "/stop", "std_msgs.Bool"),
+        (PortKind.PUBLISHER, "/limit", "std_msgs.Float64"),
+        (PortKind.PUBLISHER, "~/heartbeat", "std_msgs.UInt64"),
+        (PortKind.PUBLISHER, "~/events", "diagnostic_msgs.DiagnosticStatus"),
+        (PortKind.PUBLISHER, "~/diagnostics", "diagnostic_msgs.DiagnosticArray"),
+        (PortKind.SUBSCRIPTION, "/speed", "std_msgs.Float64"),
+        (PortKind.SUBSCRIPTION, "/odom", "nav_msgs.Odometry"),
+        (PortKind.SUBSCRIPTION, "/imu", "sensor_msgs.Imu"),
+        (PortKind.SUBSCRIPTION, "/joints", "sensor_msgs.JointState"),
+        (PortKind.SUBSCRIPTION, "/diagnostics", "diagnostic_msgs.DiagnosticStatus"),
+        (PortKind.SUBSCRIPTION, "/mode", "std_msgs.UInt8"),
+        (PortKind.SERVICE, "~/reset", "std_srvs.Trigger"),
+    ]
+
+
+def test_the_diagnostics_are_on_their_usual_topic_unless_the_rules_need_it() -> None:
+    """A node description could not tell two ports of one name apart."""
+    assert node_of("two_rules").port("/diagnostics") is not None
+    assert node_of("every_thing").port("~/diagnostics") is not None
+
+
+def test_its_parameters_are_fixed_but_for_optional_behaviours() -> None:
+    """What is latched has a file; what is optional can be switched while the node runs."""
+    read_only = {each.name: each.read_only for each in node_of("every_thing").parameters}
+    assert read_only == {
+        "publish_freq": True,
+        "startup_grace": True,
+        "state_file": True,
+        "diagnostics_freq": True,
+        "realtime_priority": True,
+        "lock_memory": True,
+        "garbage_collection": True,
+        "behaviours.speeding.enabled": False,
+    }
+    assert node_of("two_rules").parameter("state_file") is None
+
+
+def test_without_latches_there_is_no_reset_service() -> None:
+    """Nothing to reset, nothing to call."""
+    assert node_of("two_rules").port("~/reset") is None
+
+
+def test_states_reach_those_who_come_late() -> None:
+    """Bound topics are reliable and transient local, and keep the last state alone."""
+    port = node_of("every_thing").port("/stop")
+    assert port is not None
+    assert port.qos == QosProfile(reliability="reliable", durability="transient_local", depth=1)
+
+
+@pytest.mark.parametrize(
+    ("topic", "qos"),
+    [
+        ("/speed", QosProfile(reliability="reliable", depth=10)),
+        ("/mode", QosProfile(reliability="reliable", durability="transient_local", depth=10)),
+        ("/imu", QosProfile(reliability="best_effort", depth=10)),
+        ("/odom", QosProfile(reliability="best_effort", depth=10)),
+        ("/diagnostics", QosProfile(reliability="best_effort", depth=10)),
+    ],
+)
+def test_a_subscription_asks_for_no_more_than_is_offered(topic: str, qos: QosProfile) -> None:
+    """It is reliable or durable only where every publisher of the system says that it is."""
+    port = node_of("every_thing").port(topic)
+    assert port is not None
+    assert port.qos == qos
+
+
+def test_places_of_ports_are_in_the_rules() -> None:
+    """A diagnostic about a port points at the input or action that it comes from."""
+    node = node_of("every_thing")
+    stop, speed = node.port("/stop"), node.port("/speed")
+    assert stop is not None
+    assert speed is not None
+    assert (Path(stop.name_span.file).name, stop.name_span.line) == ("every_thing.deros", 3)
+    assert speed.name_span.line == 11
+
+
+def test_an_empty_program_makes_a_node_all_the_same() -> None:
+    """Without rules there is a heartbeat, and nothing to act upon."""
+    node = named("empty")
+    assert [port.name for port in node.ports] == ["~/heartbeat", "~/events", "/diagnostics"]
+    assert node.ports[0].type == InterfaceType("std_msgs", "msg", "UInt64")
+    assert node.span == Span(RULES, 0, 0)

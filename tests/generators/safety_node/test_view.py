@@ -1,0 +1,121 @@
+"""What the templates of safety nodes in all languages are told of the rules."""
+
+from __future__ import annotations
+
+import pytest
+
+from deros.generators.safety_node.view import (
+    action_notes,
+    argument_types,
+    behaviour_views,
+    calls,
+    lasts,
+    needs_code,
+    only_resets,
+    origin_file,
+    refusing_behaviours,
+    states_by_path,
+)
+from deros.monitor.ir import Action, Program
+from tests.support.rules import load, program
+
+RULES = """action stop publishes true on /stop : std_msgs.Bool latched;
+action crawl publishes 0.2 on /limit : std_msgs.Float64 reset_by release;
+action creep publishes 0.1 on /limit : std_msgs.Float64 reset_by release;
+action release;
+action beep(times, why) "Sounds the horn";
+entity e { fast: topic /scan.range_max > 1.0; near: topic /scan.range_min < 1.0; }
+behaviour outer: if e.fast  // of the laser
+  then { beep(3, "fast"); stop; if e.near then { beep(0.5, "near"); crawl; creep; }; };
+if e.near then { release; log_state("near"); };
+"""
+
+
+@pytest.fixture(scope="module")
+def built() -> Program:
+    """Return the program of the rules above."""
+    return program(RULES)
+
+
+def named(built: Program, name: str) -> Action:
+    """Return one of its actions."""
+    return next(action for action in built.actions if action.name == name)
+
+
+def test_the_file_of_the_rules_comes_without_its_folder() -> None:
+    """What is generated is the same on every machine."""
+    assert origin_file(load(RULES)) == "rules.deros"
+
+
+def test_actions_share_a_field_in_the_order_declared(built: Program) -> None:
+    """Each with what it publishes there."""
+    shared = states_by_path(built, "/limit")
+    assert {
+        path: [(action.name, binding.value) for action, binding in bound]
+        for path, bound in shared.items()
+    } == {("data",): [("crawl", 0.2), ("creep", 0.1)]}
+    assert states_by_path(built, "/scan") == {}
+
+
+def test_kinds_of_actions(built: Program) -> None:
+    """Bound ones have a state, the others are code; the built-in one is neither."""
+    assert [each.name for each in built.actions if needs_code(each)] == ["release", "beep"]
+    assert [each.name for each in built.actions if lasts(each)] == ["stop", "crawl", "creep"]
+
+
+def test_only_what_can_be_reset_can_be_refused_it(built: Program) -> None:
+    """By the behaviours that call for it."""
+    refusing = {each.name: refusing_behaviours(each) for each in built.actions}
+    assert {name: found for name, found in refusing.items() if found} == {
+        "stop": (0,),
+        "crawl": (1,),
+        "creep": (1,),
+    }
+
+
+def test_calls_come_top_to_bottom(built: Program) -> None:
+    """Also those of behaviours within others."""
+    names = [built.actions[call.action].name for call in calls(built)]
+    assert names == ["beep", "stop", "beep", "crawl", "creep", "release", "log_state"]
+
+
+def test_an_int_beside_a_float_is_a_float(built: Program) -> None:
+    """Every parameter has the types of all its arguments."""
+    beep = named(built, "beep")
+    assert [list(types) for types in argument_types(beep, built)] == [["float"], ["str"]]
+    assert argument_types(named(built, "release"), built) == []
+
+
+def test_notes_tell_what_an_action_is_for_and_who_runs_it(built: Program) -> None:
+    """The sentence of the rules first, where there is one."""
+    assert action_notes(named(built, "beep"), built, "sounds the horn") == [
+        "Sounds the horn.",
+        "Declared in rules.deros:6, run by outer, behaviour_2.",
+    ]
+    unused = program("action wave;")
+    assert action_notes(unused.actions[0], unused, "") == [
+        "Declared in rules.deros:2, run by no behaviour."
+    ]
+
+
+def test_a_behaviour_depends_on_the_rules_of_those_around_it(built: Program) -> None:
+    """Its condition is shown without comments, on one line."""
+    assert [(each.name, each.condition, each.rules) for each in behaviour_views(built)] == [
+        ("outer", "e.fast", ("e.fast",)),
+        ("behaviour_2", "e.near", ("e.fast", "e.near")),
+        ("behaviour_3", "e.near", ("e.near",)),
+    ]
+
+
+def test_an_action_that_only_resets_others_needs_no_code(built: Program) -> None:
+    """Without parameters and without a state, being run is all that it is for."""
+    assert [a.name for a in built.actions if only_resets(a, built)] == ["release"]
+    assert action_notes(named(built, "release"), built, "")[-1] == (
+        "Running it resets crawl, creep; it need not do anything else."
+    )
+    with_code = program(
+        RULES.replace("action release;", "action release(why);").replace(
+            "{ release;", '{ release("near");'
+        )
+    )
+    assert not any(only_resets(a, with_code) for a in with_code.actions)

@@ -1,0 +1,146 @@
+"""The package of the safety node in C++."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.generators.api.protocol import Context, Files, GenerationError, Owner
+from deros.generators.output.writer import write
+from deros.generators.safety_package.cpp.generate import generate
+from deros.generators.safety_package.python.generate import generate as generate_python
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType
+from deros.metamodels.rules import Rules
+from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.golden import Golden
+
+MODELS = Path(__file__).resolve().parents[2] / "safety_node/python/models"
+HEAD = 'use "robot.system" import Robot\ninput v = topic /speed.data\n'
+
+
+def files_of(name: str, **options: str) -> Files:
+    """Return what is generated for one of the models."""
+    context = Context(InterfaceStore(), Repository())
+    loaded = context.repository.load(MODELS / f"{name}.deros")
+    assert isinstance(loaded.model, Rules)
+    return generate(loaded.model, context, options)
+
+
+def files_of_text(text: str) -> Files:
+    """Return what is generated for rules that stand beside the models."""
+    context = Context(InterfaceStore(), Repository())
+    loaded = context.repository.load_text(str(MODELS / "text.deros"), HEAD + text)
+    assert isinstance(loaded.model, Rules)
+    return generate(loaded.model, context, {})
+
+
+@pytest.mark.parametrize("name", ["every_thing", "two_rules"])
+def test_the_files_are_as_kept(name: str, golden: Golden) -> None:
+    """Node, description, messages, origins and actions have the text that was reviewed.
+
+    The rest comes from the generators of nodes and of monitors, and is kept with their tests.
+    """
+    made = ("", "_main", "_messages", "_origins", "_actions", "_actions_base", "_cpp")
+    stems = {f"{name}_safety_node{part}" for part in made}
+    files = {
+        path: file
+        for path, file in files_of(name).items()
+        if Path(path).suffix in (".cpp", ".hpp", ".rnd") and Path(path).stem in stems
+    }
+    golden.check(f"safety_cpp/{name}", files)
+
+
+def test_the_two_nodes_differ_in_their_types_name_alone() -> None:
+    """Ports and parameters are the same, so that one can stand where the other stood."""
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(MODELS / "every_thing.deros").model
+    assert isinstance(model, Rules)
+    python = generate_python(model, context, {})["every_thing_safety/every_thing_safety_node.rnd"]
+    files = files_of("every_thing")
+    cpp = files["every_thing_safety_cpp/every_thing_safety_node_cpp.rnd"].text
+    head = "node every_thing_safety_node : every_thing_safety "
+    assert python.text.startswith(head)
+    longer = "node every_thing_safety_node_cpp : every_thing_safety_cpp "
+    assert cpp == python.text.replace(head, longer)
+    described = Repository().load_text("every_thing_safety_node_cpp.rnd", cpp).model
+    assert isinstance(described, NodeType)
+
+
+@pytest.mark.parametrize("package", ["guard", "guard_cpp"])
+def test_options_name_the_python_twin(package: str) -> None:
+    """With or without its ending, the package is the same."""
+    files = files_of("two_rules", package=package, node="watchdog")
+    assert "guard_cpp/watchdog_cpp.rnd" in files
+    assert "guard_cpp/src/watchdog.cpp" in files
+
+
+def test_the_user_owns_the_actions_alone() -> None:
+    """All files are refreshed but the manifest and those with the bodies of the actions."""
+    owned = {path for path, file in files_of("every_thing").items() if file.owner is Owner.USER}
+    root = "every_thing_safety_cpp"
+    assert owned == {
+        f"{root}/package.xml",
+        f"{root}/include/{root}/every_thing_safety_node_actions.hpp",
+        f"{root}/src/every_thing_safety_node_actions.cpp",
+    }
+
+
+def test_bound_actions_need_no_file_of_actions() -> None:
+    """Nothing to fill in, nothing that could be forgotten."""
+    rules = "action stop publishes true on /stop : std_msgs.Bool;\n"
+    files = files_of_text(f"{rules}entity e {{ r: v > 0.5; }} if e.r then {{ stop; }};")
+    assert not [path for path in files if "actions" in path]
+
+
+def test_an_argument_of_two_types_is_refused() -> None:
+    """A method has one type for each parameter, whatever the rules hand over."""
+    rules = (
+        'action beep(how); entity e { r: v > 1; s: v > 2; } if e.r then { beep("loud"); };'
+        "if e.s then { beep(3); };"
+    )
+    with pytest.raises(GenerationError, match="several types") as refused:
+        files_of_text(rules)
+    (diagnostic,) = refused.value.diagnostics
+    assert diagnostic.code.name == "DRS402"
+
+
+@pytest.mark.parametrize("name", ["node", "Node"])
+def test_an_action_cannot_take_the_name_of_the_accessor(name: str) -> None:
+    """Only the very same name collides."""
+    rules = f"action {name}; entity e {{ r: v > 1; }} if e.r then {{ {name}; }};"
+    if name == "node":
+        with pytest.raises(GenerationError, match="both become"):
+            files_of_text(rules)
+    else:
+        assert files_of_text(rules)
+
+
+def test_two_packages_have_a_namespace_each() -> None:
+    """Nothing of the runtime is defined outside the package's own namespace."""
+    files = files_of("two_rules")
+    assert not [path for path, file in files.items() if "deros_runtime" in file.text.lower()]
+    for path, file in files.items():
+        if "/runtime/" in path and path.endswith(".cpp"):
+            assert "namespace two_rules_safety_cpp::runtime\n" in file.text, path
+
+
+def test_rules_with_an_error_are_not_generated() -> None:
+    """What is wrong with the rules is what the generator says."""
+    with pytest.raises(GenerationError) as refused:
+        files_of_text("entity e { r: w > 1; }")
+    assert "DRS310" in [diagnostic.code.name for diagnostic in refused.value.diagnostics]
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],
+)
+def test_the_linters_of_ament_find_nothing(
+    name: str, options: dict[str, str], tmp_path: Path
+) -> None:
+    """uncrustify, cpplint and cppcheck with ament's settings pass all files, those in C too."""
+    write(files_of(name, **options), tmp_path)
+    assert_cpp_lint_clean(tmp_path / f"{name}_safety_cpp")

@@ -1,0 +1,245 @@
+"""The package of the safety node."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from typing import Any
+from unittest.mock import Mock
+
+import pytest
+
+from deros.generators.api.protocol import Context, Files, GenerationError, Owner
+from deros.generators.output.writer import write
+from deros.generators.safety_package.python.generate import generate
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType
+from deros.metamodels.rules import Rules
+from tests.support.golden import Golden
+from tests.support.lint import assert_lint_clean
+
+MODELS = Path(__file__).resolve().parent / "models"
+HEAD = 'use "robot.system" import Robot\ninput v = topic /speed.data\n'
+
+
+def files_of_text(text: str, **options: str) -> Files:
+    """Return what is generated for rules that stand beside the models."""
+    context = Context(InterfaceStore(), Repository())
+    loaded = context.repository.load_text(str(MODELS / "text.deros"), text)
+    assert loaded.diagnostics == ()
+    assert isinstance(loaded.model, Rules)
+    return generate(loaded.model, context, options)
+
+
+def files_of(name: str, **options: str) -> Files:
+    """Return what is generated for one of the models."""
+    context = Context(InterfaceStore(), Repository())
+    loaded = context.repository.load(MODELS / f"{name}.deros")
+    assert isinstance(loaded.model, Rules)
+    return generate(loaded.model, context, options)
+
+
+@pytest.mark.parametrize("name", ["every_thing", "two_rules"])
+def test_the_files_are_as_kept(name: str, golden: Golden) -> None:
+    """Node, description and actions have the text that was reviewed.
+
+    The rest comes from the generators of nodes and of monitors, and is kept with their tests.
+    """
+    ends = (".rnd", ".py", "_actions.py", "_actions_base.py")
+    own = {"origins.py", *(f"{name}_safety_node{end}" for end in ends)}
+    files = {path: file for path, file in files_of(name).items() if Path(path).name in own}
+    assert len(files) == len(own)
+    golden.check(f"safety_python/{name}", files)
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],
+)
+def test_the_linters_of_ament_find_nothing(
+    name: str, options: dict[str, str], tmp_path: Path
+) -> None:
+    """flake8 and pep257 with ament's settings pass all files."""
+    write(files_of(name, **options), tmp_path)
+    assert_lint_clean(tmp_path / f"{name}_safety")
+
+
+@pytest.mark.parametrize(
+    "rules",
+    [
+        "action stop; entity e { r: v > 0.5; } if e.r then { stop; };",
+        "action stop publishes false on /go : std_msgs.Bool;"
+        " entity e { r: v > 0.5; } if e.r then { stop; };",
+        'action tell publishes "slow" on /told : std_msgs.String;'
+        " entity e { r: v > 0.5; } if e.r then { tell; };",
+        'entity e { r: v > 0.5; } if e.r then { log_state("it\'s {fast}"); };',
+        "action a reset_by b; action b; entity e { r: v > 0.5; } if e.r then { a; b; };",
+        "action gone; action stop publishes true on /gone : std_msgs.Bool latched;"
+        " entity e { r: v > 0.5; } if e.r then { stop; };",
+        "action very_long_name_of_an_action_that_goes_on_and_on(first_argument, second_argument);"
+        " entity entity_with_a_long_name { rule_with_a_long_name_too_which_goes_on: v > 0.5; }"
+        " if entity_with_a_long_name.rule_with_a_long_name_too_which_goes_on or"
+        " not entity_with_a_long_name.rule_with_a_long_name_too_which_goes_on then {"
+        ' very_long_name_of_an_action_that_goes_on_and_on(1, "two"); };',
+    ],
+)
+def test_every_kind_of_program_is_lint_clean(rules: str, tmp_path: Path) -> None:
+    """No combination of actions leaves an unused import, name or empty block behind."""
+    write(files_of_text(HEAD + rules), tmp_path)
+    assert_lint_clean(tmp_path / "text_safety")
+
+
+def test_the_description_stands_for_the_node() -> None:
+    """The .rnd of the output is read back as the node whose base class is beside it."""
+    text = files_of("every_thing")["every_thing_safety/every_thing_safety_node.rnd"].text
+    loaded = Repository().load_text("every_thing_safety_node.rnd", text)
+    assert loaded.diagnostics == ()
+    assert isinstance(loaded.model, NodeType)
+    assert loaded.model.name == "every_thing_safety_node"
+    assert loaded.model.port("/stop") is not None
+
+
+def test_the_user_owns_the_actions_alone() -> None:
+    """All files are refreshed but the manifest and the bodies of the actions."""
+    files = files_of("every_thing")
+    owned = [path for path, file in files.items() if file.owner is Owner.USER]
+    assert sorted(owned) == [
+        "every_thing_safety/every_thing_safety/every_thing_safety_node_actions.py",
+        "every_thing_safety/package.xml",
+    ]
+
+
+def test_an_action_added_later_is_reported_until_it_has_a_body() -> None:
+    """The user's file, written before, lacks the method; the base class has it, and says so."""
+    pytest.importorskip("rclpy")
+    files = files_of("every_thing")
+    module = "every_thing_safety/every_thing_safety/every_thing_safety_node_actions_base.py"
+    names: dict[str, Any] = {}
+    exec(compile(files[module].text, module, "exec"), names)
+    base = names["EveryThingSafetyNodeActionsBase"]
+    written_before = type("Actions", (base,), {"release": lambda *_: None})
+    node = Mock()
+    actions = written_before(node)
+    assert actions.unfilled() == ["beep"]
+    actions.beep(1, "near")
+    (message,) = node.get_logger().error.call_args.args
+    assert message.startswith("action beep(1, 'near') should have been carried out now")
+
+
+def test_bound_actions_need_no_file_of_actions() -> None:
+    """Nothing to fill in, nothing that could be forgotten."""
+    rules = "action stop publishes true on /stop : std_msgs.Bool;\n"
+    files = files_of_text(f"{HEAD}{rules}entity e {{ r: v > 0.5; }} if e.r then {{ stop; }};")
+    assert not [path for path in files if "actions" in path]
+
+
+def test_the_output_needs_nothing_of_deros() -> None:
+    """Every import is of ROS 2, the standard library or the package itself."""
+    allowed = {
+        "__future__", "abc", "collections", "contextlib", "ctypes", "dataclasses", "fcntl",
+        "functools", "gc", "hashlib", "itertools", "math", "numpy", "os", "resource", "select",
+        "signal", "stat", "struct", "sys", "tempfile", "threading", "time", "traceback", "types",
+        "typing", "glob", "pathlib", "setuptools", "launch", "launch_ros", "ament_index_python",
+        "pytest", "ament_flake8", "ament_pep257", "rclpy", "rcl_interfaces",
+        "every_thing_safety", "std_msgs", "std_srvs", "nav_msgs", "sensor_msgs", "diagnostic_msgs",
+    }  # fmt: skip
+    imported: set[str] = set()
+    for path, file in files_of("every_thing").items():
+        if path.endswith(".py"):
+            for item in ast.walk(ast.parse(file.text)):
+                if isinstance(item, ast.Import):
+                    imported |= {name.name.partition(".")[0] for name in item.names}
+                elif isinstance(item, ast.ImportFrom) and not item.level:
+                    imported.add((item.module or "").partition(".")[0])
+    assert imported <= allowed
+
+
+@pytest.mark.parametrize(("field", "needed"), [("position.max()", True), ("position[0]", False)])
+def test_numpy_is_a_dependency_where_arrays_are_read(field: str, needed: bool) -> None:
+    """The package says what its modules import."""
+    rules = (
+        'use "robot.system" import Robot\naction stop;\n'
+        f"input j = topic /joints timeout 1 sec\nentity e {{ high: j.{field} > 1; }}\n"
+        "if e.high then { stop; };\n"
+    )
+    files = files_of_text(rules)
+    (package,) = (file.text for path, file in files.items() if Path(path).name == "package.xml")
+    assert ("<exec_depend>python3-numpy</exec_depend>" in package) == needed
+    assert any("import numpy" in file.text for file in files.values()) == needed
+
+
+def test_the_output_does_not_depend_on_where_the_rules_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """No path of the machine gets into a file."""
+    monkeypatch.chdir(MODELS)
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load("every_thing.deros").model
+    assert isinstance(model, Rules)
+    assert generate(model, context, {}) == files_of("every_thing")
+
+
+def test_the_node_shadows_no_attribute_of_rclpy() -> None:
+    """What the class adds to a node is not what rclpy keeps in it."""
+    rclpy_node = pytest.importorskip("rclpy.node")
+    source = Path(rclpy_node.__file__).read_text(encoding="utf-8")
+    kept = _attributes(source) | set(dir(rclpy_node.Node))
+    for name in ("every_thing_safety_node", "every_thing_safety_node_base"):
+        text = files_of("every_thing")[f"every_thing_safety/every_thing_safety/{name}.py"].text
+        assert not (_attributes(text) | _methods(text)) & kept - {"__init__"}
+
+
+def _attributes(source: str) -> set[str]:
+    return {
+        item.attr
+        for item in ast.walk(ast.parse(source))
+        if isinstance(item, ast.Attribute)
+        and isinstance(item.ctx, ast.Store)
+        and isinstance(item.value, ast.Name)
+        and item.value.id == "self"
+    }
+
+
+def _methods(source: str) -> set[str]:
+    return {item.name for item in ast.walk(ast.parse(source)) if isinstance(item, ast.FunctionDef)}
+
+
+@pytest.mark.parametrize(
+    ("rules", "options", "fragment"),
+    [
+        ("action node; entity e { r: v > 1; } if e.r then { node; };", {}, "'node'"),
+        (
+            "action stop publishes true on /a/b : std_msgs.Bool;"
+            "action halt publishes true on /a_b : std_msgs.Bool;"
+            "entity e { r: v > 1; } if e.r then { stop; halt; };",
+            {},
+            "'/a_b' and publisher '/a/b' both become 'publish_a_b'",
+        ),
+        ("entity e { r: v > 1; }", {"node": "monitor"}, "module 'monitor'"),
+    ],
+)
+def test_names_that_collide_are_refused(rules: str, options: dict[str, str], fragment: str) -> None:
+    """Two things that would get one name end the generation, with their places."""
+    with pytest.raises(GenerationError, match="both become") as refused:
+        files_of_text(HEAD + rules, **options)
+    (diagnostic,) = refused.value.diagnostics
+    assert diagnostic.code.name == "DRS401"
+    assert fragment in diagnostic.message
+
+
+def test_a_topic_with_both_ends_in_the_node_is_refused() -> None:
+    """A node description could not tell the two ports apart."""
+    rules = "action slow publishes 1.0 on /speed : std_msgs.Float64;\n"
+    with pytest.raises(GenerationError, match="both publish and watch '/speed'") as refused:
+        files_of_text(f"{HEAD}{rules}entity e {{ r: v > 1; }} if e.r then {{ slow; }};")
+    (diagnostic,) = refused.value.diagnostics
+    assert diagnostic.code.name == "DRS402"
+    assert [related.span.line for related in diagnostic.related] == [2]
+
+
+def test_rules_with_an_error_are_not_generated() -> None:
+    """What is wrong with the rules is what the generator says."""
+    with pytest.raises(GenerationError) as refused:
+        files_of_text(f"{HEAD}entity e {{ r: w > 1; }}")
+    assert "DRS310" in [diagnostic.code.name for diagnostic in refused.value.diagnostics]

@@ -1,0 +1,98 @@
+"""Where the script finds the programs of packages, and the environment it runs them in."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from deros.generators.system.script.standalone.programs import Programs
+from tests.support.stand_ins import make_prefix
+
+VERSION = f"python{sys.version_info.major}.{sys.version_info.minor}"
+
+
+def test_a_program_is_in_the_lib_folder_of_its_package(tmp_path: Path) -> None:
+    """AMENT_PREFIX_PATH is searched in order for lib/PACKAGE/PROGRAM, as ros2 run does."""
+    first = make_prefix(tmp_path / "first", names=["short"])
+    second = make_prefix(tmp_path / "second", names=["short", "steady"])
+    programs = Programs([], {"AMENT_PREFIX_PATH": f"{first}:{second}"})
+    assert programs.find("demo", "short") == [str(first / "lib/demo/short")]
+    assert programs.find("demo", "steady") == [str(second / "lib/demo/steady")]
+
+
+def test_a_program_may_lie_deeper_in_that_folder(tmp_path: Path) -> None:
+    """As for ros2 run, folders inside the package's are searched for the name."""
+    prefix = make_prefix(tmp_path, names=["short"])
+    deeper = prefix / "lib/demo/tools"
+    deeper.mkdir()
+    (prefix / "lib/demo/short").rename(deeper / "short")
+    programs = Programs([], {"AMENT_PREFIX_PATH": str(prefix)})
+    assert programs.find("demo", "short") == [str(deeper / "short")]
+
+
+def test_path_or_pattern_finds_no_program(tmp_path: Path) -> None:
+    """Only a file of the package's own folder is started, whatever the description says."""
+    prefix = make_prefix(tmp_path / "prefix", names=["short"])
+    foreign = make_prefix(tmp_path / "foreign", names=["steady"]) / "lib/demo/steady"
+    programs = Programs([], {"AMENT_PREFIX_PATH": str(prefix)})
+    relative = os.path.relpath(foreign, prefix / "lib/demo")
+    for name in (str(foreign), relative, "../demo/short", "*", "sh*t", "[s]hort", "", ".", ".."):
+        assert programs.find("demo", name) is None, name
+
+
+def test_what_cannot_be_executed_is_no_program(tmp_path: Path) -> None:
+    """A file without the permission, a folder, and another package's program are passed over."""
+    prefix = make_prefix(tmp_path, names=["short", "steady"])
+    (prefix / "lib/demo/short").chmod(0o644)
+    (prefix / "lib/demo/folder").mkdir()
+    programs = Programs([], {"AMENT_PREFIX_PATH": str(prefix)})
+    assert programs.find("demo", "short") is None
+    assert programs.find("demo", "folder") is None
+    assert programs.find("other", "steady") is None
+
+
+def test_install_spaces_come_before_the_environment_merged_or_not(tmp_path: Path) -> None:
+    """A given folder is a prefix itself, or holds one for each package."""
+    ambient = make_prefix(tmp_path / "ambient", names=["short", "steady"])
+    merged = make_prefix(tmp_path / "merged", names=["short"])
+    make_prefix(tmp_path / "isolated" / "demo", names=["steady"])
+    programs = Programs([merged, tmp_path / "isolated"], {"AMENT_PREFIX_PATH": str(ambient)})
+    assert programs.find("demo", "short") == [str(merged / "lib/demo/short")]
+    assert programs.find("demo", "steady") == [str(tmp_path / "isolated/demo/lib/demo/steady")]
+
+
+def test_python_packages_run_from_their_sources(tmp_path: Path) -> None:
+    """The entry points of setup.py are programs, run by the interpreter that runs the script."""
+    package = tmp_path / "src" / "my_robot"
+    package.mkdir(parents=True)
+    (package / "setup.py").write_text(
+        "entry_points={'console_scripts': ['odometry = my_robot.wheel_node:main']}"
+    )
+    programs = Programs([tmp_path / "src"], {})
+    assert programs.find("my_robot", "odometry") == [
+        sys.executable,
+        "-c",
+        "import sys; from my_robot.wheel_node import main; sys.exit(main())",
+    ]
+    assert programs.find("my_robot", "metry") is None
+    assert programs.find("other", "odometry") is None
+    assert programs.environment()["PYTHONPATH"] == str(package)
+
+
+def test_nodes_of_an_install_space_need_no_sourced_setup(tmp_path: Path) -> None:
+    """Its folders stand first in the paths that a setup file would set, where they exist."""
+    prefix = make_prefix(tmp_path / "install" / "demo", names=["short"])
+    site = prefix / "lib" / VERSION / "site-packages"
+    site.mkdir(parents=True)
+    environment = Programs([tmp_path / "install"], {"PYTHONPATH": "/old"}).environment()
+    assert environment["AMENT_PREFIX_PATH"] == str(prefix)
+    assert environment["LD_LIBRARY_PATH"] == str(prefix / "lib")
+    assert environment["PYTHONPATH"] == os.pathsep.join([str(site), "/old"])
+    assert "PATH" not in environment
+
+
+def test_the_environment_is_passed_on_as_it_is_without_install_spaces() -> None:
+    """Only Python's output buffering is changed, unless the user has an opinion."""
+    assert Programs([], {"A": "b"}).environment() == {"A": "b", "PYTHONUNBUFFERED": "1"}
+    assert Programs([], {"PYTHONUNBUFFERED": ""}).environment() == {"PYTHONUNBUFFERED": ""}

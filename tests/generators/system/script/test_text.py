@@ -1,0 +1,67 @@
+"""The script as a text: complete, deterministic, clean under ament's linters."""
+
+from __future__ import annotations
+
+import ast
+import os
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+from deros.generators.builtin import rossystem_script
+from deros.generators.output.writer import write
+from deros.generators.system.script.assemble import PARTS
+from tests.support.golden import Golden
+from tests.support.lint import assert_lint_clean
+from tests.support.systems import CONTEXT, EVERYTHING, load
+
+STANDALONE = "deros/generators/system/script/standalone"
+
+
+def test_the_script_is_as_kept(golden: Golden) -> None:
+    """The text for a system that uses everything is the golden one."""
+    golden.check("rossystem_script", rossystem_script(load(EVERYTHING), CONTEXT))
+
+
+def test_the_script_needs_the_standard_library_alone() -> None:
+    """Every import is of a module that comes with Python."""
+    (file,) = rossystem_script(load(EVERYTHING), CONTEXT).values()
+    imported = {
+        name.partition(".")[0]
+        for node in ast.walk(ast.parse(file.text))
+        for name in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module or ""]
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+    }
+    assert imported <= sys.stdlib_module_names
+
+
+def test_the_script_passes_aments_linters(tmp_path: Path) -> None:
+    """flake8 and pep257 as ament sets them have nothing to say, hard values included."""
+    write(rossystem_script(load(EVERYTHING), CONTEXT), tmp_path)
+    assert_lint_clean(tmp_path)
+
+
+def test_the_script_can_be_run_as_a_program(tmp_path: Path) -> None:
+    """It is written executable, with an interpreter line before the banner."""
+    write(rossystem_script(load(EVERYTHING), CONTEXT), tmp_path)
+    script = tmp_path / "every_thing.py"
+    assert script.stat().st_mode & stat.S_IXUSR
+    done = subprocess.run(
+        [script, "--help"], capture_output=True, text=True, env={"PATH": os.environ["PATH"]}
+    )
+    assert done.returncode == 0
+    assert "Run the nodes of EveryThing." in done.stdout
+
+
+def test_every_standalone_module_goes_into_the_script() -> None:
+    """A module that somebody adds is not forgotten."""
+    import deros.generators.system.script.standalone as package
+
+    folder = Path(package.__path__[0])
+    assert sorted(PARTS) == sorted(path.stem for path in folder.glob("[a-z]*.py"))

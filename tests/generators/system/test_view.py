@@ -1,0 +1,173 @@
+"""What the targets of a system are told about it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.generators.api.protocol import GenerationError
+from deros.generators.system.literals import WIDTH, python_literal
+from deros.generators.system.view import SystemView, one_line, snake_case, system_view
+from tests.support.systems import EVERYTHING, load, load_text
+
+NODE = """
+    node worker : tools
+      executable "old_worker"
+    parameters
+      name gain : double = 1.0
+      name gains : double[] = [1.0]
+      name count : int = 1
+      name blob : byte[] = [1, 2]
+      name list : string[] = []
+    subscribes
+      topic in : std_msgs.Bool
+"""
+
+
+def view(folder: Path, members: str) -> SystemView:
+    """Return the view of a system that may use ``worker``."""
+    return system_view(
+        load_text(folder, f'system Test imports import "*.rnd" {members}', worker=NODE)
+    )
+
+
+def refused(folder: Path, members: str) -> list[str]:
+    """Return the codes with which a system is refused."""
+    with pytest.raises(GenerationError) as caught:
+        view(folder, members)
+    return [diagnostic.code.name for diagnostic in caught.value.diagnostics]
+
+
+def test_package_and_executable_give_the_program(tmp_path: Path) -> None:
+    """A legacy node's executable counts, not the name of its type."""
+    (node,) = view(tmp_path, "node a : worker").nodes
+    assert (node.package, node.executable, node.full_name) == ("tools", "old_worker", "/a")
+
+
+def test_whole_numbers_for_doubles_are_doubles(tmp_path: Path) -> None:
+    """ROS 2 refuses the integer 3 for a double; integers stay what they are."""
+    (node,) = view(
+        tmp_path,
+        "node a : worker parameters param gain = 3 param gains = [1, 2.5] param count = 3",
+    ).nodes
+    assert repr(node.parameters) == "(('gain', 3.0), ('gains', (1.0, 2.5)), ('count', 3))"
+
+
+def test_only_what_differs_is_remapped(tmp_path: Path) -> None:
+    """A port that is connected to the name it has anyway needs no remapping."""
+    (node,) = view(tmp_path, "node a : worker namespace /x wirings connect in to /x/in").nodes
+    assert node.remappings == ()
+
+
+def test_actions_are_remapped_with_all_their_parts() -> None:
+    """Jazzy's rcl remaps the parts of an action alone, later ones the action's own name."""
+    eye = next(system_view(load(EVERYTHING)).nodes)
+    assert [pair for pair in eye.remappings if pair[0].startswith("look")] == [
+        ("look", "/look_around"),
+        ("look/_action/send_goal", "/look_around/_action/send_goal"),
+        ("look/_action/cancel_goal", "/look_around/_action/cancel_goal"),
+        ("look/_action/get_result", "/look_around/_action/get_result"),
+        ("look/_action/feedback", "/look_around/_action/feedback"),
+        ("look/_action/status", "/look_around/_action/status"),
+    ]
+
+
+def test_nodes_are_grouped_by_subsystem_with_what_is_said_about_it() -> None:
+    """A used system's description stands in where its subsystem has none of its own."""
+    groups = system_view(load(EVERYTHING)).groups
+    assert [(group.path, group.description, len(group.nodes)) for group in groups] == [
+        (("front",), "What looks ahead", 1),
+        (("front", "deeper"), "", 1),
+        (("left",), "A whole arm, used twice", 1),
+        (("right",), "A whole arm, used twice", 1),
+        ((), "", 1),
+    ]
+
+
+def test_respawn_is_told_in_seconds() -> None:
+    """1500 ms is 1.5 s; without respawn there is no delay at all."""
+    eye, relay, *_, alone = system_view(load(EVERYTHING)).nodes
+    assert (eye.respawn_delay, eye.respawn_max) == (1.5, 3)
+    assert (relay.respawn_delay, relay.respawn_max) == (0.0, None)
+    assert (alone.respawn_delay, alone.respawn_max) == (None, None)
+
+
+@pytest.mark.parametrize("setting", ["gains = []", "blob = [3]"])
+def test_values_without_a_spelling_in_ros_2_are_refused(tmp_path: Path, setting: str) -> None:
+    """Rcl reads an empty array as no value and knows no bytes: silently losing them is no way."""
+    members = f"node a : worker parameters param {setting}"
+    assert refused(tmp_path, members) == [codes.UNSUPPORTED_BY_TARGET.name]
+
+
+@pytest.mark.parametrize("setting", ["list = []", "blob = [1, 2]"])
+def test_a_value_without_a_spelling_may_be_the_default(tmp_path: Path, setting: str) -> None:
+    """The node has it anyway, so there is nothing to say."""
+    (node,) = view(tmp_path, f"node a : worker parameters param {setting}").nodes
+    assert node.parameters == ()
+
+
+def test_two_nodes_of_one_full_name_are_refused(tmp_path: Path) -> None:
+    """Their parameters could not be told apart."""
+    assert refused(tmp_path, "node a : worker node a : worker") == [codes.NAME_COLLISION.name]
+
+
+@pytest.mark.parametrize(
+    ("name", "parted"),
+    [
+        ("RobotSafety", "robot_safety"),
+        ("robot", "robot"),
+        ("HTTPServer2Go", "http_server2_go"),
+        ("a__B", "a_b"),
+    ],
+)
+def test_file_names_are_snake_case(name: str, parted: str) -> None:
+    """The words of a system's name are parted by one underscore each."""
+    assert snake_case(name) == parted
+
+
+def test_descriptions_are_one_line() -> None:
+    """No description can break out of a comment."""
+    assert one_line(" a\n  b\r\n\tc\u2028d ") == "a b c d"
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        True,
+        -3,
+        1e300,
+        "",
+        "plain",
+        'it\'s "both" \\ \n\x00☃',
+        "word " * 60,
+        "x" * 300,
+        "'" * 150,
+        ("a", "b" * 200, "c"),
+        tuple(range(100)),
+        {"key": "value " * 30, "k" * 120: (1.0, 2.0)},
+    ],
+)
+@pytest.mark.parametrize("column", [0, 30, 60])
+def test_literals_mean_the_value_and_fit_the_line(value: object, column: int) -> None:
+    """Whatever is broken over lines reads back as it was, within the width."""
+    text = python_literal(value, column, 12)  # type: ignore[arg-type]
+    assert _as_lists(eval(text)) == _as_lists(value)
+    first, *others = f"{text},".split("\n")
+    assert column + len(first) <= WIDTH
+    assert all(len(line) <= WIDTH for line in others)
+
+
+@pytest.mark.parametrize("value", [float("inf"), float("-inf")])
+def test_infinities_have_a_literal(value: float) -> None:
+    """``inf`` alone is a name that Python does not know."""
+    assert eval(python_literal(value)) == value
+
+
+def _as_lists(value: object) -> object:
+    if isinstance(value, (tuple, list)):
+        return [_as_lists(item) for item in value]
+    if isinstance(value, dict):
+        return {key: _as_lists(item) for key, item in value.items()}
+    return value

@@ -1,0 +1,59 @@
+"""However a condition is laid out in lines, it means what its formula says."""
+
+from __future__ import annotations
+
+import ast
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from deros.generators.text.logic import (
+    MAX_LINE,
+    AllOf,
+    AnyOf,
+    Atom,
+    Logic,
+    NoneOf,
+    all_of,
+    any_of,
+    lay_out,
+    text,
+)
+
+# Names so long that a few operands fill a line, and so many lengths that each just fits sometimes.
+_NAMES = [f"{letter}{'_' * length}" for letter in "xyz" for length in (0, 5, 17, 31, 60)]
+
+_ATOMS = st.sampled_from([Atom(name) for name in _NAMES])
+
+
+def _nested(inner: st.SearchStrategy[Logic]) -> st.SearchStrategy[Logic]:
+    several = st.lists(inner, min_size=2, max_size=4)
+    return st.one_of(several.map(all_of), several.map(any_of), inner.map(NoneOf))
+
+
+formulas: st.SearchStrategy[Logic] = st.recursive(_ATOMS, _nested, max_leaves=12)
+
+
+def _tree(logic: Logic) -> ast.expr:
+    """Return what Python's parser makes of a formula when every operand is in parentheses."""
+    match logic:
+        case Atom():
+            return ast.Name(logic.text, ast.Load())
+        case NoneOf():
+            return ast.UnaryOp(ast.Not(), _tree(logic.operand))
+        case AllOf() | AnyOf():
+            word = ast.And() if isinstance(logic, AllOf) else ast.Or()
+            return ast.BoolOp(word, [_tree(each) for each in logic.operands])
+
+
+@given(formulas, st.sampled_from([0, 4, 8, 12]), st.sampled_from(["if ", "elif ", "return "]))
+def test_lines_mean_the_formula(logic: Logic, indent: int, before: str) -> None:
+    """The lines parse as the formula; what is too long is a single operand."""
+    after = "" if before == "return " else ":"
+    lines = lay_out(indent, before, logic, after)
+    expression = "\n".join(lines).strip().removeprefix(before).removesuffix(after)
+    expected = ast.dump(_tree(logic))
+    assert ast.dump(ast.parse(f"({expression})", mode="eval").body) == expected
+    assert ast.dump(ast.parse(text(logic), mode="eval").body) == expected
+    too_long = [line for line in lines if len(line) > MAX_LINE]
+    assert all(sum(line.count(letter) for letter in "xyz") == 1 for line in too_long)

@@ -1,0 +1,120 @@
+"""Python text that keeps to ament's line length, and templates that hide no mistake."""
+
+from __future__ import annotations
+
+import ast
+
+import jinja2
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from deros.generators.text.prose import one_line, sentence
+from deros.generators.text.python import (
+    LINE_LENGTH,
+    Call,
+    Text,
+    call,
+    import_lines,
+    mark_long_lines,
+    wrapped,
+)
+from deros.generators.text.templates import environment, xml_text
+
+LONG = "n" * 120
+
+
+def test_imports_are_in_aments_order() -> None:
+    """Modules and names are sorted without regard to case; ``import x`` stands where it belongs."""
+    imports = {"rclpy.qos": ["QoSProfile", "qos_profile_sensor_data"], "rclpy": [], "b": ["B", "a"]}
+    assert import_lines(imports) == [
+        "from b import a, B",
+        "import rclpy",
+        "from rclpy.qos import qos_profile_sensor_data, QoSProfile",
+    ]
+
+
+def test_long_imports_are_broken() -> None:
+    """An import that does not fit has one name a line."""
+    names = [f"name_{number}_of_many" for number in range(6)]
+    lines = import_lines({"module": names})
+    assert lines == ["from module import (", *(f"    {name}," for name in names), ")"]
+
+
+def test_a_call_that_fits_stays_on_one_line() -> None:
+    """Arguments that are None are left out, a tail follows the parenthesis."""
+    assert call("f", ["1", None, Text("t=", "x"), Call("g", ("2",), ".value")], 4) == (
+        "f(1, t='x', g(2).value)"
+    )
+
+
+@given(
+    st.lists(st.text("ab '\"\\", max_size=150), min_size=1, max_size=4),
+    st.integers(min_value=0, max_value=5),
+)
+def test_a_broken_call_means_the_same(texts: list[str], depth: int) -> None:
+    """However long the arguments, the lines fit and evaluate to the same texts."""
+    indent = 4 * depth
+    text = call(
+        "tuple", [Call("list", (Call("", tuple(Text("", t) for t in [*texts, ""])),))], indent
+    )
+    assert list(eval(text)) == [*texts, ""]  # the text is our own
+    words = [word for t in texts for word in t.split()]
+    if all(len(repr(word)) < 40 for word in words):
+        assert all(len(line) <= LINE_LENGTH for line in f"{' ' * indent}{text}".splitlines())
+
+
+def test_only_long_lines_are_marked() -> None:
+    """Code, comments and strings of several lines each get their mark where flake8 looks for it."""
+    text = f'x = 1\n# {LONG}\n{LONG} = 2\ny = """\n{LONG}\n"""\n'
+    assert mark_long_lines(text).splitlines() == [
+        "x = 1",
+        f"# {LONG}  # noqa: E501",
+        f"{LONG} = 2  # noqa: E501",
+        'y = """',
+        LONG,
+        '"""  # noqa: E501',
+    ]
+
+
+def test_short_text_is_not_touched() -> None:
+    """Without a long line the text comes back as it is."""
+    assert mark_long_lines("x = 1\n") == "x = 1\n"
+
+
+@given(st.text(max_size=60))
+def test_a_sentence_fits_into_a_docstring(text: str) -> None:
+    """Whatever a description holds, it can stand between three quotes, on one line."""
+    line = sentence(text)
+    assert "\n" not in line
+    assert ast.literal_eval(f'"""{line}"""') == line
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("turns ticks", "Turns ticks."), ("Really?", "Really?"), ("", ""), ("a\n  b\x00c", "A b c.")],
+)
+def test_sentences_have_a_capital_and_an_end(text: str, expected: str) -> None:
+    """Descriptions become sentences; those that are keep their end."""
+    assert sentence(text) == expected
+
+
+def test_prose_is_wrapped_between_words_only() -> None:
+    """Lines fit where words do, and nothing but white space is lost."""
+    text = " ".join(["word"] * 60)
+    lines = wrapped(text, indent=8)
+    assert all(len(line) <= LINE_LENGTH - 8 for line in lines)
+    assert " ".join(lines) == one_line(text)
+    assert wrapped(LONG, indent=8) == [LONG]
+
+
+def test_templates_hide_no_misspelling() -> None:
+    """A name that the view does not define is an error, not an empty text."""
+    template = environment("deros.generators.node.python").from_string("{{ nod }}")
+    with pytest.raises(jinja2.UndefinedError, match="'nod' is undefined"):
+        template.render(node=1)
+
+
+def test_xml_text_is_escaped() -> None:
+    """Markup in a model is text in an element and in an attribute."""
+    assert xml_text('<a & "b">') == "&lt;a &amp; &quot;b&quot;&gt;"

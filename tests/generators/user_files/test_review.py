@@ -1,0 +1,281 @@
+"""What the user's files lack when the model has changed since they were written."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.diagnostics import Diagnostic
+from deros.generators.api.protocol import Context, Files
+from deros.generators.api.registry import discover
+from deros.generators.user_files.review import review, users_files
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType
+from tests.support.rules import embedded_store, load
+
+OLD = """node base : robot
+parameters
+  name speed : double = 1.0
+publishes
+  topic odom : nav_msgs.Odometry
+subscribes
+  topic front : sensor_msgs.LaserScan
+services
+  service reset : std_srvs.Trigger
+timers
+  timer control every 20 ms
+"""
+LANGUAGES = ("python", "cpp")
+
+
+def _files(model: str, language: str) -> Files:
+    context = Context(InterfaceStore(prefixes=()), Repository())
+    loaded = context.repository.load_text("base.rnd", model)
+    assert isinstance(loaded.model, NodeType), loaded.diagnostics
+    generator = discover().find("rosnode", language)
+    assert generator is not None
+    return generator(loaded.model, context, {})
+
+
+def _write(files: Files, folder: Path) -> None:
+    for path, file in files.items():
+        target = folder / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(file.text)
+
+
+def _review(new: str, language: str, folder: Path) -> list[Diagnostic]:
+    files = _files(new, language)
+    return review(files, users_files(files, folder))
+
+
+@pytest.fixture(params=LANGUAGES)
+def language(request: pytest.FixtureRequest) -> str:
+    """Return each language of nodes."""
+    return str(request.param)
+
+
+@pytest.fixture(params=["clang", "names"])
+def reader(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Read C++ with and without clang."""
+    if request.param == "names":
+        monkeypatch.setattr("deros.generators.user_files.cpp.shutil.which", lambda _: None)
+    elif shutil.which("clang++") is None:
+        pytest.skip("no clang++")
+
+
+def _words(found: list[Diagnostic]) -> set[tuple[str, str]]:
+    """Return the codes with the texts that they point at."""
+    return {(each.code.name, each.span.text) for each in found}
+
+
+@pytest.mark.usefixtures("reader")
+def test_what_is_as_generated_lacks_nothing(language: str, tmp_path: Path) -> None:
+    """Neither at once nor after the user has filled it in."""
+    _write(_files(OLD, language), tmp_path)
+    assert _review(OLD, language, tmp_path) == []
+
+
+@pytest.mark.usefixtures("reader")
+def test_a_new_handler_is_missing(language: str, tmp_path: Path) -> None:
+    """The finding stands at the name of the class, and names the method."""
+    _write(_files(OLD, language), tmp_path)
+    new = OLD.replace("services", "  topic rear : sensor_msgs.LaserScan\nservices")
+    (found,) = _review(new, language, tmp_path)
+    assert (found.code, found.span.text) == (codes.MISSING_METHOD, "Base")
+    assert "'on_rear'" in found.message
+
+
+@pytest.mark.usefixtures("reader")
+@pytest.mark.parametrize(
+    ("change", "old", "new"),
+    [
+        (("topic front", "topic rear"), "on_front", "on_rear"),
+        (("service reset", "service restart"), "handle_reset", "handle_restart"),
+        (("timer control", "timer drive"), "on_control", "on_drive"),
+    ],
+)
+def test_a_renamed_port_is_named(
+    language: str, tmp_path: Path, change: tuple[str, str], old: str, new: str
+) -> None:
+    """The old method and the new one point at each other."""
+    _write(_files(OLD, language), tmp_path)
+    found = _review(OLD.replace(*change), language, tmp_path)
+    assert _words(found) == {("DRS407", "Base"), ("DRS408", old)}
+    by_code = {each.code.name: each for each in found}
+    assert by_code["DRS408"].hint == f"rename it to '{new}'"
+    assert by_code["DRS407"].hint.startswith(f"rename '{old}' in line ")
+
+
+@pytest.mark.usefixtures("reader")
+def test_a_removed_port_leaves_a_method_that_nothing_calls(language: str, tmp_path: Path) -> None:
+    """The finding stands at the method."""
+    _write(_files(OLD, language), tmp_path)
+    new = OLD.replace("subscribes\n  topic front : sensor_msgs.LaserScan\n", "")
+    assert _words(_review(new, language, tmp_path)) == {("DRS408", "on_front")}
+
+
+@pytest.mark.usefixtures("reader")
+def test_uses_of_what_is_gone_are_found(language: str, tmp_path: Path) -> None:
+    """A publisher and a parameter that the model no longer has, where the code uses them."""
+    _write(_files(OLD, language), tmp_path)
+    if language == "python":
+        path = tmp_path / "robot/robot/base.py"
+        line = "self.publish_odom(self.parameters.speed)"
+        path.write_text(
+            path.read_text().replace("self.get_logger()", f"{line}\n        self.x()", 1)
+        )
+    else:
+        path = tmp_path / "robot/src/base.cpp"
+        line = "publish_odom(parameters()->speed);  // publish_odom(parameters()->speed)"
+        path.write_text(path.read_text().replace("RCLCPP_WARN", f"{line}\n  RCLCPP_WARN", 1))
+    assert _review(OLD, language, tmp_path) == []
+    new = OLD.replace("topic odom", "topic odometry").replace("name speed", "name velocity")
+    found = _review(new, language, tmp_path)
+    assert _words(found) == {("DRS408", "publish_odom"), ("DRS408", "speed")}
+    hints = {each.span.text: each.hint for each in found}
+    assert hints["publish_odom"] == "did you mean 'publish_odometry'?"
+
+
+@pytest.mark.usefixtures("reader")
+@pytest.mark.parametrize("helper", ["on_button", "front_of", "handle_joy"])
+def test_methods_of_the_users_own_are_left_alone(
+    language: str, tmp_path: Path, helper: str
+) -> None:
+    """A method that the user's own code calls, and hooks of ROS 2, are nobody's ports."""
+    _write(_files(OLD, language), tmp_path)
+    if language == "python":
+        path = tmp_path / "robot/robot/base.py"
+        own = (
+            f"    def {helper}(self) -> None:\n        self.{helper}()\n\n"
+            "    def on_parameters_changed(self, previous: object) -> None:\n        pass\n\n"
+            "    def on_front"
+        )
+        path.write_text(path.read_text().replace("    def on_front", own))
+    else:
+        path = tmp_path / "robot/include/robot/base.hpp"
+        own = (
+            f"  void {helper}();\n"
+            "  void on_parameters_changed(const Parameters & previous) override;\n"
+            "  void on_front"
+        )
+        path.write_text(path.read_text().replace("  void on_front", own))
+    assert _review(OLD, language, tmp_path) == []
+
+
+def test_what_another_file_may_have_is_not_called_missing(tmp_path: Path) -> None:
+    """A class of another file may bring the method, and so may an assignment."""
+    _write(_files(OLD, "python"), tmp_path)
+    path = tmp_path / "robot/robot/base.py"
+    text = path.read_text()
+    new = OLD.replace("services", "  topic rear : sensor_msgs.LaserScan\nservices")
+    path.write_text(text.replace("class Base(BaseBase)", "class Base(Mixin, BaseBase)"))
+    assert _review(new, "python", tmp_path) == []
+    path.write_text(text.replace("    def on_front", "    on_rear = print\n\n    def on_front"))
+    assert _review(new, "python", tmp_path) == []
+    own = "class Mixin:\n    def on_rear(self, msg):\n        pass\n\n\nclass Base(Mixin, BaseBase)"
+    path.write_text(text.replace("class Base(BaseBase)", own))
+    assert _review(new, "python", tmp_path) == []
+
+
+def test_functions_of_the_users_modules_are_missed(tmp_path: Path) -> None:
+    """Without main() the program does not start; it may also be imported or assigned."""
+    _write(_files(OLD, "python"), tmp_path)
+    path = tmp_path / "robot/robot/base.py"
+    text = path.read_text()
+    path.write_text(text.replace("def main(", "def start("))
+    (found,) = _review(OLD, "python", tmp_path)
+    assert found.code is codes.MISSING_METHOD
+    assert "'base.py' has no function 'main'" in found.message
+    for more in ("main = start\n", "from robot.other import main\n", "from robot.other import *\n"):
+        path.write_text(text.replace("def main(", "def start(") + more)
+        assert _review(OLD, "python", tmp_path) == []
+
+
+@pytest.mark.parametrize("text", ["class (", "\0", "from x import *\n", "(" * 1000])
+def test_a_file_that_cannot_be_read_is_left_to_its_language(tmp_path: Path, text: str) -> None:
+    """Nothing is said of it, and nothing fails."""
+    for language in LANGUAGES:
+        _write(_files(OLD, language), tmp_path / language)
+        for path in users_files(_files(OLD, language), tmp_path / language).values():
+            if path.name != "package.xml":
+                path.write_text(text)
+        assert _review(OLD, language, tmp_path / language) == []
+
+
+@pytest.mark.usefixtures("reader")
+def test_places_are_right_behind_other_alphabets(language: str, tmp_path: Path) -> None:
+    """Readers count bytes, diagnostics characters."""
+    _write(_files(OLD, language), tmp_path)
+    name = "robot/robot/base.py" if language == "python" else "robot/include/robot/base.hpp"
+    mark = "#" if language == "python" else "//"
+    path = tmp_path / name
+    path.write_text(f"{mark} Übergröße 名前\n{path.read_text()}")
+    found = _review(OLD.replace("topic front", "topic rear"), language, tmp_path)
+    assert _words(found) == {("DRS407", "Base"), ("DRS408", "on_front")}
+
+
+def test_package_xml_is_the_users_and_what_it_lacks_is_said(language: str, tmp_path: Path) -> None:
+    """A dependency of a new port; what the user has added is nobody else's business."""
+    _write(_files(OLD, language), tmp_path)
+    path = tmp_path / "robot/package.xml"
+    path.write_text(path.read_text().replace("</package>", "  <depend>own</depend>\n</package>"))
+    new = OLD.replace("services", "  topic imu : geometry_msgs.Twist\nservices")
+    found = [each for each in _review(new, language, tmp_path) if each.code.name == "DRS409"]
+    assert [each.message for each in found] == [
+        "package.xml lacks what the generated code needs: geometry_msgs"
+    ]
+    assert "depend>geometry_msgs</" in found[0].hint
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        (lambda text: text.replace("<name>robot<", "<name>other<"), "is of the package 'other'"),
+        (lambda text: text.replace("type>ament_", "type>other_"), "has the build type 'other_"),
+        (lambda text: text.replace("</package>", ""), "cannot be read"),
+    ],
+)
+def test_a_package_xml_that_does_not_fit(
+    language: str, tmp_path: Path, change: Callable[[str], str], part: str
+) -> None:
+    """Another name or build type, and a file that is no XML."""
+    _write(_files(OLD, language), tmp_path)
+    path = tmp_path / "robot/package.xml"
+    path.write_text(change(path.read_text()))
+    (found,) = _review(OLD, language, tmp_path)
+    assert found.code is codes.MANIFEST_LACKS
+    assert part in found.message
+
+
+RULES = """action horn;
+action lights;
+input v = topic /scan.range_max timeout 1 sec
+entity e { far: v > 1.0 or v.missing(); }
+if e.far then { horn; lights; };
+"""
+
+
+@pytest.mark.usefixtures("reader")
+def test_actions_of_a_safety_node(language: str, tmp_path: Path) -> None:
+    """An action that the rules no longer have is found where its code is."""
+    generator = discover().find("deros", language)
+    assert generator is not None
+    context = Context(embedded_store(), Repository())
+    files = generator(load(RULES), context, {"package": "r_safety"})
+    _write(files, tmp_path)
+    for path in users_files(files, tmp_path).values():
+        if path.suffix == ".hpp":
+            path.write_text(path.read_text().replace("  // void", "  void"))
+    assert review(files, users_files(files, tmp_path)) == []
+    changed = load(RULES.replace("lights", "lamp"))
+    files = generator(changed, context, {"package": "r_safety"})
+    found = review(files, users_files(files, tmp_path))
+    assert ("DRS408", "lights") in _words(found)
+    if language == "python":
+        assert ("DRS407", "RSafetyNodeActions") in _words(found)
