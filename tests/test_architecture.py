@@ -65,6 +65,39 @@ def test_each_library_has_one_home(library: str) -> None:
     assert strangers == set()
 
 
+def test_generators_import_each_other_through_interfaces() -> None:
+    """What a part of the generators does not offer in its interface may change unseen."""
+    shared = ("api", "output", "text", "user_files")
+    strangers = {
+        f"{_name(path)} imports {name}"
+        for path in _modules()
+        if _is_part(own := _part(_name(path)))
+        for name in _imported(path)
+        if _is_part(other := _part(name))
+        and other[: len(own)] != own
+        and own[: len(other)] != other
+        and other[0] not in shared
+        and not name.endswith(".interface")
+    }
+    assert strangers == set()
+
+
+def _name(path: Path) -> str:
+    return ".".join(("deros", *path.relative_to(SOURCE).with_suffix("").parts))
+
+
+def _part(module: str) -> tuple[str, ...]:
+    """Return the part of the generators that a module is of, with its language if it has one."""
+    if not module.startswith("deros.generators."):
+        return ()
+    thing, *rest = module.split(".")[2:]
+    return (thing, *rest[:1]) if rest[:1] and rest[0] in ("python", "c", "cpp") else (thing,)
+
+
+def _is_part(part: tuple[str, ...]) -> bool:
+    return bool(part) and (SOURCE / "generators" / part[0]).is_dir()
+
+
 def test_importing_deros_loads_nothing_heavy() -> None:
     """``import deros`` and the overview of commands load no third-party library but click."""
     script = (
