@@ -18,7 +18,7 @@ from deros.monitor.build import build
 from deros.monitor.ir import Program
 from deros.monitor.topics import SystemTopics
 
-MODELS = Path(__file__).resolve().parent / "models"
+MODELS = Path(__file__).resolve().parent / "python/models"
 RULES = SourceFile("rules.deros", "")
 
 

@@ -19,7 +19,7 @@ from deros.metamodels.rules import Rules
 from tests.support.golden import Golden
 from tests.support.lint import assert_lint_clean
 
-MODELS = Path(__file__).resolve().parent / "models"
+MODELS = Path(__file__).resolve().parents[2] / "safety_node/python/models"
 HEAD = 'use "robot.system" import Robot\ninput v = topic /speed.data\n'
 
 
