@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor import ir, walk
+from deros.monitor.functions import FUNCTIONS, WRITTEN, Argument
 from deros.monitor.state import LeafValue
 
 _SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 100)))
@@ -176,6 +177,14 @@ MORE_KINDS: Mapping[str, Kind] = {
 
 ALL_KINDS = {**KINDS, **MORE_KINDS}
 
+
+def functions_of(argument: Argument) -> tuple[str, ...]:
+    """Return the functions that rules may apply to something, without further arguments."""
+    return tuple(
+        row.name for row in WRITTEN.values() if row.argument is argument and not row.parameters
+    )
+
+
 # Programs -----------------------------------------------------------------------------------------
 
 
@@ -224,18 +233,21 @@ class _Drawing:
         reads = [ir.Read(leaf) for leaf in self.inputs[index].leaves]
         match self.kinds[index]:
             case "quaternion":
-                name = self.draw(st.sampled_from(("roll", "pitch", "yaw", "tilt")))
+                name = self.draw(st.sampled_from(functions_of(Argument.QUATERNION)))
                 value: ir.ValueExpression = ir.Apply(name, tuple(reads), index)
             case "vector":
-                value = ir.Apply("norm", tuple(reads), index)
+                name = self.draw(st.sampled_from(functions_of(Argument.VECTOR)))
+                value = ir.Apply(name, tuple(reads), index)
             case "array" | "floats" | "ints" | "longs" | "wides":
-                name = self.draw(st.sampled_from(("min", "max", "count")))
+                arrays = functions_of(Argument.NUMBERS) + functions_of(Argument.ARRAY)
+                name = self.draw(st.sampled_from(arrays))
                 value = ir.Apply(name, tuple(reads), index)
             case "scan":
                 sector = (ir.Const(self.draw(unit_bearing)), ir.Const(self.draw(unit_bearing)))
                 value = ir.Apply("nearest", (*reads, *sector), index)
             case "flags":
-                value = ir.Apply("count", tuple(reads), index)
+                name = self.draw(st.sampled_from(functions_of(Argument.ARRAY)))
+                value = ir.Apply(name, tuple(reads), index)
             case _:
                 value = reads[0]
         for _ in range(self.draw(st.sampled_from((0, 0, 0, 1, 2)))):
@@ -243,33 +255,33 @@ class _Drawing:
         return value
 
     def wrapped(self, value: ir.ValueExpression, index: int) -> ir.ValueExpression:
-        choices = ("abs", "rate", "over") if self.writable else ("abs", "rate", "over", "scale")
+        choices = (*functions_of(Argument.NUMBER), "over")
+        choices = choices if self.writable else (*choices, "scale")
         choice = self.draw(st.sampled_from(choices))
         if self.writable:  # what the text of a rate stands for, which has stamps if there are any
-            choice = (
-                choice if self.kinds[index] in ("number", "integer") or choice == "abs" else "rate"
-            )
+            bare = self.kinds[index] in ("number", "integer")
+            choice = "rate" if choice == "over" and not bare else choice
             jumps = isinstance(value, ir.Apply) and value.function in ("roll", "yaw")
-            if choice != "abs" and jumps:
+            if choice in ("rate", "over") and jumps:
                 turn = ir.Const(6.283185307179586)
                 value = self.remembering("unwrapped", (value, turn), index)
         elif self.draw(st.integers(0, 3)) == 0:
             turn = ir.Const(self.draw(st.sampled_from((2.0, 6.283185307179586, 360.0))))
             value = self.remembering("unwrapped", (value, turn), index)
         match choice:
-            case "abs":
-                return ir.Apply("abs", (value,), index)
-            case "rate":
-                return self.remembering("rate", (value,), index)
             case "over":
                 leaves = self.inputs[index].leaves
                 header = leaves[1:] if self.kinds[index] == "stamped" else ()
                 span_ns = ir.Const(self.draw(st.sampled_from((1, 2, 3, 7, 8, 9, 20))))
                 arguments = (value, span_ns, *map(ir.Read, header))
                 return self.remembering("rate_over", arguments, index)
-            case _:
+            case "scale":
                 offset = self.draw(st.sampled_from((0.0, 1.0, -0.5)))
                 return ir.Scale(value, self.draw(st.sampled_from((2.0, -1.0, 0.1))), offset)
+            case name if FUNCTIONS[name].memory is None:
+                return ir.Apply(name, (value,), index)
+            case name:
+                return self.remembering(name, (value,), index)
 
     def remembering(
         self, function: str, arguments: tuple[ir.ValueExpression, ...], index: int

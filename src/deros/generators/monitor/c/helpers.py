@@ -13,6 +13,7 @@ from deros.generators.monitor.c.layout import ELEMENTS
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
 from deros.monitor.function_texts import C
+from deros.monitor.functions import FUNCTIONS, Argument
 from deros.monitor.ir import Apply, Program, Read
 
 _IS_NUMBER = """\
@@ -270,8 +271,11 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     yield "is_text", _IS_TEXT
     for kind, type_ in _STORED.items():
         yield f"store_{kind}", _PUT.replace("KIND", kind).replace("TYPE", type_)
-    for name in ("length_of", "clamped", "roll", "pitch", "yaw", "tilt", "norm"):
-        yield name, quantities.contract(name, _PARTS.get(name, "")) + C[name]
+    for name in ("length_of", "clamped"):
+        yield name, quantities.contract(name, _PARTS[name]) + C[name]
+    for row in FUNCTIONS.values():
+        if row.c and row.memory is None and row.argument in _PLAIN:
+            yield row.c_call, quantities.contract(row.c_call, _PARTS.get(row.c_call, "")) + row.c
     yield "magnitude", _MAGNITUDE + C["magnitude"]
     yield "rate", _RATE + C["rate"]
     yield "unwrapped", windows.UNWRAPPED + C["unwrapped"]
@@ -302,6 +306,9 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     yield "lasting", _LASTING
     yield "turned", _TURNED
 
+
+_PLAIN = (Argument.NUMBER, Argument.QUATERNION, Argument.VECTOR)
+"""What functions without a loop are applied to."""
 
 _PARTS = {
     "length_of": "x, y, z, w",

@@ -181,7 +181,8 @@ def lay_out(program: Program) -> Layout:
             _name_term(program, value, layout, span)
     for value in walk.values(walk.conditions(program)):
         if isinstance(value, Apply) and value.state is not None and value not in layout.memories:
-            layout.memories[value] = _memory(program, value, layout.names)
+            name = program.inputs[value.input].name
+            layout.memories[value] = MEMORIES[value.function](name, layout.names)
     for condition in walk.conditions(program):
         _name_finding(condition, layout)
     for each in program.inputs:
@@ -195,15 +196,20 @@ def lay_out(program: Program) -> Layout:
     return layout
 
 
-def _memory(program: Program, value: Apply, names: UniqueNames) -> Memory:
-    name = program.inputs[value.input].name
-    match value.function:
-        case "rate_over":
-            return Memory(window=names.new(name, "window"))
-        case "unwrapped":
-            return Memory(names.new(name, "last"), total=names.new(name, "total"))
-        case _:
-            return Memory(names.new(name, "last"), names.new(name, "last_t"))
+def _window(name: str, names: UniqueNames) -> Memory:
+    return Memory(window=names.new(name, "window"))
+
+
+def _total(name: str, names: UniqueNames) -> Memory:
+    return Memory(names.new(name, "last"), total=names.new(name, "total"))
+
+
+def _before(name: str, names: UniqueNames) -> Memory:
+    return Memory(names.new(name, "last"), names.new(name, "last_t"))
+
+
+MEMORIES = {"rate": _before, "rate_over": _window, "unwrapped": _total}
+"""The functions that remember something, and what makes the names of their fields."""
 
 
 def compared(condition: Condition) -> list[ValueExpression]:

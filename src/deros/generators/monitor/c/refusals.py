@@ -8,9 +8,10 @@ from typing import NoReturn
 from deros import codes
 from deros.diagnostics import Span, report
 from deros.generators.api.protocol import GenerationError
-from deros.generators.monitor.c.layout import LATEST, compared, rule_parts, type_of
+from deros.generators.monitor.c.layout import LATEST, MEMORIES, compared, rule_parts, type_of
+from deros.generators.monitor.functions import refuse_unknown
 from deros.monitor import walk
-from deros.monitor.functions import FUNCTIONS
+from deros.monitor.functions import FUNCTIONS, Argument, Function, Result
 from deros.monitor.ir import (
     Age,
     Apply,
@@ -23,7 +24,12 @@ from deros.monitor.ir import (
     ValueExpression,
 )
 
-_IN_DOUBLES = ("abs", "rate", "rate_over", "unwrapped")
+_BUILT_IN = ("count", "fabs")
+"""What C calls without a text of ours."""
+_OF_ARRAYS = ("max", "min", "nearest")
+"""The functions that have a loop, with a contract of its own each."""
+_OF_INTEGERS = ("abs", "max", "min")
+"""The functions that have a text for integers."""
 
 
 def refuse(program: Program) -> None:
@@ -32,7 +38,9 @@ def refuse(program: Program) -> None:
     Raises:
         GenerationError: such a thing is in the program.
     """
+    refuse_unknown(program, knows, "C")
     for condition, span in rule_parts(program):
+        _refuse_integer(program, condition, span)
         _refuse_wide(program, condition, span)
         _refuse_mixed(program, condition, span)
     for duration_ns, span in _durations(program):
@@ -44,14 +52,33 @@ def refuse(program: Program) -> None:
                 _refuse_great(item)
 
 
+def knows(row: Function) -> bool:
+    """Return whether the function of a row can be emitted as C."""
+    if row.memory is not None:
+        return row.name in MEMORIES
+    if row.argument in (Argument.NUMBERS, Argument.ARRAY, Argument.SCAN):
+        return row.name in (*_OF_ARRAYS, *_BUILT_IN)
+    return bool(row.c) or row.c_call in _BUILT_IN
+
+
 def _refuse(message: str, span: Span, hint: str = "") -> NoReturn:
     raise GenerationError([report(codes.UNSUPPORTED_BY_TARGET, message, span, hint)])
+
+
+def _refuse_integer(program: Program, condition: Condition, span: Span) -> None:
+    """Refuse a function of integers that has a text for numbers of floating point alone."""
+    for value in walk.values([condition]):
+        if not isinstance(value, Apply) or value.function in _OF_INTEGERS:
+            continue
+        row = FUNCTIONS[value.function]
+        if row.result is Result.ELEMENT and type_of(program, value) != "double":
+            _refuse(f"{row.name}() of an integer does not exist in C", span)
 
 
 def _refuse_wide(program: Program, condition: Condition, span: Span) -> None:
     """Refuse what C would compute in fewer digits than the meaning asks for."""
     for term in walk.values([condition]):
-        if not isinstance(term, Apply) or term.function not in _IN_DOUBLES:
+        if not isinstance(term, Apply) or FUNCTIONS[term.function].argument is not Argument.NUMBER:
             continue
         if _is_wide(program, term.arguments[0]):
             name = "rate" if FUNCTIONS[term.function].memory is not None else term.function

@@ -8,7 +8,7 @@ from deros.generators.monitor.python.names import RESERVED
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
 from deros.monitor import causes, walk
-from deros.monitor.functions import FUNCTIONS, Result
+from deros.monitor.functions import FUNCTIONS, Function, Result
 from deros.monitor.ir import (
     Age,
     Apply,
@@ -178,16 +178,27 @@ def _name_causes(program: Program, layout: Layout) -> None:
         layout.why_holds[behaviour.index] = layout.names.new("why", behaviour.name)
 
 
+MEMORIES = {"rate": "time", "rate_over": "window", "unwrapped": "result"}
+"""The functions that remember something: beside the last value its time, or the last result."""
+
+
+def knows(row: Function) -> bool:
+    """Return whether the function of a row can be emitted as Python."""
+    if row.memory is not None:
+        return row.name in MEMORIES
+    return bool(row.python_call or row.python_of_unit)
+
+
 def _name_value(program: Program, value: ValueExpression, layout: Layout) -> None:
     if value in layout.values:
         return
     slot = layout.values[value] = _slot(program, value, layout.names)
     if isinstance(value, Apply) and value.state is not None:
-        if value.function == "rate_over":
+        if MEMORIES[value.function] == "window":
             layout.windows[value] = layout.names.new(slot.name, "window")
             return
         last = layout.names.new(slot.name, "last")
-        timed = value.function == "rate"
+        timed = MEMORIES[value.function] == "time"
         layout.last[value] = (last, layout.names.new(slot.name, "last_t") if timed else "")
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from deros.generators.monitor.functions import refuse_unknown
 from deros.generators.monitor.python.behaviours import act_lines, latched_lines
 from deros.generators.monitor.python.explained import explained_lines, rules_of, waiting_lines
 from deros.generators.monitor.python.handlers import Handler, handlers, needed_texts
-from deros.generators.monitor.python.layout import Layout, lay_out_memory, slots_of
+from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory, slots_of
 from deros.generators.monitor.python.rules import Judge, judges
 from deros.generators.monitor.python.whys import Why, whys
 from deros.monitor import walk
@@ -109,7 +110,12 @@ class MonitorView:
 
 
 def monitor_view(program: Program) -> MonitorView:
-    """Return the view of a program; the glue of a node finds the handlers' signatures in it."""
+    """Return the view of a program; the glue of a node finds the handlers' signatures in it.
+
+    Raises:
+        GenerationError: if a rule calls a function that does not exist in Python.
+    """
+    refuse_unknown(program, knows, "Python")
     layout = lay_out_memory(program)
     functions = _function_texts(layout)
     methods = judges(program, layout)

@@ -1,0 +1,35 @@
+"""Refuses functions that a target does not know, by name, before it emits something else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from deros import codes
+from deros.diagnostics import report
+from deros.generators.api.protocol import GenerationError
+from deros.monitor import walk
+from deros.monitor.functions import FUNCTIONS, Function
+from deros.monitor.ir import Apply, Program
+
+
+def refuse_unknown(program: Program, knows: Callable[[Function], bool], language: str) -> None:
+    """Refuse each function of the rules that a target cannot emit.
+
+    Args:
+        program: the rules.
+        knows: whether the target can emit the function of a row.
+        language: that of the target, for the message.
+
+    Raises:
+        GenerationError: with a finding for each rule and function.
+    """
+    found = {
+        (rule.index, row.name): report(
+            codes.UNSUPPORTED_BY_TARGET, f"{row.name}() does not exist in {language}", rule.span
+        )
+        for rule in program.rules
+        for value in walk.values(walk.parts(rule.condition))
+        if isinstance(value, Apply) and not knows(row := FUNCTIONS[value.function])
+    }
+    if found:
+        raise GenerationError(list(found.values()))
