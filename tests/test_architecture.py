@@ -21,7 +21,7 @@ HOMES = {
     "rosbags": {"interfaces"},
     "jinja2": {"generators"},
     "click": {"cli"},
-    "rich": {"cli"},
+    "rich": {"cli", "report"},
     "rclpy": set[str](),
 }
 """The rooms that may import a library; generated code is text, so ``rclpy`` has none."""

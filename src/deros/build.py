@@ -23,8 +23,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from deros.cli.produce import Request
     from deros.diagnostics import Diagnostic
+    from deros.pipeline.generate import Request
 
 FOLDER = ".deros"
 """The folder of what is generated, in the source tree: setup.py may name no file outside it."""
@@ -52,8 +52,8 @@ def setup(
     """
     import setuptools
 
-    from deros.cli.produce import Request
     from deros.metamodels.imports import shown_path
+    from deros.pipeline.generate import Request
 
     # colcon's symlink-install runs a link to setup.py; the package is where the file itself is.
     source = Path(sys._getframe(1).f_globals["__file__"]).resolve().parent
@@ -80,37 +80,39 @@ def _generate(request: Request, source: Path) -> _Outcome:
 
     colcon runs a setup.py half a dozen times for one build, so it pays to see that nothing changed.
     """
-    from deros.cli import produce
-    from deros.cli.depfile import is_current, stamped, write_if_changed
     from deros.generators.output.source_tree import SourceTreeError, package_folder
     from deros.generators.output.writer import WriteError
+    from deros.pipeline.depfile import is_current, stamped, write_if_changed
+    from deros.pipeline.generate import Refused, generate
+    from deros.pipeline.output import OutputSpec, now_ns, write
+    from deros.pipeline.scaffold import scaffold_command
 
     output = source / FOLDER
     stamp, depfile, ros = output / "stamp", output / "depends.d", output / "ament_prefix_path"
     rests_on = (source / "setup.py", ros)
-    where = produce.Place(output, True, source, depfile, stamp, rests_on)
+    where = OutputSpec(output, True, source, depfile, stamp, rests_on)
     findings: Sequence[Diagnostic] = ()
     try:
         write_if_changed(output / ".gitignore", "*\n")
         write_if_changed(ros, os.environ.get("AMENT_PREFIX_PATH", ""))
-        started = produce.now_ns()
+        started = now_ns()
         there = stamped(stamp)
         whole = bool(there) and all((output / each).exists() for each in there)
         if whole and is_current(stamp, depfile):
             return _Outcome(there[0].partition("/")[0])
-        made = produce.make(request)
+        made = generate(request)
         findings = made.findings
         package = package_folder(made.files)
         if f"{package}/setup.py" not in made.files:
             raise ValueError(f"the target {request.target} makes no ament_python package")
-        _, lacking = produce.put(made, where, started)
+        _, lacking = write(made, where, started)
         findings = (*findings, *lacking)
         if lacking:  # said again by the next build, unless it is mended
             os.utime(stamp, ns=(0, 0))
-    except produce.Refused as refused:
+    except Refused as refused:
         return _Outcome(None, refused.diagnostics, refused.code)
     except SourceTreeError as error:
-        hint = f"\n  to mend it: {produce.scaffold_command(request, source)}"
+        hint = f"\n  to mend it: {scaffold_command(request, source)}"
         failure = f"deros: {error}{hint if error.mended_by_scaffold else ''}"
         return _Outcome(None, findings, failure)
     except (OSError, ValueError, WriteError) as error:
@@ -128,7 +130,7 @@ def _distribution(outcome: _Outcome) -> type[Any]:
 
     class Package(Distribution):  # type: ignore[misc]  # setuptools has no type hints
         def run_commands(self) -> None:
-            from deros.cli.render import print_text
+            from deros.report.text import print_text
 
             print_text(outcome.findings, sys.stderr)
             if outcome.failure:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import deros.generators
-from deros.cli.depfile import depfile, is_current, prerequisites, stamped
+from deros.pipeline.depfile import depfile, is_current, prerequisites, stamped
 from tests.support.builds import PROGRAM, frozen_program, models, replace, touch
 from tests.support.cli import Outcome
 from tests.support.cli import deros as run

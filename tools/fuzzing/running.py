@@ -15,8 +15,6 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 from xml.etree import ElementTree
 
-from deros.cli.formats import render_json
-from deros.cli.options import in_the_way_of_generating
 from deros.diagnostics import Diagnostic, SourceFile, has_errors
 from deros.generators.api.protocol import Context, Files, GenerationError
 from deros.generators.api.registry import discover
@@ -31,6 +29,8 @@ from deros.monitor.engine import Engine
 from deros.monitor.ir import Program
 from deros.monitor.simulate import Monitor, event_record, simulate
 from deros.monitor.trace import Trace, read_trace
+from deros.pipeline.outcome import blocking_diagnostics
+from deros.report.formats import render_json
 from deros.validators.check import check, check_file
 from tools.fuzzing import projects
 from tools.fuzzing.mutants import MESSAGE, TRACE, Mutant
@@ -112,7 +112,7 @@ class Runner:
     def _model(self, mutant: Mutant) -> None:
         context, loaded, findings = self._loaded(mutant)
         _check_findings(findings)
-        if has_errors(in_the_way_of_generating(findings, loaded.path)) or loaded.model is None:
+        if has_errors(blocking_diagnostics(findings, loaded.path)) or loaded.model is None:
             self.ends["with errors"] += 1
             return
         for generator in discover().generators:

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.options import exit_code, interfaces_option
+from deros.cli.options import interfaces_option
+from deros.pipeline.outcome import exit_code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from deros.cli.baseline import Compared
     from deros.diagnostics import Diagnostic
+    from deros.report.baseline import Compared
     from deros.validators.allowances import Allowed
 
 FORMATS = ("text", "json", "sarif", "github")
@@ -107,7 +108,7 @@ class Found:
 
 def _compared(found: Found, path: Path, *, write: bool) -> Found:
     """Leave out what the baseline in ``path`` lists, which is written before if so asked."""
-    from deros.cli import baseline
+    from deros.report import baseline
 
     try:
         if write:
@@ -126,10 +127,10 @@ def _compared(found: Found, path: Path, *, write: bool) -> Found:
 def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
     """Check the files, all models below folders, and what they import, as their projects say."""
     from deros.cli.models import named_models, to_be_checked
-    from deros.cli.project import interfaces_of, projects_of, unneeded
     from deros.diagnostics import has_errors, in_file_order
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
+    from deros.pipeline.project import interfaces_of, projects_of, unneeded
     from deros.validators.check import check_all
 
     models = named_models(files)
@@ -151,7 +152,8 @@ def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
 
 def report(found: Found, output_format: str, *, show_allowed: bool = False) -> None:
     """Write the findings to standard output; text closes with a count."""
-    from deros.cli import formats, render
+    from deros.report import formats
+    from deros.report import text as render
 
     shown = found.allowed if show_allowed else ()
     if output_format == "json":

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.options import UNUSABLE
+from deros.pipeline.outcome import UNUSABLE
 
 if TYPE_CHECKING:
     from deros.diagnostics import Code

@@ -94,14 +94,17 @@ def generate(
     are checked first, and nothing is written if an error is found. Files that are made for you to
     fill in are written once and never again.
     """
-    from deros.cli import produce
     from deros.cli.plan import output_of, plan
+    from deros.generators.output import writer
     from deros.generators.output.source_tree import SourceTreeError
-    from deros.generators.output.writer import WriteError, write
+    from deros.generators.output.writer import WriteError
+    from deros.pipeline import generate as pipeline
+    from deros.pipeline.output import OutputSpec, lacking_in, now_ns, write
+    from deros.pipeline.scaffold import scaffold_command, scaffold_files
 
     if scaffold is not None and (depfile or stamp or source):
         raise click.UsageError("--scaffold goes without --depfile, --stamp and --source")
-    started = produce.now_ns()
+    started = now_ns()
     models, options = _apart(files)
     requests = plan(models, target, options, interfaces)
     request = requests[0]
@@ -110,22 +113,22 @@ def generate(
     if output is None:
         output = output_of(requests)
     try:
-        made = produce.make(*requests)
+        made = pipeline.generate(*requests)
         _show(made.findings)
         if scaffold is not None:
-            kept = produce.scaffold_files(made, request, scaffold)
-            lacking = produce.lacking(made, scaffold)
-            written = write(kept, scaffold, overwrite=overwrite)
+            kept = scaffold_files(made, request, scaffold)
+            lacking = lacking_in(made, scaffold)
+            written = writer.write(kept, scaffold, overwrite=overwrite)
         else:
-            where = produce.Place(output, overwrite, source, depfile, stamp)
-            written, lacking = produce.put(made, where, started)
-    except produce.Refused as refused:
+            where = OutputSpec(output, overwrite, source, depfile, stamp)
+            written, lacking = write(made, where, started)
+    except pipeline.Refused as refused:
         _show(refused.diagnostics)
         ctx.exit(refused.code)
-    except produce.UnknownOption as error:
+    except pipeline.UnknownOption as error:
         raise click.NoSuchOption(error.option, str(error)) from error
     except SourceTreeError as error:
-        hint = produce.scaffold_command(request, source or Path())
+        hint = scaffold_command(request, source or Path())
         mend = f"\n  to mend it: {hint}" if error.mended_by_scaffold else ""
         raise click.ClickException(f"{error}{mend}") from error
     except WriteError as error:
@@ -162,7 +165,7 @@ def _apart(arguments: Sequence[str]) -> tuple[list[str], dict[str, str]]:
 def _show(diagnostics: Sequence[Diagnostic]) -> None:
     import sys
 
-    from deros.cli.render import print_text
+    from deros.report.text import print_text
 
     print_text(diagnostics, sys.stderr)
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.options import exit_code, interfaces_option
+from deros.cli.options import interfaces_option
+from deros.pipeline.outcome import exit_code
 
 if TYPE_CHECKING:
     from deros.metamodels.flatten import FlatNode, FlatSystem
@@ -35,10 +36,10 @@ def graph(ctx: click.Context, file: str, form: str, interfaces: tuple[Path, ...]
     Ports that nobody connected talk on their own names; these ends are marked, or dashed. Findings
     go to standard error, and errors fail the command, but what can be shown is shown.
     """
-    from deros.cli.project import check_one
-    from deros.cli.render import print_text
     from deros.metamodels.flatten import flatten
     from deros.metamodels.system import System
+    from deros.pipeline.project import check_one
+    from deros.report.text import print_text
 
     loaded, findings = check_one(file, interfaces)
     print_text(findings, sys.stderr)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.project import project_of
 from deros.metamodels.globbing import MOST_FOLDERS
 from deros.metamodels.languages import LANGUAGES
+from deros.pipeline.project import project_of
 
 if TYPE_CHECKING:
     from deros.metamodels.load import LoadedFile, Repository

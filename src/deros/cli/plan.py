@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.models import Named, named_models, to_be_checked
-from deros.cli.produce import Request
-from deros.cli.project import interfaces_of, project_of, projects_of
+from deros.pipeline.generate import Request
+from deros.pipeline.project import interfaces_of, project_of, projects_of
 
 if TYPE_CHECKING:
     from deros.interfaces.store import InterfaceStore

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from deros.cli.options import exit_code, interfaces_option
+from deros.cli.options import interfaces_option
+from deros.pipeline.outcome import exit_code
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -122,10 +123,10 @@ def simulate(
     true, and their values. Steps of the clock and findings go to standard error. Exits with 0, with
     1 if the rules or the trace have errors, with 2 if one of them cannot be read.
     """  # noqa: D301 - click knows a block by the character itself
-    from deros.cli.project import interfaces_of, project_of
     from deros.interfaces.store import InterfaceStore
     from deros.monitor.simulate import play
     from deros.monitor.trace import read_trace
+    from deros.pipeline.project import interfaces_of, project_of
 
     store = InterfaceStore(interfaces_of(interfaces, [project_of(rules)]))
     program, findings = _load(rules, store)
@@ -212,6 +213,6 @@ def _fail(ctx: click.Context, findings: Sequence[Diagnostic]) -> NoReturn:
 
 
 def _report(findings: Sequence[Diagnostic]) -> None:
-    from deros.cli.render import print_text
+    from deros.report.text import print_text
 
     print_text(findings, sys.stderr)

@@ -57,13 +57,13 @@ def _check(file_name: str) -> None:
     import click
 
     from deros.cli.check import find
-    from deros.cli.options import in_the_way_of_generating
     from deros.diagnostics import has_errors
+    from deros.pipeline.outcome import blocking_diagnostics
 
     findings = find([file_name], ()).findings
     command = click.get_current_context(silent=True)
     generates = command is not None and command.info_name == "generate"
-    if has_errors(in_the_way_of_generating(findings, file_name) if generates else findings):
+    if has_errors(blocking_diagnostics(findings, file_name) if generates else findings):
         raise TextXError(f"{file_name} has errors\n{_render(findings).rstrip()}")
     if findings:
         sys.stderr.write(_render(findings))
@@ -71,11 +71,11 @@ def _check(file_name: str) -> None:
 
 def _errors(loaded: LoadedFile, context: Context) -> list[Diagnostic]:
     """Check a file that a generator was asked for; its warnings were shown when it was loaded."""
-    from deros.cli.options import in_the_way_of_generating
+    from deros.pipeline.outcome import blocking_diagnostics
     from deros.validators.check import check
 
     findings = check([loaded], context.repository, context.store)
-    return [d for d in in_the_way_of_generating(findings, loaded.path) if d.is_error]
+    return [d for d in blocking_diagnostics(findings, loaded.path) if d.is_error]
 
 
 def _findings_of(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
@@ -86,7 +86,7 @@ def _findings_of(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
 
 
 def _render(diagnostics: Sequence[Diagnostic]) -> str:
-    from deros.cli.render import render_text
+    from deros.report.text import render_text
 
     return render_text(diagnostics)
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.options import FINDINGS, exit_code, interfaces_option
+from deros.cli.options import interfaces_option
+from deros.pipeline.outcome import FINDINGS, exit_code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -115,8 +116,8 @@ def _run(
 
 
 def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:
-    from deros.cli.project import check_one
     from deros.metamodels.system import System as SystemModel
+    from deros.pipeline.project import check_one
 
     loaded, findings = check_one(file, interfaces)
     _show(findings)
@@ -129,6 +130,6 @@ def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...])
 
 
 def _show(diagnostics: Sequence[Diagnostic]) -> None:
-    from deros.cli.render import print_text
+    from deros.report.text import print_text
 
     print_text(diagnostics, sys.stderr)

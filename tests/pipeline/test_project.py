@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from deros import codes
-from deros.cli.project import project_of
 from deros.diagnostics import Code
+from deros.pipeline.project import project_of
 from tests.support.cli import Outcome, deros
 
 NODE = "node talker : talking\npublishes\n  topic out : own_msgs.State\n"

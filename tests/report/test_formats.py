@@ -8,8 +8,9 @@ import json
 import pytest
 
 from deros import codes
-from deros.cli import formats, render
 from deros.diagnostics import Diagnostic, Fix, Related, SourceFile, Span, report
+from deros.report import formats
+from deros.report import text as render
 
 SOURCE = SourceFile("models/a b.system", "system Demo\n\tnode café : bäse, 100%\n")
 

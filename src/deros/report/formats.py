@@ -8,9 +8,9 @@ from typing import Any
 from urllib.parse import quote
 
 from deros import __version__
-from deros.cli.baseline import Compared, Entry, fingerprints
 from deros.codes import ABSENT_FINDING, ALL_CODES
 from deros.diagnostics import Diagnostic, Fix, Severity, Span, encodable, in_file_order
+from deros.report.baseline import Compared, Entry, fingerprints
 from deros.validators.allowances import Allowance, Allowed
 
 _SARIF_LEVEL = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}

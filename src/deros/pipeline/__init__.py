@@ -1,0 +1,1 @@
+"""Load, check, build, generate and write, for commands and build systems alike."""

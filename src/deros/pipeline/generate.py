@@ -1,0 +1,175 @@
+"""From the files of models to the files that are made of them, none of it written yet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from deros.pipeline.outcome import FINDINGS, UNUSABLE, blocking_diagnostics, exit_code
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from deros.diagnostics import Diagnostic
+    from deros.generators.api.protocol import Context, Files
+    from deros.generators.api.registry import Generator, Registry
+    from deros.metamodels.load import LoadedFile
+
+
+class Refused(Exception):  # noqa: N818 - it carries findings, and is no fault of the program
+    """Nothing is generated; the diagnostics say why, ``code`` is what to exit with."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic], code: int) -> None:
+        """Carry the findings."""
+        self.diagnostics = tuple(diagnostics)
+        self.code = code
+        super().__init__("; ".join(each.message for each in self.diagnostics))
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What to generate: a model, a target of it, and what both need.
+
+    Attributes:
+        file: the model's path, as diagnostics are to show it.
+        target: which generator.
+        options: those of the generator.
+        interfaces: folders with message definitions.
+    """
+
+    file: str
+    target: str
+    options: Mapping[str, str] = field(default_factory=dict)
+    interfaces: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Generated:
+    """The files of models, not written yet, with what they were made by and what was found.
+
+    Attributes:
+        files: what is to be written.
+        context: what the generators looked at.
+        generators: those that ran.
+        findings: what was found in the models, none of it in the way.
+        outputs: the model of each generator, and what it has made.
+        rests_on: files besides the models that the result depends on.
+    """
+
+    files: Files
+    context: Context
+    generators: tuple[Generator, ...]
+    findings: tuple[Diagnostic, ...]
+    outputs: tuple[tuple[str, Files], ...]
+    rests_on: tuple[Path, ...] = ()
+
+
+def generate(*requests: Request) -> Generated:
+    """Load, check and generate; of several models either all or nothing.
+
+    Raises:
+        Refused: if a model has an error, if a target cannot be made from it, or if two of them make
+            one file differently.
+        ValueError: if a generator cannot read an option; ``UnknownOption`` if none has such a one.
+    """
+    from deros.diagnostics import in_file_order
+    from deros.generators.api.protocol import Context, GenerationError
+    from deros.generators.output.writer import join
+    from deros.interfaces.store import InterfaceStore
+    from deros.metamodels.load import Repository
+    from deros.pipeline.project import interfaces_of, projects_of
+    from deros.validators.check import check as check_loaded
+    from deros.validators.check import check_file
+
+    projects = projects_of(each.file for each in requests)
+    folders = interfaces_of(requests[0].interfaces, projects)
+    context = Context(InterfaceStore(folders), Repository(), check_file)
+    loaded = [context.repository.load(each.file) for each in requests]
+    allowances = [each for project in projects for each in project.allowances]
+    findings = check_loaded(loaded, context.repository, context.store, allowances)
+    findings = in_file_order([*findings, *(d for each in projects for d in each.diagnostics)])
+    # What is made of a system itself needs its gates: then nothing is yet to be mended.
+    order = sorted((each.file for each in requests), key=lambda file: not file.endswith(".system"))
+    code = exit_code(blocking_diagnostics(findings, order[0]))
+    if code or any(each.language is None for each in loaded):
+        raise Refused(findings, code or FINDINGS)
+    generators = [_generator(*pair, findings) for pair in zip(requests, loaded, strict=True)]
+    options = _options(requests, generators)
+    try:
+        outputs = [
+            (file.path, generator(file.model, context, given))
+            for file, generator, given in zip(loaded, generators, options, strict=True)
+        ]
+    except GenerationError as error:
+        raise Refused([*findings, *error.diagnostics], FINDINGS) from error
+    rests_on = tuple(each.path for each in projects if each.path is not None)
+    files = join(outputs)
+    return Generated(files, context, tuple(generators), tuple(findings), tuple(outputs), rests_on)
+
+
+def _generator(request: Request, loaded: LoadedFile, findings: Sequence[Diagnostic]) -> Generator:
+    from deros.generators.api.registry import discover
+
+    assert loaded.language is not None
+    generator = discover().find(loaded.language, request.target)
+    if generator is None:
+        unknown = _unknown_target(discover(), loaded, request.target)
+        raise Refused([*findings, unknown], UNUSABLE)
+    return generator
+
+
+def _options(
+    requests: Sequence[Request], generators: Sequence[Generator]
+) -> list[Mapping[str, str]]:
+    """Return what each generator is given: its own of the options, and what the project says.
+
+    Raises:
+        UnknownOption: no generator of the run has an option that the command line gives.
+    """
+    from deros.pipeline.project import project_of
+
+    _know_options(generators, requests[0].options)
+    result: list[Mapping[str, str]] = []
+    for request, generator in zip(requests, generators, strict=True):
+        known = {option.name for option in generator.options}
+        given = {**project_of(request.file).options, **request.options}
+        result.append({name: text for name, text in given.items() if name in known})
+    return result
+
+
+class UnknownOption(ValueError):  # noqa: N818 - named after what it is
+    """The generator has no option of that name."""
+
+    def __init__(self, name: str, hint: str) -> None:
+        """Name it, with the nearest ones."""
+        self.option = f"--{name}"
+        super().__init__(f"No such option: --{name}" + (f"; {hint}" if hint else ""))
+
+
+def _unknown_target(registry: Registry, loaded: LoadedFile, target: str) -> Diagnostic:
+    from deros import codes
+    from deros.diagnostics import SourceFile, Span
+    from deros.diagnostics import report as finding
+    from deros.validators.hints import did_you_mean
+
+    assert loaded.language is not None
+    targets = registry.targets(loaded.language)
+    hint = did_you_mean(target, targets, f"it has {', '.join(targets)}" if targets else "")
+    for broken in registry.broken:
+        hint += f"; {broken.entry_point} of {broken.distribution} is unusable: {broken.reason}"
+    source = loaded.source or SourceFile(loaded.path, "")
+    message = f"no generator makes '{target}' from {loaded.language}"
+    return finding(codes.UNKNOWN_TARGET, message, Span(source, 0, 0), hint.removeprefix("; "))
+
+
+def _know_options(generators: Sequence[Generator], given: Mapping[str, str]) -> None:
+    from deros.validators.hints import did_you_mean
+
+    known = [f"--{option.name}" for generator in generators for option in generator.options]
+    for name in given:
+        if f"--{name}" not in known:
+            raise UnknownOption(
+                name, did_you_mean(f"--{name}", [*known, "--overwrite", "--interfaces"])
+            )

@@ -1,0 +1,43 @@
+"""What findings mean for a run: its exit code, and whether it may generate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Severity
+
+CLEAN = 0
+FINDINGS = 1
+UNUSABLE = 2
+
+_UNREADABLE = frozenset(
+    {
+        codes.UNREADABLE_FILE,
+        codes.NOT_UTF8,
+        codes.UNKNOWN_LANGUAGE,
+        codes.FILE_TOO_LARGE,
+        codes.UNUSABLE_BASELINE,
+        codes.UNREADABLE_PROJECT,
+    }
+)
+
+
+def exit_code(diagnostics: Iterable[Diagnostic], *, strict: bool = False) -> int:
+    """Return 2 if an input could not be read, else 1 if a finding fails the run, else 0."""
+    code = CLEAN
+    for diagnostic in diagnostics:
+        if diagnostic.code in _UNREADABLE:
+            return UNUSABLE
+        if diagnostic.is_error or (strict and diagnostic.severity is Severity.WARNING):
+            code = FINDINGS
+    return code
+
+
+def blocking_diagnostics(findings: Sequence[Diagnostic], path: str) -> list[Diagnostic]:
+    """Return the findings without those that only what ``path`` generates can mend.
+
+    A system is to contain the gates that its rules declare, and those are generated from the rules.
+    """
+    mended = codes.MENDED_AFTER_GENERATION if path.endswith(".deros") else frozenset()
+    return [each for each in findings if each.code not in mended]

@@ -1,0 +1,119 @@
+"""Generated files to the disk, with what a build system is to know of them."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from deros.pipeline.generate import Refused
+from deros.pipeline.outcome import FINDINGS
+
+if TYPE_CHECKING:
+    from deros.diagnostics import Diagnostic
+    from deros.generators.output.writer import WriteReport
+    from deros.pipeline.generate import Generated
+
+
+@dataclass(frozen=True, slots=True)
+class OutputSpec:
+    """Where files go, and what a build system is to know of it.
+
+    Attributes:
+        output: the folder to write to.
+        overwrite: whether files of the generator that a hand has edited are replaced.
+        source: where the hand-written files of the package are, if not in the output.
+        depfile: where to write what the output rests on, as a rule of Make.
+        stamp: the file that stands for the whole output; the rule's target.
+        rests_on: files that it rests on besides those that are read here.
+    """
+
+    output: Path
+    overwrite: bool = False
+    source: Path | None = None
+    depfile: Path | None = None
+    stamp: Path | None = None
+    rests_on: tuple[Path, ...] = ()
+
+
+def write(
+    made: Generated, where: OutputSpec, started_ns: int
+) -> tuple[WriteReport, tuple[Diagnostic, ...]]:
+    """Write the files, and last what the build system is to know.
+
+    Returns what became of the files, and what those of the user lack now.
+
+    Args:
+        made: what :func:`~deros.pipeline.generate.generate` returned.
+        where: the places.
+        started_ns: when the run began, by ``time.time_ns``.
+
+    Raises:
+        Refused: if another target or model has made a file that would be replaced.
+        WriteError: if something cannot be written.
+        SourceTreeError: if the source tree lacks a file, or has one that is in the way.
+    """
+    from deros.generators.api.protocol import GenerationError, Owner
+    from deros.generators.output import writer
+    from deros.generators.output.claims import Origin, check_claims, record_claims
+    from deros.generators.output.source_tree import (
+        Merged,
+        merge,
+        package_folder,
+        place,
+        remove_stale,
+    )
+    from deros.generators.user_files.review import review, users_files
+    from deros.pipeline.depfile import depfile, inputs, stamp, stamped, write_if_changed
+
+    merged = Merged(made.files, (), ())
+    if where.source is not None:
+        merged = merge(made.files, where.source, where.output)
+    claims = [
+        (
+            {path: file for path, file in merged.files.items() if path in files},
+            Origin.of(generator.language, generator.target, model, where.output),
+        )
+        for generator, (model, files) in zip(made.generators, made.outputs, strict=True)
+    ]
+    try:
+        for files, origin in claims:
+            check_claims(files, where.output, origin)
+    except GenerationError as error:
+        raise Refused(error.diagnostics, FINDINGS) from error
+    if where.source is None:
+        users = users_files(made.files, where.output)
+    else:
+        users = users_files(made.files, where.source, package_folder(made.files))
+    written = writer.write(merged.files, where.output, overwrite=where.overwrite)
+    if where.stamp is None and where.source is None:  # else the build system owns the folder
+        for files, origin in claims:
+            record_claims(files, where.output, origin)
+    place(merged.placed, where.output)
+    ours = {path for path, file in merged.files.items() if file.owner is Owner.GENERATOR}
+    ours |= {each.path for each in merged.placed}
+    if where.depfile is not None:
+        everything = [str(where.output / path) for path in sorted(ours)]
+        targets = everything if where.stamp is None else [str(where.stamp)]
+        more = [*merged.inputs, *where.rests_on, *made.rests_on]
+        found = inputs(made.context, made.generators, more)
+        write_if_changed(where.depfile, depfile(targets, found))
+    if where.stamp is not None:
+        stale = sorted(set(stamped(where.stamp)) - ours)
+        remove_stale(stale, where.output, overwrite=where.overwrite)
+        stamp(where.stamp, sorted(ours), started_ns)
+    return written, tuple(review(made.files, users))
+
+
+def lacking_in(made: Generated, source: Path) -> tuple[Diagnostic, ...]:
+    """Return what the user's files in the source tree of a package lack now."""
+    from deros.generators.output.source_tree import package_folder
+    from deros.generators.user_files.review import review, users_files
+
+    return tuple(review(made.files, users_files(made.files, source, package_folder(made.files))))
+
+
+def now_ns() -> int:
+    """Return the time of the files' clock."""
+    return time.time_ns()
