@@ -7,11 +7,11 @@ definition says is returned; what cannot be read is a :class:`DefinitionError`, 
 from __future__ import annotations
 
 import ast
-import keyword
 import math
 import re
 from dataclasses import dataclass
 
+from deros.interfaces.keywords import CPP, PYTHON
 from deros.interfaces.names import not_text
 from deros.interfaces.types import (
     FLOAT_TYPES,
@@ -51,15 +51,7 @@ _LONGEST_NAME = 255
 _LONGEST_TEXT = 1 << 20
 _FLOAT32_MAX = (2 - 2**-23) * 2.0**127
 
-# No generator of ROS 2 could make a field of that name either.
-_RESERVED = frozenset(
-    {"alignas", "auto", "bool", "case", "catch", "char", "const", "default", "delete", "do"}
-    | {"double", "enum", "explicit", "export", "extern", "float", "friend", "goto", "inline"}
-    | {"int", "long", "mutable", "namespace", "new", "nullptr", "operator", "private"}
-    | {"protected", "public", "register", "short", "signed", "sizeof", "static", "struct"}
-    | {"switch", "template", "this", "throw", "typedef", "typename", "union", "unsigned"}
-    | {"using", "virtual", "void", "volatile", *keyword.kwlist}
-)
+_RESERVED = CPP | PYTHON  # no generator of ROS 2 could make a field of that name either
 
 
 @dataclass(frozen=True, slots=True)

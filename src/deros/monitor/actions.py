@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import keyword
-import re
 from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Related
+from deros.interfaces.keywords import CPP_20, PYTHON, C
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import FLOAT_TYPES, FieldType, MessageDefinition
 from deros.interfaces.units import Unit
@@ -32,18 +31,7 @@ LOG_STATE = "log_state"
 
 _FLOAT32_MAX = (2 - 2**-23) * 2.0**127
 
-# Words of C++ that Python would take as names: rules are to generate for every target.
-_CPP_WORDS = frozenset(
-    re.findall(
-        r"\w+",
-        """
-        alignas alignof asm auto bool case catch char const constexpr default delete do double enum
-        explicit export extern float friend goto inline int long mutable namespace new noexcept
-        nullptr operator private protected public register short signed sizeof static struct switch
-        template this throw typedef typename union unsigned using virtual void volatile
-        """,
-    )
-)
+_WORDS = C | CPP_20 | PYTHON  # rules are to generate for every target
 
 
 class Actions:
@@ -70,7 +58,7 @@ class Actions:
             message = f"'{LOG_STATE}' is built in and cannot be declared"
             self._scope.fault(codes.DUPLICATE_RULE_NAME, message, action.name.span)
         for name in (action.name, *action.parameters):
-            if keyword.iskeyword(name.text) or name.text in _CPP_WORDS:
+            if name.text in _WORDS:
                 message = f"'{name}' is a word of the languages that code is generated in"
                 hint = f"call it '{name}_' or the like"
                 self._scope.fault(codes.INVALID_RULES_NAME, message, name.span, hint)

@@ -9,22 +9,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from deros.generators.text.prose import one_line, sentence
+from deros.interfaces.keywords import CPP_20
 from deros.interfaces.types import InterfaceType
 
 LINE_LENGTH = 100
 """Longest line that ament's uncrustify and cpplint settings allow."""
 
-_KEYWORDS_TEXT = """
-    alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t
-    char8_t class co_await co_return co_yield compl concept const const_cast consteval constexpr
-    constinit continue decltype default delete do double dynamic_cast else enum explicit export
-    extern false float for friend goto if inline int long mutable namespace new noexcept not not_eq
-    nullptr operator or or_eq private protected public register reinterpret_cast requires return
-    short signed sizeof static static_assert static_cast struct switch template this thread_local
-    throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while
-    xor xor_eq
-    """
-_KEYWORDS = frozenset(_KEYWORDS_TEXT.split())
 # What common headers define as macros: nothing may be called so.
 _MACROS_TEXT = (
     "EOF HUGE_VAL INFINITY NAN NULL assert errno linux major minor stderr stdin stdout unix"
@@ -51,7 +41,7 @@ def cpp_identifier(name: str) -> str:
 
 def is_reserved(name: str) -> bool:
     """Tell whether C++ keeps a word for itself."""
-    return name in _KEYWORDS or name in _MACROS
+    return name in CPP_20 or name in _MACROS
 
 
 def cpp_type(interface: InterfaceType) -> str:

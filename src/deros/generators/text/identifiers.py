@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import builtins
-import keyword
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,10 +11,11 @@ from pathlib import PurePosixPath
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.generators.api.protocol import GenerationError
+from deros.interfaces.keywords import PYTHON
 
 _NOT_IN_IDENTIFIERS = re.compile(r"\W+", re.ASCII)
 _PLAIN_IN_FILE_NAMES = " _.+-@"
-PYTHON_WORDS = frozenset(keyword.kwlist) | {name for name in dir(builtins) if name.islower()}
+PYTHON_WORDS = PYTHON | {name for name in dir(builtins) if name.islower()}
 """What no name in emitted Python may be: keywords, and builtins that code calls."""
 
 
@@ -57,7 +57,7 @@ def camel_case(name: str) -> str:
 def _legal(text: str) -> str:
     if text[0].isdigit():
         return f"_{text}"
-    return f"{text}_" if keyword.iskeyword(text) else text
+    return f"{text}_" if text in PYTHON else text
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,15 +7,8 @@ from collections.abc import Iterable
 
 from deros.generators.text.identifiers import python_identifier
 from deros.generators.text.unique_names import UniqueNames
+from deros.interfaces.keywords import CPP_20, C
 
-_C = """auto break case char const continue default do double else enum extern float for goto if
-inline int long register restrict return short signed sizeof static struct switch typedef union
-unsigned void volatile while"""
-_CPP = """alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t class compl
-concept constexpr const_cast decltype delete dynamic_cast explicit export false friend
-mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
-public reinterpret_cast requires static_assert static_cast template this thread_local
-throw true try typeid typename using virtual wchar_t xor xor_eq"""
 _STANDARD = """assert errno main NULL NAN INFINITY INT64_MAX INT64_C abs fabs hypot sqrt atan2 asin
 fmod remainder fmin fmax index time signal"""
 _OURS = """m t now due owner started count verdict condition held rises changed done grace
@@ -23,8 +16,8 @@ enabled value both either negated truth_of failsafe lasting earlier ahead is_num
 step_back reach_deadline catch_up earliest judge_all evaluate act restart
 clear pass move_to rate emitted after follows same"""
 
-RESERVED = frozenset(f"{_C} {_CPP} {_STANDARD} {_OURS}".split())
-"""UniqueNames that nothing made from a model gets."""
+RESERVED = C | CPP_20 | frozenset(f"{_STANDARD} {_OURS}".split())
+"""Names that nothing made from a model gets."""
 
 
 def new_names(taken: Iterable[str] = ()) -> UniqueNames:

@@ -1,0 +1,41 @@
+"""The keywords are those of the languages, and are written down once."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from deros.interfaces.keywords import CPP, CPP_20, C
+
+SOURCE = Path(__file__).resolve().parents[2] / "src" / "deros"
+
+
+@pytest.mark.parametrize(
+    ("compiler", "standard", "words"),
+    [("cc", "c99", C), ("c++", "c++17", CPP), ("c++", "c++20", CPP_20)],
+    ids=["C", "C++17", "C++20"],
+)
+def test_compiler_accepts_none_as_a_name(
+    compiler: str, standard: str, words: frozenset[str], tmp_path: Path
+) -> None:
+    """Every word is a syntax error where a name has to be; another word is not."""
+    if shutil.which(compiler) is None:
+        pytest.skip(f"no {compiler}")
+    file = tmp_path / "names.txt"
+    language = "c" if standard.startswith("c9") else "c++"
+    for word in sorted(words):
+        file.write_text(f"int f(void);\nint f(void) {{ int {word} = 1; return {word}; }}\n")
+        command = [compiler, f"-std={standard}", "-fsyntax-only", "-x", language, str(file)]
+        done = subprocess.run(command, capture_output=True, check=False)
+        assert done.returncode != 0, word
+    file.write_text("int f(void);\nint f(void) { int names = 1; return names; }\n")
+    subprocess.run(command, capture_output=True, check=True)
+
+
+def test_no_other_module_lists_keywords() -> None:
+    """What is written down twice becomes two lists."""
+    listing = [path for path in SOURCE.rglob("*.py") if "reinterpret_cast" in path.read_text()]
+    assert [path.name for path in listing] == ["keywords.py"]
