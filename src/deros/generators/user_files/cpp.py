@@ -15,7 +15,7 @@ from typing import Any
 
 from deros.diagnostics import SourceFile, Span
 from deros.generators.api.protocol import Files, Owner
-from deros.generators.user_files.review import HOOKS, Base, Name, Written
+from deros.generators.user_files.classes import HOOKS, Base, Name, Written
 
 _CLASS = re.compile(
     r"\b(?:class|struct)\s+(\w+)(?:\s+final)?\s*:\s*(?:public\s+)?(?:\w+\s*::\s*)*(\w+)"

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 
 from deros.diagnostics import SourceFile, Span
 from deros.generators.api.protocol import Files, Owner
-from deros.generators.user_files.review import Base, Name, Written
+from deros.generators.user_files.classes import Base, Name, Written
 
 _MARKS = {
     "abstractmethod": "the node ends with a TypeError at its start",

@@ -8,83 +8,20 @@ executed.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from deros import codes
-from deros.diagnostics import Diagnostic, SourceFile, Span, report
+from deros.diagnostics import Diagnostic, SourceFile, in_file_order, report
 from deros.generators.api.protocol import Files, Owner
+from deros.generators.user_files.classes import HOOKS, Base, Name, Written
+from deros.generators.user_files.cpp import cpp_classes
+from deros.generators.user_files.manifest import lacking
+from deros.generators.user_files.python import python_classes
 from deros.interfaces.files import read_regular
 
 _LARGEST = 4 << 20
 _HANDLERS = ("on_", "handle_", "execute_", "accept_", "cancel_")
 _OFFERED = ("publish_", "call_", "send_", "client_", "timer_")
-
-HOOKS = frozenset(
-    {
-        "on_activate",
-        "on_cleanup",
-        "on_configure",
-        "on_deactivate",
-        "on_error",
-        "on_parameters_changed",
-        "on_shutdown",
-    }
-)
-"""Methods of ROS 2 and of the generated classes that a node may override, whatever its ports."""
-
-
-@dataclass(frozen=True, slots=True)
-class Name:
-    """A name in a file, and where it stands."""
-
-    text: str
-    span: Span
-
-
-@dataclass(frozen=True, slots=True)
-class Base:
-    """What a generated class gives to the user's class, and asks of it.
-
-    Attributes:
-        name: of the generated class.
-        required: the methods that the user's class has to have.
-        offered: everything that it has, those included.
-        parameters: the fields of its structure of parameters; ``None`` if it has none.
-        fatal: what happens without a required method.
-        kind: what it asks for: a method of a class, or a function of a module.
-    """
-
-    name: str
-    required: tuple[str, ...]
-    offered: frozenset[str]
-    parameters: frozenset[str] | None
-    fatal: str
-    kind: str = "method"
-
-
-@dataclass(frozen=True, slots=True)
-class Written:
-    """The user's class as it is.
-
-    Attributes:
-        name: of the class, where it is declared.
-        methods: those that it declares.
-        known: all other names that the file itself gives to the class, or mentions as its own.
-        used: names that its code asks the base class for.
-        parameters: fields that its code reads of the parameters.
-        complete: whether all that the class has can be seen; it may inherit from classes of other
-            files.
-        actions: whether every method is meant to be one that the base class knows.
-    """
-
-    name: Name
-    methods: tuple[Name, ...]
-    known: frozenset[str]
-    used: tuple[Name, ...]
-    parameters: tuple[Name, ...]
-    complete: bool
-    actions: bool = False
 
 
 def review(files: Files, places: Mapping[str, Path]) -> list[Diagnostic]:
@@ -94,11 +31,6 @@ def review(files: Files, places: Mapping[str, Path]) -> list[Diagnostic]:
         files: what a generator returned.
         places: where the user's files are, by their path in ``files``; only those that exist.
     """
-    from deros.diagnostics import in_file_order
-    from deros.generators.user_files.cpp import cpp_classes
-    from deros.generators.user_files.manifest import lacking
-    from deros.generators.user_files.python import python_classes
-
     found: list[Diagnostic] = []
     sources = {path: _read(place) for path, place in places.items()}
     present = {path: source for path, source in sources.items() if source is not None}
