@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deros.metamodels.textx_registration import LanguageDesc, TextXError
@@ -17,14 +18,12 @@ if TYPE_CHECKING:
     import click
 
     from deros.diagnostics import Diagnostic
-    from deros.generators.api.protocol import Context
-    from deros.interfaces.store import InterfaceStore
+    from deros.generators.api.registry import Generator
     from deros.metamodels.languages import Language
-    from deros.metamodels.load import LoadedFile
 
 
 def add_commands(textx: click.Group) -> None:
-    """Offer ``deros`` and its commands as ``textx deros …``, and let generators use our checks."""
+    """Offer ``deros`` and its commands as ``textx deros …``."""
     from deros.cli.main import deros
 
     textx.add_command(deros)
@@ -32,7 +31,6 @@ def add_commands(textx: click.Group) -> None:
 
 def _checked_metamodel(language: Language) -> Any:
     """Return the language's metamodel, whose models are checked before anybody gets them."""
-    from deros.generators.api.registry import use_front_end
     from deros.metamodels.languages import metamodel
 
     result = metamodel(language)
@@ -44,7 +42,7 @@ def _checked_metamodel(language: Language) -> Any:
         return parse(file_name, *args, **kwargs)
 
     result.model_from_file = model_from_file
-    use_front_end(_errors, _render, _findings_of)
+    result.run_generator = _run_generator
     return result
 
 
@@ -69,20 +67,53 @@ def _check(file_name: str) -> None:
         sys.stderr.write(_render(findings))
 
 
-def _errors(loaded: LoadedFile, context: Context) -> list[Diagnostic]:
-    """Check a file that a generator was asked for; its warnings were shown when it was loaded."""
-    from deros.pipeline.outcome import blocking_diagnostics
-    from deros.validators.check import check
+def _run_generator(
+    generator: Generator,
+    filename: str,
+    options: Mapping[str, str],
+    interfaces: tuple[Path, ...],
+    output_path: str | None,
+    overwrite: bool,
+) -> None:
+    """Load, check, generate and write.
 
-    findings = check([loaded], context.repository, context.store)
-    return [d for d in blocking_diagnostics(findings, loaded.path) if d.is_error]
+    Args:
+        generator: what runs.
+        filename: the model's file.
+        options: those of the generator, by their declared names.
+        interfaces: folders with message definitions.
+        output_path: the folder to write to; ``None`` for that of the model.
+        overwrite: whether generated files that were edited by hand are replaced.
+
+    Raises:
+        TextXError: with all that is in the way as its text.
+    """
+    from deros.generators.output.writer import WriteError
+    from deros.pipeline.generate import Refused, Request, generate
+    from deros.pipeline.output import OutputSpec, now_ns, write
+
+    started_ns = now_ns()
+    where = OutputSpec(Path(output_path) if output_path else Path(filename).parent, overwrite)
+    try:
+        made = generate(
+            Request(_as_named(filename), generator.target, options, interfaces, generator)
+        )
+        written, lacking = write(made, where, started_ns)
+    except Refused as refused:
+        errors = [each for each in refused.diagnostics if each.is_error]
+        raise TextXError(_render(errors).rstrip()) from refused
+    except (WriteError, ValueError) as error:
+        raise TextXError(str(error)) from error
+    warnings = [*written.diagnostics, *lacking]  # those of the model were shown when it was loaded
+    if warnings:
+        sys.stderr.write(_render(warnings).rstrip() + "\n")
 
 
-def _findings_of(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
-    """Check a file that a generator loads besides its model."""
-    from deros.validators.check import check_file
-
-    return check_file(loaded, store)
+def _as_named(filename: str) -> str:
+    """Return the path relative to the working folder if it lies there, as users name files."""
+    path = Path(filename)
+    here = Path.cwd()
+    return str(path.relative_to(here)) if path.is_relative_to(here) else filename
 
 
 def _render(diagnostics: Sequence[Diagnostic]) -> str:

@@ -37,12 +37,14 @@ class Request:
         target: which generator.
         options: those of the generator.
         interfaces: folders with message definitions.
+        generator: the generator itself, if the caller has it.
     """
 
     file: str
     target: str
     options: Mapping[str, str] = field(default_factory=dict)
     interfaces: tuple[Path, ...] = ()
+    generator: Generator | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +114,8 @@ def generate(*requests: Request) -> Generated:
 def _generator(request: Request, loaded: LoadedFile, findings: Sequence[Diagnostic]) -> Generator:
     from deros.generators.api.registry import discover
 
+    if request.generator is not None:
+        return request.generator
     assert loaded.language is not None
     generator = discover().find(loaded.language, request.target)
     if generator is None:

@@ -10,21 +10,16 @@ from __future__ import annotations
 
 import functools
 import os
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Span, has_errors, report
+from deros.diagnostics import Span, report
 from deros.generators.api.protocol import Context, Files, GenerateFunction, GenerationError, Option
 from deros.metamodels.textx_registration import GeneratorDesc, GeneratorParam, TextXError
-
-if TYPE_CHECKING:
-    from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.load import LoadedFile
 
 GROUP = "textx_generators"
 
@@ -86,7 +81,7 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
 
     def _run_for_textx(
         self,
-        metamodel: Any,  # noqa: ARG002 - textX passes it; our loader has its own
+        metamodel: Any,
         model: Any,
         output_path: str | None,
         overwrite: bool,
@@ -95,37 +90,20 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
     ) -> None:
         """Load, check, generate and write one file, as ``textx generate`` wants it done.
 
+        The metamodels of our languages know how (``run_generator``), since that needs more than a
+        generator may import.
+
         Raises:
             TextXError: with all diagnostics as its text; textX prints it and exits with 1.
         """
-        from deros.generators.output.claims import Origin, check_claims, record_claims
-        from deros.generators.output.writer import WriteError, write
-
         filename = getattr(model, "_tx_filename", None)
         if not filename:
             raise TextXError(f"{self.language} -> {self.target} needs a model from a file")
         names = {_argument(option.name): option.name for option in self.options}
         interfaces = str(custom_args.pop("interfaces", ""))
-        context = _context([Path(p) for p in interfaces.split(os.pathsep) if p])
-        try:
-            loaded = context.repository.load(_as_named(filename))
-            found = _hooks.check(loaded, context)
-            if has_errors(found):
-                raise GenerationError(found)
-            options = {names.get(name, name): str(value) for name, value in custom_args.items()}
-            files = self(loaded.model, context, options)
-            directory = Path(output_path) if output_path else Path(filename).parent
-            origin = Origin.of(self.language, self.target, filename, directory)
-            check_claims(files, directory, origin)
-            written = write(files, directory, overwrite=overwrite)
-            record_claims(files, directory, origin)
-        except GenerationError as error:
-            raise TextXError(_hooks.render(error.diagnostics).rstrip()) from error
-        except (WriteError, ValueError) as error:
-            raise TextXError(str(error)) from error
-        warnings = [*found, *written.diagnostics]
-        if warnings:
-            sys.stderr.write(_hooks.render(warnings).rstrip() + "\n")
+        folders = tuple(Path(each) for each in interfaces.split(os.pathsep) if each)
+        options = {names.get(name, name): str(value) for name, value in custom_args.items()}
+        metamodel.run_generator(self, filename, options, folders, output_path, overwrite)
 
 
 def generator(
@@ -226,67 +204,6 @@ def _own_first(point: EntryPoint) -> tuple[bool, str, str]:
     return name != "deros", name, point.name
 
 
-# What the front end adds --------------------------------------------------------------------------
-
-
-def _check_reading(loaded: LoadedFile, context: Context) -> Sequence[Diagnostic]:  # noqa: ARG001
-    return context.repository.diagnostics
-
-
-def _render_plainly(diagnostics: Sequence[Diagnostic]) -> str:
-    lines = []
-    for d in diagnostics:
-        where = f"{d.span.file}:{d.span.line}:{d.span.column}"
-        lines.append(f"{where}: {d.severity.value}[{d.code.name}]: {d.message}")
-        if d.hint:
-            lines.append(f"    hint: {d.hint}")
-    return "\n".join(lines)
-
-
-@dataclass(slots=True)
-class _Hooks:
-    """How a model is checked and diagnostics are shown when textX runs a generator."""
-
-    check: Callable[[LoadedFile, Context], Sequence[Diagnostic]] = _check_reading
-    render: Callable[[Sequence[Diagnostic]], str] = _render_plainly
-    check_file: Callable[[LoadedFile, InterfaceStore], Sequence[Diagnostic]] | None = None
-
-
-_hooks = _Hooks()
-
-
-def use_front_end(
-    check: Callable[[LoadedFile, Context], Sequence[Diagnostic]],
-    render: Callable[[Sequence[Diagnostic]], str],
-    check_file: Callable[[LoadedFile, InterfaceStore], Sequence[Diagnostic]] | None = None,
-) -> None:
-    """Set how ``textx generate`` checks a loaded file, and how it shows diagnostics.
-
-    The checks and the renderer live above this room, so they are handed in; until then only what
-    the loader finds is reported, one line each.
-    """
-    _hooks.check = check
-    _hooks.render = render
-    _hooks.check_file = check_file
-
-
 def _argument(option: str) -> str:
     """Return an option's name as textX passes it on."""
     return option.replace("-", "_")
-
-
-def _context(interfaces: Sequence[Path]) -> Context:
-    from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.load import Repository
-
-    store, repository = InterfaceStore(interfaces), Repository()
-    if _hooks.check_file is None:
-        return Context(store, repository)
-    return Context(store, repository, _hooks.check_file)
-
-
-def _as_named(filename: str) -> str:
-    """Return the path relative to the working folder if it lies there, as users name files."""
-    path = Path(filename)
-    here = Path.cwd()
-    return str(path.relative_to(here)) if path.is_relative_to(here) else filename
