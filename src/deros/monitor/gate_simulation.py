@@ -9,7 +9,7 @@ from typing import Any, Literal
 from deros.interfaces.store import InterfaceStore
 from deros.monitor.commands import Message, is_finite
 from deros.monitor.engine import Event
-from deros.monitor.gate import GateEngine, Output
+from deros.monitor.gate import GateEngine, Output, applying_texts
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
 from deros.monitor.reads import one_line
 from deros.monitor.trace_values import MessageReader
@@ -178,14 +178,9 @@ class _Gate:
 
     def _why(self) -> tuple[str, ...]:
         """Return what holds commands back, as the diagnostics of a gate say it."""
-        lines = [_shown(line) for line in self.gate.lines]
-        latching = [
-            f"waits for a reset, after {text}"
-            for text, line in zip(lines, self.gate.lines, strict=True)
-            if line.until_reset
-        ]
-        waits = ["waits for a zero command"] if self.gate.resume_on_zero else []
-        applying = zip([*lines, *latching, *waits], self.engine.applying, strict=True)
+        lines = [(_shown(line), line.until_reset) for line in self.gate.lines]
+        texts = applying_texts(lines, self.gate.resume_on_zero)
+        applying = zip(texts, self.engine.applying, strict=True)
         return tuple(text for text, applies in applying if applies)
 
 

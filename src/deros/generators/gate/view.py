@@ -11,10 +11,8 @@ from deros.generators.text.prose import one_line
 from deros.generators.text.provenance import origin
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.fields import format_path
+from deros.monitor.gate import applying_texts
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Limit, Program
-
-WAITS = "waits for a zero command"
-"""What a gate says while that is all that holds commands back."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,9 +132,7 @@ class GateBase:
     @property
     def shown(self) -> tuple[str, ...]:
         """What can hold commands back, one text each: lines, latches, and the wait for a zero."""
-        latched = (f"waits for a reset, after {line.shown}" for line in self.latching)
-        waits = (WAITS,) if self.waits else ()
-        return (*(line.shown for line in self.lines), *latched, *waits)
+        return applying_texts([(line.shown, bool(line.latch)) for line in self.lines], self.waits)
 
     @property
     def lost(self) -> tuple[str, ...]:

@@ -24,10 +24,10 @@ from deros.monitor.ir import (
     ValueExpression,
 )
 
-_BUILT_IN = ("count", "fabs")
-"""What C calls without a text of ours."""
-_OF_ARRAYS = ("max", "min", "nearest")
-"""The functions that have a loop, with a contract of its own each."""
+_OF_ARRAYS = ("count", "max", "min", "nearest")
+"""The functions of arrays, each of which is emitted in its own way."""
+_LIBRARY = ("fabs",)
+"""What is called without a text of ours."""
 _OF_INTEGERS = ("abs", "max", "min")
 """The functions that have a text for integers."""
 
@@ -57,8 +57,8 @@ def knows(row: Function) -> bool:
     if row.memory is not None:
         return row.name in MEMORIES
     if row.argument in (Argument.NUMBERS, Argument.ARRAY, Argument.SCAN):
-        return row.name in (*_OF_ARRAYS, *_BUILT_IN)
-    return bool(row.c) or row.c_call in _BUILT_IN
+        return row.name in _OF_ARRAYS
+    return bool(row.c) or row.c_call in _LIBRARY
 
 
 def _refuse(message: str, span: Span, hint: str = "") -> NoReturn:
