@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from deros.monitor.commands import Message, is_finite
-from deros.monitor.gate import GateEngine, Output
+from deros.monitor.gate_engine import GateEngine, Output
 from deros.monitor.ir import Gate, GateLine, Program
 from tests.support.gate_driver import ACTIONS, HEARTBEAT, INPUT, LOW, STOP, twist
 from tests.support.rules import embedded_store, program

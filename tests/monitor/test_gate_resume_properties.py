@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deros.monitor.gate import Output
+from deros.monitor.gate_engine import Output
 from deros.monitor.ir import Gate, Program
 from tests.monitor.test_gate_properties import (
     Happening,

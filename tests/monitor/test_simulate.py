@@ -10,7 +10,7 @@ import pytest
 from deros.diagnostics import SourceFile
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
-from deros.monitor.gate_simulation import GateAnswer, Gates
+from deros.monitor.gate_simulation import GateAnswer, GateSimulation
 from deros.monitor.simulate import Explained, answer_line, event_line, event_record, play
 from deros.monitor.trace import Trace, nanoseconds, read_trace
 from tests.support.rules import embedded_store, program
@@ -63,7 +63,10 @@ def read(*lines: dict[str, Any]) -> Trace:
 
 
 def played(
-    monitor: Any, *lines: dict[str, Any], until: str | None = None, gates: Gates | None = None
+    monitor: Any,
+    *lines: dict[str, Any],
+    until: str | None = None,
+    gates: GateSimulation | None = None,
 ) -> list[str]:
     """Play faultless lines, and return what happens as people read it."""
     trace = read(*lines)
@@ -83,7 +86,7 @@ def played(
 
 def answers(*lines: dict[str, Any], until: str, tell_all: bool = False) -> list[GateAnswer]:
     """Play lines, and return what the gate does."""
-    gates = Gates(PROGRAM, embedded_store(), tell_all=tell_all)
+    gates = GateSimulation(PROGRAM, embedded_store(), tell_all=tell_all)
     found = play(Engine(PROGRAM), read(*lines).lines, nanoseconds(until), gates)
     return [each for each in found if isinstance(each, GateAnswer)]
 
@@ -162,7 +165,7 @@ def test_the_record_of_an_event_holds_its_cause() -> None:
 
 def test_a_gate_tells_what_it_does_and_why() -> None:
     """From the start, through a reset and a zero command, to limits and to the stop."""
-    gates = Gates(PROGRAM, embedded_store())
+    gates = GateSimulation(PROGRAM, embedded_store())
     told = played(
         Engine(PROGRAM),
         speed("0.1", 15),
@@ -232,7 +235,7 @@ def test_every_command_can_be_told() -> None:
 
 def test_the_heartbeat_waits_for_inputs_within_the_grace() -> None:
     """So the gate is closed until they have come."""
-    gates = Gates(PROGRAM, embedded_store(), grace_ns=10**9)
+    gates = GateSimulation(PROGRAM, embedded_store(), grace_ns=10**9)
     lines = read(command("0.1", 0.0), speed("0.6", 15)).lines
     told = play(Engine(PROGRAM, grace_ns=10**9), lines, 9 * 10**8, gates)
     closed = [each for each in told if isinstance(each, GateAnswer) and LOST_BEAT in each.why]

@@ -21,7 +21,7 @@ from deros.generators.gate.python.interface import gate_nodes
 from deros.generators.runtime.interface import cpp_runtime_text
 from deros.generators.safety_node.node import safety_node
 from deros.interfaces.types import InterfaceType
-from deros.monitor.gate import OutputKind
+from deros.monitor.gate_engine import OutputKind
 from deros.monitor.ir import Action, Gate, Program
 from deros.monitor.topics import SystemTopics
 from tests.support import wire

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from deros.monitor.commands import Message
-from deros.monitor.gate import GateEngine, Output
+from deros.monitor.gate_engine import GateEngine, Output
 from tests.support.rules import embedded_store, program
 
 MS = 1_000_000

@@ -19,7 +19,7 @@ from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor.commands import Message
-from deros.monitor.gate import Output, OutputKind
+from deros.monitor.gate_engine import Output, OutputKind
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Limit, Program
 from deros.monitor.topics import SystemTopics
 

@@ -19,7 +19,7 @@ from deros.monitor import ir, walk
 from deros.monitor.actions import Actions
 from deros.monitor.comparisons import Comparisons
 from deros.monitor.conditions import Conditions
-from deros.monitor.gates import Gates
+from deros.monitor.gate_resolution import GateResolver
 from deros.monitor.resolved import AppliedFunction, ResolvedComparison
 from deros.monitor.scope import Scope
 from deros.monitor.terms import Terms
@@ -74,7 +74,7 @@ class _Builder:
         self.comparisons = Comparisons(self.scope, terms)
         self._conditions = Conditions(self.scope, self.comparisons)
         self._actions = Actions(self.scope, terms, program.actions)
-        self._gates = Gates(self.scope, terms, self._actions)
+        self._gates = GateResolver(self.scope, terms, self._actions)
         self._rule_index: dict[str, dict[str, int]] = {}
         self._behaviours = 0
 

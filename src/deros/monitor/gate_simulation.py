@@ -9,7 +9,7 @@ from typing import Any, Literal
 from deros.interfaces.store import InterfaceStore
 from deros.monitor.commands import Message, is_finite
 from deros.monitor.engine import Event
-from deros.monitor.gate import GateEngine, Output, applying_texts
+from deros.monitor.gate_engine import GateEngine, Output, applying_texts
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
 from deros.monitor.reads import one_line
 from deros.monitor.trace_values import MessageReader
@@ -41,7 +41,7 @@ class GateAnswer:
     message: Message | None = None
 
 
-class Gates:
+class GateSimulation:
     """Runs the gates of a program, and what the safety node tells them.
 
     The safety node publishes the states of its bound actions at the start, whenever they change,

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from deros.diagnostics import Span
 from deros.monitor.engine import Event
 from deros.monitor.explain import Explanation
-from deros.monitor.gate_simulation import GateAnswer, Gates
+from deros.monitor.gate_simulation import GateAnswer, GateSimulation
 from deros.monitor.state import LeafValue
 from deros.monitor.trace import TraceHeartbeat, TraceLine, TraceMessage, TraceReset, TraceSwitch
 
@@ -79,7 +79,7 @@ def play(
     monitor: Monitor,
     lines: Iterable[TraceLine],
     until_ns: int | None = None,
-    gates: Gates | None = None,
+    gates: GateSimulation | None = None,
 ) -> Iterator[Explained | GateAnswer]:
     """Yield the events of :func:`simulate` with their causes, and what the gates do."""
     player = _Player(monitor, gates)
@@ -95,7 +95,7 @@ def play(
 class _Player:
     """Settles one instant after the other, so that each is explained by what was known then."""
 
-    def __init__(self, monitor: Monitor, gates: Gates | None) -> None:
+    def __init__(self, monitor: Monitor, gates: GateSimulation | None) -> None:
         self._monitor = monitor
         self._gates = gates
         self._now_ns = 0

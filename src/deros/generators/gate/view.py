@@ -11,7 +11,7 @@ from deros.generators.text.prose import one_line
 from deros.generators.text.provenance import origin
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.fields import format_path
-from deros.monitor.gate import applying_texts
+from deros.monitor.gate_engine import applying_texts
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Limit, Program
 
 

@@ -12,7 +12,7 @@ import pytest
 from deros.generators.gate.cpp.messages import type_views
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor.commands import HEADER, LAYOUT
-from deros.monitor.gate import GateEngine
+from deros.monitor.gate_engine import GateEngine
 from deros.monitor.ir import Gate, GateLine, Limit
 from tests.support.cpp import needs_compiler
 from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded, needs_clang

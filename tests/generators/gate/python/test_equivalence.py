@@ -7,7 +7,7 @@ import os
 from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
-from deros.monitor.gate import GateEngine
+from deros.monitor.gate_engine import GateEngine
 from tests.support.gates import ACTIONS, STORE, GeneratedGate, gates, happenings, play
 
 EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "500"))

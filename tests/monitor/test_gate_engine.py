@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deros.monitor.gate import GateEngine
+from deros.monitor.gate_engine import GateEngine
 from tests.support.gate_driver import HEARTBEAT, INPUT, LOW, STOP, Driver, at, shown, twist
 from tests.support.rules import embedded_store, program
 

@@ -38,7 +38,7 @@ _INDIVISIBLE = {
 }
 
 
-class Gates:
+class GateResolver:
     """Builds the gates of one program; faults go to the scope."""
 
     def __init__(self, scope: Scope, terms: Terms, actions: Actions) -> None:
