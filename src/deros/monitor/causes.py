@@ -33,7 +33,7 @@ from deros.monitor.ir import (
     Within,
     Wording,
 )
-from deros.monitor.reads import Term, one_line, plain_term, term_name, term_value, terms
+from deros.monitor.reads import Term, plain_term, strip_comments, term_name, term_value, terms
 from deros.monitor.state import State
 from deros.monitor.wordings import constant
 
@@ -192,7 +192,7 @@ def _plan_of_interval(program: Program, condition: For, holds: bool, suffix: str
     if not condition.duration_ns:
         return operand
     if any(isinstance(part, For) for part in walk.parts(condition.operand)):
-        written = one_line(condition.span.text)
+        written = strip_comments(condition.span.text)
         shown = f"{written[:_LONGEST_TEXT]}{_MORE if len(written) > _LONGEST_TEXT else ''}"
         short: Plan = Say(Truth(Const(True)), True, (f"not yet {shown}{suffix}",))
     else:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from deros.monitor import walk
 from deros.monitor.causes import causes_of_behaviour, causes_of_rule
 from deros.monitor.ir import Program, Rule, Scalar
-from deros.monitor.reads import one_line, term_name, term_value, terms
+from deros.monitor.reads import strip_comments, term_name, term_value, terms
 from deros.monitor.state import State
 
 
@@ -68,7 +68,7 @@ def _explain_rule(program: Program, rule: Rule, state: State, t_ns: int) -> Rule
     return RuleState(
         rule.full_name,
         rule.span.line,
-        one_line(rule.span.text),
+        strip_comments(rule.span.text),
         value,
         state.turned_ns[rule.index],
         reads,

@@ -11,7 +11,7 @@ from deros.monitor.commands import Message, is_finite
 from deros.monitor.engine import Event
 from deros.monitor.gate_engine import GateEngine, Output, applying_texts
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
-from deros.monitor.reads import one_line
+from deros.monitor.reads import strip_comments
 from deros.monitor.trace_values import MessageReader
 
 AnswerKind = Literal[
@@ -185,7 +185,7 @@ class _Gate:
 
 
 def _shown(line: GateLine) -> str:
-    return one_line(line.span.text).rstrip("; ")
+    return strip_comments(line.span.text).rstrip("; ")
 
 
 class _States:

@@ -27,7 +27,7 @@ Term = Read | Apply | Missing | Unknown | Age
 """What a rule reads: a field, a function of fields, or a question about messages as such."""
 
 
-def one_line(text: str) -> str:
+def strip_comments(text: str) -> str:
     """Return the text of a rule in one line, without comments."""
     return " ".join(_COMMENT.sub(" ", text).split())
 

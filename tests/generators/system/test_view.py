@@ -9,7 +9,7 @@ import pytest
 from deros import codes
 from deros.generators.api.protocol import GenerationError
 from deros.generators.system.literals import WIDTH, python_literal
-from deros.generators.system.view import SystemView, one_line, snake_case, system_view
+from deros.generators.system.view import SystemView, collapse_whitespace, snake_case, system_view
 from tests.support.systems import EVERYTHING, load, load_text
 
 NODE = """
@@ -129,7 +129,7 @@ def test_file_names_are_snake_case(name: str, parted: str) -> None:
 
 def test_descriptions_are_one_line() -> None:
     """No description can break out of a comment."""
-    assert one_line(" a\n  b\r\n\tc\u2028d ") == "a b c d"
+    assert collapse_whitespace(" a\n  b\r\n\tc\u2028d ") == "a b c d"
 
 
 @pytest.mark.parametrize(

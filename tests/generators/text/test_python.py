@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deros.generators.text.prose import one_line, sentence
+from deros.generators.text.prose import printable_line, sentence
 from deros.generators.text.python import (
     LINE_LENGTH,
     Call,
@@ -104,7 +104,7 @@ def test_prose_is_wrapped_between_words_only() -> None:
     text = " ".join(["word"] * 60)
     lines = wrapped(text, indent=8)
     assert all(len(line) <= LINE_LENGTH - 8 for line in lines)
-    assert " ".join(lines) == one_line(text)
+    assert " ".join(lines) == printable_line(text)
     assert wrapped(LONG, indent=8) == [LONG]
 
 

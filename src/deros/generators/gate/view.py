@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deros.diagnostics import Span
 from deros.generators.gate.command import TypeBase
-from deros.generators.text.prose import one_line
+from deros.generators.text.prose import printable_line
 from deros.generators.text.provenance import origin
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.fields import format_path
@@ -179,7 +179,7 @@ def _line(
         name=name,
         title=title,
         span=line.span,
-        shown=f"{one_line(line.span.text).rstrip('; ')} ({origin(line.span)})",
+        shown=f"{printable_line(line.span.text).rstrip('; ')} ({origin(line.span)})",
         lost=line.lost,
         lost_ns=line.lost_ns or 0,
         state=state,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from deros.generators.node.parameter_maps import list_names
 from deros.generators.node.parameter_requirements import interval_clause, spelled
-from deros.generators.text.prose import one_line
+from deros.generators.text.prose import printable_line
 from deros.metamodels.node import NodeType, Parameter
 
 
@@ -22,7 +22,7 @@ def is_fixed(parameter: Parameter, model: NodeType) -> bool:
 
 def describe(parameter: Parameter) -> str:
     """Return the parameter's description with its unit, as ``ros2 param describe`` shows it."""
-    text = one_line(parameter.description)
+    text = printable_line(parameter.description)
     unit = f"[{parameter.unit}]" if parameter.unit else ""
     return " ".join(part for part in (text, unit) if part)
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros.generators.text.identifiers import file_label
-from deros.generators.text.prose import one_line, sentence
+from deros.generators.text.prose import printable_line, sentence
 from deros.generators.text.provenance import header, origin
 from deros.metamodels.rules import Rules
 from deros.monitor import walk
@@ -178,5 +178,5 @@ def behaviour_views(program: Program) -> Iterator[BehaviourView]:
         rules[each.index] = tuple(dict.fromkeys((*around, *own)))
         text = _COMMENT.sub(" ", header(each.span.text))
         condition = _CONDITION.search(text)
-        shown = one_line(condition[1] if condition else text)
+        shown = printable_line(condition[1] if condition else text)
         yield BehaviourView(each.name, origin(each.span), shown, rules[each.index])

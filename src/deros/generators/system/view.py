@@ -105,7 +105,7 @@ def system_view(system: System) -> SystemView:
         views = tuple(_node(node, node.type) for node in nodes if node.type)
         groups.append(GroupView(path, _description(system, path), views))
     return SystemView(
-        system.name, snake_case(system.name), one_line(system.description), tuple(groups)
+        system.name, snake_case(system.name), collapse_whitespace(system.description), tuple(groups)
     )
 
 
@@ -115,7 +115,7 @@ def snake_case(name: str) -> str:
     return re.sub(r"_+", "_", parted).lower()
 
 
-def one_line(text: str) -> str:
+def collapse_whitespace(text: str) -> str:
     """Return a description with every line break and run of blanks as one blank."""
     return " ".join(text.split())
 
@@ -139,7 +139,7 @@ def _node(node: FlatNode, node_type: NodeType) -> NodeView:
         log_level=instance.log_level,
         respawn_delay=respawn.delay_ns / NANOSECONDS if respawn else None,
         respawn_max=respawn.max_restarts if respawn else None,
-        description=one_line(instance.description or node_type.description),
+        description=collapse_whitespace(instance.description or node_type.description),
     )
 
 
@@ -190,7 +190,7 @@ def _description(system: System, path: tuple[str, ...]) -> str:
             *itertools.chain.from_iterable(s.members for s in inside),
             *itertools.chain.from_iterable(s.members for s in used),
         )
-    return one_line(description)
+    return collapse_whitespace(description)
 
 
 # What cannot be done ------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from deros.generators.text.prose import one_line, sentence
+from deros.generators.text.prose import printable_line, sentence
 from deros.interfaces.keywords import CPP_20
 from deros.interfaces.types import InterfaceType
 
@@ -287,7 +287,7 @@ def comment(text: str, indent: int, notes: Iterable[str] = (), mark: str = "///"
 
 def wrapped(text: str, indent: int) -> list[str]:
     """Return ``text`` as lines of a comment that fit behind ``indent`` columns."""
-    plain = one_line(text).replace("\\", "/").replace("??", "?").replace("TODO", "To do")
+    plain = printable_line(text).replace("\\", "/").replace("??", "?").replace("TODO", "To do")
     return textwrap.wrap(
         plain, LINE_LENGTH - indent, break_long_words=False, break_on_hyphens=False
     )

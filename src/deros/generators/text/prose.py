@@ -8,12 +8,12 @@ def sentence(text: str) -> str:
 
     PEP 257 wants no backslashes in a docstring, and three quotes would end it.
     """
-    line = one_line(text).replace("\\", "/").replace('"""', "'''")
+    line = printable_line(text).replace("\\", "/").replace('"""', "'''")
     if not line:
         return ""
     return f"{line[0].upper()}{line[1:]}" + ("" if line.endswith((".", "!", "?")) else ".")
 
 
-def one_line(text: str) -> str:
+def printable_line(text: str) -> str:
     """Return ``text`` with every run of white space and unprintable characters as one blank."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())

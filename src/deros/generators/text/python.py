@@ -8,7 +8,7 @@ import tokenize
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from deros.generators.text.prose import one_line
+from deros.generators.text.prose import printable_line
 
 LINE_LENGTH = 99
 """Longest line that ament's flake8 settings allow."""
@@ -112,7 +112,7 @@ def _on_one_line(expression: str | Text | Call) -> str:
 def wrapped(text: str, indent: int) -> list[str]:
     """Return ``text`` as lines that fit behind ``indent`` columns; long words stay whole."""
     return textwrap.wrap(
-        one_line(text), LINE_LENGTH - indent, break_long_words=False, break_on_hyphens=False
+        printable_line(text), LINE_LENGTH - indent, break_long_words=False, break_on_hyphens=False
     )
 
 

@@ -6,10 +6,10 @@ import builtins
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from deros.generators.decoder.python.emitter import SMALL, DecoderEmitter
+from deros.generators.decoder.python.field_selection import tree
 from deros.generators.decoder.python.module import Parts
-from deros.generators.decoder.python.place import START
-from deros.generators.decoder.python.walk import SMALL, Walk
-from deros.generators.decoder.python.wanted import tree
+from deros.generators.decoder.python.position import START
 from deros.generators.decoder.python.writer import Writer
 from deros.generators.text.logic import lay_out_call
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines, wrapped
@@ -88,7 +88,7 @@ def _decoder(topic: Topic, store: InterfaceStore, parts: Parts, constants: Uniqu
     variables = {path: names.new(*path) for path in dict.fromkeys(paths)}
     writer = Writer(names, parts, topic.name.upper(), constants)
     types = [_annotation(store, topic.type, path) for path in paths]
-    walk = Walk(store, writer, START)
+    walk = DecoderEmitter(store, writer, START)
     walk.message(topic.type, tree(paths, variables), later=False)
     walk.read_gathered()
     result = f"tuple[{', '.join(types) or '()'}]" if len(paths) != 1 else types[0]

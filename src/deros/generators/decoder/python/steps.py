@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from deros.generators.decoder.python.place import ENCAPSULATION, Place, moved
-from deros.generators.decoder.python.wanted import Wanted
+from deros.generators.decoder.python.field_selection import FieldSelection
+from deros.generators.decoder.python.position import ENCAPSULATION, Position, moved
 from deros.generators.decoder.python.writer import Writer
 from deros.generators.text.python import LINE_LENGTH
 
@@ -41,7 +41,7 @@ def _letters(run: Sequence[_Read]) -> str:
 class Steps:
     """Keeps the present place, and the fields to be read at constant distances from its base."""
 
-    def __init__(self, writer: Writer, place: Place) -> None:
+    def __init__(self, writer: Writer, place: Position) -> None:
         """Begin at ``place``."""
         self.place = place
         self._writer = writer
@@ -95,7 +95,7 @@ class Steps:
         self._gathered = []
 
     def _read(self, run: list[_Read]) -> None:
-        place = Place(self.place.moving, run[0].offset, 1, 0).text()
+        place = Position(self.place.moving, run[0].offset, 1, 0).text()
         if len(run) == 1 and not run[0].is_tuple:
             reader = self._writer.parts.reader(run[0].letters)
             self._writer.line(f"{run[0].name} = {reader}[order](data, {place})[0]")
@@ -117,7 +117,7 @@ class Steps:
         """Return the name of the value of an element that is not there."""
         return self._writer.parts.helper("NAN")
 
-    def default(self, part: Wanted) -> None:
+    def default(self, part: FieldSelection) -> None:
         """Set all values of an element that may not be there to NaN."""
         names = [name for name in part.names() if name not in self._defaulted]
         self._defaulted.update(names)

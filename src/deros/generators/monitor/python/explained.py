@@ -8,7 +8,7 @@ from deros.generators.monitor.python.layout import Layout
 from deros.generators.text.logic import Atom, all_of, any_of, lay_out, lay_out_call
 from deros.monitor import walk
 from deros.monitor.ir import Age, Missing, Program, RuleRef, Unknown
-from deros.monitor.reads import Term, one_line, term_name, terms
+from deros.monitor.reads import Term, strip_comments, term_name, terms
 
 
 def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -33,7 +33,7 @@ def explained_lines(program: Program, layout: Layout) -> list[str]:
         arguments = [
             repr(rule.full_name),
             str(rule.span.line),
-            repr(one_line(rule.span.text)),
+            repr(strip_comments(rule.span.text)),
             f"self._{layout.verdicts[rule.index]}",
             f"self._{layout.since[rule.index]}",
             f"self._{layout.why[rule.index]}",

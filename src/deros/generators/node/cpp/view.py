@@ -30,7 +30,7 @@ from deros.generators.text.cpp import (
 )
 from deros.generators.text.identifiers import Emitted, camel_case, check_collisions, file_label
 from deros.generators.text.notice import is_checked
-from deros.generators.text.prose import one_line, sentence
+from deros.generators.text.prose import printable_line, sentence
 from deros.metamodels.node import NodeType, Port, PortKind
 
 # Other packages, those of interfaces above all, have a variable that lists their targets.
@@ -279,7 +279,7 @@ def package_view(
     return PackageView(
         name=package,
         nodes=nodes,
-        description=one_line(" ".join(node.summary for node in nodes)),
+        description=printable_line(" ".join(node.summary for node in nodes)),
         libraries=tuple(sorted(needed)),
         maintainer=maintainer[0],
         email=maintainer[1],

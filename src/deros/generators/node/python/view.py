@@ -30,7 +30,7 @@ from deros.generators.text.identifiers import (
     python_identifier,
 )
 from deros.generators.text.notice import is_checked
-from deros.generators.text.prose import one_line, sentence
+from deros.generators.text.prose import printable_line, sentence
 from deros.generators.text.python import Call, Text, wrapped
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
@@ -415,7 +415,7 @@ def package_view(
         name=models[0].package,
         nodes=nodes,
         custom=tuple(_custom_view(module, nodes) for module in custom),
-        description=one_line(description),
+        description=printable_line(description),
         dependencies=tuple(sorted(needed)),
         maintainer=maintainer[0],
         email=maintainer[1],

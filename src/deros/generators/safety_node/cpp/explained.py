@@ -8,7 +8,7 @@ from deros.generators.monitor.c.interface import Layout, known_of
 from deros.generators.monitor.c.interface import Term as Field
 from deros.generators.text.cpp import Call, Expression, Text, cpp_double, cpp_string
 from deros.monitor.ir import Age, Missing, Program, Rule, Scale, Unknown
-from deros.monitor.reads import Term, one_line, term_name, terms
+from deros.monitor.reads import Term, strip_comments, term_name, terms
 from deros.monitor.wordings import quoted
 
 
@@ -21,7 +21,7 @@ def explained_rules(program: Program, layout: Layout) -> Iterator[Expression]:
 def _arguments(program: Program, layout: Layout, rule: Rule) -> Iterator[Expression]:
     yield cpp_string(rule.full_name)
     yield str(rule.span.line)
-    yield Text(one_line(rule.span.text))
+    yield Text(strip_comments(rule.span.text))
     yield f"m.{layout.verdicts[rule.index]} == {layout.macro}_TRUE"
     yield f"m.{layout.turned[rule.index]}"
     for term in terms(rule.condition):

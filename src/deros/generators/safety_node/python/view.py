@@ -25,7 +25,7 @@ from deros.generators.safety_node.view import (
     states_by_path,
 )
 from deros.generators.text.identifiers import Emitted, check_collisions, python_identifier
-from deros.generators.text.prose import one_line
+from deros.generators.text.prose import printable_line
 from deros.generators.text.python import import_lines, wrapped
 from deros.generators.text.python_fields import literal
 from deros.interfaces.fields import format_path
@@ -193,7 +193,7 @@ def safety_view(
         package=node.package,
         node=base,
         rules=origin_file(model),
-        name=one_line(program.name),
+        name=printable_line(program.name),
         imports=tuple(_imports(program, base, node, channels, bool(actions))),
         handlers=handlers,
         shared=tuple(sorted(shared)),

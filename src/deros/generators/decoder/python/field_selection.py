@@ -9,7 +9,7 @@ from deros.interfaces.fields import FieldPath
 
 
 @dataclass(slots=True)
-class Wanted:
+class FieldSelection:
     """What is wanted of one field.
 
     Attributes:
@@ -18,10 +18,10 @@ class Wanted:
     """
 
     name: str | None = None
-    parts: dict[str | int, Wanted] = field(default_factory=dict)
+    parts: dict[str | int, FieldSelection] = field(default_factory=dict)
 
     @property
-    def elements(self) -> list[tuple[int, Wanted]]:
+    def elements(self) -> list[tuple[int, FieldSelection]]:
         """What is wanted of the elements of an array, in the order in which they come."""
         return sorted((key, part) for key, part in self.parts.items() if isinstance(key, int))
 
@@ -33,16 +33,16 @@ class Wanted:
             yield from part.names()
 
 
-NOTHING = Wanted()
+NOTHING = FieldSelection()
 """A field that is only passed over."""
 
 
-def tree(paths: Sequence[FieldPath], names: Mapping[tuple[str | int, ...], str]) -> Wanted:
+def tree(paths: Sequence[FieldPath], names: Mapping[tuple[str | int, ...], str]) -> FieldSelection:
     """Return the tree of all ``paths``, each with its name."""
-    root = Wanted()
+    root = FieldSelection()
     for path in paths:
         here = root
         for step in path:
-            here = here.parts.setdefault(step, Wanted())
+            here = here.parts.setdefault(step, FieldSelection())
         here.name = names[tuple(path)]
     return root

@@ -13,7 +13,7 @@ LARGEST = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Position:
     """A position: ``offset`` bytes behind the start of the data, or behind the variable ``at``.
 
     Attributes:
@@ -28,11 +28,11 @@ class Place:
     modulus: int
     remainder: int
 
-    def plus(self, size: int) -> Place:
+    def plus(self, size: int) -> Position:
         """Return the place ``size`` bytes on."""
-        return Place(self.moving, self.offset + size, self.modulus, self.remainder)
+        return Position(self.moving, self.offset + size, self.modulus, self.remainder)
 
-    def aligned(self, alignment: int) -> Place | None:
+    def aligned(self, alignment: int) -> Position | None:
         """Return the first aligned place from here on, or ``None`` if that depends on the data."""
         if self.modulus % alignment:
             return None
@@ -42,14 +42,14 @@ class Place:
         """Return the largest alignment that the place is known to have."""
         return math.gcd(self.modulus, self.remainder + self.offset)
 
-    def base(self) -> Place:
+    def base(self) -> Position:
         """Return the place as what ``at`` stands for once it has been moved here."""
-        return Place(True, 0, self.modulus, (self.remainder + self.offset) % self.modulus)
+        return Position(True, 0, self.modulus, (self.remainder + self.offset) % self.modulus)
 
-    def meet(self, other: Place) -> Place:
+    def meet(self, other: Position) -> Position:
         """Return what is known of ``at`` where it may be this base or the other one."""
         modulus = math.gcd(self.modulus, other.modulus, self.remainder - other.remainder)
-        return Place(True, 0, modulus, self.remainder % modulus)
+        return Position(True, 0, modulus, self.remainder % modulus)
 
     def text(self, more: int = 0) -> str:
         """Return the position, ``more`` bytes on, as an expression."""
@@ -59,10 +59,10 @@ class Place:
         return f"at + {offset}" if offset else "at"
 
 
-START = Place(False, ENCAPSULATION, LARGEST, -ENCAPSULATION % LARGEST)
+START = Position(False, ENCAPSULATION, LARGEST, -ENCAPSULATION % LARGEST)
 """The place of the first field."""
 
 
-def moved(alignment: int) -> Place:
+def moved(alignment: int) -> Position:
     """Return the place of an ``at`` of which this alignment is known, and nothing more."""
-    return Place(True, 0, alignment, 0)
+    return Position(True, 0, alignment, 0)

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
+from deros.generators.decoder.python.field_selection import NOTHING, FieldSelection
 from deros.generators.decoder.python.module import FORMATS, Parts
-from deros.generators.decoder.python.place import LARGEST, Place, moved
+from deros.generators.decoder.python.position import LARGEST, Position, moved
 from deros.generators.decoder.python.steps import Steps
-from deros.generators.decoder.python.wanted import NOTHING, Wanted
 from deros.generators.decoder.python.writer import Writer
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.store import InterfaceStore
@@ -21,10 +21,10 @@ SMALL = 64
 """The longest array of fixed length that is handed out as a tuple."""
 
 
-class Walk(Steps):
+class DecoderEmitter(Steps):
     """Passes over the fields of a message in their order and reads those that are wanted."""
 
-    def __init__(self, store: InterfaceStore, writer: Writer, place: Place) -> None:
+    def __init__(self, store: InterfaceStore, writer: Writer, place: Position) -> None:
         """Begin at ``place``, where the message has its first byte."""
         super().__init__(writer, place)
         self._store = store
@@ -33,8 +33,10 @@ class Walk(Steps):
 
     # Messages and single fields -----------------------------------------------------------------
 
-    def message(self, kind: InterfaceType, wanted: Wanted, later: bool, path: str = "") -> None:
-        """Walk through a message; to its end only if something is wanted ``later``."""
+    def message(
+        self, kind: InterfaceType, wanted: FieldSelection, later: bool, path: str = ""
+    ) -> None:
+        """DecoderEmitter through a message; to its end only if something is wanted ``later``."""
         fields = self._definition(kind).fields
         last = max((i for i, (name, _) in enumerate(fields) if name in wanted.parts), default=-1)
         for number, (name, type_) in enumerate(fields):
@@ -51,7 +53,7 @@ class Walk(Steps):
             raise ValueError(f"the message type {kind.short} is not known")
         return definition
 
-    def _field(self, type_: FieldType, wanted: Wanted, later: bool, path: str) -> None:
+    def _field(self, type_: FieldType, wanted: FieldSelection, later: bool, path: str) -> None:
         if not type_.is_array:
             self._single(type_, wanted, later, path)
         elif type_.array == "fixed":
@@ -59,7 +61,7 @@ class Walk(Steps):
         else:
             self._sequence(type_, wanted, later, path)
 
-    def _single(self, type_: FieldType, wanted: Wanted, later: bool, path: str) -> None:
+    def _single(self, type_: FieldType, wanted: FieldSelection, later: bool, path: str) -> None:
         base = type_.base
         if isinstance(base, InterfaceType):
             self.message(base, wanted, later, path)
@@ -72,7 +74,7 @@ class Walk(Steps):
                 self.gather(letter, size, wanted.name, path)
             self.place = self.place.plus(size)
 
-    def _string(self, base: str, wanted: Wanted, later: bool, path: str) -> None:
+    def _string(self, base: str, wanted: FieldSelection, later: bool, path: str) -> None:
         self.align(4, path)
         if wanted.name is not None:
             self._writer.line(f"{wanted.name} = {self._text(base)}")
@@ -91,7 +93,7 @@ class Walk(Steps):
 
     # Arrays -------------------------------------------------------------------------------------
 
-    def _fixed(self, type_: FieldType, wanted: Wanted, later: bool, path: str) -> None:
+    def _fixed(self, type_: FieldType, wanted: FieldSelection, later: bool, path: str) -> None:
         element, length = type_.element, type_.size or 0
         if element.base in FORMATS:
             self._fixed_numbers(element, length, wanted, path)
@@ -118,7 +120,9 @@ class Walk(Steps):
                 return False
         return True
 
-    def _fixed_numbers(self, element: FieldType, length: int, wanted: Wanted, path: str) -> None:
+    def _fixed_numbers(
+        self, element: FieldType, length: int, wanted: FieldSelection, path: str
+    ) -> None:
         letter, size = FORMATS[str(element.base)]
         self.align(size, path)
         start = self.place
@@ -131,7 +135,7 @@ class Walk(Steps):
             self.gather(letter, size, str(part.name), f"{path}[{index}]")
         self.place = start.plus(length * size)
 
-    def _sequence(self, type_: FieldType, wanted: Wanted, later: bool, path: str) -> None:
+    def _sequence(self, type_: FieldType, wanted: FieldSelection, later: bool, path: str) -> None:
         element = type_.element
         self.align(4, path)
         first, stride = self._layout(element)
@@ -186,7 +190,7 @@ class Walk(Steps):
         self,
         element: FieldType,
         layout: tuple[int, int, str],
-        wanted: Wanted,
+        wanted: FieldSelection,
         later: bool,
         path: str,
     ) -> None:
@@ -197,7 +201,7 @@ class Walk(Steps):
         start = self.place
         if isinstance(element.base, InterfaceType):
             if first == LARGEST:  # so they are, where there are any
-                self.place = Place(start.moving, start.offset, LARGEST, -start.offset % LARGEST)
+                self.place = Position(start.moving, start.offset, LARGEST, -start.offset % LARGEST)
             self._even_messages(element, stride, count, wanted, path)
         else:
             self._numbers(element, count, wanted)
@@ -220,7 +224,7 @@ class Walk(Steps):
         self.place = moved(4)
 
     def _even_messages(
-        self, element: FieldType, stride: int, count: str, wanted: Wanted, path: str
+        self, element: FieldType, stride: int, count: str, wanted: FieldSelection, path: str
     ) -> None:
         start = self.place
         for index, part in wanted.elements:
@@ -231,7 +235,7 @@ class Walk(Steps):
                 self._single(element, part, False, f"{path}[{index}]")
                 self.read_gathered()
 
-    def _numbers(self, element: FieldType, count: str, wanted: Wanted) -> None:
+    def _numbers(self, element: FieldType, count: str, wanted: FieldSelection) -> None:
         letter, size = FORMATS[str(element.base)]
         if wanted.name is not None and letter == "?":
             value = f"struct.unpack_from(f'{{{count}}}?', data, {self.place.text()})"
@@ -244,7 +248,9 @@ class Walk(Steps):
 
     # Elements whose places depend on those before them ------------------------------------------
 
-    def _strings(self, element: FieldType, count: str | int, wanted: Wanted, path: str) -> None:
+    def _strings(
+        self, element: FieldType, count: str | int, wanted: FieldSelection, path: str
+    ) -> None:
         base = str(element.base)
         self.settle(f"to {path}[0]")
         self._writer.line(f"{wanted.name} = []")
@@ -261,7 +267,7 @@ class Walk(Steps):
             self._writer.line(f"{part.name} = {value}")
 
     def _elements(
-        self, element: FieldType, count: str | int, wanted: Wanted, later: bool, path: str
+        self, element: FieldType, count: str | int, wanted: FieldSelection, later: bool, path: str
     ) -> None:
         """Go from element to element, into those of which something is wanted."""
         done, parts = 0, wanted.elements
@@ -283,7 +289,7 @@ class Walk(Steps):
             self._rest(element, count, done, path)
 
     def _element(
-        self, element: FieldType, part: Wanted, more: bool, condition: str, path: str
+        self, element: FieldType, part: FieldSelection, more: bool, condition: str, path: str
     ) -> None:
         self.settle("")
         self.default(part)
@@ -344,12 +350,12 @@ class Walk(Steps):
 
     # Trials -------------------------------------------------------------------------------------
 
-    def _trial(self, place: Place) -> Walk:
+    def _trial(self, place: Position) -> DecoderEmitter:
         """Return a walk from ``place`` on whose lines count for nothing."""
-        return Walk(self._store, Writer(UniqueNames(), Parts(), "", UniqueNames()), place)
+        return DecoderEmitter(self._store, Writer(UniqueNames(), Parts(), "", UniqueNames()), place)
 
     @staticmethod
-    def _wrote(trial: Walk) -> bool:
+    def _wrote(trial: DecoderEmitter) -> bool:
         return bool(trial._writer.lines)
 
 
