@@ -2,9 +2,9 @@
 
 from deros.generators.monitor.c.expressions import SYMBOLS, Conditions, integer, known_of
 from deros.generators.monitor.c.handlers import Parameter
-from deros.generators.monitor.c.judging import Site
 from deros.generators.monitor.c.layout import Layout, Term, compared, lay_out
 from deros.generators.monitor.c.render import render_monitor
+from deros.generators.monitor.c.rule_functions import Site
 from deros.generators.monitor.c.view import MonitorView, monitor_view
 
 __all__ = [

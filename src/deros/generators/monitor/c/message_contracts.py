@@ -204,7 +204,7 @@ class MessageContracts:
             if memory.last_t:
                 yield f"m->{memory.last_t} == m->now"
         for condition, finding in self._findings((each.index,)):
-            yield iff(f"m->{finding.name} != 0", self._predicates.meaning.holds(condition))
+            yield iff(f"m->{finding.name} != 0", self._predicates.semantics.holds(condition))
         if len(handler.inputs) == 1:
             waits = [each.timeout_ns] if each.timeout_ns is not None and fields.base else []
             waits += [wait for age in self._ages(each) for wait in age_changes(age) if wait > 0]

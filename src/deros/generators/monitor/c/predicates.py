@@ -6,9 +6,9 @@ import textwrap
 from collections.abc import Collection, Iterable, Iterator
 
 from deros.generators.monitor.c import quantities, scans, windows
+from deros.generators.monitor.c.acsl_semantics import AcslSemantics
 from deros.generators.monitor.c.contracts import all_of, any_of, iff, wrapped
 from deros.generators.monitor.c.emissions import Emissions
-from deros.generators.monitor.c.meaning import Meaning
 from deros.generators.monitor.c.view import MonitorView
 from deros.generators.text.c import MAX_LINE
 from deros.monitor import walk
@@ -22,7 +22,7 @@ class Predicates:
         """Remember what is named how."""
         self._view = view
         self._layout = view.layout
-        self.meaning = Meaning(view.layout)
+        self.semantics = AcslSemantics(view.layout)
         self.emissions = Emissions(view)
         self._types = {each.name: each.type.strip() for each in view.fields}
 
@@ -176,18 +176,18 @@ class Predicates:
         name = self._layout.verdicts[rule.index]
         return [
             *map(self._runs, self.fors(rule.condition)),
-            iff(f"m->{name} == {self.macro('TRUE')}", self.meaning.true(rule.condition)),
-            iff(f"m->{name} == {self.macro('FALSE')}", self.meaning.false(rule.condition)),
+            iff(f"m->{name} == {self.macro('TRUE')}", self.semantics.true(rule.condition)),
+            iff(f"m->{name} == {self.macro('FALSE')}", self.semantics.false(rule.condition)),
         ]
 
     def _runs(self, condition: For) -> str:
-        return iff(self.meaning.runs(condition), self.meaning.true(condition.operand))
+        return iff(self.semantics.runs(condition), self.semantics.true(condition.operand))
 
     def acted(self, behaviour: Behaviour) -> list[str]:
         """Return what a behaviour's condition is worth, with all that encloses it."""
         true, false = self.macro("TRUE"), self.macro("FALSE")
-        holds = [self.meaning.true(behaviour.condition)]
-        fails = [self.meaning.false(behaviour.condition)]
+        holds = [self.semantics.true(behaviour.condition)]
+        fails = [self.semantics.false(behaviour.condition)]
         if behaviour.parent is not None:
             outer = f"m->{self._layout.conditions[behaviour.parent]}"
             holds.append(f"{outer} == {true}")

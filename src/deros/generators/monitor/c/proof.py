@@ -1,9 +1,9 @@
 """What is to be proved of the emitted functions: their contracts in ACSL.
 
 Between two calls a monitor is *sane*: its numbers are in range, no deadline lies before ``due``, no
-timeout has passed unseen, every rule's verdict is what the rule means now (:mod:`.meaning`), and
-every behaviour holds if its condition does. Each function is proved by itself, from the contracts
-of those that it calls.
+timeout has passed unseen, every rule's verdict is what the rule means now
+(:mod:`.acsl_semantics`), and every behaviour holds if its condition does. Each function is proved
+by itself, from the contracts of those that it calls.
 """
 
 from __future__ import annotations

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from deros.generators.monitor.c.deviations import DEVIATIONS
-from deros.generators.monitor.c.fitting import fitted
 from deros.generators.monitor.c.helpers import helper_texts
+from deros.generators.monitor.c.line_wrapping import wrap_long_lines
 from deros.generators.monitor.c.proof import NO_CONTRACT, proof_of
 from deros.generators.monitor.c.view import MonitorView, monitor_view
 from deros.generators.text.templates import environment
@@ -40,7 +40,7 @@ def render_monitor(program: Program) -> dict[str, str]:
         f"{view.prefix}_monitor.c": source,
         f"{view.prefix}_contracts.h": contracts,
     }
-    return {name: fitted(text) for name, text in texts.items()}
+    return {name: wrap_long_lines(text) for name, text in texts.items()}
 
 
 def _source(view: MonitorView) -> tuple[str, str]:

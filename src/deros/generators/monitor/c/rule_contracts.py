@@ -162,8 +162,8 @@ class RuleContracts:
 
     def _read(self, condition: Condition) -> list[str]:
         """Return the fields that a condition reads, those of its intervals among them."""
-        meaning = self._predicates.meaning
-        text = f"m->now {meaning.true(condition)} {meaning.false(condition)}"
+        semantics = self._predicates.semantics
+        text = f"m->now {semantics.true(condition)} {semantics.false(condition)}"
         return [*_FIELD.findall(text), *self._sinces(self._predicates.fors(condition))]
 
     def _ranges(self, names: Iterable[str]) -> str:

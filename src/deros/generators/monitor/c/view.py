@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from deros.generators.monitor.c.expressions import integer, literal, number
 from deros.generators.monitor.c.handlers import Handler, handlers
-from deros.generators.monitor.c.judging import Function, Sites, behave, judge, settle, sites
 from deros.generators.monitor.c.layout import Layout, compared, input_of, lay_out
-from deros.generators.monitor.c.refusals import refuse
+from deros.generators.monitor.c.rule_functions import Function, Sites, behave, judge, settle, sites
+from deros.generators.monitor.c.unsupported import refuse_unsupported
 from deros.generators.text.c import comment
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
@@ -236,7 +236,7 @@ def monitor_view(program: Program) -> MonitorView:
     Raises:
         GenerationError: the rules ask for what a monitor of fixed size, or C, cannot do.
     """
-    refuse(program)
+    refuse_unsupported(program)
     layout = lay_out(program)
     places = sites(program)
     rules = tuple(judge(program, layout, rule) for rule in program.rules)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from deros.generators.monitor.functions import refuse_unknown
 from deros.generators.monitor.python.behaviours import act_lines, latched_lines
-from deros.generators.monitor.python.explained import explained_lines, rules_of, waiting_lines
 from deros.generators.monitor.python.handlers import Handler, handlers, needed_texts
 from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory, slots_of
+from deros.generators.monitor.python.rule_state import rule_state_lines, rules_of, waiting_lines
 from deros.generators.monitor.python.rules import Judge, judges
 from deros.generators.monitor.python.whys import Why, whys
 from deros.monitor import walk
@@ -166,7 +166,7 @@ def monitor_view(program: Program) -> MonitorView:
         latched=tuple(latched_lines(program, layout)),
         rules_of=tuple(rules_of(program)),
         optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
-        explained=tuple(explained_lines(program, layout)),
+        explained=tuple(rule_state_lines(program, layout)),
         whys=told,
         why_holds=tuple(
             (each.name, layout.holds[each.index], layout.why_holds[each.index])

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from deros.generators.monitor.python.conditions import Conditions
-from deros.generators.monitor.python.explained import value_text
 from deros.generators.monitor.python.layout import Layout
+from deros.generators.monitor.python.rule_state import value_text
 from deros.generators.text.logic import MAX_LINE, Atom, Logic, lay_out, lay_out_call, text
 from deros.monitor import walk
 from deros.monitor.causes import (

@@ -12,7 +12,7 @@ _LITERAL = re.compile(r'"((?:\\.|[^"\\])*)"')
 _CHARACTERS = re.compile(r"(?:\\[0-7]{3}|\\.|[^\\]){1,80}")
 
 
-def fitted(text: str) -> str:
+def wrap_long_lines(text: str) -> str:
     """Return a text of C in which no line is too long, if its names let it be broken."""
     lines: list[str] = []
     to_prove = within = False
@@ -47,7 +47,10 @@ def _code(line: str) -> list[str]:
     commented = _TRAILING_COMMENT.fullmatch(line)
     if commented:
         indent, code, comment = commented.groups()
-        return [*fitted(f"{indent}{comment}").splitlines(), *fitted(indent + code).splitlines()]
+        return [
+            *wrap_long_lines(f"{indent}{comment}").splitlines(),
+            *wrap_long_lines(indent + code).splitlines(),
+        ]
     for start in (each.end() for each in re.finditer(r"[({]", line)):
         end, items = _items(line, start)
         if len(items) > 1:

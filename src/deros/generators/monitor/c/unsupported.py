@@ -32,7 +32,7 @@ _OF_INTEGERS = ("abs", "max", "min")
 """The functions that have a text for integers."""
 
 
-def refuse(program: Program) -> None:
+def refuse_unsupported(program: Program) -> None:
     """Refuse what would not mean in C what it means.
 
     Raises:

@@ -37,7 +37,7 @@ _OF_DOUBLES: dict[Operator, str] = {
 }
 
 
-class Meaning:
+class AcslSemantics:
     """Writes conditions as predicates on ``m``."""
 
     def __init__(self, layout: Layout) -> None:

@@ -22,7 +22,7 @@ def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
         yield behaviour.name, tuple(names)
 
 
-def explained_lines(program: Program, layout: Layout) -> list[str]:
+def rule_state_lines(program: Program, layout: Layout) -> list[str]:
     """Return the items of the tuple that ``explain()`` returns, one call a rule."""
     lines: list[str] = []
     for rule in program.rules:
