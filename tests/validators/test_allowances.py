@@ -1,4 +1,4 @@
-"""Allowances: which findings a comment in a model silences, and what is said of the comment."""
+"""Allowance comments in a model: which findings they suppress, and findings about the comments."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ def _write(name: str, before: str = "", same: str = "") -> str:
         ("// deros: allow {code}, DRS211 known", ""),
     ],
 )
-def test_an_allowance_silences_its_line(name: str, before: str, same: str) -> None:
-    """Beside the line or alone above it, in each language, a comment silences the finding."""
+def test_allowance_comment_suppresses_finding(name: str, before: str, same: str) -> None:
+    """A comment on the same line or alone above it suppresses the finding, in each language."""
     code = _write(name)
     assert code in _codes(name)
     _write(name, before.format(code=code), same.format(code=code))
@@ -71,22 +71,22 @@ def test_an_allowance_silences_its_line(name: str, before: str, same: str) -> No
         "// see deros: allow {code} known",
     ],
 )
-def test_only_a_comment_that_begins_so_is_an_allowance(name: str, before: str) -> None:
-    """Words elsewhere in a comment allow nothing; comments between the two do not matter."""
+def test_allowance_must_begin_the_comment(name: str, before: str) -> None:
+    """The words have no effect elsewhere in a comment; comments in between do not matter."""
     code = _write(name, before.format(code="DRS222"))
     assert code in _codes(name)
 
 
-def test_a_text_of_the_model_is_no_comment() -> None:
-    """What stands in quotes is no allowance."""
+def test_quoted_text_is_not_an_allowance() -> None:
+    """Text inside a string literal of the model does not count as a comment."""
     Path("text.system").write_text(
         'system Text "// deros: allow DRS212"\ntopics\n  topic /a "// deros: allow DRS212 x"\n'
     )
     assert _codes("text.system") == ["DRS212"]
 
 
-def test_an_error_is_never_silenced() -> None:
-    """The error stays, and the allowance is a finding."""
+def test_errors_cannot_be_allowed() -> None:
+    """The error is still reported, and the allowance is a finding as well."""
     Path("bad.rnd").write_text(
         "node bad : demo\nparameters\n  name a : int = 0.5  // deros: allow DRS103 known\n"
     )
@@ -95,15 +95,15 @@ def test_an_error_is_never_silenced() -> None:
 
 
 @pytest.mark.parametrize("code", ALL_CODES.values(), ids=str)
-def test_what_may_be_allowed(code: Code) -> None:
-    """No error may be allowed, nor a finding about allowances themselves."""
+def test_only_warnings_and_notes_about_models_are_allowable(code: Code) -> None:
+    """Errors and findings about allowances cannot be allowed."""
     found = not_allowable(code.name, Span(SourceFile("x.rnd", ""), 0, 0))
     allowable = code.severity is not Severity.ERROR and code in codes.OF_MODELS
     assert (found is None) == allowable
 
 
-def test_an_unneeded_allowance_is_a_finding_of_named_files_alone() -> None:
-    """An importing system may make a finding go away that the imported file has by itself."""
+def test_unneeded_allowance_is_reported_for_named_files_only() -> None:
+    """A finding of an imported file may disappear when a larger system imports it."""
     Path("source.rnd").write_text("node source : demo\npublishes\n  topic out : std_msgs.Bool\n")
     Path("sink.rnd").write_text("node sink : demo\nsubscribes\n  topic in : std_msgs.Bool\n")
     Path("part.system").write_text(
@@ -122,8 +122,8 @@ def test_an_unneeded_allowance_is_a_finding_of_named_files_alone() -> None:
     assert "DRS022" in _codes("part.system")
 
 
-def test_nothing_is_called_unneeded_where_an_error_may_hide_it() -> None:
-    """Behind an error some checks do not run, so their findings may come back."""
+def test_allowance_is_not_called_unneeded_after_an_error() -> None:
+    """Some checks do not run after an error, so their findings may come back."""
     Path("bad.system").write_text(
         'system Bad\nimports import "nowhere.rnd"\ntopics\n'
         "  topic /x  // deros: allow DRS210 fed by hand\nnode a : b wirings connect i to /x\n"
@@ -131,8 +131,8 @@ def test_nothing_is_called_unneeded_where_an_error_may_hide_it() -> None:
     assert "DRS022" not in _codes("bad.system")
 
 
-def test_what_is_allowed_is_counted_and_shown_on_demand() -> None:
-    """The last line counts it; ``--show-allowed`` adds finding and reason, in text and JSON."""
+def test_allowed_findings_are_counted_and_shown_on_request() -> None:
+    """The summary counts them; ``--show-allowed`` lists finding and reason, in text and JSON."""
     _write("lone.system", same="  // deros: allow DRS212 filled by hand")
     brief = deros("check", "--strict", "lone.system")
     assert (brief.code, brief.out) == (0, "1 file checked, no findings, 1 allowed\n")
@@ -144,8 +144,8 @@ def test_what_is_allowed_is_counted_and_shown_on_demand() -> None:
     assert [(each["code"], each["allowed"]) for each in listed] == [("DRS212", "filled by hand")]
 
 
-def test_sarif_lists_what_is_allowed_as_suppressed() -> None:
-    """A result with ``suppressions`` says where and why (SARIF 2.1.0, 3.27.23 and 3.35)."""
+def test_sarif_marks_allowed_findings_as_suppressed() -> None:
+    """The ``suppressions`` of a result give place and reason (SARIF 2.1.0, 3.27.23 and 3.35)."""
     _write("lone.system", same="  // deros: allow DRS212 filled by hand")
     log = json.loads(deros("check", "--format", "sarif", "lone.system").out)
     (result,) = log["runs"][0]["results"]
@@ -154,14 +154,14 @@ def test_sarif_lists_what_is_allowed_as_suppressed() -> None:
     assert suppression["location"]["physicalLocation"]["region"]["startLine"] == 4
 
 
-def test_annotations_leave_out_what_is_allowed() -> None:
-    """GitHub shows no annotation for it."""
+def test_github_format_omits_allowed_findings() -> None:
+    """There is no annotation for an allowed finding."""
     _write("lone.system", same="  // deros: allow DRS212 filled by hand")
     assert deros("check", "--format", "github", "lone.system").out == ""
 
 
-def test_generating_is_silent_about_what_is_allowed() -> None:
-    """The commands that check before they work honour allowances, too."""
+def test_generate_respects_allowances() -> None:
+    """Commands that check before they work do not print allowed findings."""
     for same, shown in (("", True), ("  // deros: allow DRS212 filled by hand", False)):
         _write("lone.system", same=same)
         outcome = deros("generate", "lone.system", "--target", "launch", "-o", "out")
@@ -173,8 +173,8 @@ def test_generating_is_silent_about_what_is_allowed() -> None:
     ("pattern", "matches"),
     [("a/*.system", True), ("**", True), ("**/x.system", True), ("a", False), ("*", False)],
 )
-def test_patterns_of_a_project(tmp_path: Path, pattern: str, matches: bool) -> None:
-    """A pattern names files relative to the project; ``**`` is any number of folders."""
+def test_project_allowance_pattern_matching(tmp_path: Path, pattern: str, matches: bool) -> None:
+    """Patterns are relative to the project; ``**`` matches any number of folders."""
     source = SourceFile("a/x.system", "topic")
     finding = report(codes.UNUSED_TOPIC, "unused", Span(source, 0, 5))
     span = Span(SourceFile("deros.toml", ""), 0, 0)
@@ -182,7 +182,7 @@ def test_patterns_of_a_project(tmp_path: Path, pattern: str, matches: bool) -> N
     assert allowance.covers(finding) is matches
 
 
-def test_a_large_file_without_allowances_costs_one_search() -> None:
-    """Comments are looked at only where there is a comment for deros."""
+def test_comments_without_allowances_are_skipped() -> None:
+    """Only comments addressed to deros are parsed."""
     source = SourceFile("x.rnd", "// a comment\n" * 10)
     assert read_allowances(source) == ([], [])

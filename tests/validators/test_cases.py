@@ -1,4 +1,4 @@
-"""Every bad model under ``tests/cases`` gives exactly the findings that it carries."""
+"""Each bad model under ``tests/cases`` gives exactly the findings that it declares."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ HEADINGS = ["What it does", "Why it is bad", "Example", "Use instead"]
 
 
 @pytest.mark.parametrize("name", cases.all_cases())
-def test_case(name: str) -> None:
-    """Each expectation is met by one finding, and no finding is left over."""
+def test_case_has_exactly_its_declared_findings(name: str) -> None:
+    """Each expectation matches one finding, and no finding is left over."""
     findings, files = cases.run(name)
     left = list(findings)
     missing = []
@@ -34,9 +34,9 @@ def test_case(name: str) -> None:
 
 @pytest.mark.parametrize("code", ALL_CODES)
 def test_every_code_has_a_case(code: str) -> None:
-    """A code is expected by some case, or named by a test if no model alone can have it."""
+    """Each code is expected by a case, or named in a test if no model alone can cause it."""
     about_models = ALL_CODES[code] in OF_MODELS or ALL_CODES[code] in ABOUT_ALLOWANCES
-    if not about_models or code == "DRS008":  # of 4 MB
+    if not about_models or code == "DRS008":  # needs a file of 4 MB
         tests = (ROOT / "tests").rglob("test_*.py")
         name = next(n for n, c in _constants().items() if c == code)
         assert any(re.search(rf"\b({code}|{name})\b", test.read_text()) for test in tests)
@@ -56,7 +56,7 @@ def _constants() -> dict[str, str]:
 
 @pytest.mark.parametrize("code", ALL_CODES)
 def test_every_code_has_a_page(code: str) -> None:
-    """The page bears the code's title, and says what, why, an example and what to use instead."""
+    """The page has the title of the code and all four sections."""
     text = (ROOT / "docs" / "diagnostics" / f"{code}.md").read_text(encoding="utf-8")
     assert text.startswith(f"# {code}: {ALL_CODES[code].title}\n")
     assert re.findall(r"^## (.*)$", text, re.MULTILINE) == HEADINGS
@@ -64,8 +64,8 @@ def test_every_code_has_a_page(code: str) -> None:
     assert all(len(section.strip()) > 20 for section in sections)
 
 
-def test_the_list_of_codes_is_complete() -> None:
-    """The index of the diagnostics names each code, its title and its severity, once, in order."""
+def test_index_lists_all_codes() -> None:
+    """The index lists code, title and severity of each diagnostic once, in order."""
     text = (ROOT / "docs" / "diagnostics" / "index.md").read_text(encoding="utf-8")
     listed = re.findall(r"^\| \[(DRS\d+)\]\(\1\.md\) \| (.*?) \| (\w+) \|$", text, re.MULTILINE)
     assert listed == [(c.name, c.title, c.severity.value) for c in ALL_CODES.values()]

@@ -1,4 +1,4 @@
-"""One mistake is one finding: what only follows from it is not reported."""
+"""One mistake gives one finding: consequences of a finding are not reported."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
 
 
 def _garbled(text: str) -> list[tuple[int, str]]:
-    """Return the text with a sign that no statement has before every n-th of its tokens."""
+    """Return copies of the text with an invalid character before every n-th token."""
     starts = [each.start() for each in _TOKEN.finditer(text) if each[0][:2] not in ("//", "/*")]
     return [(at, f"{text[:at]}? {text[at:]}") for at in starts[::_EVERY]]
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_a_syntax_error_anywhere_is_one_finding(name: str) -> None:
-    """Wherever a sound project of seven files is broken, that place alone is reported."""
+def test_syntax_error_anywhere_gives_one_finding(name: str) -> None:
+    """A syntax error anywhere in a sound project of seven files gives one finding, at its place."""
     for at, text in _garbled(MODELS[name]):
         found = _findings(EXAMPLE, name, text)
         places = [(each.code.name, each.span.file.rsplit("/", 1)[-1]) for each in found]
@@ -57,8 +57,8 @@ def test_a_syntax_error_anywhere_is_one_finding(name: str) -> None:
         ("intelligent_one.system", ": marking_robot", ": marking_robott", codes.UNKNOWN_NODE_TYPE),
     ],
 )  # fmt: skip
-def test_an_unknown_name_is_one_finding(name: str, old: str, new: str, code: object) -> None:
-    """A typo in a type, an import, a topic, a port or a node type is reported there alone."""
+def test_unknown_name_gives_one_finding(name: str, old: str, new: str, code: object) -> None:
+    """A typo in a type, import, topic, port or node type is reported once, at its place."""
     text = MODELS[name]
     assert old in text
     found = _findings(EXAMPLE, name, text.replace(old, new, 1))

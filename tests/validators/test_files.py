@@ -1,4 +1,4 @@
-"""Files that parameters name: found missing where that can be known, silence elsewhere."""
+"""Files named by parameters: missing files are reported where the path can be resolved."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from deros.validators.check import check
 
 @pytest.fixture
 def prefix(tmp_path: Path) -> Path:
-    """Return an install space with a package that has one file, beside a system with maps."""
+    """Return an install prefix with a package that has one file, next to a system with maps."""
     prefix = tmp_path / "install"
     for name in ("share/ament_index/resource_index/packages/arm", "share/arm/urdf/arm.urdf"):
         path = prefix / name
@@ -50,8 +50,8 @@ def _findings(folder: Path, prefix: Path, value: str, name: str = "file") -> lis
         ('["maps/office.yaml", "maps/x/y.pgm"]', "there is no such folder either"),
     ],
 )
-def test_missing_files_are_found(tmp_path: Path, prefix: Path, value: str, hint: str) -> None:
-    """Beside the system, and in the share folder of a package that is installed."""
+def test_missing_file_is_reported(tmp_path: Path, prefix: Path, value: str, hint: str) -> None:
+    """Paths relative to the system and in the share folder of an installed package are checked."""
     assert _findings(tmp_path, prefix, value) == [(value, hint)]
 
 
@@ -79,23 +79,21 @@ def test_missing_files_are_found(tmp_path: Path, prefix: Path, value: str, hint:
         '""',
     ],
 )
-def test_nothing_is_said_where_nothing_can_be_known(
+def test_existing_or_unresolvable_paths_are_not_reported(
     tmp_path: Path, prefix: Path, value: str
 ) -> None:
-    """Files that are there, paths of the robot, names that are no paths."""
+    """Existing files, absolute paths on the robot and values that are not paths give no finding."""
     assert _findings(tmp_path, prefix, value) == []
 
 
 @pytest.mark.parametrize("name", ["log_file", "output", "save_to", "recording"])
-def test_files_that_a_node_writes_need_not_be_there(
-    tmp_path: Path, prefix: Path, name: str
-) -> None:
-    """The parameter's name tells."""
+def test_output_files_need_not_exist(tmp_path: Path, prefix: Path, name: str) -> None:
+    """Parameters whose names suggest an output are not checked."""
     assert _findings(tmp_path, prefix, '"maps/new.yaml"', name) == []
 
 
-def test_defaults_name_files_of_packages(tmp_path: Path, prefix: Path) -> None:
-    """A default's relative path is relative to nothing known."""
+def test_only_package_paths_of_defaults_are_checked(tmp_path: Path, prefix: Path) -> None:
+    """The relative path in a default has no known base folder."""
     path = tmp_path / "n.rnd"
     path.write_text(
         'node n : pkg\nparameters\n  name a : string = "package://arm/urdf/amr.urdf"\n'

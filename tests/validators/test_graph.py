@@ -1,4 +1,4 @@
-"""The wiring graph: what its vertices and edges are, and that networkx works on it."""
+"""The wiring graph: its vertices and edges, and that networkx works on it."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ subsystem Vision namespace /vision {
 
 @pytest.fixture
 def flat(tmp_path: Path) -> FlatSystem:
-    """The system above, flattened."""
+    """Return the flattened system."""
     for name, text in MODELS.items():
         (tmp_path / name).write_text(text)
     loaded = Repository().load(tmp_path / "robot.system")
@@ -72,12 +72,12 @@ def flat(tmp_path: Path) -> FlatSystem:
 
 @pytest.fixture
 def graph(flat: FlatSystem) -> nx.MultiDiGraph[Vertex]:
-    """The graph of that system."""
+    """Return the graph of that system."""
     return wiring_graph(flat)
 
 
 def test_vertices_are_nodes_topics_and_services(graph: nx.MultiDiGraph[Vertex]) -> None:
-    """Declared topics come first, also those that nobody uses; names are full names."""
+    """Declared topics come first, used or not; all names are fully qualified."""
     assert list(graph) == [
         ("topic", "/image"),
         ("topic", "/untyped"),
@@ -89,7 +89,7 @@ def test_vertices_are_nodes_topics_and_services(graph: nx.MultiDiGraph[Vertex]) 
     ]
 
 
-def test_edges_run_with_the_data(graph: nx.MultiDiGraph[Vertex]) -> None:
+def test_edges_follow_the_data_flow(graph: nx.MultiDiGraph[Vertex]) -> None:
     """Publisher to topic to subscription; client to service to server."""
     camera, detector = node_vertex("/vision/camera"), node_vertex("/vision/detector")
     image, service = topic_vertex("/image"), ("service", "/vision/camera/calibrate")
@@ -98,7 +98,7 @@ def test_edges_run_with_the_data(graph: nx.MultiDiGraph[Vertex]) -> None:
 
 
 def test_edges_carry_port_type_and_wiring(graph: nx.MultiDiGraph[Vertex]) -> None:
-    """An edge tells which port it is, of which type, and whether a ``connect`` made it."""
+    """An edge has its port, type and whether it comes from a ``connect``."""
     camera, detector = node_vertex("/vision/camera"), node_vertex("/vision/detector")
     edge = graph.edges[camera, topic_vertex("/image"), 0]
     assert (edge["port"], str(edge["type"]), edge["wired"]) == (
@@ -111,10 +111,8 @@ def test_edges_carry_port_type_and_wiring(graph: nx.MultiDiGraph[Vertex]) -> Non
     assert unwired["end"].name == "/vision/detector (found)"
 
 
-def test_vertices_carry_what_they_stand_for(
-    flat: FlatSystem, graph: nx.MultiDiGraph[Vertex]
-) -> None:
-    """A node vertex has the flat node; a topic its declaration, if any, and its untyped ends."""
+def test_vertices_carry_node_or_topic(flat: FlatSystem, graph: nx.MultiDiGraph[Vertex]) -> None:
+    """A node vertex has the flat node; a topic vertex its declaration, if any, and untyped ends."""
     assert graph.nodes[node_vertex("/vision/camera")]["node"] is flat.nodes[0]
     assert graph.nodes[topic_vertex("/tf")]["topic"].declaration.external
     assert graph.nodes[topic_vertex("/vision/found")]["topic"] is None
@@ -122,8 +120,8 @@ def test_vertices_carry_what_they_stand_for(
     assert untyped.node is flat.nodes[0]
 
 
-def test_ends_of_a_channel(graph: nx.MultiDiGraph[Vertex]) -> None:
-    """Both sides of a topic and of a service can be asked for."""
+def test_publishers_and_subscribers_of_a_channel(graph: nx.MultiDiGraph[Vertex]) -> None:
+    """Both sides of a topic and of a service can be queried."""
     assert [e.node.full_name for e in publishers(graph, topic_vertex("/image"))] == [
         "/vision/camera"
     ]

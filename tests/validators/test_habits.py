@@ -1,4 +1,4 @@
-"""Mistakes that people make: each is one finding, and what its hint asks for mends it."""
+"""Common mistakes: each gives one finding, and its hint fixes it."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ if drive.idle then { beep; }
 
 
 class Mistake(NamedTuple):
-    """A mistake: what is right in a file of the base, what people write, and words of the hint."""
+    """A mistake: the right text in a file of the base, the wrong text, and words of the hint."""
 
     file: str
     right: str
@@ -290,14 +290,14 @@ def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
 
 
 @pytest.mark.parametrize("name", BASE)
-def test_the_base_is_sound(name: str, tmp_path: Path) -> None:
-    """Without a mistake there is no finding."""
+def test_base_has_no_findings(name: str, tmp_path: Path) -> None:
+    """The base files without a mistake are sound."""
     assert _findings(tmp_path, name, BASE[name]) == []
 
 
 @pytest.mark.parametrize("mistake", MISTAKES, ids=[f"{m.right}|{m.wrong}" for m in MISTAKES])
-def test_a_mistake_is_one_finding_whose_hint_mends_it(mistake: Mistake, tmp_path: Path) -> None:
-    """There is one finding; its edit, or what its words ask for, leaves none."""
+def test_mistake_gives_one_finding_with_a_working_hint(mistake: Mistake, tmp_path: Path) -> None:
+    """There is one finding; applying its edit or its advice leaves none."""
     right = BASE[mistake.file]
     assert mistake.right in right
     text = right.replace(mistake.right, mistake.wrong, 1)
@@ -313,6 +313,6 @@ def test_a_mistake_is_one_finding_whose_hint_mends_it(mistake: Mistake, tmp_path
         assert _findings(tmp_path, mistake.file, mended) == []
 
 
-def test_there_are_many() -> None:
-    """The table is long enough to be worth its name."""
+def test_table_has_at_least_sixty_mistakes() -> None:
+    """The table of mistakes does not shrink."""
     assert len(MISTAKES) >= 60

@@ -1,6 +1,6 @@
-"""Every place where a name of ROS 2 can be written refuses what ROS 2 refuses.
+"""Every place where a ROS 2 name can be written rejects names that ROS 2 rejects.
 
-The places come from the grammars, so that a new one has to be entered here before the tests pass.
+The places come from the grammars, so that a new one must be added here before the tests pass.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ TOPICS = ("/1a", "/a-b", "/a/", "/é", "/a~b", "~x", "/" + "a" * 250)
 WORDS = ("aé", "a" * 256)
 
 PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
-    # Rule.attribute of the grammar: suffix of the file, a text with NAME, what is refused there.
+    # Rule.attribute of the grammar: suffix of the file, a text with NAME, names rejected there.
     "NodeType.name": (".rnd", "node NAME : base", WORDS),
     "NodeType.package": (".rnd", "node base : NAME", ("Base", "a__b", "a_", "b", *WORDS)),
     "Parameter.name": (".rnd", "node n : base parameters name NAME : int", ("a..b", "a.", "aé")),
@@ -144,8 +144,8 @@ _ATTRIBUTE = re.compile(
 )
 
 
-def test_the_table_has_every_place() -> None:
-    """Each attribute of the grammars that holds a name is in one of the two tables."""
+def test_table_covers_all_name_attributes() -> None:
+    """Each grammar attribute that is a name is in one of the two tables."""
     found: set[str] = set()
     for path in GRAMMARS.glob("*.tx"):
         for rule in re.finditer(r"^(\w+):(.*?);$", path.read_text(), re.DOTALL | re.MULTILINE):
@@ -158,10 +158,8 @@ def test_the_table_has_every_place() -> None:
     [(place, name) for place, (_, _, names) in PLACES.items() for name in names],
     ids=lambda value: value[:24],
 )
-def test_a_name_that_ros_refuses_is_an_error_where_it_stands(
-    tmp_path: Path, place: str, name: str
-) -> None:
-    """There is an error, and it points at the name."""
+def test_invalid_ros_name_is_an_error_at_its_place(tmp_path: Path, place: str, name: str) -> None:
+    """The error points at the name."""
     suffix, template, _ = PLACES[place]
     (tmp_path / "base.rnd").write_text(NODE_FILE)
     (tmp_path / "s.system").write_text(SYSTEM.replace("HERE", ""))
@@ -174,14 +172,14 @@ def test_a_name_that_ros_refuses_is_an_error_where_it_stands(
         for each in check([loaded], repository, InterfaceStore((), ()))
         if each.is_error and each.span.file.endswith(f"model{suffix}")
     ]
-    # A name that stands in quotes is pointed at with them.
+    # The span of a quoted name includes the quotes.
     places = range(at - 1, at + len(name))
     assert any(each.span.start in places for each in errors), errors
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_a_sound_name_is_refused_nowhere(tmp_path: Path, place: str) -> None:
-    """What the tables refuse is refused for the name, not for the text around it."""
+def test_valid_name_is_accepted_everywhere(tmp_path: Path, place: str) -> None:
+    """The tables are rejected for the name, not for the text around it."""
     suffix, template, names = PLACES[place]
     (tmp_path / "base.rnd").write_text(NODE_FILE)
     (tmp_path / "s.system").write_text(SYSTEM.replace("HERE", ""))

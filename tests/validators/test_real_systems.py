@@ -1,7 +1,7 @@
-"""Fourteen public systems: what is found in them, and which planted faults are.
+"""Fourteen public systems: their findings, and which planted faults are found.
 
-``tests/data/systems/README.md`` says where they come from. ``findings.json`` beside it lists what
-is found in them, each with the verdict of a maintainer: would it be fixed, and why not?
+``tests/data/systems/README.md`` lists the sources. ``findings.json`` next to it lists all findings,
+each with the verdict of a maintainer: would it be fixed, and if not, why?
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ def _listed(finding: Diagnostic) -> dict[str, str]:
     }
 
 
-def test_there_are_fourteen() -> None:
-    """Of three to fifteen nodes each."""
+def test_fourteen_systems_of_three_to_fifteen_nodes() -> None:
+    """The collection keeps its size; a system of two robots counts per robot."""
     sizes = {name: len(real_systems.flat_system(name).nodes) for name in SYSTEMS}
     print(sizes)
     assert len(sizes) == 14
@@ -44,8 +44,8 @@ def test_there_are_fourteen() -> None:
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_findings_are_those_listed(name: str) -> None:
-    """None comes, and none goes."""
+def test_findings_match_the_reviewed_list(name: str) -> None:
+    """No finding is new, and none is missing."""
     found = [_listed(each) for each in real_systems.findings(name)]
     listed = [{key: each[key] for key in found_keys(each)} for each in LISTED if _is_of(each, name)]
     assert sorted(found, key=str) == sorted(listed, key=str)
@@ -60,8 +60,8 @@ def _is_of(entry: dict[str, Any], name: str) -> bool:
     return str(entry["file"]).startswith(f"{name}/")
 
 
-def test_a_maintainer_would_leave_fewer_than_three_in_each_system() -> None:
-    """Each that would be left has a reason; there is no error among them."""
+def test_fewer_than_three_unfixed_findings_per_system() -> None:
+    """Each finding that would stay unfixed has a reason, and none is an error."""
     left = Counter(str(each["file"]).split("/")[0] for each in LISTED if not each["fixed"])
     for name in SYSTEMS:
         print(f"{name}: {left[name]}")
@@ -72,7 +72,7 @@ def test_a_maintainer_would_leave_fewer_than_three_in_each_system() -> None:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_planted_faults_are_found(name: str) -> None:
-    """Each ends in a finding that names its place; ``DEROS_ALL_FAULTS=1`` plants all of them."""
+    """Each fault gives a finding at its place; ``DEROS_ALL_FAULTS=1`` plants all of them."""
     before = planted.known_findings(name)
     by_kind: dict[str, list[planted.Fault]] = {kind: [] for kind in planted.KINDS}
     for fault in planted.faults(name):

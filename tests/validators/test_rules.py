@@ -1,4 +1,4 @@
-"""Checks of sound rules: what is quiet must stay quiet."""
+"""Checks of sound rules give no findings."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ if e.manual then { ok; };
 """
 
 
-def test_sound_rules() -> None:
-    """A program that uses all it declares, with timeouts, has no finding at all."""
+def test_sound_rules_have_no_findings() -> None:
+    """A program with timeouts that uses all its declarations has no findings."""
     assert findings(SOUND) == []
 
 
-def test_one_finding_for_each_silent_input() -> None:
-    """However many rules read an input without timeout, it is named once, with them."""
+def test_input_without_timeout_is_reported_once() -> None:
+    """The finding names the input once, with all rules that read it."""
     statements = SOUND.replace("linear.x timeout 1 sec", "linear.x").replace("v.missing() or ", "")
     statements = statements.replace(
         "failsafe fast: v > fast or v.rate(0.1 sec)", "fast: v > fast or v"
@@ -48,7 +48,7 @@ def test_one_finding_for_each_silent_input() -> None:
 
 
 def check_text(directory: Path, system: str, text: str) -> list[str]:
-    """Check a program against a system of its own; return the codes found in the program."""
+    """Check a program against its own system and return the codes found in the program."""
     (directory / "talker.rnd").write_text(
         "node talker : demo parameters name to : string publishes topic out : std_msgs.Bool"
     )
@@ -66,7 +66,7 @@ if e.r then { stop; };
 """
 
 
-def test_topic_fed_through_a_parameter(tmp_path: Path) -> None:
+def test_topic_may_be_fed_through_a_parameter(tmp_path: Path) -> None:
     """A node wired through a parameter that no port claims may be the publisher."""
     system = "topics topic /f : std_msgs.Bool node t : talker wirings connect to to /f"
     assert check_text(tmp_path, system, READ) == []
@@ -76,15 +76,15 @@ def test_topic_fed_through_a_parameter(tmp_path: Path) -> None:
     assert check_text(tmp_path, nobody.replace("topic /f", "external topic /f"), READ) == []
 
 
-def test_unknown_parts_prove_nothing(tmp_path: Path) -> None:
-    """With a node of unknown type in the system, nobody can say that a topic has no end."""
+def test_unknown_node_type_may_publish_the_topic(tmp_path: Path) -> None:
+    """With a node of unknown type in the system, no topic is reported as unpublished."""
     system = "topics topic /f : std_msgs.Bool node t : talkr"
     bound = READ.replace("stop;", "stop publishes true on /g : std_msgs.Bool;", 1)
     assert check_text(tmp_path, system, bound) == []
 
 
-def test_own_action_feeds_a_topic(tmp_path: Path) -> None:
-    """A topic that a bound action publishes, and a rule reads, has both ends in the safety node."""
+def test_action_may_feed_an_input_topic(tmp_path: Path) -> None:
+    """A topic that an action publishes and a rule reads has both ends in the safety node."""
     system = "topics topic /f : std_msgs.Bool"
     bound = READ.replace("stop;", "stop publishes true on /f : std_msgs.Bool;", 1)
     assert check_text(tmp_path, system, bound) == []

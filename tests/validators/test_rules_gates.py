@@ -1,4 +1,4 @@
-"""Gates in systems: what is wired well is quiet, and what the model cannot know is let be."""
+"""Gates in systems: sound wiring has no findings, and unknown parts are not reported."""
 
 from __future__ import annotations
 
@@ -72,63 +72,65 @@ def _findings(members: str, topics: str = TOPICS, rules: str = RULES) -> list[Di
     repository = Repository()
     loaded = repository.load("s.deros")
     found = check([loaded], repository, InterfaceStore((), prefixes=()))
-    return [each for each in found if each.code.name != "DRS222"]  # imports left unused here
+    return [
+        each for each in found if each.code.name != "DRS222"
+    ]  # the system may leave imports unused
 
 
 def _codes(members: str, topics: str = TOPICS, rules: str = RULES) -> list[str]:
     return [each.code.name for each in _findings(members, topics, rules)]
 
 
-def test_sound_gate() -> None:
-    """A gate between controller and drive has no finding; its constants and actions are used."""
+def test_sound_gate_has_no_findings() -> None:
+    """A gate between controller and drive is sound, and its constants and actions count as used."""
     assert _findings(PLANNER + GATE + DRIVE) == []
 
 
-def test_gate_in_cpp() -> None:
-    """The twin in C++ is the same gate, whose type has a longer name."""
+def test_cpp_gate_has_no_findings() -> None:
+    """The C++ gate has a longer node type and the same checks."""
     text = Path("cmd_vel_gate.rnd").read_text(encoding="utf-8")
     renamed = text.replace("node cmd_vel_gate : demo", "node cmd_vel_gate_cpp : demo_cpp")
     Path("cmd_vel_gate.rnd").write_text(renamed, encoding="utf-8")
     assert _findings(PLANNER + GATE.replace(": cmd_vel_gate", ": cmd_vel_gate_cpp") + DRIVE) == []
 
 
-def test_gate_to_the_outside() -> None:
-    """A drive outside the model is declared so; the gate may then be outside, too."""
+def test_gate_with_external_target() -> None:
+    """An external drive is declared as such; the gate may then be external too."""
     topics = TOPICS.replace("topic /cmd_vel", "external topic /cmd_vel")
     assert _codes(PLANNER + GATE, topics) == []
     assert _codes(PLANNER, topics.replace("  topic /stop\n", "")) == []
 
 
-def test_outside_controller() -> None:
-    """A source that is fed from outside is no fault of the rules."""
+def test_gate_with_external_source() -> None:
+    """An external source topic is not a fault of the rules."""
     topics = TOPICS.replace("topic /nav", "external topic /nav")
     assert _codes(GATE + DRIVE, topics) == []
 
 
-def test_system_without_the_target() -> None:
-    """Where nobody uses the target, no gate is missed, but the rules command nobody."""
+def test_unused_target_is_one_finding() -> None:
+    """If nothing uses the target, the missing gate itself is not reported."""
     topics = TOPICS.replace("  topic /cmd_vel\n", "").replace("  topic /stop\n", "")
     assert _codes(PLANNER, topics) == ["DRS341"]
 
 
-def test_gate_left_out() -> None:
-    """One finding says so: not also that ends are missing, or that the two topics are one."""
+def test_missing_gate_is_one_finding() -> None:
+    """The finding does not repeat that ends are missing or that source and target are joined."""
     (finding,) = _findings(PLANNER + DRIVE, TOPICS.replace("  topic /stop\n", ""))
     assert finding.code.name == "DRS340"
     assert "no node is a 'cmd_vel_gate'" in finding.message
     assert [each.span.file for each in finding.related] == ["s.system"]
 
 
-def test_bypass_is_found_where_it_is_wired() -> None:
-    """The place is the connection, which has to change; a gate beside it does not excuse it."""
+def test_bypass_is_reported_at_its_connection() -> None:
+    """The span is the connection that must change, even if there is a gate next to it."""
     joystick = "node joystick : planner\nwirings\n  connect wish to /cmd_vel\n"
     (finding,) = _findings(PLANNER + GATE + DRIVE + joystick)
     assert (finding.code.name, finding.span.file) == ("DRS339", "s.system")
     assert finding.span.text == "connect wish to /cmd_vel"
 
 
-def test_bypass_without_a_connection() -> None:
-    """An unwired port that talks on the target by its own name is found at its node."""
+def test_unwired_bypass_is_reported_at_its_node() -> None:
+    """A port that publishes on the target by its own name is reported at its node."""
     Path("planner.rnd").write_text(
         "node planner : demo\npublishes\n  topic /cmd_vel : geometry_msgs.Twist"
     )
@@ -136,8 +138,8 @@ def test_bypass_without_a_connection() -> None:
     assert ("DRS339", "planner") in [(each.code.name, each.span.text) for each in found]
 
 
-def test_gate_connected_elsewhere() -> None:
-    """A gate that is there but reads or feeds other topics is found where it is connected."""
+def test_gate_on_wrong_topics_is_reported_at_its_connection() -> None:
+    """A gate that reads or feeds other topics is reported where it is connected."""
     wrong = GATE.replace("connect /nav to /nav", "connect /nav to /wish")
     topics = TOPICS + "  external topic /wish : geometry_msgs.Twist\n"
     (finding,) = _findings(PLANNER + wrong + DRIVE, topics)
@@ -148,21 +150,23 @@ def test_gate_connected_elsewhere() -> None:
     )
 
 
-def test_node_of_an_unknown_type_may_be_the_gate() -> None:
-    """The unknown type is a finding of its own; that the gate is missing does not follow."""
+def test_unknown_node_type_may_be_the_gate() -> None:
+    """The unknown type is reported, and the missing gate is not."""
     assert "DRS340" not in _codes(PLANNER + DRIVE + "node gate : cmd_vel_gaet\n")
 
 
-def test_source_that_nobody_publishes() -> None:
-    """As for inputs."""
+def test_unpublished_source_is_reported() -> None:
+    """The source of a gate needs a publisher, as inputs do."""
     assert "DRS318" in _codes(GATE + DRIVE)
 
 
-def test_chain_of_gates() -> None:
+def test_gates_can_be_chained() -> None:
     """The target of one gate may be the source of the next."""
     second = RULES[RULES.index("gate ") :].replace("/cmd_vel", "/drive").replace("/nav", "/cmd_vel")
     text = NODES["cmd_vel_gate.rnd"].replace("cmd_vel", "drive").replace("/nav", "/cmd_vel")
-    reliable = text.replace("best_effort", "reliable")  # as the gate before it publishes
+    reliable = text.replace(
+        "best_effort", "reliable"
+    )  # matches the publisher of the gate before it
     Path("drive.rnd").write_text(reliable, encoding="utf-8")
     members = GATE.replace("cmd_vel", "drive").replace("/nav", "/cmd_vel")
     members = members.replace("node gate", "node second")
@@ -170,8 +174,8 @@ def test_chain_of_gates() -> None:
     assert _findings(PLANNER + GATE + members, topics, RULES + second) == []
 
 
-def test_generation_comes_before_the_wiring() -> None:
-    """A gate that is not wired yet keeps nobody from generating its node; ``check`` does fail."""
+def test_unwired_gate_does_not_block_generation() -> None:
+    """``generate`` succeeds with a warning, and ``check`` fails."""
     assert _codes(PLANNER + DRIVE, TOPICS.replace("  topic /stop\n", "")) == ["DRS340"]
     assert deros("check", "s.deros").code == 1
     outcome = deros("generate", "s.deros", "--target", "python", "-o", "out")
@@ -184,7 +188,7 @@ RESUME = "resume on zero command;"
 
 
 def _resuming(*lines: str, stop: str = "latched") -> list[tuple[str, list[str]]]:
-    """Return what goes on by itself in a gate of some lines, and the lines that are named."""
+    """Return the causes after which a gate resumes by itself, and the related lines."""
     head = RULES.partition("gate /nav")[0].replace("latched", stop)
     gate = f"gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {{ {'; '.join(lines)}; }}"
     found = _findings(PLANNER + GATE + DRIVE, rules=head + gate)
@@ -196,15 +200,15 @@ def _resuming(*lines: str, stop: str = "latched") -> list[tuple[str, list[str]]]
     ]
 
 
-def test_a_gate_that_goes_on_by_itself() -> None:
-    """Every zero that ends without anybody's act is named, and so is the gate's own start."""
+def test_gate_that_resumes_by_itself() -> None:
+    """Each zero that ends without a reset is named, as is the start of the gate."""
     ((after, lines),) = _resuming("stop: zero", HEARTBEAT, INPUT, stop="reset_by go; action go")
     assert after == "'stop', a lost heartbeat, a lost input and the gate's own start"
     assert lines == ["stop: zero;", f"{HEARTBEAT};", f"{INPUT};"]
 
 
-def test_a_gate_that_goes_on_by_itself_in_part() -> None:
-    """An action that is latched ends by somebody's reset; with `until reset`, so does the start."""
+def test_gate_that_resumes_by_itself_in_part() -> None:
+    """A latched action ends by a reset; with `until reset`, so does the start."""
     ((after, lines),) = _resuming("stop: zero", f"{HEARTBEAT} until reset", INPUT)
     assert (after, lines) == ("a lost input", [f"{INPUT};"])
     assert _resuming("stop: zero") == [("the gate's own start", [])]
@@ -219,14 +223,14 @@ def test_a_gate_that_goes_on_by_itself_in_part() -> None:
          "linear.x to [0, 1] m/s"),
     ],
 )  # fmt: skip
-def test_a_gate_that_waits(lines: tuple[str, ...]) -> None:
-    """For a person, or for the controller."""
+def test_gate_that_waits_before_it_resumes(lines: tuple[str, ...]) -> None:
+    """The gate waits for a reset or for a controller at rest."""
     assert _resuming(*lines) == []
 
 
 @pytest.mark.parametrize("end", [" until reset", f"; {RESUME[:-1]}"])
-def test_a_limit_before_a_zero_that_holds_all_numbers(end: str) -> None:
-    """Leaves nothing of it to the controller, so there is nothing to warn of."""
+def test_limit_covered_by_zero_gives_no_warning(end: str) -> None:
+    """A zero that waits leaves nothing of the limit to the controller, so no warning is due."""
     limit = "lost input for 0.2 sec: limit linear.x to [0, 0.1] m/s"
     rules = RULES.partition("  stop: limit")[0] + f"{limit}; {HEARTBEAT}"
     assert "DRS342" in _codes(PLANNER + GATE + DRIVE, rules=f"{rules}; stop: zero; }}")

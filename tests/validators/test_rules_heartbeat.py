@@ -1,4 +1,4 @@
-"""Times in the rules against the rates that the system gives its safety nodes."""
+"""Timeouts in rules against the heartbeat rates that the system sets for its safety nodes."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _gate(heartbeat: str = "/guard/heartbeat", name: str = "gate") -> str:
 
 
 def _findings(members: str, rules: str = RULES, topics: str = TOPICS) -> list[Diagnostic]:
-    """Return what the checks say of times that are too short, and of no heartbeat at all."""
+    """Return the findings about timeouts that are too short or heartbeats that are missing."""
     text = (
         f'system S\nimports\n  import "guard.rnd"\n  import "gate.rnd"\ntopics\n{topics}{members}'
     )
@@ -79,13 +79,13 @@ def _findings(members: str, rules: str = RULES, topics: str = TOPICS) -> list[Di
     return [each for each in found if each.code.name in ("DRS343", "DRS345", "DRS363")]
 
 
-def test_default_rate() -> None:
-    """0.3 s are three heartbeats of a node whose rate nobody sets."""
+def test_default_heartbeat_rate_suffices() -> None:
+    """0.3 s are three heartbeats at the default rate."""
     assert _findings(_safety() + _gate()) == []
 
 
-def test_rate_that_the_system_lowers() -> None:
-    """Five heartbeats per second: 0.3 s are one and a half of them."""
+def test_lowered_rate_is_too_slow_for_the_timeout() -> None:
+    """At five heartbeats per second, 0.3 s are only one and a half."""
     (finding,) = _findings(_safety(publish_freq=5.0) + _gate())
     assert finding.code.name == "DRS345"
     assert "heartbeats of '/guard', of which there are 5 per second" in finding.message
@@ -95,30 +95,30 @@ def test_rate_that_the_system_lowers() -> None:
     assert [each.span.text for each in finding.related] == ["param publish_freq = 5.0"]
 
 
-def test_following_the_hint_is_quiet() -> None:
-    """Either half of the hint mends it."""
+def test_each_half_of_the_hint_fixes_the_finding() -> None:
+    """A higher rate and a longer timeout both leave no finding."""
     assert _findings(_safety(publish_freq=9.0) + _gate()) == []
     longer = RULES.replace("for 0.3 sec", "for 0.5 sec")
     assert _findings(_safety(publish_freq=5.0) + _gate(), longer) == []
 
 
-def test_rate_that_the_system_raises() -> None:
-    """A fast heartbeat may be given up soon."""
+def test_raised_rate_allows_a_shorter_timeout() -> None:
+    """50 heartbeats per second suffice for a timeout of 0.05 s."""
     hasty = RULES.replace("for 0.3 sec", "for 0.05 sec")
     assert [each.code.name for each in _findings(_safety() + _gate(), hasty)] == ["DRS345"]
     assert _findings(_safety(publish_freq=50.0) + _gate(), hasty) == []
 
 
-def test_default_of_the_description() -> None:
-    """What the node description says counts where the system sets nothing."""
+def test_default_rate_comes_from_the_node_description() -> None:
+    """The default in the description applies where the system sets no rate."""
     Path("guard.rnd").write_text(SAFETY.replace("= 10.0", "= 4.0"), encoding="utf-8")
     (finding,) = _findings(_safety() + _gate())
     assert "4 per second" in finding.message
     assert [each.span.text for each in finding.related] == ["guard"]
 
 
-def test_each_instance_counts_for_its_own_gate() -> None:
-    """Of two safety nodes, the finding names the one that is too slow."""
+def test_each_gate_uses_the_rate_of_its_own_safety_node() -> None:
+    """Of two safety nodes, the finding names the slow one."""
     topics = TOPICS + "  topic /left/guard/heartbeat\n"
     fine = "subsystem left namespace /left {\n" + _safety() + "}\n"
     slow = "subsystem right namespace /right {\n" + _safety(publish_freq=2.0) + "}\n"
@@ -128,14 +128,14 @@ def test_each_instance_counts_for_its_own_gate() -> None:
     assert _findings(fine + slow + _gate("/left/guard/heartbeat"), topics=topics) == []
 
 
-def test_gate_that_is_not_wired_yet() -> None:
-    """Its heartbeat will be that of the node that publishes the states of the actions."""
+def test_unwired_gate_uses_the_node_that_publishes_its_actions() -> None:
+    """The heartbeat comes from the node that publishes the states of the actions."""
     (finding,) = _findings(_safety(publish_freq=5.0))
     assert finding.code.name == "DRS345"
 
 
-def test_hint_for_a_gate_without_heartbeat() -> None:
-    """The line that the hint proposes is long enough for the rate that the system sets."""
+def test_hint_for_missing_heartbeat_fits_the_rate() -> None:
+    """The proposed line has a timeout that is long enough for the rate of the system."""
     without = RULES.replace("  lost heartbeat for 0.3 sec: zero;\n", "")
     (finding,) = _findings(_safety() + _gate(), without)
     assert finding.hint == "add 'lost heartbeat for 0.3 sec: zero until reset;'"
@@ -149,8 +149,8 @@ def _watching(term: str, timeout: str) -> str:
 
 
 @pytest.mark.parametrize("topic", ["/other/heartbeat.data", "/other_stop.data"])
-def test_timeout_of_an_input_on_another_safety_node(topic: str) -> None:
-    """Rules that watch a safety node have to wait for its periods as a gate does."""
+def test_timeout_for_an_input_from_another_safety_node(topic: str) -> None:
+    """Rules that read topics of a safety node must wait for its period, as a gate must."""
     topics = TOPICS + "  topic /other_stop\n"
     wired = "wirings\n  connect /stop to /other_stop\n"
     rules = _watching(topic, "0.3 sec")
@@ -162,8 +162,8 @@ def test_timeout_of_an_input_on_another_safety_node(topic: str) -> None:
     assert finding.hint.startswith("write 2.5 sec or more, or set 'publish_freq' of '/other'")
 
 
-def test_timeout_of_an_input_on_diagnostics() -> None:
-    """They come at a rate of their own; other publishers of the topic may fill the gaps."""
+def test_timeout_for_an_input_from_diagnostics() -> None:
+    """Diagnostics have a rate of their own, and other publishers may fill the gaps."""
     topics = TOPICS + "  topic /state_of_other\n  external topic /other_stop\n"
     rules = _watching("/state_of_other.status", "1 sec")
     wired = "wirings\n  connect /diagnostics to /state_of_other\n  connect /stop to /other_stop\n"

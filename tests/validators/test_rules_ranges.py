@@ -1,4 +1,4 @@
-"""Comparisons decided by the range of a type: found where they are, and nowhere else."""
+"""Comparisons decided by the range of a type are reported, and no others."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ input bytes = topic /bytes timeout 1 sec
 
 
 def decided(condition: str) -> list[tuple[str, str]]:
-    """Return code and place of what is decided in a condition."""
+    """Return code and place of the decided parts of a condition."""
     inputs = ("mode", "v", "q", "scan", "odom", "joints", "bytes")
     used = " or ".join(f"{each}.missing()" for each in inputs)
     statements = f"""{DECLARED} entity e {{ failsafe r: {condition}; s: {used}; }}
         if e.r or e.s then {{ stop; }};"""
     found = ((code, place) for code, place, _ in findings(statements))
-    return [each for each in found if each[0] != "DRS367"]  # of rate() itself
+    return [each for each in found if each[0] != "DRS367"]  # the finding on rate() itself
 
 
 @pytest.mark.parametrize(
@@ -61,8 +61,8 @@ def decided(condition: str) -> list[tuple[str, str]]:
         "odom.pose.covariance.count() < mode.abs()",
     ],
 )
-def test_open_conditions(condition: str) -> None:
-    """What some value satisfies and some does not is no finding."""
+def test_undecided_condition_is_not_reported(condition: str) -> None:
+    """A condition that some values satisfy and others do not gives no finding."""
     assert decided(condition) == []
 
 
@@ -116,16 +116,16 @@ def test_open_conditions(condition: str) -> None:
         ("q.pitch() > 91 deg", "DRS308", "q.pitch() > 91 deg"),
     ],
 )
-def test_decided_conditions(condition: str, code: str, place: str) -> None:
-    """The finding names the smallest condition that is decided, once."""
+def test_decided_condition_is_reported_once(condition: str, code: str, place: str) -> None:
+    """The finding names the smallest decided condition."""
     found = [each for each in decided(condition) if each[0] != "DRS330"]
     assert found == [(code, place)]
 
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(-20, 280), st.integers(-20, 280), st.booleans())
-def test_agrees_with_every_value(low: int, high: int, both: bool) -> None:
-    """A pair of comparisons is reported exactly if all 256 values give one verdict, or one part."""
+def test_decided_pairs_agree_with_enumeration(low: int, high: int, both: bool) -> None:
+    """A pair of comparisons is reported exactly if all 256 values give one verdict."""
     parts = [[mode >= low for mode in range(256)], [mode <= high for mode in range(256)]]
     combine = all if both else any
     verdicts = {combine(pair) for pair in zip(*parts, strict=True)}

@@ -1,4 +1,4 @@
-"""No program, however broken, ends in an exception."""
+"""Broken programs never raise an exception in the checks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _WORDS = sorted({token for tokens in _TOKENS for token in tokens})
 
 @st.composite
 def programs(draw: st.DrawFn) -> str:
-    """Draw a bad program with some words more, replaced by others, or left out."""
+    """Draw a bad program with words added, replaced or left out."""
     tokens = list(draw(st.sampled_from(_TOKENS)))
     for _ in range(draw(st.integers(0, 3))):
         place = draw(st.integers(10, len(tokens) - 1))
@@ -33,8 +33,8 @@ def programs(draw: st.DrawFn) -> str:
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(text=programs())
-def test_any_program_gives_findings(text: str) -> None:
-    """Whatever parses is checked to the end, and every finding has a place in it."""
+def test_any_parsed_program_is_checked_without_exception(text: str) -> None:
+    """Each finding has a message and a valid span."""
     loaded = Repository().load_text(_CASES / "rules.deros", text)
     if not isinstance(loaded.model, Rules):
         return

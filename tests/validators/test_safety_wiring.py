@@ -1,4 +1,4 @@
-"""Safety nodes and gates that are wired by hand, and ``safety`` statements, against their rules."""
+"""Hand-wired safety nodes and gates, and ``safety`` statements, checked against their rules."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def findings(*files: str) -> list[Diagnostic]:
-    """Check the files as ``deros check`` does."""
+    """Return the findings of ``deros check`` on the files."""
     repository = Repository()
     named = [repository.load(file) for file in files or ("robot.system",)]
     return check(named, repository, InterfaceStore((), prefixes=()))
@@ -33,7 +33,7 @@ def codes(*files: str) -> list[str]:
 
 
 def edit(path: str, *changes: tuple[str, str]) -> None:
-    """Replace texts that are there."""
+    """Replace texts in a file, each of which must occur."""
     text = Path(path).read_text(encoding="utf-8")
     for old, new in changes:
         assert old in text, old
@@ -41,20 +41,20 @@ def edit(path: str, *changes: tuple[str, str]) -> None:
     Path(path).write_text(text, encoding="utf-8")
 
 
-# By hand ------------------------------------------------------------------------------------------
+# Hand-wired safety nodes --------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("file", ["robot.system", "robot.deros"])
-def test_sound_wiring_has_no_finding(file: str) -> None:
-    """Whichever file is named: the rules beside the system are found."""
+def test_sound_hand_wiring_has_no_findings(file: str) -> None:
+    """The result is the same whether the system or the rules next to it are named."""
     write_hand_wired()
     assert findings(file) == []
 
 
 @pytest.mark.parametrize("name", DIFFERENCES)
 @pytest.mark.parametrize("file", ["robot.system", "robot.deros"])
-def test_each_difference_is_an_error_that_names_both(name: str, file: str) -> None:
-    """The place is in the system; the related place says what the rules mean."""
+def test_wiring_difference_is_an_error_with_both_places(name: str, file: str) -> None:
+    """The span is in the system; the related span is the line in the rules."""
     old, new, code, words = DIFFERENCES[name]
     write_hand_wired()
     edit("robot.system", (old, new))
@@ -67,7 +67,7 @@ def test_each_difference_is_an_error_that_names_both(name: str, file: str) -> No
 
 
 def test_relative_name_in_a_namespace_is_another_topic() -> None:
-    """A namespace around the safety node moves what it is connected to."""
+    """The namespace around the safety node changes the topics it is connected to."""
     write_hand_wired()
     edit(
         "robot.system",
@@ -80,8 +80,8 @@ def test_relative_name_in_a_namespace_is_another_topic() -> None:
     assert "'/front_robot/front'" in finding.message
 
 
-def test_namespace_of_an_imported_system_is_a_finding_of_the_importing_one() -> None:
-    """Alone the system is sound; in a namespace one relative name parts from the rules."""
+def test_namespace_of_an_import_is_a_finding_of_the_importing_system() -> None:
+    """The system is sound alone; in a namespace, a relative name no longer matches the rules."""
     write_hand_wired()
     edit("robot.system", ("connect /front to /front", "connect /front to front"))
     assert findings() == []
@@ -109,12 +109,12 @@ def test_namespace_of_an_imported_system_is_a_finding_of_the_importing_one() -> 
         ("name lock_memory", "name old_switch : bool = true\n  name lock_memory", "'old_switch'"),
     ],
 )
-def test_description_that_is_not_of_the_rules(old: str, new: str, words: str) -> None:
-    """Each kind of difference is named, in one finding."""
+def test_outdated_description_is_one_finding(old: str, new: str, words: str) -> None:
+    """One finding names each difference between the description and the rules."""
     write_hand_wired()
     edit("robot_safety_node.rnd", (old, new))
     found = [each for each in findings() if each.code.name == "DRS353"]
-    if "package" in words:  # the gate, then, is in another one
+    if "package" in words:  # the gate is then in another package
         assert any("gate" in each.span.text for each in found)
         return
     (finding,) = found
@@ -122,8 +122,8 @@ def test_description_that_is_not_of_the_rules(old: str, new: str, words: str) ->
     assert "generate it again" in finding.hint
 
 
-def test_rules_can_be_generated_while_the_description_is_old() -> None:
-    """An input more in the rules: old description, new connection; then both are sound."""
+def test_outdated_description_does_not_block_generation() -> None:
+    """A new input is connected while the description is old; after generation both are sound."""
     write_hand_wired()
     edit("robot.deros", ("/rear.ranges[0]", "/side.ranges[0]"))
     edit(
@@ -139,8 +139,8 @@ def test_rules_can_be_generated_while_the_description_is_old() -> None:
     assert codes() == []
 
 
-def test_type_that_only_an_old_description_has_wrong_keeps_nothing_from_generation() -> None:
-    """The sensor has another type now: the mismatch with the old description only follows."""
+def test_type_mismatch_with_outdated_description_does_not_block_generation() -> None:
+    """The mismatch is only a consequence of the outdated description."""
     write_hand_wired()
     edit("robot.system", ("/rear : sensor_msgs.LaserScan", "/rear : sensor_msgs.Range"))
     edit("robot.deros", ("/rear.ranges[0]", "/rear.range"))
@@ -149,8 +149,8 @@ def test_type_that_only_an_old_description_has_wrong_keeps_nothing_from_generati
 
 
 @pytest.mark.parametrize("target", ["python", "cpp"])
-def test_rules_can_be_generated_before_there_is_a_description(target: str) -> None:
-    """The imports that fail are the files that the generator writes."""
+def test_missing_description_does_not_block_generation(target: str) -> None:
+    """The imports that fail name the files that the generator writes."""
     write_hand_wired()
     for name in ("robot_safety_node", "command_gate"):
         Path(f"{name}.rnd").unlink()
@@ -172,8 +172,8 @@ def test_rules_can_be_generated_before_there_is_a_description(target: str) -> No
     assert findings() == []
 
 
-def test_glob_that_finds_nothing_yet() -> None:
-    """A folder for what is generated may be empty before the first run."""
+def test_empty_import_glob_does_not_block_generation() -> None:
+    """The folder of generated files may be empty before the first run."""
     write_hand_wired()
     edit(
         "robot.system",
@@ -184,23 +184,23 @@ def test_glob_that_finds_nothing_yet() -> None:
     assert deros("generate", "robot.deros", "--target", "python", "-o", "out").code == 0
 
 
-def test_missing_import_of_another_file_stays_what_it_is() -> None:
-    """A sensor's description is not generated from the rules."""
+def test_other_missing_import_is_still_an_error() -> None:
+    """The description of a sensor is not generated from the rules."""
     write_hand_wired()
     edit("robot.system", ("imports\n", 'imports\n  import "sensor.rnd"\n'))
     assert codes("robot.deros") == ["DRS201"]
 
 
-def test_package_of_another_name_is_recognised_by_its_heartbeat() -> None:
-    """Generated with ``--package guard`` the only safety node is that of the only rules."""
+def test_package_is_recognised_by_its_heartbeat() -> None:
+    """With ``--package guard``, the only safety node belongs to the only rules."""
     write_hand_wired("guard")
     assert findings() == []
     edit("robot.system", ("connect /front to /front", "connect /front to /rear"))
     assert codes() == ["DRS354"]
 
 
-def test_rules_in_another_folder_are_asked_for() -> None:
-    """They cannot be found then; named, they are compared with the system."""
+def test_hint_asks_for_rules_in_another_folder() -> None:
+    """They are not found automatically; when named, they are compared with the system."""
     write_hand_wired()
     Path("rules").mkdir()
     text = Path("robot.deros").read_text(encoding="utf-8")
@@ -212,27 +212,27 @@ def test_rules_in_another_folder_are_asked_for() -> None:
     assert codes("robot.system", "rules/robot.deros") == ["DRS354"]
 
 
-def test_neighbour_that_uses_another_system_is_left_alone() -> None:
-    """Its faults are no findings here."""
+def test_rules_of_another_system_are_ignored() -> None:
+    """Faults of rules in the same folder that use another system are not reported."""
     write_hand_wired()
     Path("other.deros").write_text('use "nowhere.system" import Robot\naction x y z', "utf-8")
     Path("third.deros").write_text('use "sub/robot.system" import Robot\naction x', "utf-8")
     assert findings() == []
 
 
-def test_second_instance_by_hand() -> None:
-    """Two nodes of one generated type, in whatever namespace, are one too many."""
+def test_second_hand_wired_instance_is_an_error() -> None:
+    """Two nodes of one generated type are an error in any namespace."""
     write_hand_wired()
     edit("robot.system", ("subsystem Safety {", "subsystem Safety {\n  node again : command_gate"))
     found = [each for each in findings() if each.code.name == "DRS238"]
     assert [each.message for each in found] == ["'/gate' is a second gate of the rules 'robot'"]
 
 
-# Safety statements --------------------------------------------------------------------------------
+# ``safety`` statements ----------------------------------------------------------------------------
 
 
 def with_statement(statement: str, more: str = "") -> None:
-    """Write the system with a statement in place of the nodes."""
+    """Write the system with a statement instead of the nodes."""
     write_hand_wired()
     text = Path("robot.system").read_text(encoding="utf-8")
     text = text[: text.index("subsystem Safety")].replace('  import "robot_safety_node.rnd"\n', "")
@@ -241,15 +241,15 @@ def with_statement(statement: str, more: str = "") -> None:
 
 
 @pytest.mark.parametrize("file", ["robot.system", "robot.deros"])
-def test_statement_has_no_finding(file: str) -> None:
-    """Not for ports that it leaves at their own names, nor for topics that nobody declares."""
+def test_safety_statement_has_no_findings(file: str) -> None:
+    """Unconnected ports and undeclared topics of the statement are not reported."""
     with_statement(STATEMENT)
     assert findings(file) == []
     with_statement('safety "robot.deros"')
     assert findings(file) == []
 
 
-def test_statement_and_a_node_by_hand() -> None:
+def test_statement_and_hand_wired_node_are_an_error() -> None:
     """The rules would run twice."""
     with_statement('safety "robot.deros"', "node again : robot_safety_node")
     edit("robot.system", ("topics\n", 'imports\n  import "robot_safety_node.rnd"\ntopics\n'))
@@ -268,15 +268,15 @@ def test_statement_and_a_node_by_hand() -> None:
         "robot_safety_node/heartbeat to /elsewhere",
     ],
 )
-def test_statement_cannot_connect_what_the_rules_connect(wiring: str) -> None:
-    """It would be the swap that the statement is there to prevent."""
+def test_statement_cannot_rewire_topics_of_the_rules(wiring: str) -> None:
+    """Such a connection could swap two inputs."""
     with_statement(f'safety "robot.deros"\nwirings connect {wiring}')
     (finding,) = [each for each in findings() if each.is_error]
     assert finding.code.name == "DRS237"
 
 
-def test_faults_of_a_statement_are_found_once() -> None:
-    """Unknown ports and parameters, wrong values and names are errors of the statement."""
+def test_faults_in_a_statement_are_reported_once() -> None:
+    """Unknown ports and parameters and invalid values and names are errors of the statement."""
     with_statement(
         'safety "robot.deros" as guard package Bad-name\n'.replace("-", "__")
         + "parameters param publish_freq = 0.0 param unheard_of = 1 param use_sim_time = 3\n"
@@ -292,8 +292,8 @@ def test_faults_of_a_statement_are_found_once() -> None:
     ]
 
 
-def test_rules_with_errors_are_reported_once() -> None:
-    """Their errors are those of the rules' file; nothing is said to be missing in the system."""
+def test_errors_in_the_rules_are_reported_once() -> None:
+    """They are reported in the rules; nothing is reported as missing in the system."""
     with_statement('safety "robot.deros"')
     edit("robot.deros", ("front.ranges[0]", "front.rages[0]"))
     assert [(each.code.name, each.span.file) for each in findings()] == [("DRS302", "robot.deros")]
@@ -301,8 +301,8 @@ def test_rules_with_errors_are_reported_once() -> None:
     assert codes() == ["DRS003"]
 
 
-def test_two_robots_with_one_absolute_topic() -> None:
-    """Both gates would command the same drive, both safety nodes publish the same stop."""
+def test_two_robots_sharing_absolute_topics_are_an_error() -> None:
+    """Both gates would command one drive, and both safety nodes would publish one stop."""
     with_statement('safety "robot.deros"')
     Path("fleet.system").write_text(
         'system Fleet imports import "robot.system"\n'
@@ -311,8 +311,8 @@ def test_two_robots_with_one_absolute_topic() -> None:
     assert {"DRS339", "DRS346"} <= set(codes("fleet.system"))
 
 
-def test_node_past_a_gate_of_an_imported_system() -> None:
-    """The rules see the system that they use; the one around it is checked as well."""
+def test_bypass_around_an_imported_system_is_reported() -> None:
+    """The system that imports the one used by the rules is checked as well."""
     with_statement('safety "robot.deros"')
     Path("joystick.rnd").write_text("node joystick : joy publishes topic out : geometry_msgs.Twist")
     Path("fleet.system").write_text(
@@ -323,16 +323,16 @@ def test_node_past_a_gate_of_an_imported_system() -> None:
     assert "/joystick (out) is wired past the gate '/command_gate'" in found["DRS339"].message
 
 
-def test_rules_that_use_two_systems_run_in_one_of_them() -> None:
-    """Started from both systems, the safety node would be there twice."""
+def test_rules_using_two_systems_run_in_only_one() -> None:
+    """Launched from both systems, the safety node would run twice."""
     with_statement('safety "robot.deros"')
     Path("yard.system").write_text('system Yard\nsafety "robot.deros"\n')
     Path("robot.deros").write_text('use "yard.system" import Yard\n' + RULES)
     assert "DRS238" in codes("robot.deros")
 
 
-def test_depfile_and_launch_file_follow_the_rules() -> None:
-    """The rules are a prerequisite of what is generated from the system."""
+def test_depfile_and_launch_file_include_the_rules() -> None:
+    """The rules are a prerequisite of files generated from the system."""
     with_statement('safety "robot.deros"')
     command = ("generate", "robot.system", "--target", "launch", "-o", "out", "--depfile", "d")
     assert deros(*command).code == 0
@@ -350,8 +350,8 @@ def _names(text: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("target", ["python", "cpp"])
-def test_generated_packages_have_the_programs_that_are_started(target: str) -> None:
-    """Package and executable of each node in the launch file are in the generated package."""
+def test_launched_executables_are_in_the_generated_package(target: str) -> None:
+    """The generated package has the package name and executables of the launch file."""
     with_statement(f'safety "robot.deros" target {target} package guard')
     assert deros("generate", "robot.system", "--target", "launch", "-o", "out").code == 0
     assert deros("generate", "robot.deros", "--target", target, "-o", "out").code == 0

@@ -1,4 +1,4 @@
-"""Topics whose other ends no model describes: never dangling, and of their usual type."""
+"""Standard topics whose other ends are in no model: not reported as dangling, types checked."""
 
 from __future__ import annotations
 
@@ -56,9 +56,9 @@ def _check(folder: Path, ports: str, system: str = "") -> list[Diagnostic]:
     ],
 )
 @pytest.mark.parametrize("section", ["publishes", "subscribes"])
-def test_they_are_external(tmp_path: Path, name: str, kind: str, section: str) -> None:
-    """Declared or not, connected or not, either end may be there alone."""
-    missing = {"DRS101", "DRS102"}  # some of the packages are no part of this environment
+def test_standard_topics_are_external(tmp_path: Path, name: str, kind: str, section: str) -> None:
+    """One end suffices, whether or not the topic is declared or connected."""
+    missing = {"DRS101", "DRS102"}  # some of the packages may not be installed
     port = f"{section} topic {name} : {kind}"
     wired = f"node user : user wirings connect {name} to {name}"
     for system in ("", wired, f"topics topic {name}\n{wired}"):
@@ -66,15 +66,15 @@ def test_they_are_external(tmp_path: Path, name: str, kind: str, section: str) -
         assert found <= missing, system
 
 
-def test_a_topic_of_another_type_is_not_one_of_them(tmp_path: Path) -> None:
-    """A namespace may have a topic of that name that is its own."""
+def test_topic_of_another_type_is_not_standard(tmp_path: Path) -> None:
+    """A topic in a namespace may have the same name and another type."""
     found = _check(tmp_path, "publishes topic /air/tf : std_msgs.Bool")
     assert [each.code.name for each in found] == ["DRS213"]
 
 
 @pytest.mark.parametrize("name", ["/tf", "/clock", "/rosout", "/parameter_events"])
-def test_a_wrong_type_is_an_error(tmp_path: Path, name: str) -> None:
-    """It is the only finding, whatever the system says of the topic."""
+def test_wrong_type_on_a_standard_topic_is_an_error(tmp_path: Path, name: str) -> None:
+    """It is the only finding, whatever the system declares."""
     port = f"publishes topic {name} : std_msgs.String"
     wired = f"node user : user wirings connect {name} to {name}"
     for system in ("", wired, f"topics external topic {name}\n{wired}"):
@@ -85,8 +85,8 @@ def test_a_wrong_type_is_an_error(tmp_path: Path, name: str) -> None:
     assert found == ["DRS232", "DRS232"]
 
 
-def test_a_pin_goes_before_a_convention(tmp_path: Path) -> None:
-    """No client library relies on the type of /diagnostics."""
+def test_declared_type_overrides_a_convention(tmp_path: Path) -> None:
+    """No client library depends on the type of /diagnostics."""
     port = "publishes topic /diagnostics : std_msgs.String"
     system = "topics external topic /diagnostics : std_msgs.String\n"
     system += "node user : user wirings connect /diagnostics to /diagnostics"
@@ -94,8 +94,8 @@ def test_a_pin_goes_before_a_convention(tmp_path: Path) -> None:
     assert [each.code.name for each in _check(tmp_path, port)] == ["DRS213", "DRS232"]
 
 
-def test_markers_need_no_reader(tmp_path: Path) -> None:
-    """They are for tools; somebody has to publish them, though."""
+def test_markers_need_a_publisher_but_no_reader(tmp_path: Path) -> None:
+    """Marker topics are read by tools."""
     kind = "visualization_msgs.MarkerArray"
     wired = "topics topic /markers\nnode user : user wirings connect m to /markers"
     assert _check(tmp_path, f"publishes topic m : {kind}", wired) == []
@@ -103,8 +103,8 @@ def test_markers_need_no_reader(tmp_path: Path) -> None:
     assert [each.code.name for each in found] == ["DRS210"]
 
 
-def test_interactive_markers_are_moved_in_rviz(tmp_path: Path) -> None:
-    """What a server shows needs no reader, and what it is told no publisher, wired or not."""
+def test_interactive_markers_need_no_partners(tmp_path: Path) -> None:
+    """Neither updates nor feedback of a marker server need another end, wired or not."""
     ports = """
     publishes topic marker/update : visualization_msgs.InteractiveMarkerUpdate
     subscribes topic marker/feedback : visualization_msgs.InteractiveMarkerFeedback
@@ -117,8 +117,8 @@ def test_interactive_markers_are_moved_in_rviz(tmp_path: Path) -> None:
     assert _check(tmp_path, ports, wired) == []
 
 
-def test_each_entry_says_why() -> None:
-    """And names types as they are written."""
+def test_each_standard_topic_has_a_reason() -> None:
+    """Each entry has a reason, and its types are interface names."""
     table = json.loads(TABLE.read_text(encoding="utf-8"))
     for entry in (*table["topics"], *table["derived"], table["shown"], table["operated"]):
         assert len(entry["why"]) > 20

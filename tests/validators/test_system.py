@@ -1,4 +1,4 @@
-"""What systems of several files, and very large ones, are told; single findings are under cases."""
+"""Findings of systems of several files and of very large systems; single findings are in cases."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def _said(findings: list[Diagnostic]) -> list[tuple[str, str]]:
     return [(Path(d.span.file).name, d.code.name) for d in findings]
 
 
-def test_an_imported_system_may_be_completed_by_its_importer(tmp_path: Path) -> None:
-    """What a part lacks is reported where the whole is known, and only if the whole lacks it."""
+def test_importing_system_may_complete_a_part(tmp_path: Path) -> None:
+    """Missing ends of a part are reported only if the whole system lacks them."""
     robot = """\
 system Robot
 imports import "arm.system" import "*.rnd"
@@ -57,8 +57,8 @@ node guard : source wirings connect out to /estop
     assert "/left/state" in whole[0].message
 
 
-def test_rules_are_ends_of_the_topics_that_they_use(tmp_path: Path) -> None:
-    """A topic that only the safety node reads or feeds lacks nothing."""
+def test_rules_count_as_ends_of_their_topics(tmp_path: Path) -> None:
+    """A topic that only the safety node reads or feeds is complete."""
     rules = """\
 use "arm.system" import Arm
 action halt publishes 1.0 on /estop : std_msgs.Float64 latched;
@@ -71,7 +71,7 @@ if arm.far then { halt; };
 
 
 def test_findings_of_imports_are_reported_once(tmp_path: Path) -> None:
-    """A node description used by two systems of one run is checked once."""
+    """A node description used by two systems is checked once."""
     bad = "node sink : demo subscribes topic in : std_msgs.Flot64\n"
     robot = 'system Robot\nimports import "arm.system"\nsubsystem left : Arm namespace /left\n'
     findings = _check(
@@ -83,8 +83,8 @@ def test_findings_of_imports_are_reported_once(tmp_path: Path) -> None:
     assert [d.code.name for d in findings].count("DRS102") == 1
 
 
-def test_namespaces_keep_equal_names_apart(tmp_path: Path) -> None:
-    """One system used twice needs a namespace for each use, and no more."""
+def test_namespaces_separate_two_uses_of_a_system(tmp_path: Path) -> None:
+    """A system used twice needs only a namespace for each use."""
     template = """\
 system Robot
 imports import "arm.system"
@@ -103,7 +103,7 @@ subsystem right : Arm{right}
 
 
 def _fleet(nodes: int, wrong: int) -> str:
-    """A chain of nodes, of which the first ``wrong`` are connected to misspelt topics."""
+    """Return a chain of nodes; the first ``wrong`` are connected to misspelt topics."""
     lines = ["system Fleet", 'imports import "*.rnd"', "topics"]
     lines += [f"  topic /stage/number_{i}" for i in range(nodes)]
     for i in range(nodes):
@@ -114,8 +114,8 @@ def _fleet(nodes: int, wrong: int) -> str:
 
 
 @pytest.mark.parametrize("wrong", [0, 400])
-def test_checking_is_linear(tmp_path: Path, wrong: int) -> None:
-    """Four times the nodes, sound or full of misspellings, take about four times as long."""
+def test_check_time_is_linear(tmp_path: Path, wrong: int) -> None:
+    """Four times the nodes, sound or misspelt, take about four times as long."""
 
     def seconds(nodes: int) -> float:
         path = tmp_path / "fleet.system"
@@ -133,8 +133,8 @@ def test_checking_is_linear(tmp_path: Path, wrong: int) -> None:
     assert min(seconds(1200) for _ in range(2)) < 8 * small + 0.05
 
 
-def test_misspelt_topics_among_many_are_still_named(tmp_path: Path) -> None:
-    """The hint finds the topic that was meant among hundreds."""
+def test_misspelt_topics_get_a_hint_among_hundreds(tmp_path: Path) -> None:
+    """The hint names the right topic out of hundreds."""
     findings = _check(tmp_path, "fleet.system", **{"fleet.system": _fleet(400, 3)})
     unknown = [d for d in findings if d.code.name == "DRS205"]
     assert [d.hint for d in unknown] == [f"did you mean '/stage/number_{i}'?" for i in range(3)]

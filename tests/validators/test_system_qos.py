@@ -1,4 +1,4 @@
-"""QoS of whole systems: pairs of many ends, cures that cure, and the ends of generated nodes."""
+"""QoS of whole systems: pairs of many ends, hints that work, and ends of generated nodes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def _check(folder: Path, publisher: str, subscriber: str, wiring: str = "") -> list[Diagnostic]:
-    """Check two nodes on one topic, with whatever stands behind their types."""
+    """Check two nodes on one topic, with the given text after their types."""
     (folder / "a.rnd").write_text(f"node a : demo publishes topic x : std_msgs.Bool {publisher}\n")
     (folder / "b.rnd").write_text(
         f"node b : demo subscribes topic x : std_msgs.Bool {subscriber}\n"
@@ -54,8 +54,8 @@ REQUESTS = [
 
 
 @pytest.mark.parametrize(("offer", "request_"), list(itertools.product(OFFERS, REQUESTS)))
-def test_each_hint_cures(tmp_path: Path, offer: str, request_: str) -> None:
-    """What it says, done at either end, connects the two."""
+def test_qos_hint_fixes_the_mismatch(tmp_path: Path, offer: str, request_: str) -> None:
+    """Following the hint at either end connects the two."""
     findings = _check(tmp_path, offer, request_)
     for finding in findings:
         assert finding.code.name == "DRS228"
@@ -69,7 +69,7 @@ def test_each_hint_cures(tmp_path: Path, offer: str, request_: str) -> None:
 
 
 def _changed(text: str, words: str, taken: list[str] | None = None) -> str:
-    """Return a profile with other words in the place of those of the same policies."""
+    """Return a profile with some policies replaced."""
     policies = ["deadline", "lease"]
     for word in policies:
         if word in words or word in (taken or []):
@@ -89,7 +89,7 @@ def _changed(text: str, words: str, taken: list[str] | None = None) -> str:
 
 
 def test_both_ends_are_shown(tmp_path: Path) -> None:
-    """Where they are connected, and where their QoS is stated."""
+    """The finding shows both connections and both QoS statements."""
     (finding,) = _check(tmp_path, "qos best_effort", "qos reliable")
     places = [finding.span, *(related.span for related in finding.related)]
     assert {(Path(span.file).name, span.text) for span in places} == {
@@ -102,8 +102,8 @@ def test_both_ends_are_shown(tmp_path: Path) -> None:
     assert "/b (x)" in finding.message
 
 
-def test_many_ends_of_one_profile_are_one_side(tmp_path: Path) -> None:
-    """The side with fewer ends has the findings, and the change is asked of it."""
+def test_ends_of_one_profile_are_grouped(tmp_path: Path) -> None:
+    """The finding is at the side with fewer ends, which is asked to change."""
     more = "\n".join(f"node b{n} : b wirings connect x to /x" for n in range(300))
     (finding,) = _check(tmp_path, "", "qos transient_local", more)
     assert "/b (x), /b0 (x), /b1 (x) and 298 more" in finding.message
@@ -112,8 +112,8 @@ def test_many_ends_of_one_profile_are_one_side(tmp_path: Path) -> None:
     assert finding.span.line == 5
 
 
-def test_an_end_without_a_description_of_its_qos_is_only_warned_of(tmp_path: Path) -> None:
-    """An existing program may well be best effort, though nobody says so."""
+def test_unstated_qos_of_a_program_is_only_a_warning(tmp_path: Path) -> None:
+    """An existing program may be best effort without saying so."""
     (tmp_path / "c.rnd").write_text(
         'node c : demo executable "c" subscribes topic x : std_msgs.Bool\n'
     )
@@ -130,8 +130,8 @@ RULES = sorted(
 
 
 @pytest.mark.parametrize("path", RULES, ids=lambda path: path.stem)
-def test_the_ends_of_rules_are_those_of_the_generated_nodes(path: Path) -> None:
-    """What is checked is what runs: the same topics, directions and QoS."""
+def test_ends_of_rules_match_the_generated_nodes(path: Path) -> None:
+    """Topics, directions and QoS are the same in checks and generated nodes."""
     rules = Repository().load(path).model
     assert isinstance(rules, Rules)
     result = build(rules, InterfaceStore())
@@ -150,8 +150,8 @@ def test_the_ends_of_rules_are_those_of_the_generated_nodes(path: Path) -> None:
         assert ports[end.kind, end.topic] == end.qos
 
 
-def test_a_pin_of_an_imported_system_holds_where_the_outer_one_says_nothing(tmp_path: Path) -> None:
-    """Type and QoS are pinned by the outermost declaration that states them."""
+def test_type_and_qos_come_from_the_outermost_declaration(tmp_path: Path) -> None:
+    """A declaration of an imported system applies where the outer one states nothing."""
     (tmp_path / "a.rnd").write_text("node a : demo publishes topic x : std_msgs.Bool\n")
     (tmp_path / "part.system").write_text(
         "system Part topics external topic /x : std_msgs.Empty qos transient_local\n"

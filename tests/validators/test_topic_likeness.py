@@ -1,4 +1,4 @@
-"""Which topic was probably meant: names of public ROS systems, and what must not be advised."""
+"""Topic suggestions: names from public ROS systems, and names that must not be suggested."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ import pytest
 
 from deros.validators.topic_likeness import LIKELY, LikelyTopics, is_mistyped, likeness
 
-# Subscribed, published with the same type, and what is advised, best first. Names are those of
-# TurtleBot3, Nav2, Husky and Jackal, RealSense, ZED, Velodyne and Ouster drivers, u-blox and
-# Microstrain drivers, imu_tools, imu_compass, robot_localization, slam_toolbox, and MoveIt.
+# Subscribed topic, topics published with the same type, expected suggestions with the best first.
+# Names are those of TurtleBot3, Nav2, Husky and Jackal, RealSense, ZED, Velodyne and Ouster
+# drivers, u-blox and Microstrain drivers, imu_tools, imu_compass, robot_localization, slam_toolbox,
+# and MoveIt.
 PAIRS: list[tuple[str, list[str], list[str]]] = [
     ("/imu/data_compass", ["/imu/data", "/imu/data/bias"], ["/imu/data"]),
     (
@@ -54,41 +55,41 @@ PAIRS: list[tuple[str, list[str], list[str]]] = [
 
 
 @pytest.mark.parametrize(("wanted", "published", "advice"), PAIRS)
-def test_advice(wanted: str, published: list[str], advice: list[str]) -> None:
-    """The right partner comes first; of what is something else, nothing is said."""
+def test_suggested_topics(wanted: str, published: list[str], advice: list[str]) -> None:
+    """The right partner comes first, and unrelated topics are not suggested."""
     assert LikelyTopics(published).best(wanted, lambda _: 0.0) == advice
 
 
 @pytest.mark.parametrize(("wanted", "published", "_"), PAIRS)
-def test_likeness_has_no_direction(wanted: str, published: list[str], _: list[str]) -> None:
-    """Whichever of two names is the wrong one."""
+def test_likeness_is_symmetric(wanted: str, published: list[str], _: list[str]) -> None:
+    """Either of two names may be the wrong one."""
     for name in published:
         assert likeness(wanted, name) == pytest.approx(likeness(name, wanted))
 
 
-def test_no_more_than_three_are_named() -> None:
-    """A reader looks at three."""
+def test_at_most_three_topics_are_suggested() -> None:
+    """The best three are returned."""
     names = [f"/{place}/scan" for place in ("a", "b", "c", "d")]
     assert len(LikelyTopics(names).best("/scan", lambda _: 0.0)) == 3
 
 
-def test_what_speaks_against_a_candidate_keeps_it_out() -> None:
-    """It takes no place of another."""
+def test_excluded_candidate_is_not_suggested() -> None:
+    """An excluded candidate does not take the place of another."""
     names = ["/front/scan", "/scan_filtered"]
     found = LikelyTopics(names).best("/scan", lambda name: None if name in names[:1] else 0.0)
     assert found == names[1:]
 
 
-def test_words_of_their_own_are_not_mistyped() -> None:
-    """The distance of letters alone says nothing."""
+def test_real_words_are_not_treated_as_typos() -> None:
+    """Edit distance alone does not decide."""
     assert not is_mistyped("rear", "near")
     assert not is_mistyped("1", "2")
     assert is_mistyped("fornt", "front")
     assert is_mistyped("odmo", "odom")
 
 
-def test_many_candidates_are_found_by_what_they_share() -> None:
-    """Ten thousand names of one kind are not compared one by one."""
+def test_suggestions_are_fast_among_ten_thousand_names() -> None:
+    """Ten thousand similar names are not compared one by one."""
     names = [f"/cart_{n}/stage_{m}" for n in range(1000) for m in range(9)]
     likely = LikelyTopics([*names, "/cart_7/braking", "/scan_front"])
     begun = time.process_time()

@@ -1,4 +1,4 @@
-"""Topics that lack an end: which others are proposed, and which never are."""
+"""Topics that lack an end: which partners are suggested, and which are not."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def _likely(findings: list[Diagnostic]) -> list[Diagnostic]:
     return [each for each in findings if each.code.name == "DRS214"]
 
 
-def test_the_right_partner_is_proposed_though_others_read_it(tmp_path: Path) -> None:
-    """The topic that was meant may be in use already; a free one of another word is not it."""
+def test_topic_already_in_use_is_suggested(tmp_path: Path) -> None:
+    """The right topic may have readers; a free topic with another word is not suggested."""
     (finding,) = _likely(
         _check(
             tmp_path,
@@ -50,8 +50,8 @@ node compass : compass wirings connect in to /imu/data_compass
     assert finding.hint == "connect /compass to '/imu/data'"
 
 
-def test_up_to_three_are_named_best_first(tmp_path: Path) -> None:
-    """One that nobody reads comes before one as likely that has its readers."""
+def test_unread_topics_are_suggested_first(tmp_path: Path) -> None:
+    """Up to three are named; an unread topic comes before an equally likely one with readers."""
     (finding,) = _likely(
         _check(
             tmp_path,
@@ -67,8 +67,8 @@ node s : compass wirings connect in to /imu
     assert finding.hint == "connect /s to '/b/imu', '/a/imu' or '/imu_a', or the other way round"
 
 
-def test_two_ends_of_one_node_are_two_topics(tmp_path: Path) -> None:
-    """What a filter reads is not what it publishes, however alike the names are."""
+def test_ends_of_the_same_node_are_not_joined(tmp_path: Path) -> None:
+    """A filter does not read its own output, however similar the names."""
     system = """\
 topics topic /scan topic /scan_filtered
 node filter : filter wirings connect in to /scan connect out to /scan_filtered
@@ -80,8 +80,8 @@ node filter : filter wirings connect in to /scan connect out to /scan_filtered
 
 @pytest.mark.parametrize("left", ["left", "robot1/base"])
 @pytest.mark.parametrize("right", ["right", "robot2/base"])
-def test_two_robots_have_topics_of_their_own(tmp_path: Path, left: str, right: str) -> None:
-    """A reader of one is not joined with a publisher of the other."""
+def test_topics_of_different_robots_are_not_joined(tmp_path: Path, left: str, right: str) -> None:
+    """A reader on one robot is not paired with a publisher on the other."""
     system = f"""\
 topics topic /{left}/imu topic /{right}/imu external topic /bias
 subsystem left namespace /{left} {{ node driver : driver
@@ -95,8 +95,8 @@ subsystem right namespace /{right} {{
     assert all("imu" not in each.hint for each in findings)
 
 
-def test_another_type_is_another_topic(tmp_path: Path) -> None:
-    """A connection would be an error."""
+def test_topic_of_another_type_is_not_suggested(tmp_path: Path) -> None:
+    """Connecting it would be an error."""
     system = """\
 topics topic /imu/data topic /imu/dta
 node text : text wirings connect out to /imu/data
@@ -105,8 +105,8 @@ node compass : compass wirings connect in to /imu/dta
     assert _likely(_check(tmp_path, system)) == []
 
 
-def test_a_publisher_that_nobody_hears_is_shown_the_topic_with_readers(tmp_path: Path) -> None:
-    """A controller that publishes past its drive is not just unread."""
+def test_unread_publisher_gets_a_topic_with_readers_as_hint(tmp_path: Path) -> None:
+    """The hint covers a controller that publishes past its drive."""
     system = """\
 topics topic /imu/data topic /imu/dta external topic /bias
 node good : driver wirings connect data to /imu/data connect bias to /bias
@@ -118,7 +118,7 @@ node wrong : driver wirings connect data to /imu/dta connect bias to /bias
     assert finding.hint.startswith("did you mean '/imu/data'?")
 
 
-def test_a_system_used_twice_says_once_what_it_lacks(tmp_path: Path) -> None:
+def test_missing_end_in_a_system_used_twice_is_reported_once(tmp_path: Path) -> None:
     """The port is written once, however often its node runs."""
     (tmp_path / "part.system").write_text(
         'system Part imports import "compass.rnd"\nnode compass : compass\n'
@@ -132,8 +132,8 @@ subsystem right : Part namespace /right
     assert [each.span.text for each in findings] == ["compass"]
 
 
-def test_transforms_under_another_name_are_reported(tmp_path: Path) -> None:
-    """Nobody describes who reads transforms, but they are for one topic."""
+def test_misspelt_transform_topic_is_reported(tmp_path: Path) -> None:
+    """Readers of transforms are in no model, but transforms belong on one topic."""
     node = 'node program : demo executable "program" publishes topic {} : tf2_msgs.TFMessage\n'
     for name, expected in (("/tf", []), ("/ft", ["DRS213"])):
         folder = tmp_path / name.strip("/")
@@ -143,8 +143,8 @@ def test_transforms_under_another_name_are_reported(tmp_path: Path) -> None:
         assert [each.code.name for each in findings] == expected
 
 
-def test_what_is_declared_and_lacks_a_publisher_is_asked_of_programs(tmp_path: Path) -> None:
-    """A topic that leaves the model may be the one that an output was meant for."""
+def test_program_output_is_matched_with_unpublished_external_topics(tmp_path: Path) -> None:
+    """The output may have been meant for a topic that leaves the model."""
     (tmp_path / "program.rnd").write_text(
         'node program : demo executable "program" publishes topic maps : nav_msgs.OccupancyGrid\n'
     )
