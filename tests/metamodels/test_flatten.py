@@ -1,4 +1,4 @@
-"""What a system amounts to at run time: full names, topics, parameters and remappings."""
+"""The flattened system: full names, topics, parameters and remappings."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def only_node(folder: Path, members: str, **nodes: str) -> FlatNode:
 
 
 def topics_of(node: FlatNode) -> dict[str, str]:
-    """Return where each port ends."""
+    """Return the topic of each port."""
     return {port.port.name: port.topic for port in node.ports}
 
 
@@ -50,13 +50,13 @@ def topics_of(node: FlatNode) -> dict[str, str]:
         ("~/a", "/", "/me/a"),
     ],
 )
-def test_names_resolve_as_ros_2_resolves_them(name: str, namespace: str, meaning: str) -> None:
-    """Absolute names stand, relative ones go under the namespace, private ones under the node."""
+def test_names_resolve_as_in_ros_2(name: str, namespace: str, meaning: str) -> None:
+    """Absolute names stay, relative ones go under the namespace, private ones under the node."""
     assert resolve_name(name, namespace, "me") == meaning
 
 
-def test_namespaces_extend_and_replace(tmp_path: Path) -> None:
-    """A relative namespace extends the one around it, an absolute one replaces it."""
+def test_relative_namespaces_extend_and_absolute_ones_replace(tmp_path: Path) -> None:
+    """A relative namespace extends the enclosing one, an absolute one replaces it."""
     nodes = flat(
         tmp_path,
         """
@@ -78,8 +78,8 @@ def test_namespaces_extend_and_replace(tmp_path: Path) -> None:
     assert [node.path for node in nodes] == [(), ("plain",), ("a", "b"), ("a", "b"), ("a", "c")]
 
 
-def test_unwired_ports_talk_on_their_own_names(tmp_path: Path) -> None:
-    """Without a wiring a port ends on its own name, or the one that its parameter holds."""
+def test_unwired_port_uses_its_own_name(tmp_path: Path) -> None:
+    """Without a wiring a port has its own name, or the one in its parameter."""
     node = only_node(tmp_path, "node eye : lidar namespace /front")
     assert topics_of(node) == {
         "scan": "/front/scan",
@@ -91,7 +91,7 @@ def test_unwired_ports_talk_on_their_own_names(tmp_path: Path) -> None:
     assert node.parameters == node.remappings == ()
 
 
-def test_an_unwired_port_follows_the_value_set_for_its_parameter(tmp_path: Path) -> None:
+def test_unwired_port_follows_the_value_of_its_parameter(tmp_path: Path) -> None:
     """``param`` alone moves a port that takes its name from that parameter."""
     node = only_node(tmp_path, 'node eye : lidar parameters param topic_name = "/cloud"')
     assert topics_of(node)["cloud"] == "/cloud"
@@ -118,8 +118,8 @@ def test_wirings_become_remappings(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("end", ["cloud", "topic_name"])
-def test_a_port_with_via_is_wired_by_setting_its_parameter(tmp_path: Path, end: str) -> None:
-    """By its own name or the parameter's: the node reads the topic there, a remapping is no use."""
+def test_port_with_via_is_wired_through_its_parameter(tmp_path: Path, end: str) -> None:
+    """The wiring sets the parameter instead of a remapping, by either name."""
     node = only_node(tmp_path, f"node eye : lidar wirings connect {end} to /cloud")
     assert node.parameters == (("topic_name", "/cloud"),)
     assert node.remappings == ()
@@ -128,7 +128,7 @@ def test_a_port_with_via_is_wired_by_setting_its_parameter(tmp_path: Path, end: 
     assert node.untyped == ()
 
 
-def test_a_wiring_through_an_unclaimed_parameter_has_no_type(tmp_path: Path) -> None:
+def test_wiring_through_an_unclaimed_parameter_is_untyped(tmp_path: Path) -> None:
     """It sets the parameter, and is listed apart from the ports."""
     legacy = 'node legacy : old parameters name out_topic : string = "x"'
     node = only_node(
@@ -140,8 +140,8 @@ def test_a_wiring_through_an_unclaimed_parameter_has_no_type(tmp_path: Path) -> 
     assert [untyped.topic for untyped in node.untyped] == ["/b"]
 
 
-def test_the_first_of_two_wirings_counts_everywhere(tmp_path: Path) -> None:
-    """Port, remapping and parameter agree even in a model that is wrong."""
+def test_first_of_two_wirings_applies(tmp_path: Path) -> None:
+    """Port, remapping and parameter agree even in an invalid model."""
     node = only_node(
         tmp_path,
         """
@@ -156,7 +156,7 @@ def test_the_first_of_two_wirings_counts_everywhere(tmp_path: Path) -> None:
     assert topics_of(node)["cloud"] == "/one"
 
 
-def test_a_name_that_two_ports_share_is_remapped_once(tmp_path: Path) -> None:
+def test_name_shared_by_two_ports_is_remapped_once(tmp_path: Path) -> None:
     """A node that reads and writes one topic moves with both ends."""
     node = only_node(
         tmp_path,
@@ -171,8 +171,8 @@ def test_a_name_that_two_ports_share_is_remapped_once(tmp_path: Path) -> None:
     assert [port.topic for port in node.ports] == ["/words", "/words"]
 
 
-def test_the_port_of_exactly_that_name_comes_first(tmp_path: Path) -> None:
-    """``x`` and ``/x`` are two names; the slash may be left out only where that is clear."""
+def test_exact_port_name_has_priority(tmp_path: Path) -> None:
+    """``x`` and ``/x`` are two names; the slash may be omitted only if that is unambiguous."""
     node = only_node(
         tmp_path,
         "node a : two namespace /n wirings connect x to /y",
@@ -181,7 +181,7 @@ def test_the_port_of_exactly_that_name_comes_first(tmp_path: Path) -> None:
     assert node.remappings == (("x", "/y"),)
 
 
-def test_a_system_used_twice_is_there_twice(tmp_path: Path) -> None:
+def test_system_used_twice_appears_twice(tmp_path: Path) -> None:
     """Each use has its own namespace, nodes and topics."""
     (tmp_path / "arm.system").write_text(
         'system Arm imports import "lidar.rnd" topics topic scans topic /clock '
@@ -204,7 +204,7 @@ def test_a_system_used_twice_is_there_twice(tmp_path: Path) -> None:
     assert [topic.name for topic in found.topics] == ["/left/scans", "/clock", "/r/scans", "/clock"]
 
 
-def test_topics_are_found_by_their_graph_names(tmp_path: Path) -> None:
+def test_topics_are_found_by_their_full_names(tmp_path: Path) -> None:
     """A topic declared in a subsystem lies under its namespace."""
     found = flat(tmp_path, "topics topic /a subsystem s namespace s { topics topic b }")
     assert [topic.name for topic in found.topics] == ["/a", "/s/b"]
@@ -212,8 +212,8 @@ def test_topics_are_found_by_their_graph_names(tmp_path: Path) -> None:
     assert found.topic("/b") is None
 
 
-def test_nodes_of_unknown_types_are_kept_without_ports(tmp_path: Path) -> None:
-    """The checks report them; the rest of the system is there all the same."""
+def test_nodes_of_unknown_types_have_no_ports(tmp_path: Path) -> None:
+    """The checks report them; the rest of the system is complete."""
     from deros.metamodels.load import Repository
     from deros.metamodels.system import System
 
@@ -224,8 +224,8 @@ def test_nodes_of_unknown_types_are_kept_without_ports(tmp_path: Path) -> None:
     assert (node.type, node.full_name, node.ports) == (None, "/a", ())
 
 
-def test_nodes_come_in_the_order_written(tmp_path: Path) -> None:
-    """Depth does not matter for the order of nodes."""
+def test_nodes_keep_the_order_of_the_source(tmp_path: Path) -> None:
+    """Nesting does not change the order of nodes."""
     found = flat(
         tmp_path,
         """

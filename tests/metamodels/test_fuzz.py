@@ -1,4 +1,4 @@
-"""Whatever a file holds, loading it ends in a model or in diagnostics, never in an exception."""
+"""Loading any file returns a model or diagnostics, and never raises."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.support.mutations import PIECES, TEXTS, mutated
 
 
 def _sound(loaded: LoadedFile) -> None:
-    """Hold what is true of every result: a model or a finding, and places that lie in the text."""
+    """Check that a result has a model or a finding, and spans that lie in the text."""
     assert loaded.model is not None or loaded.diagnostics
     for found in loaded.diagnostics:
         assert found.message
@@ -23,7 +23,7 @@ def _sound(loaded: LoadedFile) -> None:
 
 @settings(max_examples=300, deadline=None)
 @given(mutated())
-def test_mutated_listings(case: tuple[str, str]) -> None:
+def test_mutated_listings_do_not_raise(case: tuple[str, str]) -> None:
     """Truncated and mutated models load without an exception."""
     suffix, text = case
     _sound(Repository().load_text(f"fuzz.{suffix}", text))
@@ -31,8 +31,8 @@ def test_mutated_listings(case: tuple[str, str]) -> None:
 
 @settings(max_examples=100, deadline=None)
 @given(st.sampled_from(sorted(TEXTS)), st.data())
-def test_mutated_bytes(suffix: str, data: st.DataObject) -> None:
-    """Bytes of a model file, some of them replaced, load without an exception."""
+def test_mutated_bytes_do_not_raise(suffix: str, data: st.DataObject) -> None:
+    """Model files with some bytes replaced load without an exception."""
     content = bytearray(data.draw(st.sampled_from(TEXTS[suffix])).encode())
     for _ in range(data.draw(st.integers(1, 4))):
         content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
@@ -44,13 +44,13 @@ def test_mutated_bytes(suffix: str, data: st.DataObject) -> None:
 
 @settings(max_examples=100, deadline=None)
 @given(st.sampled_from(sorted(TEXTS)), st.text(max_size=60))
-def test_any_text(suffix: str, text: str) -> None:
-    """Text that is no model at all loads without an exception."""
+def test_arbitrary_text_does_not_raise(suffix: str, text: str) -> None:
+    """Text that is not a model loads without an exception."""
     _sound(Repository().load_text(f"fuzz.{suffix}", text))
 
 
 @settings(max_examples=100, deadline=None)
 @given(st.sampled_from(sorted(TEXTS)), st.lists(PIECES, max_size=40))
-def test_any_pieces(suffix: str, pieces: list[str]) -> None:
-    """Words and signs of the languages in any order load without an exception."""
+def test_arbitrary_tokens_do_not_raise(suffix: str, pieces: list[str]) -> None:
+    """Words and symbols of the languages in any order load without an exception."""
     _sound(Repository().load_text(f"fuzz.{suffix}", " ".join(pieces)))

@@ -1,4 +1,4 @@
-"""Gates and optional behaviours: what is written becomes the syntax tree that it says."""
+"""Gates and optional behaviours: from source text to syntax tree."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _errors(text: str) -> list[tuple[str, str, str]]:
     return [(each.message, each.span.text, each.hint) for each in loaded.diagnostics]
 
 
-def test_gate_as_printed() -> None:
+def test_documented_gate_is_parsed() -> None:
     """Topics, type, rate and every line of the example in the documentation."""
     gate = _gate(PRINTED)
     assert (gate.source.text, gate.target.text) == ("/cmd_vel_nav", "/cmd_vel")
@@ -81,8 +81,8 @@ def test_gate_as_printed() -> None:
     assert (second.path, second.unit) == (("angular", "z"), "rad/s")
 
 
-def test_gate_as_printed_is_textx_too() -> None:
-    """The metamodel that textX itself uses takes it."""
+def test_documented_gate_is_parsed_by_textx() -> None:
+    """The metamodel that textX itself uses accepts it."""
     model = metamodel("deros").model_from_str(PRINTED)
     (gate,) = model.statements
     assert [line.action for line in gate.lines] == ["stop", "low_speed", None, None]
@@ -100,15 +100,15 @@ def test_gate_as_printed_is_textx_too() -> None:
         "gate ~/a -> ~/b : geometry_msgs.Twist rate 20 Hz // why\n { /* nothing */ stop: zero; }",
     ],
 )
-def test_layout_is_free(text: str) -> None:
-    """Blanks, line breaks and semicolons may be there or not."""
+def test_gate_layout_is_free(text: str) -> None:
+    """Spaces, line breaks and semicolons are optional."""
     gate = _gate(f"const a = 3 {text} const b = 1")
     assert gate.source.text.endswith("a")
     assert gate.target.text.endswith("b")
     assert all(line.action or line.duration for line in gate.lines)
 
 
-def test_what_follows_a_zero() -> None:
+def test_reset_and_resume_clauses() -> None:
     """`until reset` belongs to its line, `resume on zero command` to the gate, wherever it is."""
     for text in (
         "stop: zero until reset; lost input for 1 s: zero; resume on zero command;",
@@ -122,8 +122,8 @@ def test_what_follows_a_zero() -> None:
     assert _gate(PRINTED).resume is None
 
 
-def test_description() -> None:
-    """A text behind the rate says what the gate is for."""
+def test_gate_description() -> None:
+    """A text after the rate describes the gate."""
     assert _gate('gate a -> b : x.Y rate 1 Hz "The drive" { a: zero; }').description == "The drive"
 
 
@@ -133,8 +133,8 @@ def _limit(text: str) -> GateLimit:
     return limit
 
 
-def test_ends_of_limits() -> None:
-    """Names, units of their own, and whether they belong to the interval."""
+def test_limit_bounds() -> None:
+    """Bounds may be names, have their own units, and be open or closed."""
     limit = _limit("position[2].x to (-low, 3 cm] m")
     assert limit.path == ("position", 2, "x")
     assert (limit.lower_closed, limit.upper_closed) == (False, True)
@@ -144,8 +144,8 @@ def test_ends_of_limits() -> None:
     assert (limit.upper.unit, limit.unit) == ("cm", "m")
 
 
-def test_places() -> None:
-    """A limit knows the places of its field, its interval and its unit."""
+def test_limit_spans() -> None:
+    """A limit stores the spans of its field, interval and unit."""
     limit = _limit("linear.x to [-1, 1] m/s")
     spans = (limit.span, limit.path_span, limit.interval_span, limit.unit_span)
     assert [span.text for span in spans if span] == [
@@ -156,8 +156,8 @@ def test_places() -> None:
     ]
 
 
-def test_keywords_are_names_too() -> None:
-    """Actions, fields, constants and behaviours may be called as the words of a gate."""
+def test_gate_keywords_are_valid_names() -> None:
+    """Actions, fields, constants and behaviours may have names that are keywords of gates."""
     rules = _rules(
         """action gate; action lost; action zero; action limit; action heartbeat; action optional;
         action input; action rate; action to;
@@ -191,8 +191,8 @@ def test_keywords_are_names_too() -> None:
     ]
 
 
-def test_actions_may_be_called_as_what_follows_a_zero() -> None:
-    """`until`, `reset`, `resume` and `command` are words of a gate in their places alone."""
+def test_clause_keywords_are_valid_action_names() -> None:
+    """`until`, `reset`, `resume` and `command` are keywords only in their places."""
     (gate,) = _rules(
         """gate a -> b : x.Y rate 1 Hz {
           resume: zero until: zero until reset reset: limit x to [0, 1] resume on zero command
@@ -211,8 +211,8 @@ def test_actions_may_be_called_as_what_follows_a_zero() -> None:
     assert all(limit.unit is None for line in gate.lines for limit in line.limits)
 
 
-def test_numbers_before_the_new_words_have_no_unit() -> None:
-    """``gate``, ``optional`` and ``lost`` start what follows a number."""
+def test_gate_keywords_after_a_number_are_not_units() -> None:
+    """``gate``, ``optional`` and ``lost`` start the next statement."""
     rules = _rules(
         """const a = 3 gate a -> b : x.Y rate 1 Hz { s: limit x to [0, 1] lost input for 1 s: zero }
         const b = 4 optional behaviour c: if e.r then { s; }"""
@@ -223,7 +223,7 @@ def test_numbers_before_the_new_words_have_no_unit() -> None:
 
 
 def test_optional_behaviour() -> None:
-    """The word before a named behaviour, nested ones too, makes it optional."""
+    """``optional`` before a named behaviour, nested or not, makes it optional."""
     (outer,) = _rules(
         "optional behaviour a: if e.r then { stop; optional behaviour b: if e.s then { stop; } };"
     ).behaviours
@@ -233,7 +233,7 @@ def test_optional_behaviour() -> None:
 
 
 def test_optional_behaviour_needs_a_name() -> None:
-    """Without one there is nothing to switch it off by."""
+    """The name is required to disable it."""
     assert _errors("optional if e.r then { stop; };") == [
         (
             "an optional behaviour needs a name, by which it is switched off",
@@ -262,7 +262,7 @@ def test_optional_behaviour_needs_a_name() -> None:
         ("gate a -> b : x.Y rate 1 Hz { lost command for 1 s: zero; }", "found 'command' where"),
     ],
 )
-def test_syntax_errors(text: str, message: str) -> None:
-    """What is missing is named where it is missing."""
+def test_gate_syntax_errors(text: str, message: str) -> None:
+    """The message names the missing token at its place."""
     (error,) = _errors(text)
     assert error[0].startswith(message)

@@ -1,4 +1,4 @@
-"""The textX metamodels behind the loader, as textX itself and other tools see them."""
+"""The textX metamodels behind the loader, as used by textX itself and other tools."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def _parser_rules(language: Language) -> list[Any]:
     return list(found.values())
 
 
-def test_suffixes() -> None:
-    """Each suffix belongs to one language, whatever stands before it."""
+def test_language_follows_from_the_suffix() -> None:
+    """Each suffix belongs to one language."""
     assert language_of("a/b.rnd") == "rosnode"
     assert language_of("a.b.system") == "rossystem"
     assert language_of("x.deros") == "deros"
@@ -47,13 +47,13 @@ def test_suffixes() -> None:
 
 
 @pytest.mark.parametrize("language", LANGUAGES.values())
-def test_a_metamodel_is_built_once(language: Language) -> None:
-    """Asking twice gives the same metamodel."""
+def test_metamodel_is_built_once(language: Language) -> None:
+    """A second call returns the same metamodel."""
     assert metamodel(language) is metamodel(language)
 
 
-def test_textx_parses_comments_and_all() -> None:
-    """Used by textX alone, a metamodel takes a text with its comments."""
+def test_textx_metamodel_accepts_comments() -> None:
+    """The metamodel alone parses a text with comments."""
     model = metamodel("rosnode").model_from_str(f"// first\n{paper.FIGURE_11}/* last */")
     assert model.name == "ci_safety_node"
     parameters = get_children_of_type("Parameter", model)
@@ -64,8 +64,8 @@ def test_textx_parses_comments_and_all() -> None:
     ]
 
 
-def test_tokens_know_their_place() -> None:
-    """In the loader's models, attribute values are texts with an offset."""
+def test_tokens_have_offsets() -> None:
+    """Attribute values in the loader's models are strings with an offset."""
     text = "node  a : p publishes topic /x : std_msgs.Bool"
     model = quick_metamodel("rosnode").model_from_str(text)
     (port,) = get_children_of_type("TopicPort", model)
@@ -74,16 +74,16 @@ def test_tokens_know_their_place() -> None:
         assert text[token.start : token.end] == token
 
 
-def test_references_without_imports_resolve_to_nothing() -> None:
-    """A name that textX cannot follow is a reference without a target, not an error."""
+def test_unresolved_reference_has_no_target() -> None:
+    """A name that textX cannot resolve is a reference without a target, not an error."""
     model = metamodel("rossystem").model_from_str("system S node a : camera")
     (node,) = get_children_of_type("NodeInstance", model)
     assert isinstance(node.type, Reference)
     assert (node.type.name, node.type.target) == ("camera", None)
 
 
-def test_textx_reports_the_same_place() -> None:
-    """The loader's syntax errors stand where textX's own do."""
+def test_syntax_error_position_matches_textx() -> None:
+    """The loader reports syntax errors where textX does."""
     text = "node a : p\nparameters // none\n  name x double"
     with pytest.raises(TextXSyntaxError) as raised:
         metamodel("rosnode").model_from_str(text)
@@ -92,15 +92,15 @@ def test_textx_reports_the_same_place() -> None:
 
 
 @pytest.mark.parametrize("language", LANGUAGES.values())
-def test_every_token_has_words(language: Language) -> None:
-    """Whatever a syntax error may name is named in words or as the keyword itself."""
+def test_every_token_has_a_readable_name(language: Language) -> None:
+    """Syntax errors name tokens in words or as the keyword itself, not as a pattern."""
     for rule in _parser_rules(language):
         if isinstance(rule, Match) and not isinstance(rule, StrMatch):
             words = in_words(rule)
             assert not set("\\^$|?*+") & set(words), rule.rule_name
 
 
-def test_loading_is_linear(tmp_path: Path) -> None:
+def test_load_time_is_linear(tmp_path: Path) -> None:
     """Eight times the nodes take about eight times as long."""
     seconds = []
     for nodes in (150, 1200):

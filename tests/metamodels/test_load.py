@@ -1,4 +1,4 @@
-"""The repository: each file once, imports, and every way in which reading a file can fail."""
+"""The repository: each file loaded once, imports, and all ways in which reading a file fails."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _only(loaded: LoadedFile) -> Diagnostic:
 
 
 def test_each_file_is_loaded_once(tmp_path: Path) -> None:
-    """Two systems that import one node description share the very same node type."""
+    """Two systems that import one node description share the same node type."""
     _write(
         tmp_path,
         camera_rnd=NODE,
@@ -46,7 +46,7 @@ def test_each_file_is_loaded_once(tmp_path: Path) -> None:
     assert repository.load(tmp_path / "a.system").model is a
 
 
-def test_one_file_under_two_names_is_loaded_once(tmp_path: Path) -> None:
+def test_symbolic_link_is_the_same_file(tmp_path: Path) -> None:
     """A symbolic link leads to the same loaded file."""
     _write(tmp_path, camera_rnd=NODE)
     (tmp_path / "link.rnd").symlink_to("camera.rnd")
@@ -54,8 +54,8 @@ def test_one_file_under_two_names_is_loaded_once(tmp_path: Path) -> None:
     assert repository.load(tmp_path / "link.rnd") is repository.load(tmp_path / "camera.rnd")
 
 
-def test_a_glob_imports_in_order_of_names(tmp_path: Path) -> None:
-    """A glob finds all node descriptions of a folder, sorted, and nothing else there."""
+def test_glob_imports_sorted_node_descriptions(tmp_path: Path) -> None:
+    """A glob imports all node descriptions of a folder, sorted, and nothing else."""
     nodes = tmp_path / "nodes"
     nodes.mkdir()
     _write(nodes, b_rnd="node b : p", a_rnd="node a : p", notes_txt="no model")
@@ -67,14 +67,14 @@ def test_a_glob_imports_in_order_of_names(tmp_path: Path) -> None:
     assert list(system.node_types) == ["a", "b"]
 
 
-def test_a_glob_that_matches_nothing_is_an_unknown_import(tmp_path: Path) -> None:
+def test_empty_glob_is_an_unknown_import(tmp_path: Path) -> None:
     """An empty glob is reported like a missing file."""
     _write(tmp_path, x_system='system X imports import "nodes/*.rnd"')
     assert _only(Repository().load(tmp_path / "x.system")).code is codes.UNKNOWN_IMPORT
 
 
-def test_a_system_is_used_as_a_subsystem(tmp_path: Path) -> None:
-    """``subsystem left : Arm namespace /left`` holds the imported system."""
+def test_imported_system_becomes_a_subsystem(tmp_path: Path) -> None:
+    """``subsystem left : Arm namespace /left`` refers to the imported system."""
     _write(
         tmp_path,
         arm_system="system Arm",
@@ -89,7 +89,7 @@ def test_a_system_is_used_as_a_subsystem(tmp_path: Path) -> None:
 
 
 def test_rules_use_a_system(tmp_path: Path) -> None:
-    """``use … import`` hands the rules the loaded system."""
+    """``use … import`` gives the rules the loaded system."""
     _write(tmp_path, arm_system="system Arm", x_deros='use "arm.system" import Arm')
     rules = Repository().load(tmp_path / "x.deros").model
     assert isinstance(rules, Rules)
@@ -97,8 +97,8 @@ def test_rules_use_a_system(tmp_path: Path) -> None:
     assert rules.uses[0].system is not None
 
 
-def test_all_unknown_names_are_reported_together(tmp_path: Path) -> None:
-    """An unknown node type does not hide the next one, and near names are offered."""
+def test_all_unknown_names_are_reported(tmp_path: Path) -> None:
+    """An unknown node type does not hide the next one, and similar names are suggested."""
     _write(
         tmp_path,
         camera_rnd=NODE,
@@ -115,16 +115,16 @@ def test_all_unknown_names_are_reported_together(tmp_path: Path) -> None:
     assert "'camera'" in loaded.diagnostics[1].hint
 
 
-def test_an_unknown_used_system(tmp_path: Path) -> None:
-    """A ``use`` that names no system of its file is reported at the name."""
+def test_unknown_system_in_use_is_reported(tmp_path: Path) -> None:
+    """A ``use`` of a system that the file does not define is reported at the name."""
     _write(tmp_path, arm_system="system Arm", x_deros='use "arm.system" import Amr')
     found = _only(Repository().load(tmp_path / "x.deros"))
     assert (found.code, found.span.text) == (codes.UNKNOWN_USED_SYSTEM, "Amr")
     assert "'Arm'" in found.hint
 
 
-def test_a_missing_import_names_the_near_file(tmp_path: Path) -> None:
-    """The hint of a missing file is the name of one that is there, and nothing follows from it."""
+def test_missing_import_suggests_a_similar_file(tmp_path: Path) -> None:
+    """The hint names an existing file, and there are no further findings."""
     _write(
         tmp_path, camera_rnd=NODE, x_system='system X imports import "camra.rnd" node a : camera'
     )
@@ -137,32 +137,32 @@ def test_a_missing_import_names_the_near_file(tmp_path: Path) -> None:
     "name",
     ["a" * 5000 + ".rnd", "a/" * 3000 + "*.rnd", "[.rnd", "*.rnd", "~/nix/*.rnd", ".rnd"],
 )
-def test_names_that_no_file_can_have(tmp_path: Path, name: str) -> None:
-    """Whatever stands between the quotes, an import that leads nowhere is one finding."""
+def test_impossible_import_path_is_an_unknown_import(tmp_path: Path, name: str) -> None:
+    """Any import that cannot be resolved is one finding."""
     loaded = Repository().load_text(tmp_path / "x.system", f'system X imports import "{name}"')
     assert _only(loaded).code is codes.UNKNOWN_IMPORT
 
 
 @pytest.mark.parametrize("name", ["a\0.rnd", "a" * 5000 + ".rnd"])
-def test_paths_that_no_file_can_have(name: str) -> None:
-    """A path that the system refuses is an unreadable file."""
+def test_impossible_path_is_an_unreadable_file(name: str) -> None:
+    """A path that the operating system rejects is an unreadable file."""
     assert _only(Repository().load(name)).code is codes.UNREADABLE_FILE
 
 
-def test_an_import_from_a_missing_folder(tmp_path: Path) -> None:
-    """Where the folder is missing too, the hint says so."""
+def test_hint_for_an_import_from_a_missing_folder(tmp_path: Path) -> None:
+    """If the folder is missing too, the hint says so."""
     _write(tmp_path, x_system='system X imports import "nix/camera.rnd"')
     assert "no folder" in _only(Repository().load(tmp_path / "x.system")).hint
 
 
-def test_only_models_can_be_imported(tmp_path: Path) -> None:
-    """Rules cannot be imported into a system."""
+def test_rules_cannot_be_imported_into_a_system(tmp_path: Path) -> None:
+    """Only node descriptions and systems can be imported."""
     _write(tmp_path, a_deros="action stop;", x_system='system X imports import "a.deros"')
     assert _only(Repository().load(tmp_path / "x.system")).code is codes.UNKNOWN_LANGUAGE
 
 
-def test_a_broken_import_is_reported_in_its_own_file(tmp_path: Path) -> None:
-    """A syntax error stays with the imported file; what it would have defined is not missed."""
+def test_syntax_error_is_reported_in_the_imported_file(tmp_path: Path) -> None:
+    """Names that the broken file would have defined are not reported as missing."""
     _write(
         tmp_path,
         camera_rnd="node camera",
@@ -175,8 +175,8 @@ def test_a_broken_import_is_reported_in_its_own_file(tmp_path: Path) -> None:
     assert found.span.file.endswith("camera.rnd")
 
 
-def test_cyclic_imports_tell_the_chain(tmp_path: Path) -> None:
-    """Three systems in a ring are reported once, with every import that closes the ring."""
+def test_import_cycle_is_reported_with_its_chain(tmp_path: Path) -> None:
+    """A cycle of three systems is reported once, with every import in it."""
     _write(
         tmp_path,
         a_system='system A imports import "b.system"',
@@ -192,14 +192,14 @@ def test_cyclic_imports_tell_the_chain(tmp_path: Path) -> None:
     assert "a.system' → " in found.message
 
 
-def test_a_system_that_imports_itself(tmp_path: Path) -> None:
-    """The shortest ring is one file."""
+def test_system_that_imports_itself(tmp_path: Path) -> None:
+    """The shortest cycle is one file."""
     _write(tmp_path, a_system='system A imports import "a.system" subsystem s : A')
     assert _only(Repository().load(tmp_path / "a.system")).code is codes.CYCLIC_IMPORT
 
 
-def test_an_endless_chain_of_imports_is_cut(tmp_path: Path) -> None:
-    """A chain of hundreds of systems ends in a diagnostic, not in a recursion error."""
+def test_long_import_chain_is_rejected(tmp_path: Path) -> None:
+    """A chain of hundreds of systems gives a diagnostic, not a recursion error."""
     for number in range(300):
         text = f'system S{number} imports import "s{number + 1}.system"'
         (tmp_path / f"s{number}.system").write_text(text, encoding="utf-8")
@@ -208,8 +208,8 @@ def test_an_endless_chain_of_imports_is_cut(tmp_path: Path) -> None:
     assert [found.code for found in repository.diagnostics] == [codes.NESTED_TOO_DEEPLY]
 
 
-def test_a_node_type_defined_twice_is_ambiguous(tmp_path: Path) -> None:
-    """A node of a type that two imports define is reported with both places."""
+def test_node_type_defined_twice_is_ambiguous(tmp_path: Path) -> None:
+    """A node whose type two imports define is reported with both places."""
     _write(
         tmp_path,
         a_rnd="node camera : p",
@@ -222,7 +222,7 @@ def test_a_node_type_defined_twice_is_ambiguous(tmp_path: Path) -> None:
 
 
 def test_importing_one_file_twice_is_not_ambiguous(tmp_path: Path) -> None:
-    """The same file by name and by glob defines its node type once."""
+    """A file imported by name and by glob defines its node type once."""
     _write(
         tmp_path,
         a_rnd="node camera : p",
@@ -231,10 +231,10 @@ def test_importing_one_file_twice_is_not_ambiguous(tmp_path: Path) -> None:
     assert Repository().load(tmp_path / "x.system").diagnostics == ()
 
 
-def test_imported_paths_are_shown_below_the_current_directory(
+def test_imported_paths_are_relative_to_the_working_directory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Paths in diagnostics are as the user named them; those of imports are relative to here."""
+    """Diagnostics show named files as the user wrote them, and imports relative to here."""
     (tmp_path / "nodes").mkdir()
     _write(tmp_path / "nodes", a_rnd="node")
     _write(tmp_path, x_system='system X imports import "./nodes/../nodes/a.rnd"')
@@ -245,31 +245,31 @@ def test_imported_paths_are_shown_below_the_current_directory(
         assert repository.files[0].path == "nodes/a.rnd"
 
 
-# Files that cannot be read -----------------------------------------------------------------------
+# Unreadable files --------------------------------------------------------------------------------
 
 
-def test_a_missing_file(tmp_path: Path) -> None:
-    """A file that is not there has no source, and says why."""
+def test_missing_file_is_unreadable(tmp_path: Path) -> None:
+    """A missing file has no source, and a finding says why."""
     loaded = Repository().load(tmp_path / "nix.rnd")
     assert loaded.source is None
     assert loaded.model is None
     assert _only(loaded).code is codes.UNREADABLE_FILE
 
 
-def test_a_directory_is_unreadable(tmp_path: Path) -> None:
-    """A folder with the name of a model is unreadable."""
+def test_directory_is_unreadable(tmp_path: Path) -> None:
+    """A folder named like a model is unreadable."""
     (tmp_path / "a.system").mkdir()
     assert _only(Repository().load(tmp_path / "a.system")).code is codes.UNREADABLE_FILE
 
 
-def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
-    """A named pipe that nobody writes to is unreadable at once."""
+def test_named_pipe_does_not_block(tmp_path: Path) -> None:
+    """A named pipe without a writer is unreadable at once."""
     os.mkfifo(tmp_path / "a.rnd")
     assert _only(Repository().load(tmp_path / "a.rnd")).code is codes.UNREADABLE_FILE
 
 
-def test_another_kind_of_file(tmp_path: Path) -> None:
-    """A suffix that belongs to none of the languages is reported as such."""
+def test_unknown_suffix_is_reported(tmp_path: Path) -> None:
+    """A suffix of no language is reported as such."""
     _write(tmp_path, a_txt="node a : p")
     assert _only(Repository().load(tmp_path / "a.txt")).code is codes.UNKNOWN_LANGUAGE
 
@@ -284,7 +284,7 @@ def test_another_kind_of_file(tmp_path: Path) -> None:
     ],
     ids=["latin-1", "utf-16", "nul", "random"],
 )
-def test_bytes_that_are_no_text(tmp_path: Path, data: bytes) -> None:
+def test_bytes_that_are_not_utf8_give_one_finding(tmp_path: Path, data: bytes) -> None:
     """Other encodings and binary files are one diagnostic."""
     (tmp_path / "a.rnd").write_bytes(data)
     assert _only(Repository().load(tmp_path / "a.rnd")).code is codes.NOT_UTF8
@@ -292,14 +292,14 @@ def test_bytes_that_are_no_text(tmp_path: Path, data: bytes) -> None:
 
 @pytest.mark.parametrize("text", ["", " \r\n\t", "// nothing\n", "/* nothing */"])
 @pytest.mark.parametrize("suffix", ["rnd", "system", "deros"])
-def test_an_empty_file(tmp_path: Path, text: str, suffix: str) -> None:
-    """A file without a model in it is a syntax error."""
+def test_empty_file_is_a_syntax_error(tmp_path: Path, text: str, suffix: str) -> None:
+    """A file without a model is a syntax error."""
     (tmp_path / f"a.{suffix}").write_text(text, encoding="utf-8")
     assert _only(Repository().load(tmp_path / f"a.{suffix}")).code is codes.SYNTAX_ERROR
 
 
-def test_a_byte_order_mark_and_windows_line_ends(tmp_path: Path) -> None:
-    """A BOM is no part of the text, and CRLF leaves lines and columns as they are."""
+def test_byte_order_mark_and_crlf_keep_positions(tmp_path: Path) -> None:
+    """A BOM is not part of the text, and CRLF does not change lines and columns."""
     data = b"\xef\xbb\xbf// one\r\nnode a : p\r\nparameters\r\n  name x double\r\n"
     (tmp_path / "a.rnd").write_bytes(data)
     found = _only(Repository().load(tmp_path / "a.rnd"))
@@ -318,8 +318,8 @@ def test_a_byte_order_mark_and_windows_line_ends(tmp_path: Path) -> None:
     ],
     ids=["parentheses", "behaviours", "nots", "calls", "subsystems", "arrays"],
 )
-def test_deep_nesting_is_a_diagnostic(name: str, text: str) -> None:
-    """Five thousand levels end in one diagnostic, never in a recursion error."""
+def test_deep_nesting_gives_one_finding(name: str, text: str) -> None:
+    """Five thousand levels give one diagnostic, not a recursion error."""
     assert _only(Repository().load_text(name, text)).code is codes.NESTED_TOO_DEEPLY
 
 
@@ -331,18 +331,18 @@ def test_deep_nesting_is_a_diagnostic(name: str, text: str) -> None:
         ("a.system", "system A " + "subsystem s { " * 95 + "}" * 95),
     ],
 )
-def test_nesting_up_to_the_limit_is_fine(name: str, text: str) -> None:
-    """Ninety-five levels load without a finding."""
+def test_nesting_up_to_the_limit_is_accepted(name: str, text: str) -> None:
+    """Ninety-five levels load without findings."""
     loaded = Repository().load_text(name, text)
     assert loaded.diagnostics == ()
     assert loaded.model is not None
 
 
-# Texts from an editor ----------------------------------------------------------------------------
+# Text from an editor -----------------------------------------------------------------------------
 
 
-def test_load_text_needs_no_file_and_replaces(tmp_path: Path) -> None:
-    """A text stands for a file, whatever the disk holds, and a later text replaces it."""
+def test_loaded_text_replaces_the_file(tmp_path: Path) -> None:
+    """A text stands in for a file, whether or not it exists, and a later text replaces it."""
     _write(tmp_path, camera_rnd="node other : p")
     repository = Repository()
     repository.load_text(tmp_path / "camera.rnd", "node")

@@ -1,4 +1,4 @@
-"""The quick matchers against Arpeggio: the same tree, or the same refusal."""
+"""The fast matchers against Arpeggio: the same tree, or the same error."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from tests.support.mutations import TEXTS, mutated
 
 
 def _tree(node: Any) -> Any:
-    """Write a parse tree as nested tuples of rule, place and text."""
+    """Return a parse tree as nested tuples of rule, position and text."""
     if isinstance(node, NonTerminal):
         return (node.rule_name, node.position, node.position_end, [_tree(child) for child in node])
     return (node.rule_name, node.position, node.position_end, str(node.value))
 
 
 def _parse(language: Language, text: str) -> Any:
-    """Return the parse tree, or where parsing fails and what was expected there."""
+    """Return the parse tree, or the position of the error and the expected tokens."""
     parser = metamodel(language)._parser_blueprint.clone()
     parser.comments_model = None
     try:
@@ -36,7 +36,7 @@ def _parse(language: Language, text: str) -> Any:
 
 
 def _parse_quickly(language: Language, text: str) -> Any:
-    """Return the same by the matchers, and where they find none, by the recogniser."""
+    """Return the result of the matchers, or of the recogniser where they fail."""
     try:
         return _tree(quick_metamodel(language)._parser_blueprint.clone().parse(text))
     except DoesNotParse:
@@ -50,9 +50,9 @@ def _parse_quickly(language: Language, text: str) -> Any:
 
 
 def _distinct(expected: Iterable[Any]) -> list[tuple[str, str]]:
-    """Return what was expected, in order, each once.
+    """Return the expected tokens in order, each once.
 
-    Arpeggio comes to a place once more by another alternative; the recogniser remembers it.
+    Arpeggio visits a position again for another alternative; the recogniser remembers it.
     """
     return list(dict.fromkeys((rule.rule_name, getattr(rule, "to_match", "")) for rule in expected))
 
@@ -69,7 +69,7 @@ def _same(language: Language, text: str) -> None:
     ("suffix", "text"), [(suffix, text) for suffix, texts in TEXTS.items() for text in texts]
 )
 def test_listings_give_the_same_tree(suffix: str, text: str) -> None:
-    """Every sound text has one and the same parse tree both ways."""
+    """Every sound text has the same parse tree with both parsers."""
     tree = _parse_quickly(LANGUAGES[f".{suffix}"], prepare(SourceFile("text", text)))
     assert tree[1] == 0 or tree[0] == "Model"
     _same(LANGUAGES[f".{suffix}"], text)
@@ -78,14 +78,14 @@ def test_listings_give_the_same_tree(suffix: str, text: str) -> None:
 @settings(max_examples=200, deadline=None)
 @example(("deros", "behaviour b: if e.r then { s; }; optional behaviour c: if e.r then { s"))
 @given(mutated())
-def test_mutated_listings_agree(case: tuple[str, str]) -> None:
-    """Sound or not, a text is judged the same both ways."""
+def test_mutated_listings_give_the_same_result(case: tuple[str, str]) -> None:
+    """Sound or broken, a text has the same result with both parsers."""
     suffix, text = case
     _same(LANGUAGES[f".{suffix}"], text)
 
 
-def test_an_expression_without_a_matcher_is_refused() -> None:
-    """A grammar that comes to use another kind of expression fails when it is built."""
+def test_expression_without_a_matcher_is_rejected() -> None:
+    """A grammar that uses a new kind of expression fails when it is built."""
     model = metamodel.__wrapped__("rosnode")
     model._parser_blueprint.parser_model.nodes.append(Not(StrMatch("x")))
     with pytest.raises(TypeError, match="Not"):

@@ -1,4 +1,4 @@
-"""Node descriptions: every extension, and what may be said only once."""
+"""Node descriptions: every extension, and attributes that may be given only once."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ def _findings(body: str) -> list[tuple[Code, str]]:
     return [(found.code, found.span.text) for found in loaded.diagnostics]
 
 
-def test_the_head() -> None:
-    """Description, executable and lifecycle stand after the package."""
+def test_node_header() -> None:
+    """Description, executable and lifecycle follow the package."""
     node = _node('"Turns ticks into odometry" executable "odometry" lifecycle')
     assert node.description == "Turns ticks into odometry"
     assert node.executable_name == "odometry"
     assert node.lifecycle
 
 
-def test_the_program_has_the_nodes_name_unless_told() -> None:
-    """Without ``executable`` the node's own name is the program's."""
+def test_executable_defaults_to_the_node_name() -> None:
+    """Without ``executable`` the program has the name of the node."""
     assert _node("").executable is None
     assert _node("").executable_name == "a"
 
@@ -88,15 +88,15 @@ def test_parameter_attributes_in_any_order() -> None:
         assert parameter.read_only
 
 
-def test_choices_and_size() -> None:
-    """``one_of`` lists values, ``size`` gives an array's length."""
+def test_parameter_choices_and_size() -> None:
+    """``one_of`` lists values, ``size`` gives the length of an array."""
     assert _parameter('string = "a" one_of ["a", "b"]').choices == ("a", "b")
     assert _parameter("double = 1 one_of [1, 2.5]").choices == (1.0, 2.5)
     assert _parameter("double[] = [1.0] size 1").size == 1
 
 
 @pytest.mark.parametrize("spelling", ["std_msgs.Bool", "std_msgs/Bool", "std_msgs/msg/Bool"])
-def test_the_spellings_of_a_type(spelling: str) -> None:
+def test_three_spellings_of_an_interface_type(spelling: str) -> None:
     """All three spellings are one type."""
     assert _port(f"topic x : {spelling}").type == InterfaceType("std_msgs", "msg", "Bool")
 
@@ -112,14 +112,16 @@ def test_the_spellings_of_a_type(spelling: str) -> None:
         ("action_clients", "action", PortKind.ACTION_CLIENT, "action"),
     ],
 )
-def test_the_kinds_of_ports(section: str, keyword: str, kind: PortKind, interface: str) -> None:
+def test_sections_determine_kinds_of_ports(
+    section: str, keyword: str, kind: PortKind, interface: str
+) -> None:
     """Each section has its kind of port and of type."""
     port = _port(f"{keyword} ~/x : a_b.C", section)
     assert (port.kind, port.name, port.type.kind) == (kind, "~/x", interface)
 
 
-def test_qos() -> None:
-    """Every QoS word is read, durations as nanoseconds."""
+def test_qos_policies() -> None:
+    """Every QoS keyword is read, durations as nanoseconds."""
     port = _port(
         "topic x : a.B qos best_effort transient_local depth 5 deadline 100 ms "
         "lifespan 0.5sec liveliness manual_by_topic lease 2 s"
@@ -149,8 +151,8 @@ def test_qos_presets_named_like_sections() -> None:
     assert [p.name for p in node.ports] == ["x", "y"]
 
 
-def test_field_units_and_via() -> None:
-    """Units of fields stand in braces; ``via`` names the parameter that holds the topic's name."""
+def test_field_units_and_topic_parameter() -> None:
+    """Units of fields are in braces; ``via`` names the parameter with the topic name."""
     port = _port(
         "topic odom : nav_msgs.Odometry { twist.twist.linear.x [m/s], position[2] [ rad ] } "
         'via odom_topic "Where we are"'
@@ -162,8 +164,8 @@ def test_field_units_and_via() -> None:
     assert (port.via, port.description) == ("odom_topic", "Where we are")
 
 
-def test_timers() -> None:
-    """A timer's period is whole nanoseconds."""
+def test_timer_period() -> None:
+    """The period of a timer is in whole nanoseconds."""
     (timer,) = _node('timers timer control every 20 ms "The control loop"').timers
     assert (timer.name, timer.period_ns, timer.description) == (
         "control",
@@ -172,8 +174,8 @@ def test_timers() -> None:
     )
 
 
-def test_keywords_are_names_where_nothing_is_lost() -> None:
-    """Parameters, topics and timers may be called like keywords."""
+def test_keywords_are_valid_names_where_unambiguous() -> None:
+    """Parameters, topics and timers may have names that are keywords."""
     node = _node(
         "parameters name name : int name topic : int name parameters : int "
         "name in : int = 1 in [0, 2] "
@@ -186,7 +188,7 @@ def test_keywords_are_names_where_nothing_is_lost() -> None:
 
 
 def test_layout_is_free_and_semicolons_are_optional() -> None:
-    """One line or many, with or without ``;``, is the same node."""
+    """The same node on one line or many, with or without ``;``."""
     one = "parameters name x:int=3;name y:bool publishes topic z:a.B;topic w:a.B;"
     many = (
         "parameters\n name x\n :\n int = 3\n name y : bool\npublishes topic z : a.B\ntopic w : a.B"
@@ -194,8 +196,8 @@ def test_layout_is_free_and_semicolons_are_optional() -> None:
     assert _node(one) == _node(many)
 
 
-def test_spans_lie_on_the_words() -> None:
-    """The places of names, types, defaults and units are exactly their words."""
+def test_spans_cover_exactly_their_words() -> None:
+    """The spans of names, types, defaults and units are exactly their words."""
     node = _node("parameters name x : double = 0.5 [m/s] publishes topic /t : a.B via x")
     (parameter,) = node.parameters
     (port,) = node.ports
@@ -225,13 +227,13 @@ def test_spans_lie_on_the_words() -> None:
         ("timers timer t every 0 ms", codes.BAD_DURATION, "0 ms"),
     ],
 )
-def test_findings(body: str, code: Code, text: str) -> None:
-    """What is given twice, and durations that are none, are findings at their place."""
+def test_duplicates_and_invalid_durations_are_findings(body: str, code: Code, text: str) -> None:
+    """Duplicate attributes and invalid durations are reported at their place."""
     assert _findings(body) == [(code, text)]
 
 
-def test_both_of_two_sections_count() -> None:
-    """The content of a repeated section is kept, so that nothing else goes missing for it."""
+def test_repeated_section_is_kept() -> None:
+    """The content of a repeated section is kept, so that nothing else appears to be missing."""
     loaded = Repository().load_text(
         "a.rnd", "node a : p parameters name x : int parameters name y : int"
     )
@@ -252,8 +254,8 @@ def test_both_of_two_sections_count() -> None:
         ("<joints>", "<joints>"),
     ],
 )
-def test_names_of_parameters(text: str, name: str) -> None:
-    """They stand in quotes where a comment or a number would be read else."""
+def test_parameter_names(text: str, name: str) -> None:
+    """Quotes are needed where the name would be read as a comment or a number."""
     node = _node(f"parameters name {text} : double publishes topic t : std_msgs.Bool via {text}")
     assert [each.name for each in node.parameters] == [name]
     assert [port.via for port in node.ports] == [name]
@@ -270,24 +272,24 @@ def test_names_of_parameters(text: str, name: str) -> None:
         ("< 2 > 0", 0, 2, False, False),
     ],
 )
-def test_bounds(
+def test_parameter_bounds(
     text: str, lower: float, upper: float, lower_closed: bool, upper_closed: bool
 ) -> None:
-    """A bound of one side leaves the other side open to infinity; two make a range."""
+    """A bound on one side leaves the other unbounded; two make a range."""
     parameter = _parameter(f"double = 0.5 {text}")
     assert parameter.interval == Interval(lower, upper, lower_closed, upper_closed)
     assert parameter.default == 0.5
 
 
-def test_a_side_has_one_bound() -> None:
-    """A second bound of a side is reported; a range bounds both."""
+def test_second_bound_on_one_side_is_a_finding() -> None:
+    """A range bounds both sides."""
     for text in ("> 0 >= 1", "in [0, 1] < 5", "< 5 in [0, 1]"):
         ((code, _),) = _findings(f"parameters name x : double {text}")
         assert code is codes.DUPLICATE_SECTION
 
 
-def test_sizes_and_elements() -> None:
-    """Sizes, uniqueness and the user's own functions, each named with its place."""
+def test_sizes_and_element_constraints() -> None:
+    """Sizes, uniqueness and custom functions are read, the latter with their places."""
     text = 'not_empty unique min_size 1 max_size 3 custom "a::b" custom "c::d::e" "The joints"'
     parameter = _parameter(f'string[] = ["x"] {text}')
     assert (parameter.min_size, parameter.max_size, parameter.size) == (1, 3, None)
@@ -301,8 +303,8 @@ def test_sizes_and_elements() -> None:
 
 
 @pytest.mark.parametrize("text", ["nan", "inf", "-inf", "+inf"])
-def test_doubles_that_are_no_numbers(text: str) -> None:
-    """They are written as Python and C++ do, alone or in arrays."""
+def test_nan_and_infinite_doubles(text: str) -> None:
+    """They are written as in Python and C++, alone or in arrays."""
     assert repr(_parameter(f"double = {text}").default) == repr(float(text))
     assert repr(_parameter(f"double[] = [{text}, 1]").default) == repr((float(text), 1.0))
     assert [
@@ -311,7 +313,7 @@ def test_doubles_that_are_no_numbers(text: str) -> None:
 
 
 def test_one_name_for_ports_of_all_kinds() -> None:
-    """A wiring means all of them, or those of one kind; an exact name goes before a like one."""
+    """A wiring applies to all kinds or to one; an exact name takes precedence."""
     node = _node(
         "publishes topic /x : std_msgs.Bool topic y : std_msgs.Bool subscribes topic x :"
         " std_msgs.Bool topic /y : std_msgs.Bool services service z : std_srvs.Trigger"
@@ -323,8 +325,8 @@ def test_one_name_for_ports_of_all_kinds() -> None:
     assert node.ports_named("z", PortKind.PUBLISHER) == ()
 
 
-def test_entries_of_a_list() -> None:
-    """A parameter knows its name for an entry, and the entry of a name."""
+def test_map_parameters() -> None:
+    """A parameter has a name for each map key, and finds the key of a name."""
     node = _node("parameters name joints : string[] name gains.<joints>.p : double")
     gains = node.parameters[1]
     assert gains.keys == ("joints",)

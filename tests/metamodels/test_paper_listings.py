@@ -1,4 +1,4 @@
-"""The paper's listings parse as printed and mean what the paper says."""
+"""The listings of the paper parse as printed and have the meaning that the paper gives."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tests.support import paper
 
 @pytest.fixture
 def system(tmp_path: Path) -> Path:
-    """The system of figure 12 on disk."""
+    """Write the system of figure 12 to disk."""
     return paper.write_system(tmp_path)
 
 
@@ -45,7 +45,7 @@ def _rules(system: Path, text: str) -> Rules:
 
 
 @pytest.mark.parametrize("listing", paper.RULES.values(), ids=paper.RULES)
-def test_every_program_loads_without_a_finding(system: Path, listing: str) -> None:
+def test_every_listing_loads_without_findings(system: Path, listing: str) -> None:
     """Each DeRoS listing parses as printed and finds the system that it uses."""
     rules = _rules(system, listing)
     assert rules.uses[0].system is not None
@@ -53,8 +53,8 @@ def test_every_program_loads_without_a_finding(system: Path, listing: str) -> No
 
 
 @pytest.mark.parametrize("listing", paper.RULES.values(), ids=paper.RULES)
-def test_every_program_checks_clean(system: Path, listing: str) -> None:
-    """Against the matching system there is nothing to say but that sensors may fail unnoticed."""
+def test_every_listing_checks_without_errors(system: Path, listing: str) -> None:
+    """With the matching system the only findings are about sensors that may fail unnoticed."""
     repository = Repository()
     loaded = repository.load_text(system.with_name("paper.deros"), listing)
     findings = check([loaded], repository, InterfaceStore())
@@ -108,15 +108,15 @@ def test_figure_2_behaviours(system: Path) -> None:
     assert second.condition.duration.value == Decimal("0.4")
 
 
-def test_section_4_2_puts_the_time_on_the_other_behaviour(system: Path) -> None:
-    """The text's version of the program times the tilt, not the speed."""
+def test_section_4_2_delays_the_other_behaviour(system: Path) -> None:
+    """In this version of the program the tilt has the duration, not the speed."""
     first, second = _rules(system, paper.SECTION_4_2).behaviours
     assert isinstance(first.condition, For)
     assert isinstance(second.condition, Truth)
 
 
-def test_figure_9_breaks_a_topic_term_across_lines(system: Path) -> None:
-    """A topic term may break after a point, and ``=topic`` needs no blank."""
+def test_figure_9_topic_term_across_lines(system: Path) -> None:
+    """A topic term may break after a dot, and ``=topic`` needs no space."""
     (linear_speed,) = _rules(system, paper.FIGURE_9).inputs
     assert linear_speed.term.path == ("twist", "twist", "linear", "x")
     assert linear_speed.term.topic.text == "/fmKnowledge/encoder_odom"

@@ -1,4 +1,4 @@
-"""Which ends match: held against the ROS 2 function that decides it, for every pair of profiles."""
+"""QoS compatibility, compared with the ROS 2 function that decides it, for every pair of profiles."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def _all_policies() -> list[Policies]:
     ]
 
 
-def test_every_pair_is_judged_as_ros_does() -> None:
-    """Errors and warnings of rclpy's qos_check_compatible are what is certain, and what is not."""
+def test_compatibility_of_every_pair_agrees_with_rclpy() -> None:
+    """Errors and warnings of qos_check_compatible match certain and possible shortfalls."""
     qos = pytest.importorskip("rclpy.qos")
     every = [(each, profile(each)) for each in _all_policies()]
     compared = 0
@@ -69,8 +69,8 @@ def test_every_pair_is_judged_as_ros_does() -> None:
         (QosProfile(preset="system_default"), "system_default"),
     ],
 )
-def test_presets_are_those_of_ros(profile: QosProfile | None, name: str) -> None:
-    """All their policies are the same; an open kind of liveliness is what DDS starts from."""
+def test_presets_match_ros(profile: QosProfile | None, name: str) -> None:
+    """All policies are the same; an open liveliness is the DDS default."""
     qos = pytest.importorskip("rclpy.qos")
     preset = getattr(qos, f"qos_profile_{name}")
     own = policies(profile)
@@ -89,14 +89,14 @@ def test_presets_are_those_of_ros(profile: QosProfile | None, name: str) -> None
         assert own.depth == preset.depth
 
 
-def test_what_a_profile_states_goes_before_its_preset() -> None:
+def test_stated_policies_override_the_preset() -> None:
     """The other policies stay those of the preset."""
     own = policies(QosProfile(preset="sensor_data", reliability="reliable", deadline_ns=5))
     assert own == Policies(depth=5, deadline=5)
 
 
 PINS = [
-    # pin, publisher, subscription: what of each is wrong
+    # declared QoS, profile of the ends: violations of publisher and subscription
     (QosProfile(reliability="reliable"), None, ("", "")),
     (QosProfile(reliability="best_effort"), None, ("", "more")),
     (QosProfile(reliability="reliable"), QosProfile(reliability="best_effort"), ("less", "less")),
@@ -124,8 +124,10 @@ PINS = [
 
 
 @pytest.mark.parametrize(("pin", "profile", "wrong"), PINS)
-def test_pins(pin: QosProfile, profile: QosProfile | None, wrong: tuple[str, str]) -> None:
-    """A publisher offers at least what is pinned, a subscription asks for exactly that."""
+def test_pinned_qos_violations(
+    pin: QosProfile, profile: QosProfile | None, wrong: tuple[str, str]
+) -> None:
+    """A publisher must offer at least the pinned QoS, a subscription request exactly that."""
     found = (publisher_violations(pin, profile), subscription_violations(pin, profile))
     assert wrong == tuple(
         "".join("more" if each.excess else "less" for each in violations) for violations in found
@@ -134,8 +136,8 @@ def test_pins(pin: QosProfile, profile: QosProfile | None, wrong: tuple[str, str
     assert [each for each in found[1] if each.excess] == list(excess(pin, profile))
 
 
-def test_an_open_policy_violates_no_pin_for_certain() -> None:
-    """The middleware decides it."""
+def test_open_policy_is_not_a_certain_violation() -> None:
+    """The middleware chooses its value."""
     open_profile = QosProfile(preset="system_default")
     for pin in (QosProfile(reliability="reliable"), QosProfile(depth=3)):
         assert [each.certain for each in publisher_violations(pin, open_profile)] == [False]
@@ -153,13 +155,13 @@ def test_an_open_policy_violates_no_pin_for_certain() -> None:
         ("scan.subscription.reliability", None),
     ],
 )
-def test_overrides_are_named_as_in_ros(parameter: str, policy: str | None) -> None:
-    """Topic, kind of end, perhaps an identifier of it, and policy."""
+def test_override_parameter_names(parameter: str, policy: str | None) -> None:
+    """The name has topic, kind of end, an optional identifier and policy."""
     assert overridden_policy(parameter, "/scan", "subscription") == policy
 
 
-def test_overrides_go_before_what_is_stated() -> None:
-    """A kind that is chosen at run time is not known; a time of 0 is none."""
+def test_overrides_take_precedence() -> None:
+    """A policy that is chosen at run time is unknown; a time of 0 is no time."""
     stated = QosProfile(preset="sensor_data", deadline_ns=5)
     own = policies(
         overridden(
@@ -172,7 +174,7 @@ def test_overrides_go_before_what_is_stated() -> None:
 
 
 MIDDLEWARES = {
-    # kind that system_default becomes, of a publisher and of a subscription
+    # policies that system_default becomes for a publisher and for a subscription
     "rmw_fastrtps": {
         "reliability": ("reliable", "best_effort"),
         "durability": ("transient_local", "volatile"),
@@ -192,7 +194,7 @@ MIDDLEWARES = {
 
 
 def _as_in(middleware: str, each: Policies, end: int) -> Policies:
-    """Return a profile with what the middleware makes of its open kinds."""
+    """Return a profile with the middleware's choice for its open policies."""
     made = {
         policy: kinds[end]
         for policy, kinds in MIDDLEWARES[middleware].items()
@@ -201,8 +203,8 @@ def _as_in(middleware: str, each: Policies, end: int) -> Policies:
     return dataclasses.replace(each, **made)  # type: ignore[arg-type]
 
 
-def test_what_the_defaults_meet_connects_in_every_middleware() -> None:
-    """What is left out is connected by all of them; what is left in, not by one of them."""
+def test_met_by_default_agrees_with_every_middleware() -> None:
+    """Pairs left unreported connect in all of them; reported pairs fail in at least one."""
     every = [each for each in _all_policies() if (each.deadline, each.lease) == (None, None)]
     for offered, requested in itertools.product(every, every):
         found = shortfalls(offered, requested)
@@ -215,7 +217,7 @@ def test_what_the_defaults_meet_connects_in_every_middleware() -> None:
 
 
 def test_default_ends_match() -> None:
-    """Nothing is missing between two ends that say nothing."""
+    """Two ends without stated QoS are compatible."""
     assert shortfalls(DEFAULT, DEFAULT) == ()
 
 
@@ -223,6 +225,6 @@ def test_default_ends_match() -> None:
     ("nanoseconds", "text"),
     [(1, "1 ns"), (1500, "1500 ns"), (100 * MS, "100 ms"), (60_000 * MS, "1 min")],
 )
-def test_durations_read_as_written(nanoseconds: int, text: str) -> None:
-    """The greatest unit without a fraction is used."""
+def test_durations_use_the_largest_whole_unit(nanoseconds: int, text: str) -> None:
+    """The largest unit without a fraction is used."""
     assert duration_text(nanoseconds) == text

@@ -1,10 +1,10 @@
-"""Which ends match: held against the middleware itself, for every pair of profiles.
+"""QoS compatibility: compared with the middleware itself, for every pair of profiles.
 
-All policies on which a connection depends are combined: reliability, durability and liveliness in
-both kinds, deadline and lease as none, one second and two, so that what is offered is none,
-shorter, equal and longer than what is requested. That is 72 profiles for each end, and all their
-pairs. ``system_default`` is not among them: each middleware chooses what it becomes. That the pairs
-which its defaults are enough for are connected is tested for itself.
+All policies on which a connection depends are combined: both kinds of reliability, durability and
+liveliness; deadline and lease as none, one second and two, so that the offer is none, shorter,
+equal and longer than the request. That gives 72 profiles for each end, and all their pairs.
+``system_default`` is not among them, because each middleware chooses its value. A separate test
+checks that pairs for which its defaults suffice are connected.
 """
 
 from __future__ import annotations
@@ -37,15 +37,15 @@ PROFILES = [
 
 @pytest.fixture
 def other_peer(ros_peer: Peer, ros_env: dict[str, str]) -> Iterator[Peer]:
-    """Give a second participant, which the first one has to discover."""
-    del ros_peer  # it has confined this process to the loopback
+    """Return a second participant, which the first one has to discover."""
+    del ros_peer  # this process is already confined to the loopback interface
     peer = Peer(int(ros_env["ROS_DOMAIN_ID"]), "other_peer")
     yield peer
     peer.close()
 
 
 class Asking:
-    """The subscriptions of one topic, each with a profile of its own, and what they are told."""
+    """The subscriptions of one topic, each with its own profile, and their events."""
 
     def __init__(self, peer: Peer, topic: str, profiles: Sequence[Policies] = PROFILES) -> None:
         from rclpy.event_handler import SubscriptionEventCallbacks
@@ -74,7 +74,7 @@ class Asking:
         ]
 
     def verdicts(self) -> list[bool]:
-        """Return whether the topic's one publisher is connected with each subscription."""
+        """Return whether the publisher of the topic is connected to each subscription."""
         self._peer.until(lambda: all(map(int.__add__, self.matched, self.refused)), limit=2 * LIMIT)
         assert {*map(int.__add__, self.matched, self.refused)} == {1}
         return [bool(matched) for matched in self.matched]
@@ -85,8 +85,10 @@ class Asking:
             self._peer.node.destroy_subscription(each)
 
 
-def test_every_pair_is_judged_as_the_middleware_does(ros_peer: Peer, other_peer: Peer) -> None:
-    """A subscription hears of the publisher that it matches, or that it does not."""
+def test_compatibility_of_every_pair_agrees_with_the_middleware(
+    ros_peer: Peer, other_peer: Peer
+) -> None:
+    """Each subscription gets either a matched or an incompatible QoS event."""
     from std_msgs.msg import Empty
 
     compared = 0
@@ -113,7 +115,7 @@ OPEN_PROFILES = [
 ]
 
 
-def test_what_the_defaults_meet_is_connected(ros_peer: Peer, other_peer: Peer) -> None:
+def test_pairs_met_by_default_are_connected(ros_peer: Peer, other_peer: Peer) -> None:
     """A pair that is not reported is connected, whatever ``system_default`` has become."""
     from std_msgs.msg import Empty
 
@@ -139,8 +141,10 @@ SERVICES = [
 ]
 
 
-def test_clients_and_servers_match_in_both_directions(ros_peer: Peer, other_peer: Peer) -> None:
-    """A client finds its server if what either offers is enough for what the other requests."""
+def test_clients_and_servers_must_match_in_both_directions(
+    ros_peer: Peer, other_peer: Peer
+) -> None:
+    """A client finds its server if the offers of each meet the requests of the other."""
     compared = 0
     for number, served in enumerate(SERVICES):
         expected = [
@@ -153,7 +157,7 @@ def test_clients_and_servers_match_in_both_directions(ros_peer: Peer, other_peer
 
 
 def clients_of(peer: Peer, other_peer: Peer, name: str, served: Policies, ready: int) -> list[bool]:
-    """Return whether clients of every profile find a server, of which some are to be ready."""
+    """Return whether clients of every profile find a server; some are expected to be ready."""
     from std_srvs.srv import Trigger
 
     def answer(_: Any, response: Any) -> Any:
@@ -164,8 +168,8 @@ def clients_of(peer: Peer, other_peer: Peer, name: str, served: Policies, ready:
 
     clients = [create_client(each) for each in SERVICES]
     server = other_peer.node.create_service(Trigger, name, answer, qos_profile=profile(served))
-    # A last client with the server's own profile shows when the server has been found: the others,
-    # which are older, have been matched by then, or never will be.
+    # A last client with the profile of the server shows when the server has been discovered: the
+    # older clients have been matched by then, or never will be.
     clients.append(create_client(served))
     peer.until(clients[-1].service_is_ready)
     other_peer.until(lambda: other_peer.node.count_clients(name) == len(clients))

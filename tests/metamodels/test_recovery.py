@@ -1,4 +1,4 @@
-"""Syntax errors: each is reported, what is sound is read, and reading takes bounded time."""
+"""Syntax errors: each is reported, sound statements are read, and reading takes bounded time."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _errors(loaded: LoadedFile) -> list[Diagnostic]:
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_every_error_of_a_file_is_reported_once(name: str) -> None:
+def test_every_syntax_error_is_reported_once(name: str) -> None:
     """Ten errors in one file are ten findings, each on its own line."""
     text = FILES[name]
     wrong = [number for number, line in enumerate(text.splitlines(), 1) if "// here" in line]
@@ -103,8 +103,8 @@ def test_every_error_of_a_file_is_reported_once(name: str) -> None:
     assert found == wrong
 
 
-def test_what_is_sound_of_a_node_is_read() -> None:
-    """Statements between broken ones are in the model, at their places; mended ones are, too."""
+def test_sound_parts_of_a_broken_node_are_read() -> None:
+    """Sound and repaired statements are in the model, with the right spans."""
     loaded = _load("camera.rnd", NODE)
     node = loaded.model
     assert isinstance(node, NodeType)
@@ -119,8 +119,8 @@ def test_what_is_sound_of_a_node_is_read() -> None:
     assert {"gain", "stop"} <= loaded.source.lost
 
 
-def test_what_is_sound_of_a_system_is_read() -> None:
-    """A node whose head or whose wiring is broken keeps what is sound of it."""
+def test_sound_parts_of_a_broken_system_are_read() -> None:
+    """A node with a broken header or wiring keeps its sound parts."""
     system = _load("demo.system", SYSTEM).model
     assert isinstance(system, System)
     nodes = [each for each in system.members if isinstance(each, NodeInstance)]
@@ -131,8 +131,8 @@ def test_what_is_sound_of_a_system_is_read() -> None:
         assert wiring.target_span.text == wiring.target
 
 
-def test_what_is_sound_of_rules_is_read() -> None:
-    """Rules, inputs and behaviours beside broken ones are in the model."""
+def test_sound_parts_of_broken_rules_are_read() -> None:
+    """Rules, inputs and behaviours next to broken ones are in the model."""
     rules = _load("demo.deros", RULES).model
     assert isinstance(rules, Rules)
     assert "pose" in [each.name.text for each in rules.inputs]
@@ -148,8 +148,8 @@ def test_what_is_sound_of_rules_is_read() -> None:
         ("a.system", "system 1\ntopics\n  topic ?\n"),
     ],
 )
-def test_a_broken_head_hides_no_error_behind_it(name: str, text: str) -> None:
-    """The errors behind a head that cannot be read are reported as well."""
+def test_broken_header_does_not_hide_later_errors(name: str, text: str) -> None:
+    """Errors after an unreadable header are reported as well."""
     assert [each.span.line for each in _errors(_load(name, text))] == [1, 3]
 
 
@@ -168,8 +168,8 @@ def test_a_broken_head_hides_no_error_behind_it(name: str, text: str) -> None:
          "gate /a -> /b : c.D rate 1 Hz { lost input for 1 s: zero }"),
     ],
 )  # fmt: skip
-def test_a_fix_mends_the_statement(name: str, text: str, edited: str) -> None:
-    """One edit that is certain is part of the finding, and with it the text parses."""
+def test_fix_repairs_the_statement(name: str, text: str, edited: str) -> None:
+    """A certain fix is part of the finding, and the fixed text parses."""
     (found,) = _errors(_load(name, text))
     assert found.fix is not None
     span = found.fix.span
@@ -179,8 +179,8 @@ def test_a_fix_mends_the_statement(name: str, text: str, edited: str) -> None:
 
 
 @pytest.mark.parametrize("language", LANGUAGES.values())
-def test_statements_come_from_the_grammar(language: Language) -> None:
-    """What a statement is, and how it begins, is read from the grammar."""
+def test_statements_are_derived_from_the_grammar(language: Language) -> None:
+    """The statements and their first tokens are read from the grammar."""
     known = {
         "rosnode": {"name", "topic", "service", "timer", "parameters", "executable"},
         "rossystem": {"import", "topic", "param", "connect", "node", "subsystem", "wirings"},
@@ -199,14 +199,14 @@ def test_statements_come_from_the_grammar(language: Language) -> None:
         ("a.system", "system a\ntopics\ntopc"),
     ],
 )
-def test_a_mended_end_lies_in_the_file(name: str, text: str) -> None:
-    """Findings about a word that was read as a longer one end with the file at the latest."""
+def test_span_of_a_repaired_last_word_stays_in_the_file(name: str, text: str) -> None:
+    """A finding about a word that was read as a longer one ends with the file."""
     for each in _load(name, text).diagnostics:
         assert 0 <= each.span.start <= each.span.end <= len(text)
 
 
-def test_errors_beyond_the_most_are_counted() -> None:
-    """Of ten thousand errors fifty are shown, and the number of the others."""
+def test_findings_beyond_the_limit_are_counted() -> None:
+    """Of ten thousand errors, fifty are shown and the rest are counted."""
     text = "node a : b\nparameters\n" + "  name x : double ? 1.0\n" * 10_000
     *shown, rest = _load("a.rnd", text).diagnostics
     assert len(shown) == MOST_ERRORS
@@ -229,14 +229,14 @@ def test_errors_beyond_the_most_are_counted() -> None:
         ("a.deros", "}" * 20_000),
     ],
 )  # fmt: skip
-def test_hostile_files_take_bounded_time(name: str, text: str) -> None:
-    """However many errors there are, and however deep, reading ends within seconds."""
+def test_hostile_files_load_in_bounded_time(name: str, text: str) -> None:
+    """Reading ends within seconds, however many errors there are and however deep."""
     before = time.process_time()
     assert _load(name, text).diagnostics
     assert time.process_time() - before < 5
 
 
-def test_recovery_is_linear() -> None:
+def test_recovery_time_is_linear() -> None:
     """Ten times as much sound text around fifty errors takes about ten times as long."""
 
     def seconds(count: int) -> float:

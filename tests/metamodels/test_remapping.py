@@ -1,4 +1,4 @@
-"""Ports of one name: which remapping rules they need, and which wirings no rule can make."""
+"""Ports that share a name: the remapping rules they need, and wirings that no rule can express."""
 
 from __future__ import annotations
 
@@ -35,25 +35,25 @@ SLAM = """
 
 
 def node(folder: Path, wirings: str, head: str = "slam : slam") -> FlatNode:
-    """Flatten a system of one node, which is wired so."""
+    """Flatten a system of one node with the given wiring."""
     text = f'system Test imports import "*.rnd" node {head} wirings {wirings}'
     (only,) = flatten(load_text(folder, text, slam=SLAM)).nodes
     return only
 
 
 def names(flat: FlatNode) -> dict[tuple[PortKind, str], str]:
-    """Return where each port ends."""
+    """Return the topic of each port."""
     return {(port.port.kind, port.port.name): port.topic for port in flat.ports}
 
 
 def refused(flat: FlatNode) -> list[str]:
-    """Return what is reported, and check that it is DRS120."""
+    """Return the findings, all of which must be DRS120."""
     found = list(wired_apart(flat))
     assert {each.code for each in found} <= {codes.WIRED_APART}
     return [each.message for each in found]
 
 
-def test_a_name_alone_means_the_ports_of_all_kinds(tmp_path: Path) -> None:
+def test_plain_name_applies_to_ports_of_all_kinds(tmp_path: Path) -> None:
     """Publisher, subscription, service and client move together, by one rule."""
     flat = node(tmp_path, "connect map to /world connect tiles to /tiles")
     ends = names(flat)
@@ -63,8 +63,8 @@ def test_a_name_alone_means_the_ports_of_all_kinds(tmp_path: Path) -> None:
     assert refused(flat) == []
 
 
-def test_topics_and_services_of_one_name_part_by_scheme(tmp_path: Path) -> None:
-    """Rules for topics alone and for services alone exist; each is used where it has to be."""
+def test_topics_and_services_of_one_name_are_remapped_separately(tmp_path: Path) -> None:
+    """Rules for topics alone and services alone are used where necessary."""
     flat = node(
         tmp_path,
         "connect publisher map to /world connect subscriber map to /world"
@@ -74,8 +74,8 @@ def test_topics_and_services_of_one_name_part_by_scheme(tmp_path: Path) -> None:
     assert refused(flat) == []
 
 
-def test_an_unwired_service_is_not_moved_with_the_topic_of_its_name(tmp_path: Path) -> None:
-    """A rule without a scheme would take it along."""
+def test_unwired_service_is_not_remapped_with_its_topic(tmp_path: Path) -> None:
+    """A rule without a scheme would remap it too."""
     flat = node(
         tmp_path,
         "connect publisher map to /world connect subscriber map to /world connect tiles to /tiles",
@@ -100,7 +100,7 @@ def test_an_unwired_service_is_not_moved_with_the_topic_of_its_name(tmp_path: Pa
             "service 'map' and client 'map' of 'slam' cannot be on '/a' and '/b'",
         ),
         (
-            "connect map to /a",  # the parameter's default is the very name
+            "connect map to /a",  # the default of the parameter is the same name
             "publisher 'map' and publisher 'tiles' of 'slam' cannot be on '/a' and '/map'",
         ),
         (
@@ -108,20 +108,22 @@ def test_an_unwired_service_is_not_moved_with_the_topic_of_its_name(tmp_path: Pa
             "action 'dock' and action_client 'dock' of 'slam' cannot be on '/a' and '/b'",
         ),
         (
-            "connect map to /a connect tiles to /map",  # the parameter gives a name that is moved
+            "connect map to /a connect tiles to /map",  # the parameter has a remapped name
             "publisher 'map' and publisher 'tiles' of 'slam' cannot be on '/a' and '/map'",
         ),
     ],
 )
-def test_what_no_rule_can_part_is_reported(tmp_path: Path, wirings: str, message: str) -> None:
+def test_wirings_that_no_rule_can_separate_are_reported(
+    tmp_path: Path, wirings: str, message: str
+) -> None:
     """Two ends of one name, wired or not, cannot be on two topics."""
     found = refused(node(tmp_path, wirings))
     assert len(found) == 1
     assert found[0].startswith(message)
 
 
-def test_names_are_compared_as_they_resolve(tmp_path: Path) -> None:
-    """``map`` and ``/map`` are one name to a node in the root namespace alone."""
+def test_names_are_compared_after_resolution(tmp_path: Path) -> None:
+    """``map`` and ``/map`` are the same name only in the root namespace."""
     other = SLAM.replace("topic map : nav_msgs.OccupancyGrid\n    services", "topic /map"
                          " : nav_msgs.OccupancyGrid\n    services")  # fmt: skip
     text = 'system Test imports import "*.rnd" node slam : slam NS wirings connect tiles to /t'
@@ -131,8 +133,8 @@ def test_names_are_compared_as_they_resolve(tmp_path: Path) -> None:
         assert len(refused(flatten(system).nodes[0])) == expected
 
 
-def test_ports_that_share_a_parameter_have_one_name(tmp_path: Path) -> None:
-    """The second of two wirings through one parameter has no effect, so it is an error."""
+def test_two_wirings_through_one_parameter_are_an_error(tmp_path: Path) -> None:
+    """The second wiring would have no effect."""
     two = SLAM.replace("topic map : nav_msgs.OccupancyGrid\n    services", "topic seen"
                        " : nav_msgs.OccupancyGrid via map_topic\n    services")  # fmt: skip
     text = 'system Test imports import "*.rnd" node slam : slam wirings connect tiles to /t'
@@ -141,8 +143,8 @@ def test_ports_that_share_a_parameter_have_one_name(tmp_path: Path) -> None:
     assert message.startswith("'seen' and 'tiles' of 'slam' both take their names from parameter")
 
 
-def test_an_action_and_a_service_of_one_name_part(tmp_path: Path) -> None:
-    """The action's own rule is for topics, its parts keep the names that they have in any case."""
+def test_action_and_service_of_one_name_are_remapped_separately(tmp_path: Path) -> None:
+    """The rule of the action is for topics; its parts keep their own names."""
     wirings = (
         "connect action dock to /a connect action_client dock to /a connect client dock to /b"
         " connect map to /map connect tiles to /t"

@@ -1,4 +1,4 @@
-"""Safety rules: conditions, terms and declarations become the syntax tree that they say."""
+"""Safety rules: from conditions, terms and declarations to the syntax tree."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _condition(text: str) -> Condition:
 
 
 def _words(found: Condition | Term) -> str:
-    """Write a tree with all its parentheses, to compare it at a glance."""
+    """Return a tree with all its parentheses, for comparison."""
     match found:
         case And():
             return f"({' and '.join(map(_words, found.operands))})"
@@ -131,20 +131,20 @@ def _words(found: Condition | Term) -> str:
     ],
 )
 def test_conditions(text: str, tree: str) -> None:
-    """Precedence, ``for``, intervals, terms and units read as the language says."""
+    """Precedence, ``for``, intervals, terms and units."""
     assert _words(_condition(text)) == tree
 
 
 def test_numbers_are_exact() -> None:
-    """A number keeps every digit that is written."""
+    """A number keeps every written digit."""
     condition = _condition("a > 0.1000000000000000055511151231257827")
     assert isinstance(condition, Comparison)
     assert isinstance(condition.right, Number)
     assert condition.right.value == Decimal("0.1000000000000000055511151231257827")
 
 
-def test_rules_need_no_semicolon() -> None:
-    """The label of the next rule is no unit, and no statement's first word is one."""
+def test_semicolons_are_optional() -> None:
+    """The label of the next rule, or the keyword of the next statement, is not read as a unit."""
     rules = _rules(
         "const a = 5 const b = 2 m unit knot = 0.5 m/s action stop "
         "input x = topic /x.y timeout 1 sec entity e { r: x > 5 s: x > 6 t: x > b } "
@@ -157,14 +157,14 @@ def test_rules_need_no_semicolon() -> None:
 
 
 def test_sections_come_in_any_order() -> None:
-    """Everything may stand before what it refers to, and several times."""
+    """Declarations may precede the names they refer to, and sections may repeat."""
     rules = _rules(
         "if e.r then { stop; }; entity e { r: x; } action stop; input x = topic /x.data;"
     )
     assert len(rules.behaviours) == len(rules.entities) == len(rules.actions) == 1
 
 
-def test_actions() -> None:
+def test_action_declarations() -> None:
     """Plain actions, arguments, bindings, resets and latches."""
     plain, beep, stop, motor, described = _rules(
         "action plain; action beep(times, pitch); "
@@ -191,8 +191,8 @@ def test_actions() -> None:
     assert described.description == "Says something"
 
 
-def test_inputs() -> None:
-    """A timeout and a description may follow; the whole message is an input too; ``=`` may go."""
+def test_input_declarations() -> None:
+    """Timeout, description and ``=`` are optional, and the term may be a whole message."""
     field, whole, bare = _rules(
         'input a = topic /odom.twist.twist.linear.x timeout 0.5 sec "Speed" '
         "input b = topic /scan timeout 100ms input c topic /x.data"
@@ -205,7 +205,7 @@ def test_inputs() -> None:
 
 
 def test_behaviours() -> None:
-    """A name, nested behaviours and arguments; the body keeps its order."""
+    """Names, nested behaviours and arguments; the body keeps its order."""
     (outer,) = _rules(
         "behaviour tilt: if e.r or not e.s then "
         '{ stop; if e.t for 1 sec then { beep(3, "x"); }; halt };'
@@ -223,15 +223,15 @@ def test_behaviours() -> None:
 
 
 def test_units_and_constants() -> None:
-    """A unit is a number of another unit; a constant is a number, a conversion or another."""
+    """A unit is a multiple of another; a constant is a number, a conversion or another constant."""
     rules = _rules("unit knot = 0.514444 m/s const a = toRad(-8 deg) const b = a const c = -a")
     (knot,) = rules.units
     assert (knot.name.text, str(knot.factor.value), knot.factor.unit) == ("knot", "0.514444", "m/s")
     assert [_words(constant.value) for constant in rules.constants] == ["toRad(-8 deg)", "a", "-a"]
 
 
-def test_keywords_are_names_where_nothing_is_lost() -> None:
-    """Actions, inputs, constants, entities and rules may be called like keywords."""
+def test_keywords_are_valid_names_where_unambiguous() -> None:
+    """Actions, inputs, constants, entities and rules may have names that are keywords."""
     rules = _rules(
         "action stop action action action topic const use = 3 input input = topic /x.y "
         "entity entity { topic: input > use; for: use in [1, 2]; } "
@@ -249,8 +249,8 @@ def test_descriptions_of_entities_and_rules() -> None:
     assert (entity.description, entity.rules[0].description) == ("The body", "It leans")
 
 
-def test_spans_lie_on_the_words() -> None:
-    """The places of conditions, terms, units and names are exactly their words."""
+def test_spans_cover_exactly_their_words() -> None:
+    """The spans of conditions, terms, units and names are exactly their words."""
     condition = _condition("not /a.b.rate() > 5 m/s for 2 sec")
     assert isinstance(condition, For)
     assert condition.span.text == "not /a.b.rate() > 5 m/s for 2 sec"
@@ -279,13 +279,13 @@ def test_spans_lie_on_the_words() -> None:
         ('use "nix.rnd" import A', codes.UNKNOWN_LANGUAGE, '"nix.rnd"'),
     ],
 )
-def test_findings(text: str, code: Code, place: str) -> None:
-    """What is given twice, and what cannot stand where it stands, is a finding at its place."""
+def test_duplicates_and_misplaced_terms_are_findings(text: str, code: Code, place: str) -> None:
+    """Duplicates and terms in the wrong place are reported where they are."""
     loaded = Repository().load_text("a.deros", text)
     assert [(found.code, found.span.text) for found in loaded.diagnostics] == [(code, place)]
 
 
-def test_an_action_named_twice_is_kept() -> None:
-    """Names are not judged here: both declarations reach the checks."""
+def test_action_named_twice_is_kept() -> None:
+    """The parser does not judge names: both declarations reach the checks."""
     actions = _rules("action a; action a;").actions
     assert [type(action) for action in actions] == [Action, Action]

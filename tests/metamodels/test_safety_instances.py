@@ -1,4 +1,4 @@
-"""``safety`` statements: the two files that refer to each other, and the nodes that they become."""
+"""``safety`` statements: the two files that refer to each other, and the nodes they stand for."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def system_with(statement: str, rules: str = RULES) -> System:
-    """Load the system of the rules with a ``safety`` statement in it."""
+    """Load the system of the rules with the given ``safety`` statement."""
     Path("robot.deros").write_text(rules, encoding="utf-8")
     Path("robot.system").write_text(f"{SYSTEM}{statement}\n", encoding="utf-8")
     repository = Repository()
@@ -65,18 +65,18 @@ def system_with(statement: str, rules: str = RULES) -> System:
 
 
 def nodes_with(statement: str, rules: str = RULES) -> dict[str, FlatNode]:
-    """Return the nodes that a statement stands for, by full name."""
+    """Return the nodes of a statement by full name."""
     return {node.full_name: node for node in flatten(system_with(statement, rules)).nodes}
 
 
 def topics(node: FlatNode) -> dict[str, str]:
-    """Return where each port ends."""
+    """Return the topic of each port."""
     return {end.port.name: end.topic for end in node.ports}
 
 
 @pytest.mark.parametrize("first", ["robot.system", "robot.deros"])
-def test_either_file_loads_both(first: str) -> None:
-    """The rules use the very system that names them, whichever file is loaded first."""
+def test_loading_either_file_loads_both(first: str) -> None:
+    """The rules use the same system that names them, whichever file is loaded first."""
     system_with('safety "robot.deros"')
     repository = Repository()
     repository.load(first)
@@ -90,8 +90,8 @@ def test_either_file_loads_both(first: str) -> None:
     assert repository.diagnostics == []
 
 
-def test_nodes_and_their_connections() -> None:
-    """The safety node and each gate run under the generated names, on the topics of the rules."""
+def test_nodes_of_a_statement_and_their_connections() -> None:
+    """Safety node and gates have the generated names and the topics of the rules."""
     nodes = nodes_with('safety "robot.deros"')
     assert list(nodes) == ["/robot_safety_node", "/command_gate"]
     safety, gate = nodes.values()
@@ -115,8 +115,8 @@ def test_nodes_and_their_connections() -> None:
     assert all(end.wiring is not None for node in nodes.values() for end in node.ports)
 
 
-def test_attributes_are_for_all_nodes() -> None:
-    """Respawn, log level and namespace are given to each; a parameter to those that have it."""
+def test_attributes_apply_to_all_nodes() -> None:
+    """Respawn, log level and namespace apply to each node; a parameter to nodes that have it."""
     nodes = nodes_with(
         'safety "robot.deros" as guard namespace /s respawn delay 1 sec log_level warn\n'
         "parameters\n"
@@ -137,8 +137,8 @@ def test_attributes_are_for_all_nodes() -> None:
     assert dict(gate.parameters) == {"lock_memory": True, "use_sim_time": True}
 
 
-def test_heartbeat_moves_for_the_gates_too() -> None:
-    """The gates follow the heartbeat wherever the statement puts it; private ports stay apart."""
+def test_gates_follow_a_moved_heartbeat() -> None:
+    """The gates read the heartbeat wherever it is; other private ports stay separate."""
     nodes = nodes_with(
         'safety "robot.deros" as guard\nwirings\n'
         "  connect ~/heartbeat to /beat\n  connect ~/events to ~/log\n"
@@ -150,8 +150,8 @@ def test_heartbeat_moves_for_the_gates_too() -> None:
     assert safety["/diagnostics"] == "/health" == gate["/diagnostics"]
 
 
-def test_target_chooses_package_and_programs() -> None:
-    """In C++ the packages and programs have other names, the nodes in the graph have not."""
+def test_target_determines_package_and_executable() -> None:
+    """C++ packages and executables have other names; node names in the graph do not change."""
     for target, package, program in (
         ("", "robot_safety", "robot_safety_node"),
         ("target cpp", "robot_safety_cpp", "robot_safety_node_cpp"),
@@ -169,8 +169,8 @@ def test_target_chooses_package_and_programs() -> None:
         assert topics(gate)[beat] == topics(safety)["~/heartbeat"]
 
 
-def test_relative_names_move_with_the_system() -> None:
-    """Two robots of one kind: relative topics go under the namespace of each, absolute do not."""
+def test_relative_topics_follow_the_namespace() -> None:
+    """With two robots, relative topics go under each namespace and absolute ones do not."""
     system_with('subsystem Safety namespace guards { safety "robot.deros" }')
     Path("two.system").write_text(
         'system Two imports import "robot.system"\n'
@@ -196,7 +196,7 @@ def test_relative_names_move_with_the_system() -> None:
     assert gate["robot_safety_node/heartbeat"] == "/left/guards/robot_safety_node/heartbeat"
 
 
-def test_one_set_of_rules_reads_the_actions_of_another() -> None:
+def test_rules_may_read_actions_of_other_rules() -> None:
     """The type of such an input comes from the other safety node, in either order."""
     Path("second.deros").write_text(
         'use "robot.system" import Robot\n'
@@ -217,8 +217,8 @@ def test_one_set_of_rules_reads_the_actions_of_another() -> None:
         assert end.port.qos.reliability == "reliable"
 
 
-def test_rules_with_a_syntax_error_leave_one_unknown_node() -> None:
-    """Nothing is known of the nodes then; the error is reported once, where it is."""
+def test_rules_with_a_syntax_error_give_one_unknown_node() -> None:
+    """The error is reported once, at its place."""
     Path("robot.deros").write_text("use use", encoding="utf-8")
     Path("robot.system").write_text(f'{SYSTEM}safety "robot.deros"\n', encoding="utf-8")
     repository = Repository()
@@ -232,7 +232,7 @@ def test_rules_with_a_syntax_error_leave_one_unknown_node() -> None:
 
 
 def test_missing_rules_are_reported_at_the_statement() -> None:
-    """As a missing import is."""
+    """The finding is that of a missing import."""
     Path("robot.system").write_text(f'{SYSTEM}safety "robt.deros"\n', encoding="utf-8")
     Path("robot.deros").write_text(RULES, encoding="utf-8")
     repository = Repository()
@@ -242,8 +242,8 @@ def test_missing_rules_are_reported_at_the_statement() -> None:
 
 
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.name)
-def test_rules_as_written_and_the_program_give_the_same_nodes(path: Path) -> None:
-    """What the checks and the launch files say of the nodes is what the generators make."""
+def test_nodes_are_the_same_from_source_and_program(path: Path) -> None:
+    """Checks and launch files describe the same nodes that the generators emit."""
     repository = Repository()
     model = repository.load(path).model
     assert isinstance(model, Rules)
@@ -270,7 +270,7 @@ def test_rules_as_written_and_the_program_give_the_same_nodes(path: Path) -> Non
 
 @pytest.mark.parametrize("target", ["python", "cpp"])
 @pytest.mark.parametrize("name", ["intelligent_one", "feeding_robot"])
-def test_nodes_of_the_rules_are_those_that_are_generated(
+def test_nodes_of_the_statement_match_the_generated_ones(
     name: str, target: str, tmp_path: Path
 ) -> None:
     """Names, packages, parameters and ports with their QoS."""
@@ -293,8 +293,8 @@ def test_nodes_of_the_rules_are_those_that_are_generated(
         assert (found.package, found.name) == (node.package, node.name)
 
 
-def test_the_grammar_takes_attributes_in_any_order() -> None:
-    """As those of nodes; each may be given once."""
+def test_statement_attributes_in_any_order() -> None:
+    """Each attribute may be given once, as for nodes."""
     attributes = ['"A text"', "respawn", "as guard", "target cpp", "namespace /n"]
     for shift in range(len(attributes)):
         order = " ".join(attributes[shift:] + attributes[:shift])

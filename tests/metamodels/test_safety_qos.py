@@ -1,4 +1,4 @@
-"""What a safety node and a gate ask for: nothing that some publisher might not offer."""
+"""The QoS that safety nodes and gates request: nothing that a publisher might not offer."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ OFFERS = [
     (Offers([RELIABLE, SENSOR]), "best_effort", "volatile"),
     (Offers([RELIABLE, None]), "best_effort", "volatile"),
     (Offers([]), "best_effort", "volatile"),
-    # Somebody whom the model does not show may publish, too.
+    # An unknown publisher may exist as well.
     (Offers([LATCHED], is_open=True), "best_effort", "volatile"),
-    # A pin holds for everybody.
+    # Declared QoS applies to every publisher.
     (Offers([LATCHED], pin=RELIABLE, is_open=True), "reliable", "volatile"),
     (Offers([], pin=LATCHED, is_open=True), "reliable", "transient_local"),
     (Offers([RELIABLE], pin=SENSOR), "best_effort", "volatile"),
@@ -38,8 +38,10 @@ OFFERS = [
 
 
 @pytest.mark.parametrize(("offers", "reliability", "durability"), OFFERS)
-def test_inputs(offers: Offers, reliability: str, durability: str) -> None:
-    """As reliable and as durable as every publisher is known to be, and nothing else."""
+def test_input_qos_matches_all_known_publishers(
+    offers: Offers, reliability: str, durability: str
+) -> None:
+    """As reliable and durable as every known publisher, without other requirements."""
     asked = policies(input_qos(offers))
     assert (asked.reliability, asked.durability) == (reliability, durability)
     assert (asked.deadline, asked.lease, asked.liveliness) == (None, None, "automatic")
@@ -50,13 +52,13 @@ def test_inputs(offers: Offers, reliability: str, durability: str) -> None:
 
 
 @pytest.mark.parametrize(("offers", "reliability", "_"), OFFERS)
-def test_commands(offers: Offers, reliability: str, _: str) -> None:
+def test_gate_source_is_volatile(offers: Offers, reliability: str, _: str) -> None:
     """No old command is replayed to a gate that starts."""
     asked = policies(gate_source_qos(offers))
     assert (asked.reliability, asked.durability) == (reliability, "volatile")
 
 
-def test_safety_nodes_and_gates_match() -> None:
-    """What the one offers is what the other asks for."""
+def test_safety_node_and_gate_qos_match() -> None:
+    """The offered QoS meets the requested QoS."""
     assert shortfalls(policies(STATE), policies(STATE)) == ()
     assert shortfalls(policies(HEARTBEAT), policies(GATE_HEARTBEAT)) == ()

@@ -1,4 +1,4 @@
-"""Syntax errors: the place is exact, and the words are the user's, not the parser's."""
+"""Syntax errors: exact positions, and messages in the user's words instead of the parser's."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic
 from deros.metamodels.load import Repository
 
-# Name of the file, its text with the faulty place between « and », a part of the message or hint.
+# File name, text with the error between « and », part of the message or hint.
 CASES = [
     ("a.rnd", "«nodea» : p", "'node'"),
     ("a.rnd", "node a «p»", "':'"),
@@ -53,8 +53,8 @@ def _load(name: str, marked: str) -> tuple[tuple[Diagnostic, ...], tuple[int, in
 
 
 @pytest.mark.parametrize(("name", "marked", "words"), CASES, ids=[case[1] for case in CASES])
-def test_place_and_words(name: str, marked: str, words: str) -> None:
-    """The error starts exactly where the text goes wrong, and names what belongs there."""
+def test_syntax_error_position_and_message(name: str, marked: str, words: str) -> None:
+    """The error starts exactly where the text goes wrong, and names the expected token."""
     diagnostics, (start, end) = _load(name, marked)
     (found,) = diagnostics
     assert found.span.start == start
@@ -63,30 +63,30 @@ def test_place_and_words(name: str, marked: str, words: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "marked", "words"), CASES, ids=[case[1] for case in CASES])
-def test_no_word_of_the_machinery(name: str, marked: str, words: str) -> None:
-    """No message shows a regular expression, a rule of the grammar or a Python type."""
+def test_messages_show_no_parser_internals(name: str, marked: str, words: str) -> None:
+    """No message shows a regular expression, a grammar rule or a Python type."""
     diagnostics, _ = _load(name, marked)
     (found,) = diagnostics
     shown = f"{found.message} {found.hint}".replace(words, "")
     assert not re.search(r"\\b|\(\?|\[A-Z|EOF|NoMatch|__|\b[A-Z][a-z]+[A-Z]\w*", shown)
 
 
-def test_a_comment_mark_inside_a_text_is_text() -> None:
-    """``//`` and ``/*`` between quotes start no comment."""
+def test_comment_marker_in_a_string_is_text() -> None:
+    """``//`` and ``/*`` between quotes do not start a comment."""
     loaded = Repository().load_text("a.rnd", 'node a : p "see http://x /* y" // real\n lifecycle')
     assert loaded.diagnostics == ()
     assert loaded.model is not None
     assert loaded.model.description == "see http://x /* y"  # type: ignore[union-attr]
 
 
-def test_a_quote_inside_a_comment_is_comment() -> None:
-    """A quotation mark in a comment opens no text."""
+def test_quote_in_a_comment_is_ignored() -> None:
+    """A quotation mark in a comment does not open a string."""
     text = 'node a /* don"t */ : // "\n p lifecycle'
     assert Repository().load_text("a.rnd", text).diagnostics == ()
 
 
-def test_comments_do_not_move_positions() -> None:
-    """What stands after comments of one and of several lines keeps its line and column."""
+def test_comments_do_not_shift_positions() -> None:
+    """Text after comments keeps its line and column."""
     text = "/* one\n two */ node a : p // three\n parameters /* x */ name x double"
     (found,) = Repository().load_text("a.rnd", text).diagnostics
     assert (found.span.line, found.span.column) == (3, 28)

@@ -27,7 +27,7 @@ publishes
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with one node description, ``camera.rnd``."""
+    """Create a folder with one node description, ``camera.rnd``."""
     (tmp_path / "camera.rnd").write_text(NODE, encoding="utf-8")
     return tmp_path
 
@@ -50,8 +50,8 @@ def _node(folder: Path, text: str) -> NodeInstance:
     return node
 
 
-def test_topics(folder: Path) -> None:
-    """A topic may be pinned to a type and a QoS, be external and have a description."""
+def test_topic_declarations(folder: Path) -> None:
+    """A topic may have a type, a QoS and a description, and be external."""
     plain, pinned, outside = _system(
         folder,
         "topics topic /image topic scan:sensor_msgs.LaserScan qos best_effort depth 5 "
@@ -66,8 +66,8 @@ def test_topics(folder: Path) -> None:
     assert outside.span.text.startswith("external topic /tf")
 
 
-def test_nodes_stand_in_a_system_or_in_subsystems(folder: Path) -> None:
-    """Subsystems nest, with topics, a namespace and a description of their own."""
+def test_nodes_and_nested_subsystems(folder: Path) -> None:
+    """Subsystems nest, and have topics, a namespace and a description."""
     outer, node = _system(
         folder,
         'subsystem a namespace /front "The front" '
@@ -82,8 +82,8 @@ def test_nodes_stand_in_a_system_or_in_subsystems(folder: Path) -> None:
     assert node.name == "n"
 
 
-def test_what_follows_a_nodes_type(folder: Path) -> None:
-    """Namespace, respawn, log level and description come in any order."""
+def test_node_attributes_in_any_order(folder: Path) -> None:
+    """Namespace, respawn, log level and description follow the node type in any order."""
     for text in (
         'namespace /front respawn delay 1.5 sec max 3 log_level debug "Looks ahead"',
         '"Looks ahead" log_level debug respawn delay 1500 ms max 3 namespace /front',
@@ -98,7 +98,7 @@ def test_what_follows_a_nodes_type(folder: Path) -> None:
 
 
 def test_settings_and_wirings(folder: Path) -> None:
-    """Values keep their kind, whole numbers become doubles where the parameter is one."""
+    """Values keep their type; whole numbers become doubles where the parameter is a double."""
     node = _node(
         folder,
         "wirings connect /image to ~/image; connect image to pictures "
@@ -118,8 +118,8 @@ def test_settings_and_wirings(folder: Path) -> None:
     ]
 
 
-def test_spans_lie_on_the_words(folder: Path) -> None:
-    """The places of ports, targets, values and types are exactly their words."""
+def test_spans_cover_exactly_their_words(folder: Path) -> None:
+    """The spans of ports, targets, values and types are exactly their words."""
     node = _node(folder, "parameters param gains = [1, 2] wirings connect /image to /x")
     (setting,) = node.parameters
     (wiring,) = node.wirings
@@ -129,8 +129,8 @@ def test_spans_lie_on_the_words(folder: Path) -> None:
     assert (node.name_span.text, node.type_span.text) == ("n", "camera")
 
 
-def test_keywords_are_names_where_nothing_is_lost(folder: Path) -> None:
-    """Nodes, subsystems, parameters and ports may be called like keywords."""
+def test_keywords_are_valid_names_where_unambiguous(folder: Path) -> None:
+    """Nodes, subsystems, parameters and ports may have names that are keywords."""
     (subsystem,) = _system(
         folder,
         "subsystem topics { node node : camera parameters param param = 1 param topic = 2 "
@@ -161,14 +161,16 @@ def test_keywords_are_whole_words(folder: Path) -> None:
         ("subsystem s : S { topics }", codes.UNKNOWN_SYSTEM, "S"),
     ],
 )
-def test_findings(folder: Path, body: str, code: Code, text: str) -> None:
-    """What is given twice, and names that nothing defines, are findings at their place."""
+def test_duplicates_and_undefined_names_are_findings(
+    folder: Path, body: str, code: Code, text: str
+) -> None:
+    """Duplicate sections and undefined names are reported at their place."""
     found = _load(folder, body).diagnostics[0]
     assert (found.code, found.span.text) == (code, text)
 
 
-def test_a_used_system_has_no_parts_of_its_own(tmp_path: Path) -> None:
-    """``subsystem a : Arm { … }`` says two things at once."""
+def test_imported_subsystem_cannot_have_a_body(tmp_path: Path) -> None:
+    """``subsystem a : Arm { … }`` is contradictory."""
     (tmp_path / "arm.system").write_text("system Arm", encoding="utf-8")
     text = 'system S imports import "arm.system" subsystem a : Arm { topics topic /x }'
     (found,) = Repository().load_text(tmp_path / "s.system", text).diagnostics
@@ -194,16 +196,16 @@ def test_a_used_system_has_no_parts_of_its_own(tmp_path: Path) -> None:
         ('"3d.topic" to /x', None, "3d.topic", "/x"),
     ],
 )
-def test_a_kind_may_stand_before_a_port(
+def test_port_kind_before_a_port_name(
     folder: Path, text: str, kind: PortKind | None, port: str, target: str
 ) -> None:
-    """A port may all the same be called as a kind is; names may stand in quotes."""
+    """A port may have the name of a kind, and names may be quoted."""
     (wiring,) = _node(folder, f"wirings connect {text}").wirings
     assert (wiring.kind, wiring.port, wiring.target) == (kind, port, target)
 
 
-def test_settings_of_any_name_and_number(folder: Path) -> None:
-    """What a node description may call its parameters, a system may set; to NaN, too."""
+def test_settings_of_any_parameter_name_and_number(folder: Path) -> None:
+    """A system may set any parameter that a description can name, also to NaN."""
     node = _node(
         folder,
         "parameters param qos_overrides./tf.publisher.depth = 3 param a-b = [nan, -inf]"
