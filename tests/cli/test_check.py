@@ -1,4 +1,4 @@
-"""``deros check``: what is checked together, in which order, and with which exit code."""
+"""``deros check``: files checked together, order of findings, and exit codes."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def _in_own_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_clean_models_exit_with_0() -> None:
-    """A run without findings says how much it looked at."""
+    """The summary counts the files."""
     outcome = deros("check", "good.rnd")
     assert (outcome.code, outcome.out) == (0, "1 file checked, no findings\n")
 
 
-def test_errors_exit_with_1_and_are_reported_together() -> None:
-    """All findings of a run appear, in the order of the files' names and of their lines."""
+def test_errors_exit_with_1_and_are_all_reported() -> None:
+    """All findings of a run are sorted by file name and line."""
     outcome = deros("check", "good.rnd", "lonely.system", "bad.rnd")
     assert outcome.code == 1
     places = [line.split(": ")[0] for line in outcome.out.splitlines() if line[0] not in " 0123"]
@@ -40,16 +40,16 @@ def test_errors_exit_with_1_and_are_reported_together() -> None:
     assert outcome.out.endswith("\n2 errors and 1 warning in 3 files\n")
 
 
-def test_warnings_fail_only_under_strict() -> None:
-    """A warning is reported in any case; ``--strict`` lets it fail the run."""
+def test_warnings_fail_only_with_strict() -> None:
+    """A warning is always reported; with ``--strict`` it fails the run."""
     assert deros("check", "lonely.system").code == 0
     strict = deros("check", "--strict", "lonely.system")
     assert strict.code == 1
     assert "warning[DRS212]" in strict.out
 
 
-def test_remarks_never_fail() -> None:
-    """Information does not count, not even under ``--strict``."""
+def test_notes_never_fail() -> None:
+    """Notes do not fail a run, even with ``--strict``."""
     Path("old.rnd").write_text('node old : demo\nparameters\n  name topic_id : string = "x"\n')
     Path("remark.system").write_text(
         'system Remark\nimports import "old.rnd"\ntopics topic /x\n'
@@ -62,7 +62,7 @@ def test_remarks_never_fail() -> None:
 
 @pytest.mark.parametrize("name", ["nowhere.rnd", "model.txt", "latin.rnd", "folder.rnd"])
 def test_unreadable_input_exits_with_2(name: str) -> None:
-    """A missing file, an unknown suffix, bytes that are no text, a directory: one finding each."""
+    """Missing files, unknown suffixes, binary files and directories give one finding each."""
     Path("model.txt").write_text(GOOD)
     Path("latin.rnd").write_bytes(b"node caf\xe9 : demo")
     Path("folder.rnd").mkdir()
@@ -71,22 +71,22 @@ def test_unreadable_input_exits_with_2(name: str) -> None:
     assert [d["file"] for d in json.loads(outcome.out)] == [name]
 
 
-def test_the_other_files_are_checked_all_the_same() -> None:
-    """One unreadable file hides nothing of the rest."""
+def test_other_files_are_checked_despite_an_unreadable_one() -> None:
+    """One unreadable file does not hide findings of the others."""
     outcome = deros("check", "nowhere.rnd", "bad.rnd")
     assert outcome.code == 2
     assert "bad.rnd:3:21: error[DRS103]" in outcome.out
 
 
-def test_a_file_named_twice_is_checked_once() -> None:
-    """Repeats of a file, and a file both named and imported, give each finding once."""
+def test_file_given_twice_is_checked_once() -> None:
+    """A repeated file, or one both given and imported, gives each finding once."""
     Path("uses.system").write_text('system Uses\nimports import "bad.rnd"\nnode bad : bad\n')
     outcome = deros("check", "bad.rnd", "./bad.rnd", "uses.system")
     assert outcome.out.count("DRS103") == 1
 
 
 def test_interfaces_come_from_given_folders() -> None:
-    """A message type of one's own is known once its folder is named."""
+    """A custom message type is known if its folder is given."""
     Path("own.rnd").write_text("node own : demo\npublishes\n  topic state : own_msgs.State\n")
     (Path("ws") / "own_msgs" / "msg").mkdir(parents=True)
     (Path("ws") / "own_msgs" / "msg" / "State.msg").write_text("float64 charge\n")
@@ -94,6 +94,6 @@ def test_interfaces_come_from_given_folders() -> None:
     assert deros("check", "--interfaces", "ws", "own.rnd").code == 0
 
 
-def test_a_folder_of_interfaces_must_exist() -> None:
-    """A folder that is not there is a mistake on the command line."""
+def test_missing_interface_folder_is_a_usage_error() -> None:
+    """The exit code is 2."""
     assert deros("check", "--interfaces", "nowhere", "good.rnd").code == 2

@@ -1,4 +1,4 @@
-"""What README and documentation claim of the command line is run, and compared."""
+"""Claims of the README and the documentation about the command line, run and compared."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ INDEX = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
 
 
 def _console(text: str) -> list[tuple[str, str]]:
-    """Return the commands of all ``console`` blocks, each with the output that is shown."""
+    """Return the commands of all ``console`` blocks, each with its shown output."""
     runs: list[tuple[str, str]] = []
     for block in re.findall(r"```console\n(.*?)```", text, re.DOTALL):
         for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
@@ -31,10 +31,10 @@ def _console(text: str) -> list[tuple[str, str]]:
     return runs
 
 
-def test_the_first_steps_print_what_they_show(
+def test_first_steps_print_the_documented_output(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each command of the overview runs in the order shown, with the output that is shown."""
+    """Each command of the overview runs in order and gives the shown output."""
     monkeypatch.chdir(tmp_path)
     ran = []
     for command, shown in _console(INDEX):
@@ -44,7 +44,7 @@ def test_the_first_steps_print_what_they_show(
         if program != "deros":
             continue
         ran.append(arguments[0])
-        if arguments[0] == "up":  # that it starts is for the tests on real ROS
+        if arguments[0] == "up":  # other tests start it on real ROS
             arguments.append("--dry-run")
         outcome = deros(*arguments)
         assert outcome.code == 0, (command, outcome)
@@ -57,10 +57,8 @@ def test_the_first_steps_print_what_they_show(
     assert ran == ["new", "check", "generate", "generate", "up", "simulate"]
 
 
-def test_the_top_readme_shows_a_finding_as_it_is_printed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A slip in a field of the smallest example gives that text, to the count of files."""
+def test_readme_shows_a_finding_as_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A typo in a field of the smallest example gives exactly that text."""
     ((command, shown),) = _console(README)
     example = tmp_path / "example"
     shutil.copytree(ROOT / "examples" / "intelligent_one", example)
@@ -71,8 +69,8 @@ def test_the_top_readme_shows_a_finding_as_it_is_printed(
     assert (outcome.code, outcome.out) == (1, shown)
 
 
-def test_the_top_readme_can_be_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The files that its shell lines name are there, or are made by the line before."""
+def test_readme_commands_can_be_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The files that its shell lines name exist, or the line before creates them."""
     for name in ("examples/intelligent_one",):
         shutil.copytree(ROOT / name, tmp_path / name)
     monkeypatch.chdir(tmp_path)
@@ -100,8 +98,8 @@ def test_the_top_readme_can_be_pasted(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/command-line.md"])
-def test_the_commands_are_those_there_are(page: str) -> None:
-    """No table names a command that is none, and the documentation's names all."""
+def test_documented_commands_exist(page: str) -> None:
+    """No table names an unknown command, and the documentation names all of them."""
     text = (ROOT / page).read_text(encoding="utf-8")
     named = set(re.findall(r"^\| `deros ([a-z-]+)", text, re.MULTILINE))
     assert named <= {*COMMANDS}
@@ -153,7 +151,7 @@ if e.r or e.gone then { stop; horn; if e.gone then { log_state("gone"); }; };
 
 @pytest.mark.parametrize("name", STATEMENTS)
 def test_semicolons_are_optional(tmp_path: Path, name: str) -> None:
-    """A ``;`` may close any statement, and none has to."""
+    """A ``;`` may end any statement, and is never required."""
 
     def load(texts: dict[str, str]) -> LoadedFile:
         for file, text in texts.items():
@@ -176,10 +174,10 @@ def test_semicolons_are_optional(tmp_path: Path, name: str) -> None:
     ("written", "meant"),
     [("/x", "/x"), ("x", "/robot/front/x"), ("deep/x", "/robot/front/deep/x")],
 )
-def test_a_relative_topic_is_under_the_namespace_where_it_is_written(
+def test_relative_topic_is_resolved_in_its_namespace(
     tmp_path: Path, written: str, meant: str
 ) -> None:
-    """As ROS 2 does it; ``~/x`` is under the node's own name."""
+    """As in ROS 2; ``~/x`` is under the name of the node."""
     (tmp_path / "n.rnd").write_text("node n : pkg\npublishes\n  topic out : std_msgs.Bool\n")
     (tmp_path / "s.system").write_text(
         'system S\nimports import "n.rnd"\nsubsystem A namespace /robot {\n'

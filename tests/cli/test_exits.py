@@ -1,4 +1,4 @@
-"""How every command ends: exit codes for wrong arguments, missing files, closed pipes."""
+"""Exit codes of all commands: wrong arguments, missing files, closed pipes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from deros.cli.main import COMMANDS
 from tests.support.builds import PROGRAM
 from tests.support.cli import deros
 
-# How each command is called on a file; those that take none are called without.
+# Arguments of each command for a file; other commands are called without one.
 ON_A_FILE: dict[str, list[str]] = {
     "check": ["check", "{}.system"],
     "generate": ["generate", "{}.system", "--target", "launch"],
@@ -31,8 +31,8 @@ WRONG_VALUES = [
 
 @pytest.mark.parametrize("name", COMMANDS)
 @pytest.mark.parametrize("before", [True, False])
-def test_a_wrong_option_exits_with_2(name: str, before: bool, tmp_path: Path) -> None:
-    """An option that a command does not have is a usage error, wherever it stands."""
+def test_unknown_option_exits_with_2(name: str, before: bool, tmp_path: Path) -> None:
+    """An unknown option is a usage error at any position."""
     (tmp_path / "empty.system").write_text("system Empty\n")
     rest = [each.format(tmp_path / "empty") for each in ON_A_FILE.get(name, [name])[1:]]
     arguments = [name, "--nope", *rest] if before else [name, *rest, "--nope"]
@@ -44,16 +44,16 @@ def test_a_wrong_option_exits_with_2(name: str, before: bool, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("arguments", WRONG_VALUES, ids=" ".join)
-def test_a_wrong_value_exits_with_2(arguments: list[str]) -> None:
-    """An argument that is missing, or is not one of those there are, is a usage error."""
+def test_invalid_value_exits_with_2(arguments: list[str]) -> None:
+    """A missing or invalid argument is a usage error."""
     outcome = deros(*arguments)
     assert outcome.code == 2, outcome
     assert "Traceback" not in outcome.err
 
 
 @pytest.mark.parametrize("name", ON_A_FILE)
-def test_a_missing_file_exits_with_2(name: str, tmp_path: Path) -> None:
-    """A file that does not exist is named, and the code is that of unreadable input."""
+def test_missing_file_exits_with_2(name: str, tmp_path: Path) -> None:
+    """The message names the file, and the code is that of unreadable input."""
     arguments = [each.format(tmp_path / "missing") for each in ON_A_FILE[name]]
     outcome = deros(*arguments)
     assert outcome.code == 2, outcome
@@ -66,8 +66,8 @@ def test_a_missing_file_exits_with_2(name: str, tmp_path: Path) -> None:
     [["--stop-timeout", "soon"], ["--stop-timeout", "-1"], ["--only", "nobody"], ["--", "--nope"]],
     ids=" ".join,
 )
-def test_up_refuses_what_its_script_refuses(arguments: list[str], tmp_path: Path) -> None:
-    """What 'up' hands on to the parser of its script is a usage error there, too."""
+def test_up_rejects_arguments_that_its_script_rejects(arguments: list[str], tmp_path: Path) -> None:
+    """Arguments that 'up' forwards to the parser of its script are checked as usage errors."""
     (tmp_path / "empty.system").write_text("system Empty\n")
     outcome = deros("up", tmp_path / "empty.system", *arguments)
     assert outcome.code == 2, outcome
@@ -75,8 +75,8 @@ def test_up_refuses_what_its_script_refuses(arguments: list[str], tmp_path: Path
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_help_into_a_closed_pipe_is_quiet(name: str) -> None:
-    """A reader that is gone before the first line ends a command with 141, without a word."""
+def test_help_into_a_closed_pipe_is_silent(name: str) -> None:
+    """If the reader is gone before the first line, the code is 141 without a message."""
     command = f"{{ {PROGRAM} {name} --help; echo $? >&2; }} | true"
     done = subprocess.run(
         ["bash", "-c", command], capture_output=True, text=True, timeout=120, check=False
@@ -85,6 +85,6 @@ def test_help_into_a_closed_pipe_is_quiet(name: str) -> None:
 
 
 def test_up_with_help_of_its_script_exits_with_0(tmp_path: Path) -> None:
-    """Help that a parser of ours prints is no failure."""
+    """Help printed by the script's parser is not a failure."""
     (tmp_path / "empty.system").write_text("system Empty\n")
     assert deros("up", tmp_path / "empty.system", "--", "--help").code == 0

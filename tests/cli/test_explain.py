@@ -1,4 +1,4 @@
-"""``deros explain``: the page of a code, by its number or its name."""
+"""``deros explain``: the page of a code, by number or slug."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ DEROS = Path(sys.executable).with_name("deros")
 
 @pytest.mark.parametrize("name", ALL_CODES)
 def test_every_code_is_explained(name: str) -> None:
-    """The page of each code is part of the package."""
+    """The page of each code is in the package."""
     assert deros("explain", name).out.startswith(f"# {name}: {ALL_CODES[name].title}\n")
 
 
 @pytest.mark.parametrize("word", ["DRS317", "drs317", "317", "DRS-317", "no-timeout", "NO_TIMEOUT"])
-def test_a_code_has_several_names(word: str) -> None:
-    """A number, a code in any case, or the name."""
+def test_code_is_found_by_number_or_slug(word: str) -> None:
+    """Numbers, codes in any case and slugs are accepted."""
     assert deros("explain", word).out.startswith("# DRS317: ")
 
 
-def test_every_code_has_one_name() -> None:
-    """Names are unique and are no numbers."""
+def test_every_code_has_one_slug() -> None:
+    """Slugs are unique and are not numbers."""
     assert set(SLUGS.values()) == set(ALL_CODES.values())
     assert len(SLUGS) == len(ALL_CODES)
 
@@ -44,15 +44,15 @@ def test_every_code_has_one_name() -> None:
         ("", "'deros explain' lists them all"),
     ],
 )
-def test_unknown_codes_give_near_ones(word: str, hint: str) -> None:
-    """The exit code is that of a mistake on the command line."""
+def test_unknown_code_gets_suggestions(word: str, hint: str) -> None:
+    """The exit code is that of a usage error."""
     outcome = deros("explain", word)
     assert (outcome.code, outcome.out) == (2, "")
     assert hint in outcome.err
 
 
-def test_several_codes_and_all() -> None:
-    """Pages follow one another; without a code all are listed."""
+def test_several_codes_or_none() -> None:
+    """The pages follow each other; without a code, all are listed."""
     both = deros("explain", "DRS317", "DRS210").out
     assert both.index("# DRS317") < both.index("# DRS210")
     listing = deros("explain").out.splitlines()
@@ -66,8 +66,8 @@ class _Terminal(io.StringIO):
 
 
 @pytest.mark.parametrize("colour", [True, False])
-def test_a_terminal_gets_it_laid_out(monkeypatch: pytest.MonkeyPatch, colour: bool) -> None:
-    """Headings and links are not shown as Markdown there; NO_COLOR is honoured."""
+def test_terminal_gets_formatted_pages(monkeypatch: pytest.MonkeyPatch, colour: bool) -> None:
+    """Headings and links are not shown as Markdown; NO_COLOR is respected."""
     terminal = _Terminal()
     monkeypatch.setattr(sys, "stdout", terminal)
     monkeypatch.setenv("TERM", "xterm-256color")
@@ -83,8 +83,8 @@ def test_a_terminal_gets_it_laid_out(monkeypatch: pytest.MonkeyPatch, colour: bo
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_each_shell_gets_a_completion_script(shell: str) -> None:
-    """The command that the documentation names prints a script and succeeds."""
+def test_each_shell_has_a_completion_script(shell: str) -> None:
+    """The documented command prints a script and succeeds."""
     environment = {**os.environ, "_DEROS_COMPLETE": f"{shell}_source"}
     done = subprocess.run([DEROS], env=environment, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
@@ -102,8 +102,8 @@ def test_each_shell_gets_a_completion_script(shell: str) -> None:
         ("deros explain DRS31", "plain,DRS317"),
     ],
 )
-def test_completion_knows_commands_options_and_codes(words: str, expected: str) -> None:
-    """What bash asks for is answered, with exit code 0."""
+def test_completion_of_commands_options_and_codes(words: str, expected: str) -> None:
+    """The request of bash is answered, with exit code 0."""
     environment = {
         **os.environ,
         "_DEROS_COMPLETE": "bash_complete",

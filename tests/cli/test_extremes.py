@@ -1,4 +1,4 @@
-"""Whatever a file holds, deros answers within 5 seconds of processor time and 500 MB."""
+"""Resource limits: any file is handled within 5 seconds of processor time and 500 MB."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MB = 1 << 20
 
 
 def check(folder: Path, name: str, *options: object) -> Measured:
-    """Check a model and hold the limits."""
+    """Check a model and assert the limits."""
     done = run("check", *options, name, folder=folder)
     assert "bug in deros" not in done.out, done.out[-2000:]
     assert done.code in (0, 1, 2), done.out[-2000:]
@@ -34,7 +34,7 @@ def _million_parameters() -> str:
 
 
 MODELS: dict[str, tuple[str, Callable[[], str], str]] = {
-    # A name: suffix, the text, and the code of what is found.
+    # name: suffix, text, and code of the finding
     "a million parameters": (".rnd", _million_parameters, "DRS008"),
     "a text of 20 MB": (".rnd", lambda: f'{NODE[:-1]} "{"a" * 20 * MB}"', "DRS008"),
     "a text of 3 MB": (".rnd", lambda: f'{NODE[:-1]} "{"a" * 3 * MB}"', ""),
@@ -90,8 +90,8 @@ MODELS: dict[str, tuple[str, Callable[[], str], str]] = {
 
 
 @pytest.mark.parametrize("what", MODELS)
-def test_extreme_models(tmp_path: Path, what: str) -> None:
-    """A finding at its place, or none where nothing is wrong, and no more than the limits."""
+def test_extreme_models_stay_within_the_limits(tmp_path: Path, what: str) -> None:
+    """Broken models give a finding at its place, sound ones none, all within the limits."""
     suffix, text, code = MODELS[what]
     (tmp_path / f"model{suffix}").write_text(text())
     done = check(tmp_path, f"model{suffix}")
@@ -100,8 +100,8 @@ def test_extreme_models(tmp_path: Path, what: str) -> None:
     assert done.code == (2 if code in ("DRS008", "DRS005") else bool(code))
 
 
-def test_a_file_of_100_mb(tmp_path: Path) -> None:
-    """A file that can be no model is not read."""
+def test_file_of_100_mb_is_not_read(tmp_path: Path) -> None:
+    """A file too large for a model is rejected by its size."""
     for name in ("a.rnd", "a.system", "a.deros"):
         with (tmp_path / name).open("wb") as file:
             file.truncate(100 * MB)
@@ -128,8 +128,8 @@ NUMBERS = {
 
 @pytest.mark.parametrize("place", NUMBERS)
 @pytest.mark.parametrize("number", ["9" * 5000, "1e400", "1" * 300, "18446744073709551616"])
-def test_extreme_numbers(tmp_path: Path, place: str, number: str) -> None:
-    """Wherever a number can stand, one that no type holds is a finding where it stands."""
+def test_number_out_of_range_is_a_finding(tmp_path: Path, place: str, number: str) -> None:
+    """A number that no type can represent is reported at its place, wherever it is."""
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
     from deros.validators.check import check as check_loaded
@@ -143,11 +143,11 @@ def test_extreme_numbers(tmp_path: Path, place: str, number: str) -> None:
     assert errors or fits, (place, number[:30])
 
 
-# Files that are none ------------------------------------------------------------------------------
+# Special files ------------------------------------------------------------------------------------
 
 
-def test_pipes_and_devices_as_models_imports_and_definitions(tmp_path: Path) -> None:
-    """Whatever leads to a pipe or a device is a finding, and nothing waits."""
+def test_pipes_and_devices_are_rejected_without_blocking(tmp_path: Path) -> None:
+    """Models, imports and definitions that lead to a pipe or a device are findings."""
     os.mkfifo(tmp_path / "pipe.rnd")
     (tmp_path / "zero.rnd").symlink_to("/dev/zero")
     (tmp_path / "folder.rnd").mkdir()
@@ -170,8 +170,8 @@ def test_pipes_and_devices_as_models_imports_and_definitions(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("place", ["demo/demo/n.py", "demo/package.xml", "demo/demo/__init__.py"])
-def test_a_pipe_in_place_of_an_output_stays(tmp_path: Path, place: str) -> None:
-    """It is neither opened nor replaced, and nothing else is written either."""
+def test_pipe_in_place_of_an_output_is_kept(tmp_path: Path, place: str) -> None:
+    """It is neither opened nor replaced, and no other file is written."""
     (tmp_path / "n.rnd").write_text(NODE)
     assert run("generate", "n.rnd", "--target", "python", "-o", "out", folder=tmp_path).code == 0
     made = sorted(path for path in (tmp_path / "out").rglob("*") if path.is_file())
@@ -188,15 +188,15 @@ def test_a_pipe_in_place_of_an_output_stays(tmp_path: Path, place: str) -> None:
     assert not any(path.exists() for path in changed)
 
 
-def test_a_trace_without_end(tmp_path: Path) -> None:
-    """A device that goes on for ever is given up where no trace goes on."""
+def test_endless_trace_is_rejected(tmp_path: Path) -> None:
+    """A device without end is rejected at the size limit."""
     (tmp_path / "r.deros").write_text("action stop")
     done = run("simulate", "r.deros", "--trace", "/dev/zero", folder=tmp_path)
     assert done.code == 2, done.out[-300:]
     assert "DRS008" in done.out
 
 
-def test_patterns_over_loops_of_links(tmp_path: Path) -> None:
+def test_import_globs_over_link_loops_terminate(tmp_path: Path) -> None:
     """Each folder is searched once, however many links lead to it."""
     folder = tmp_path / "nodes" / "inner"
     folder.mkdir(parents=True)
@@ -210,8 +210,8 @@ def test_patterns_over_loops_of_links(tmp_path: Path) -> None:
         assert check(tmp_path, "s.system").code == 0, pattern
 
 
-def test_definitions_that_contain_themselves_or_explode(tmp_path: Path) -> None:
-    """They are refused as soon as they are named, not when somebody has walked through them."""
+def test_recursive_or_exploding_definitions_are_rejected(tmp_path: Path) -> None:
+    """They are rejected when they are named, before they are expanded."""
     definitions = tmp_path / "own_msgs" / "msg"
     definitions.mkdir(parents=True)
     (definitions / "A.msg").write_text("B[] b\n")
@@ -237,8 +237,8 @@ def test_definitions_that_contain_themselves_or_explode(tmp_path: Path) -> None:
         assert "more than 50 levels deep" in done.out
 
 
-def test_file_names_that_no_text_holds(tmp_path: Path) -> None:
-    """A file whose name is no UTF-8 is reported in every format."""
+def test_file_names_that_are_not_utf8(tmp_path: Path) -> None:
+    """A file whose name is not UTF-8 is reported in every format."""
     name = os.fsdecode(b"\xff.rnd")
     (tmp_path / name).write_text("node")
     for output in ("text", "json", "sarif", "github"):
@@ -252,8 +252,8 @@ def test_file_names_that_no_text_holds(tmp_path: Path) -> None:
         assert b"bug in deros" not in done.stderr
 
 
-def test_half_a_character_in_a_trace(tmp_path: Path) -> None:
-    """JSON may write what no stream takes; it is reported all the same."""
+def test_lone_surrogate_in_a_trace(tmp_path: Path) -> None:
+    """JSON may contain a character that no stream accepts; it is still reported."""
     (tmp_path / "r.deros").write_text("action stop")
     (tmp_path / "t").write_text('{"t": 1, "topic": "\\ud800", "data": {}}\n')
     done = run("simulate", "r.deros", "--trace", "t", folder=tmp_path)

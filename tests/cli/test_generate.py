@@ -1,4 +1,4 @@
-"""``deros generate``: its own options, the generator's, what it says and what it leaves alone."""
+"""``deros generate``: options, generator options, messages and files left alone."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ def _tree(directory: Path) -> dict[str, bytes]:
     }
 
 
-def test_files_are_written_once_and_reported() -> None:
-    """The first run names what it wrote; the second finds nothing to do."""
+def test_unchanged_files_are_not_written_again() -> None:
+    """The first run lists the files it wrote; the second has nothing to do."""
     first = deros("generate", "courier.system", "--target", "params", "-o", "out")
     assert first.code == 0
     assert first.out.startswith("wrote out/")
@@ -33,8 +33,8 @@ def test_files_are_written_once_and_reported() -> None:
     assert _tree(Path("out")) == before
 
 
-def test_hand_edits_are_kept_unless_overwrite() -> None:
-    """A generated file that was edited is reported and kept; ``--overwrite`` replaces it."""
+def test_edited_files_are_kept_without_overwrite() -> None:
+    """An edited generated file is reported and kept; ``--overwrite`` replaces it."""
     deros("generate", "courier.system", "--target", "launch", "-o", "out")
     (file,) = Path("out").rglob("*.launch.py")
     generated = file.read_text()
@@ -47,8 +47,8 @@ def test_hand_edits_are_kept_unless_overwrite() -> None:
     assert file.read_text() == generated
 
 
-def test_options_of_the_generator() -> None:
-    """``--name value`` and ``--name=value`` reach the generator; others are named as unknown."""
+def test_generator_options() -> None:
+    """``--name value`` and ``--name=value`` reach the generator; unknown options are reported."""
     for given in (["--maintainer", "Jo <jo@example.com>"], ["--maintainer=Jo <jo@example.com>"]):
         outcome = deros("generate", "courier_base.rnd", "--target", "python", "-o", "out", *given)
         assert outcome.code == 0, outcome.err
@@ -60,15 +60,15 @@ def test_options_of_the_generator() -> None:
 
 
 @pytest.mark.parametrize("extra", [["--maintainer"], ["-x"]])
-def test_unfinished_options_are_usage_errors(extra: list[str]) -> None:
-    """An option without its value, or of one letter, is a mistake on the command line."""
+def test_incomplete_options_are_usage_errors(extra: list[str]) -> None:
+    """An option without its value, or with one letter, is a usage error."""
     outcome = deros("generate", "courier_base.rnd", "--target", "python", *extra)
     assert outcome.code == 2
     assert "Usage:" in outcome.err
 
 
-def test_unknown_targets_name_the_ones_there_are() -> None:
-    """A misspelt target is answered by DRS404 with the nearest, and exit code 2."""
+def test_unknown_target_gets_a_suggestion() -> None:
+    """A misspelt target gives DRS404 with the nearest one, and exit code 2."""
     outcome = deros("generate", "courier.system", "--target", "lanch", "-o", "out")
     assert outcome.code == 2
     assert "DRS404" in outcome.err
@@ -77,19 +77,19 @@ def test_unknown_targets_name_the_ones_there_are() -> None:
 
 
 def test_help_lists_targets_and_their_options() -> None:
-    """The generators of the environment appear below the help, with what they take."""
+    """The installed generators are listed below the help, with their options."""
     text = deros("generate", "--help").out
     for expected in ("rosnode -> python", "rossystem -> launch", "deros -> python", "--maintainer"):
         assert expected in text
 
 
 def test_missing_model_exits_with_2() -> None:
-    """A model that cannot be read is no model with errors."""
+    """An unreadable model is not a model with errors."""
     assert deros("generate", "nowhere.system", "--target", "launch").code == 2
 
 
-def test_a_place_that_cannot_be_written_stays_as_it_was() -> None:
-    """When one file cannot be put in place, all others stay as they were."""
+def test_failed_write_leaves_the_output_unchanged() -> None:
+    """If one file cannot be replaced, all others stay as they were."""
     deros("generate", "courier_base.rnd", "--target", "python", "-o", "out")
     before = _tree(Path("out"))
     generated = next(p for p in Path("out").rglob("package.xml"))
@@ -106,8 +106,8 @@ def test_a_place_that_cannot_be_written_stays_as_it_was() -> None:
     assert set(before) - set(after) == {str(generated.relative_to("out"))}
 
 
-def test_a_node_of_the_same_package_is_checked_too(tmp_path: Path) -> None:
-    """Its code is generated with that of the model, so its errors count, of whatever kind."""
+def test_other_nodes_of_the_package_are_checked(tmp_path: Path) -> None:
+    """Their code is generated too, so all their errors count."""
     (tmp_path / "talker.rnd").write_text("node talker : chat")
     (tmp_path / "listener.rnd").write_text("node listener : chat publishes topic a : no_msgs.No")
     outcome = deros(

@@ -1,4 +1,4 @@
-"""``deros generate`` for several files and whole folders: all of them, or nothing."""
+"""``deros generate`` for several files and folders: all outputs are written, or none."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _packages(folder: str) -> list[str]:
 
 
 def test_several_files_in_one_run() -> None:
-    """Each is generated; options go to those that have them."""
+    """Each is generated; options reach the generators that have them."""
     _node("a.rnd", "a", "pkg_a")
     _node("b.rnd", "b", "pkg_b")
     outcome = deros(
@@ -37,8 +37,8 @@ def test_several_files_in_one_run() -> None:
     assert "2026 X" in Path("ws/pkg_b/setup.py").read_text()
 
 
-def test_options_may_stand_anywhere() -> None:
-    """An option of a generator takes the next word, wherever the files are."""
+def test_options_may_be_anywhere() -> None:
+    """A generator option takes the next word, wherever the files are."""
     _node("a.rnd", "a", "pkg_a")
     outcome = deros(
         "generate", "--copyright", "2026 X", "a.rnd", "--maintainer=Y <y@z>", "--target", "cpp"
@@ -47,8 +47,8 @@ def test_options_may_stand_anywhere() -> None:
     assert 'email="y@z"' in Path("pkg_a/package.xml").read_text()
 
 
-def test_a_folder_gives_all_of_its_models_that_have_the_target() -> None:
-    """Nodes of one package come together; other languages are passed over."""
+def test_folder_generates_all_models_with_the_target() -> None:
+    """Nodes of one package are generated together; other languages are skipped."""
     _node("m/a.rnd", "a", "pkg")
     _node("m/b.rnd", "b", "pkg")
     _node("m/sub/c.rnd", "c", "pkg_c")
@@ -65,8 +65,8 @@ def test_a_folder_gives_all_of_its_models_that_have_the_target() -> None:
     assert "wrote" not in again.out
 
 
-def test_a_new_project_is_generated_at_once() -> None:
-    """The robot's node, its safety node, and the launch file; the safety node is no skeleton."""
+def test_new_project_can_be_generated_at_once() -> None:
+    """Robot node, safety node and launch file are generated; the safety node has no stubs."""
     assert deros("new", "rules", "courier").code == 0
     Path("deros.toml").write_text(
         'output = "ws"\n[targets]\nrnd = "python"\nderos = "python"\n'
@@ -78,15 +78,15 @@ def test_a_new_project_is_generated_at_once() -> None:
     assert Path("ws/courier_system.launch.py").exists()
     assert Path("ws/courier_safety/courier_safety/monitor.py").exists()
     models = [path for path in Path().iterdir() if path.suffix in (".rnd", ".system", ".deros")]
-    checked = deros("check", ".").out  # none of the generated ones
+    checked = deros("check", ".").out  # none is generated
     assert checked.startswith(f"{len(models)} files checked")
     before = {path: path.stat().st_mtime_ns for path in Path("ws").rglob("*")}
     assert deros("generate", ".").code == 0
     assert {path: path.stat().st_mtime_ns for path in Path("ws").rglob("*")} == before
 
 
-def test_a_system_that_is_part_of_another_is_no_system_of_its_own() -> None:
-    """In a folder, parts are neither checked nor launched by themselves; named, they are."""
+def test_part_of_another_system_is_not_generated_from_a_folder() -> None:
+    """Parts are checked and launched only if they are given explicitly."""
     _node("m/a.rnd", "a", "pkg")
     Path("m/part.system").write_text(
         'system Part\nimports import "a.rnd"\ntopics topic /x\n'
@@ -102,7 +102,7 @@ def test_a_system_that_is_part_of_another_is_no_system_of_its_own() -> None:
     assert [path.name for path in Path("ws").glob("*.launch.py")] == ["whole.launch.py"]
 
 
-def test_an_error_in_one_leaves_all_unwritten() -> None:
+def test_error_in_one_file_writes_nothing() -> None:
     """All files of a run are written, or none."""
     _node("a.rnd", "a", "pkg_a")
     Path("b.rnd").write_text("node b : pkg_b\nparameters name x : int = 0.5\n")
@@ -111,8 +111,8 @@ def test_an_error_in_one_leaves_all_unwritten() -> None:
     assert not Path("ws").exists()
 
 
-def test_outputs_that_collide_are_refused() -> None:
-    """Two folders that both describe a part of one package would take turns."""
+def test_colliding_outputs_are_rejected() -> None:
+    """Two folders that each describe part of one package would overwrite each other."""
     _node("one/a.rnd", "a", "pkg")
     _node("two/b.rnd", "b", "pkg")
     outcome = deros("generate", "one", "two", "--target", "python", "-o", "ws")
@@ -121,8 +121,8 @@ def test_outputs_that_collide_are_refused() -> None:
     assert not Path("ws").exists()
 
 
-def test_a_model_without_target_is_a_mistake() -> None:
-    """A file needs one, a folder has to have a model for it, a build makes one model."""
+def test_missing_target_is_a_usage_error() -> None:
+    """A file needs a target, a folder a model with the target, and a depfile a single model."""
     _node("m/a.rnd", "a", "pkg_a")
     _node("m/b.rnd", "b", "pkg_b")
     Path("empty").mkdir()
@@ -144,8 +144,8 @@ def test_a_model_without_target_is_a_mistake() -> None:
     assert deros("check", "empty").code == 2
 
 
-def test_folders_are_checked_as_files_are() -> None:
-    """Each model below is checked once, however it is reached."""
+def test_models_below_a_folder_are_checked_once() -> None:
+    """It does not matter how a model is reached."""
     _node("m/a.rnd", "a", "pkg_a")
     Path("m/sub").mkdir()
     Path("m/sub/b.rnd").write_text("node b : pkg_b\nparameters name x : int = 0.5\n")

@@ -37,7 +37,7 @@ SYSTEM = """
 
 @pytest.fixture
 def models(tmp_path: Path) -> Path:
-    """Give a folder with a system and its node descriptions."""
+    """Create a folder with a system and its node descriptions."""
     (tmp_path / "talker.rnd").write_text(TALKER)
     (tmp_path / "listener.rnd").write_text(LISTENER)
     (tmp_path / "silent.rnd").write_text("node silent : chat")
@@ -50,8 +50,8 @@ def run(path: Path, *arguments: str) -> Result:
     return CliRunner().invoke(graph, [str(path), *arguments])
 
 
-def test_each_channel_has_its_ends_below_it(models: Path) -> None:
-    """Types, unconnected ports, untyped and external ends, and nodes without any are told."""
+def test_text_lists_the_ends_of_each_channel(models: Path) -> None:
+    """Types, unconnected ports, untyped and external ends, and nodes without ports are listed."""
     result = run(models / "chat.system")
     assert result.exit_code == 0
     assert result.stdout.splitlines() == [
@@ -68,8 +68,8 @@ def test_each_channel_has_its_ends_below_it(models: Path) -> None:
     ]
 
 
-def test_mermaid_has_frames_for_subsystems_and_dashes_for_unconnected_ports(models: Path) -> None:
-    """The flowchart nests the frames as the model does."""
+def test_mermaid_frames_and_dashed_edges(models: Path) -> None:
+    """Subsystems are nested frames, unconnected ports dashed edges."""
     result = run(models / "chat.system", "--format", "mermaid")
     assert result.stdout.splitlines() == [
         "flowchart LR",
@@ -102,8 +102,8 @@ def test_dot_has_the_same_vertices_and_edges(models: Path) -> None:
     assert result.stdout.count("{") == result.stdout.count("}")
 
 
-def test_findings_go_to_standard_error_and_errors_fail(models: Path) -> None:
-    """A system with a mistake is shown as far as it goes; the exit code is that of the check."""
+def test_findings_go_to_stderr_and_errors_fail(models: Path) -> None:
+    """A system with errors is shown as far as possible; the exit code is that of the check."""
     path = models / "chat.system"
     path.write_text(
         SYSTEM.replace(
@@ -117,7 +117,7 @@ def test_findings_go_to_standard_error_and_errors_fail(models: Path) -> None:
 
 
 def test_only_systems_have_a_graph(models: Path) -> None:
-    """A node description is a usage error; a file that is not there is a finding."""
+    """A node description is a usage error, a missing file a finding."""
     assert run(models / "talker.rnd").exit_code == 2
     missing = run(models / "none.system")
     assert missing.exit_code == 2

@@ -1,4 +1,4 @@
-"""The command group: its overview, its exit codes, and what happens when all else fails."""
+"""The command group: its overview, its exit codes, and internal errors."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from tests.support.cli import deros
 DEROS = str(Path(sys.executable).with_name("deros"))
 
 
-def test_overview_names_every_command() -> None:
-    """``deros --help`` lists the commands with the first line of each one's own help."""
+def test_overview_lists_every_command() -> None:
+    """``deros --help`` lists the commands with the first line of their help."""
     outcome = deros("--help")
     assert outcome.code == 0
     for name, (_, summary) in main.COMMANDS.items():
@@ -26,15 +26,15 @@ def test_overview_names_every_command() -> None:
 
 
 @pytest.mark.parametrize("name", main.COMMANDS)
-def test_every_command_answers_help(name: str) -> None:
-    """Each command is where the table says and explains itself."""
+def test_every_command_has_help(name: str) -> None:
+    """Each command can be imported from its table entry and prints its help."""
     outcome = deros(name, "--help")
     assert outcome.code == 0
     assert outcome.out.startswith(f"Usage: deros {name}")
 
 
-def test_help_is_quick() -> None:
-    """The overview takes little more of the processor than the interpreter's own start."""
+def test_help_is_fast() -> None:
+    """The overview takes little more processor time than starting the interpreter."""
 
     def seconds(command: list[str]) -> float:
         before = os.times()
@@ -44,17 +44,17 @@ def test_help_is_quick() -> None:
         return used + after.children_system - before.children_system
 
     start = min(seconds([sys.executable, "-c", ""]) for _ in range(3))
-    # click alone costs a fifth of what is allowed; a library too many costs all of it.
+    # click alone takes a fifth of the bound; one library too many takes all of it.
     assert min(seconds([DEROS, "--help"]) for _ in range(3)) - start < 0.2
 
 
-def test_version() -> None:
-    """The version is the package's."""
+def test_version_is_that_of_the_package() -> None:
+    """``--version`` prints the version of the package."""
     assert deros("--version").out == f"deros, version {__version__}\n"
 
 
-def test_unknown_command_is_a_usage_error_with_a_hint() -> None:
-    """A misspelt command is named together with the one that was meant."""
+def test_unknown_command_gets_a_suggestion() -> None:
+    """The usage error names the similar command."""
     outcome = deros("chekc", "x.rnd")
     assert outcome.code == 2
     assert "did you mean 'check'?" in outcome.err
@@ -62,21 +62,21 @@ def test_unknown_command_is_a_usage_error_with_a_hint() -> None:
 
 @pytest.mark.parametrize("arguments", [[], ["check"], ["generate"], ["new"], ["check", "--nope"]])
 def test_usage_errors_exit_with_2(arguments: list[str]) -> None:
-    """What cannot be run is explained on standard error, without a traceback."""
+    """The error is explained on standard error, without a traceback."""
     outcome = deros(*arguments)
     assert outcome.code == 2
     assert "Usage: deros" in outcome.err
     assert outcome.out == ""
 
 
-def test_a_wrong_argument_of_the_script_exits_with_2(tmp_path: Path) -> None:
-    """What a command hands on to a parser of its own ends as any other mistake there does."""
+def test_invalid_argument_of_the_script_exits_with_2(tmp_path: Path) -> None:
+    """Arguments that a command forwards to another parser fail in the same way."""
     (tmp_path / "empty.system").write_text("system Empty\n")
     assert deros("up", tmp_path / "empty.system", "--", "--nope").code == 2
 
 
-def test_a_bug_of_ours_is_called_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An unforeseen exception ends in one line and exit code 2; ``--debug`` adds the traceback."""
+def test_internal_error_is_reported_as_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An unexpected exception gives one line and exit code 2; ``--debug`` adds the traceback."""
 
     def broken(*_: object) -> None:
         raise LookupError("no such thing")
@@ -90,7 +90,7 @@ def test_a_bug_of_ours_is_called_one(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "Traceback" in deros("--debug", "check", "x.rnd").err
 
 
-def test_ctrl_c_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interrupt_gives_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     """An interrupted run exits with 130."""
 
     def interrupted(*_: object) -> None:
@@ -102,8 +102,8 @@ def test_ctrl_c_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "Traceback" not in outcome.err
 
 
-def test_closed_pipe_is_no_traceback(tmp_path: Path) -> None:
-    """When the reader of our output leaves early, so do we, silently."""
+def test_closed_pipe_gives_no_traceback(tmp_path: Path) -> None:
+    """If the reader of the output exits early, the command exits silently."""
     bad = tmp_path / "bad.rnd"
     bad.write_text(
         "node a : demo\nparameters\n" + "".join(f"  name p{i} : int = 1.5\n" for i in range(3000))

@@ -1,4 +1,4 @@
-"""No input ends in a traceback: whatever a file holds, there are findings and an exit code."""
+"""Robustness: any input gives findings and an exit code, never a traceback."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ if not drive.fast and not drive.blind then { go; };
 
 @pytest.fixture
 def models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with one clean model of each language, which is the working folder."""
+    """Create and enter a folder with one clean model of each language."""
     for name, text in MODELS.items():
         (tmp_path / name).write_text(text)
     monkeypatch.chdir(tmp_path)
@@ -75,14 +75,14 @@ def _findings(*arguments: object) -> tuple[Outcome, list[dict[str, object]]]:
 
 
 @pytest.mark.usefixtures("models")
-def test_the_models_are_clean() -> None:
-    """What the other tests damage is sound."""
+def test_undamaged_models_are_clean() -> None:
+    """The models that the other tests damage are sound."""
     assert _findings(*MODELS)[1] == []
 
 
 @pytest.mark.parametrize("name", MODELS)
 def test_truncated_models(models: Path, name: str) -> None:
-    """Cut off anywhere, a model is still answered by findings, at places that exist."""
+    """A model cut off anywhere gives findings with valid places."""
     text = MODELS[name]
     for length in range(0, len(text), 7):
         (models / name).write_text(text[:length])
@@ -93,7 +93,7 @@ def test_truncated_models(models: Path, name: str) -> None:
 
 @pytest.mark.parametrize("name", MODELS)
 def test_damaged_bytes(models: Path, name: str) -> None:
-    """Bytes changed at random give findings, or happen to give another model."""
+    """Random changes of bytes give findings, or another valid model."""
     chance = random.Random(name)
     for _ in range(60):
         damaged = bytearray(MODELS[name].encode())
@@ -108,7 +108,7 @@ def test_damaged_bytes(models: Path, name: str) -> None:
 def test_random_bytes(
     tmp_path_factory: pytest.TempPathFactory, content: bytes, suffix: str
 ) -> None:
-    """Random bytes are never a model, and never a crash."""
+    """Random bytes are not a model, and do not crash."""
     path = tmp_path_factory.mktemp("random") / f"model{suffix}"
     path.write_bytes(content)
     _findings(path)
@@ -134,8 +134,8 @@ def test_random_bytes(
     ],
     ids=lambda content: repr(content[:12]),
 )
-def test_odd_files(tmp_path: Path, suffix: str, content: bytes) -> None:
-    """Empty, binary, unfinished, deeply nested and exotic files are answered by findings."""
+def test_unusual_files(tmp_path: Path, suffix: str, content: bytes) -> None:
+    """Empty, binary, unfinished, deeply nested and exotic files give findings."""
     path = tmp_path / f"odd.{suffix}"
     path.write_bytes(content)
     outcome, findings = _findings(path)
@@ -144,7 +144,7 @@ def test_odd_files(tmp_path: Path, suffix: str, content: bytes) -> None:
 
 @pytest.mark.parametrize("depth", [50, 5000])
 def test_nested_conditions(models: Path, depth: int) -> None:
-    """Parentheses are followed as deep as people write them, and refused beyond."""
+    """Realistic nesting is accepted, extreme nesting is rejected."""
     condition = "(" * depth + "speed > limit" + ")" * depth
     text = MODELS["robot.deros"].replace("speed.abs() > limit for", f"{condition} for")
     (models / "robot.deros").write_text(text)
@@ -153,7 +153,7 @@ def test_nested_conditions(models: Path, depth: int) -> None:
 
 
 def test_long_conditions(models: Path) -> None:
-    """A condition of thousands of terms is long, not deep."""
+    """A condition of thousands of terms is long, not deeply nested."""
     condition = " or ".join(["speed > limit"] * 3000)
     text = MODELS["robot.deros"].replace("speed.abs() > limit for", f"({condition}) for")
     (models / "robot.deros").write_text(text)
@@ -161,7 +161,7 @@ def test_long_conditions(models: Path) -> None:
 
 
 def test_import_cycles(models: Path) -> None:
-    """A system that imports itself, directly or around a corner, is one finding, not for ever."""
+    """A system that imports itself, directly or indirectly, is one finding."""
     (models / "robot.system").write_text('system Robot\nimports import "robot.system"\n')
     assert "DRS202" in {finding["code"] for finding in _findings("robot.system")[1]}
     for here, there in (("a", "b"), ("b", "c"), ("c", "a")):
@@ -171,8 +171,8 @@ def test_import_cycles(models: Path) -> None:
     assert "DRS202" in {finding["code"] for finding in _findings("a.system")[1]}
 
 
-def test_imports_of_what_is_no_file(models: Path) -> None:
-    """Directories, dangling links and globs that match nothing are unknown imports."""
+def test_imports_that_are_not_files(models: Path) -> None:
+    """Directories, dangling links and globs without matches are unknown imports."""
     (models / "folder.rnd").mkdir()
     (models / "dangling.rnd").symlink_to("nowhere.rnd")
     for path in ("folder.rnd", "dangling.rnd", "no*.rnd", "/", "..", ""):
@@ -181,22 +181,22 @@ def test_imports_of_what_is_no_file(models: Path) -> None:
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
-def test_forbidden_files(models: Path) -> None:
-    """A file without permission to read is a finding."""
+def test_file_without_read_permission(models: Path) -> None:
+    """It is reported as unreadable."""
     (models / "robot.rnd").chmod(0)
     assert _findings("robot.rnd")[0].code == 2
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_a_device_or_pipe_is_no_model(models: Path, name: str) -> None:
-    """A path that is neither file nor directory is refused without waiting for it."""
+def test_device_or_pipe_is_rejected(models: Path, name: str) -> None:
+    """A path that is neither file nor directory is rejected without blocking."""
     (models / name).unlink()
     os.mkfifo(models / name)
     assert _findings(name)[0].code == 2
 
 
-def test_generating_from_bad_models_writes_nothing(models: Path) -> None:
-    """A model with errors leaves the output directory as it was, even not there."""
+def test_generate_writes_nothing_from_models_with_errors(models: Path) -> None:
+    """The output directory stays as it was, or is not created."""
     (models / "robot.rnd").write_text(MODELS["robot.rnd"].replace("0.5 [m/s]", '"x" [m/s]'))
     for name, target in (
         ("robot.rnd", "python"),
@@ -210,10 +210,10 @@ def test_generating_from_bad_models_writes_nothing(models: Path) -> None:
 
 
 @pytest.mark.parametrize("case", sorted(p.name for p in CASES.glob("DRS*")))
-def test_cases_can_be_named_from_anywhere(
+def test_cases_can_be_checked_from_any_directory(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Every bad model ends in the exit code that its findings call for, wherever one stands."""
+    """Every bad model gives the exit code of its findings, from any working directory."""
     monkeypatch.chdir(tmp_path)
     if not case.endswith(".expected"):
         outcome, findings = _findings(CASES / case)

@@ -1,4 +1,4 @@
-"""``deros simulate``: options, and what it prints."""
+"""``deros simulate``: options and output."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ TRACE = """{"t": "0.2", "topic": "/effort", "data": {"data": 31.2}}
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return a folder with rules and a trace, in which commands run."""
+    """Create and enter a folder with rules and a trace."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "robot.system").write_text(SYSTEM)
     (tmp_path / "rules.deros").write_text(RULES)
@@ -45,15 +45,15 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def simulate(*options: str) -> list[str]:
-    """Run the command, and return the lines that it prints."""
+    """Run the command and return the printed lines."""
     done = deros("simulate", "rules.deros", "--trace", "trace.jsonl", *options)
     assert done.code == 0, done.err
     return done.out.splitlines()
 
 
 @pytest.mark.parametrize("monitor", ["reference", "python"])
-def test_it_names_the_culprit(monitor: str) -> None:
-    """In a line for people, and in JSON."""
+def test_output_names_the_cause(monitor: str) -> None:
+    """The cause is in the text line and in JSON."""
     cause = "drive.overload: effort 31.2 > 30 for 0.5 sec"
     assert simulate("--format", "text", "--monitor", monitor) == [
         f"0.700000000 stop, by protect (rules.deros:5): {cause}",
@@ -65,7 +65,7 @@ def test_it_names_the_culprit(monitor: str) -> None:
 
 
 def test_grace_is_that_of_the_node(folder: Path) -> None:
-    """Without it an input is missing earlier."""
+    """Without grace, an input is missing earlier."""
     (folder / "trace.jsonl").write_text("")
     times = [
         simulate("--format", "text", "--until", "4", *grace)[0].split(" ")[0]
@@ -74,8 +74,8 @@ def test_grace_is_that_of_the_node(folder: Path) -> None:
     assert times == ["1.000000000", "3.500000000"]
 
 
-def test_gates_are_shown_when_asked_for() -> None:
-    """What they do when it changes, or every command that they publish."""
+def test_gates_are_shown_on_request() -> None:
+    """Either the changes of a gate are shown, or every command that it publishes."""
     assert not any("gate" in json.loads(line) for line in simulate())
     lines = list(map(json.loads, simulate("--gates")))
     gated = [line for line in lines if line.get("gate") == "/cmd_vel"]
@@ -87,8 +87,8 @@ def test_gates_are_shown_when_asked_for() -> None:
     assert "0.000000000 /cmd_vel: zero, stop: zero; lost heartbeat" in text[0]
 
 
-def test_wrong_options_are_usage_errors() -> None:
-    """A time that is none, a frequency of nothing."""
+def test_invalid_options_are_usage_errors() -> None:
+    """Negative times, a frequency of 0 and unknown formats are rejected."""
     for option in (("--grace", "-1"), ("--publish-freq", "0"), ("--format", "xml")):
         done = deros("simulate", "rules.deros", "--trace", "trace.jsonl", *option)
         assert done.code == 2

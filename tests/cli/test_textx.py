@@ -1,4 +1,4 @@
-"""deros as textX plug-ins, in an environment with nothing but the wheel and what it requires."""
+"""The textX plug-ins, in an environment with only the wheel and its requirements."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LANGUAGES = {"node": ".rnd", "system": ".system", "rules": ".deros"}
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Environment:
-    """An environment with only the wheel installed."""
+    """Create an environment with only the wheel installed."""
     directory = tmp_path_factory.mktemp("wheel")
     environment = Environment(directory / "environment")
     environment.install(build_wheel(directory))
@@ -23,15 +23,15 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Environment:
 
 @pytest.fixture
 def models(installed: Environment, tmp_path: Path) -> Path:
-    """A folder with one new model of each kind, ``courier``, in a folder of its own."""
+    """Create one new model of each kind, ``courier``, each in its own folder."""
     for kind in LANGUAGES:
         done = installed.run("deros", "new", kind, "courier", "-o", kind, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
     return tmp_path
 
 
-def test_languages_and_generators_are_listed(installed: Environment, tmp_path: Path) -> None:
-    """``textx`` lists the three languages and the five generators, each with its description."""
+def test_textx_lists_languages_and_generators(installed: Environment, tmp_path: Path) -> None:
+    """``textx`` lists the three languages and the five generators with their descriptions."""
     languages = installed.run("textx", "list-languages", cwd=tmp_path).stderr
     for name in ("rosnode (*.rnd)", "rossystem (*.system)", "deros (*.deros)"):
         assert name in languages
@@ -50,7 +50,7 @@ def test_languages_and_generators_are_listed(installed: Environment, tmp_path: P
 def test_textx_check_accepts_sound_models(
     installed: Environment, models: Path, kind: str, suffix: str
 ) -> None:
-    """``textx check`` says OK, with everything that the model imports found and checked."""
+    """``textx check`` prints OK, after checking all imports too."""
     done = installed.run("textx", "check", f"{kind}/courier{suffix}", cwd=models)
     assert done.returncode == 0, done.stderr
     assert done.stderr.endswith(f"courier{suffix}: OK.\n")
@@ -67,10 +67,10 @@ def test_textx_check_accepts_sound_models(
         ("nowhere.rnd", "DRS001"),
     ],
 )
-def test_textx_check_runs_all_our_checks(
+def test_textx_check_runs_all_checks(
     installed: Environment, tmp_path: Path, case: str, code: str
 ) -> None:
-    """What ``deros check`` finds, ``textx check`` finds, too; it never ends in a traceback."""
+    """``textx check`` has the findings of ``deros check``, and never prints a traceback."""
     done = installed.run("textx", "check", CASES / case, cwd=tmp_path)
     assert done.returncode == 1
     assert f"error[{code}]" in done.stderr
@@ -87,7 +87,7 @@ def test_textx_check_runs_all_our_checks(
         ("rules", ".deros", "python", "package.xml"),
     ],
 )
-def test_both_generate_commands_write_the_same(
+def test_textx_and_deros_generate_the_same_files(
     installed: Environment, models: Path, kind: str, suffix: str, target: str, expected: str
 ) -> None:
     """``textx generate`` and ``deros generate`` give the same files, byte for byte."""
@@ -102,8 +102,8 @@ def test_both_generate_commands_write_the_same(
     assert any(Path(path).match(expected) for path in trees[0])
 
 
-def test_textx_generate_takes_the_generators_options(installed: Environment, models: Path) -> None:
-    """An option of the generator reaches it; one that it does not have is refused."""
+def test_textx_generate_accepts_generator_options(installed: Environment, models: Path) -> None:
+    """Options reach the generator; unknown options are rejected."""
     command = ("generate", "courier.rnd", "--target", "python", "-o", "out")
     where = models / "node"
     done = installed.run("textx", *command, "--maintainer", "Jo <jo@example.com>", cwd=where)
@@ -116,7 +116,7 @@ def test_textx_generate_takes_the_generators_options(installed: Environment, mod
 def test_textx_generate_writes_nothing_from_a_bad_model(
     installed: Environment, tmp_path: Path
 ) -> None:
-    """A model with errors is reported and leaves the output directory not even made."""
+    """Errors are reported, and the output directory is not created."""
     bad = CASES / "DRS208_type_mismatch.system"
     done = installed.run("textx", "generate", bad, "--target", "launch", "-o", "out", cwd=tmp_path)
     assert done.returncode == 1
@@ -124,10 +124,10 @@ def test_textx_generate_writes_nothing_from_a_bad_model(
     assert not (tmp_path / "out").exists()
 
 
-def test_textx_generates_the_gate_that_the_system_still_lacks(
+def test_textx_generates_a_gate_missing_from_the_system(
     installed: Environment, tmp_path: Path
 ) -> None:
-    """A gate that no system holds yet is an error to ``check`` and none in ``generate``'s way."""
+    """The missing gate is an error for ``check`` and does not block ``generate``."""
     rules = CASES / "DRS340_gate_not_in_system.deros"
     done = installed.run("textx", "check", rules, cwd=tmp_path)
     assert (done.returncode, "error[DRS340]" in done.stderr) == (1, True)
@@ -139,7 +139,7 @@ def test_textx_generates_the_gate_that_the_system_still_lacks(
         assert list((tmp_path / program).rglob("cmd_vel_gate.rnd"))
 
 
-def test_our_commands_are_textx_commands(installed: Environment, models: Path) -> None:
+def test_deros_commands_are_textx_commands(installed: Environment, models: Path) -> None:
     """``textx deros check`` is ``deros check``."""
     done = installed.run("textx", "deros", "check", "rules/courier.deros", cwd=models)
     assert (done.returncode, done.stdout) == (0, "3 files checked, no findings\n")

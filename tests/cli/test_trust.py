@@ -1,4 +1,4 @@
-"""What a stranger's model may do: be read, and decide what is written below the output folder."""
+"""Trust: a third-party model can only determine files below the output folder."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ HOSTILE_NAMES = {
 
 
 def _without_safety(models: Path) -> Path:
-    """Return the system of a copy of the example, which names its rules no more."""
+    """Return the system of a copy of the example that no longer names its rules."""
     system = shutil.copytree(ROBOT, models) / "intelligent_one.system"
     text = system.read_text(encoding="utf-8")
     system.write_text(text[: text.index("subsystem Safety")], encoding="utf-8")
@@ -33,8 +33,8 @@ def _without_safety(models: Path) -> Path:
 
 @pytest.mark.parametrize("name", HOSTILE_NAMES.values(), ids=HOSTILE_NAMES.keys())
 @pytest.mark.parametrize("target", ["python", "cpp", "c"])
-def test_file_name_of_rules_becomes_no_code(name: str, target: str, tmp_path: Path) -> None:
-    """Whatever the rules' file is called, no line of the output begins with what follows in it."""
+def test_file_name_of_rules_cannot_inject_code(name: str, target: str, tmp_path: Path) -> None:
+    """No line of the output starts with the code in the file name of the rules."""
     models = tmp_path / "models"
     _without_safety(models)
     rules = models / f"{name}.deros"
@@ -46,8 +46,8 @@ def test_file_name_of_rules_becomes_no_code(name: str, target: str, tmp_path: Pa
 
 @pytest.mark.parametrize("name", HOSTILE_NAMES.values(), ids=HOSTILE_NAMES.keys())
 @pytest.mark.parametrize("target", ["python", "cpp"])
-def test_file_name_of_node_becomes_no_code(name: str, target: str, tmp_path: Path) -> None:
-    """The same for node descriptions, and for the script that has a package generated."""
+def test_file_name_of_node_cannot_inject_code(name: str, target: str, tmp_path: Path) -> None:
+    """The same holds for node descriptions, and for scaffolding scripts."""
     models = tmp_path / "models"
     models.mkdir()
     node = models / f"{name}.rnd"
@@ -64,8 +64,8 @@ def test_file_name_of_node_becomes_no_code(name: str, target: str, tmp_path: Pat
 
 @pytest.mark.parametrize("name", HOSTILE_NAMES.values(), ids=HOSTILE_NAMES.keys())
 @pytest.mark.parametrize("target", ["launch", "script", "params"])
-def test_file_name_of_system_becomes_no_code(name: str, target: str, tmp_path: Path) -> None:
-    """The same for systems."""
+def test_file_name_of_system_cannot_inject_code(name: str, target: str, tmp_path: Path) -> None:
+    """The same holds for systems."""
     models = tmp_path / "models"
     system = _without_safety(models).rename(models / f"{name}.system")
     (models / "intelligent_one.deros").unlink()
@@ -74,8 +74,8 @@ def test_file_name_of_system_becomes_no_code(name: str, target: str, tmp_path: P
     _assert_harmless(tmp_path / "out", name)
 
 
-def test_check_and_generate_write_below_the_output_alone(tmp_path: Path) -> None:
-    """Models stay as they were, and nothing appears beside them."""
+def test_check_and_generate_write_only_below_the_output(tmp_path: Path) -> None:
+    """Models do not change, and no files appear next to them."""
     models = tmp_path / "models"
     shutil.copytree(ROBOT, models)
     before = _contents(models)

@@ -1,4 +1,4 @@
-"""``deros up``: what it checks first, and that it runs what the script would."""
+"""``deros up``: checks before the start, and the behaviour of the launch script."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Up = Callable[..., Run]
 
 @pytest.fixture
 def up(tmp_path: Path) -> Iterator[Up]:
-    """Give a function that runs a system of stand-ins with ``deros up``."""
+    """Return a function that runs a system of stand-ins with ``deros up``."""
     prefix = make_prefix(tmp_path / "install" / "demo")
     runs: list[Run] = []
 
@@ -47,8 +47,8 @@ def up(tmp_path: Path) -> Iterator[Up]:
         run.close()
 
 
-def test_a_system_runs_until_it_is_told_to_stop(up: Up) -> None:
-    """The nodes of the install space start, and stop in order; the code is 0."""
+def test_system_runs_until_interrupted(up: Up) -> None:
+    """Nodes of the install space start, and stop in order; the code is 0."""
     run = up("node a : steady subsystem s namespace s { node b : steady }")
     run.until("[a] ready", "[b] ready")
     run.signal(signal.SIGINT)
@@ -56,15 +56,15 @@ def test_a_system_runs_until_it_is_told_to_stop(up: Up) -> None:
     assert {"[a] got SIGINT", "[b] got SIGINT"} <= set(run.lines)
 
 
-def test_the_failure_of_a_node_is_the_commands(up: Up) -> None:
-    """Exit code 1 comes through."""
+def test_failed_node_fails_the_command(up: Up) -> None:
+    """The exit code is 1."""
     run = up("node a : steady node b : failing")
     assert run.end() == 1
     assert "[Robot] stopping: b has failed" in run.lines
 
 
-def test_a_model_with_errors_is_not_started(up: Up) -> None:
-    """The findings are shown as by ``deros check``, with its code, and nothing is started."""
+def test_model_with_errors_is_not_started(up: Up) -> None:
+    """Findings and exit code are those of ``deros check``, and nothing is started."""
     run = up("node a : short wirings connect nothing to /x")
     assert run.end() == 1
     text = "\n".join(run.lines)
@@ -72,24 +72,24 @@ def test_a_model_with_errors_is_not_started(up: Up) -> None:
     assert "started" not in text
 
 
-def test_warnings_do_not_keep_a_system_from_starting(up: Up) -> None:
-    """They are shown, and then it runs."""
+def test_warnings_do_not_prevent_the_start(up: Up) -> None:
+    """Warnings are shown before the system runs."""
     run = up("topics topic /lonely node a : short")
     assert run.end() == 0
     text = "\n".join(run.lines)
     assert text.index("warning[DRS212]") < text.index("[a] done")
 
 
-def test_a_value_that_ros_2_cannot_take_is_not_started(up: Up, tmp_path: Path) -> None:
-    """What the script's generator refuses, ``up`` refuses as well."""
+def test_unsupported_parameter_value_prevents_the_start(up: Up, tmp_path: Path) -> None:
+    """``up`` rejects a value that the generator of the script rejects."""
     (tmp_path / "bytes.rnd").write_text("node bytes : demo parameters name b : byte[] = [1]")
     run = up("node a : bytes parameters param b = [2]")
     assert run.end() == 1
     assert "error[DRS402]" in "\n".join(run.lines)
 
 
-def test_missing_programs_are_named_and_the_code_is_2(up: Up) -> None:
-    """Without the install space there is nothing to run."""
+def test_missing_programs_are_named_and_exit_with_2(up: Up) -> None:
+    """Without the install space there are no programs."""
     run = up("node a : short node b : steady", install=False)
     assert run.end() == 2
     text = "\n".join(run.lines)
@@ -97,7 +97,7 @@ def test_missing_programs_are_named_and_the_code_is_2(up: Up) -> None:
     assert "/b: package 'demo' has no program 'steady'" in text
 
 
-def test_a_dry_run_prints_what_the_scripts_does(up: Up, tmp_path: Path) -> None:
+def test_dry_run_matches_the_script(up: Up, tmp_path: Path) -> None:
     """Command and script print the same commands for the same system."""
     members = "node a : short subsystem s namespace /s { node b : steady log_level warn }"
     run = up(members, "--dry-run")
@@ -111,8 +111,8 @@ def test_a_dry_run_prints_what_the_scripts_does(up: Up, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("arguments", [["--only", "b"], ["--", "--only", "b"], ["--except", "a"]])
-def test_nodes_can_be_chosen(up: Up, arguments: list[str]) -> None:
-    """The script's arguments are options of the command, and may also follow ``--``."""
+def test_nodes_can_be_selected(up: Up, arguments: list[str]) -> None:
+    """Arguments of the script are options of the command, and may also follow ``--``."""
     run = up("node a : short node b : short", *arguments)
     assert run.end() == 0
     assert "[b] done" in run.lines
@@ -120,7 +120,7 @@ def test_nodes_can_be_chosen(up: Up, arguments: list[str]) -> None:
 
 
 def test_only_systems_can_be_run(tmp_path: Path) -> None:
-    """A node description is a usage error, and so is a file that is not there."""
+    """A node description is a usage error, and a missing file is reported."""
     (tmp_path / "a.rnd").write_text("node a : demo")
     for name, words in (("a.rnd", "no system description"), ("b.system", "DRS001")):
         done = subprocess.run(
@@ -130,8 +130,8 @@ def test_only_systems_can_be_run(tmp_path: Path) -> None:
         assert words in done.stderr
 
 
-def test_nodes_end_with_the_command_even_when_it_is_killed(up: Up) -> None:
-    """SIGKILL of the command leaves nothing behind."""
+def test_nodes_end_when_the_command_is_killed(up: Up) -> None:
+    """SIGKILL of the command leaves no node behind."""
     run = up("node a : stubborn", "--stop-timeout", "0.1")
     run.until("[a] ready")
     run.signal(signal.SIGKILL)
@@ -154,8 +154,8 @@ main()
 """
 
 
-def test_no_interrupt_is_lost_before_the_nodes_are_started(tmp_path: Path) -> None:
-    """It ends the command wherever it is: at once, and nothing is started."""
+def test_interrupt_before_the_start_is_not_lost(tmp_path: Path) -> None:
+    """The command ends at once, and nothing is started."""
     prefix = make_prefix(tmp_path / "install" / "demo")
     load_system(tmp_path, "node a : short")
     command = [sys.executable, "-c", LOST, "up", str(tmp_path / "robot.system")]
@@ -165,7 +165,7 @@ def test_no_interrupt_is_lost_before_the_nodes_are_started(tmp_path: Path) -> No
     assert (done.returncode, done.stdout) == (-signal.SIGINT, ""), done.stderr
 
 
-# On the real middleware ---------------------------------------------------------------------------
+# With real middleware -----------------------------------------------------------------------------
 
 TALKER = """
     node talker : up_demo
@@ -219,7 +219,7 @@ BODIES = {
 
 
 def generate_package(folder: Path) -> None:
-    """Generate the package of both nodes and fill them in."""
+    """Generate the package of both nodes and fill in their code."""
     (folder / "talker.rnd").write_text(TALKER)
     (folder / "listener.rnd").write_text(LISTENER)
     loaded = Repository().load(folder / "talker.rnd")
@@ -238,13 +238,13 @@ def generate_package(folder: Path) -> None:
 
 
 @pytest.mark.ros
-def test_generated_nodes_talk_as_the_system_says(
+def test_generated_nodes_communicate_as_described(
     tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:
-    """Two generated packages run from their sources, under their names, and hear each other.
+    """Two generated packages run from their sources under their names and exchange messages.
 
-    Names, namespaces, both kinds of remapping and a text that looks like a truth value arrive; a
-    killed node comes back; and all ends with 0.
+    Names, namespaces, both kinds of remapping and a string that looks like a boolean arrive; a
+    killed node is restarted; and all ends with 0.
     """
     from std_msgs.msg import String
 
@@ -260,14 +260,14 @@ def test_generated_nodes_talk_as_the_system_says(
     try:
         ros_peer.until(lambda: answers)
         assert answers[0][0] == "/back/ear: true 11.0"
-        # The names travel apart from the messages, and may come after them.
+        # Names are transferred separately from the messages, and may arrive after them.
         names = {("speaker", "/front"), ("ear", "/back")}
         ros_peer.until(lambda: names <= set(ros_peer.node.get_node_names_and_namespaces()))
         run.until("ear started")
         os.kill(run.started()["ear"], signal.SIGKILL)
         run.until("ear was killed by SIGKILL; restart 1 in 0 s")
         killed = time.time()
-        ros_peer.until(lambda: answers[-1][1] > killed)  # earlier ones may still be on their way
+        ros_peer.until(lambda: answers[-1][1] > killed)  # earlier messages may still arrive
         run.signal(signal.SIGINT)
         assert run.end() == 0, "\n".join(run.lines)
     finally:

@@ -1,4 +1,4 @@
-"""Reading .msg, .srv and .action text."""
+"""Parsing .msg, .srv and .action definitions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ THING = InterfaceType("my_msgs", "msg", "Thing")
 
 
 def parse_message(text: str) -> MessageDefinition:
-    """Read ``text`` as the message Thing, which must succeed."""
+    """Parse ``text`` as the message Thing, which must succeed."""
     found = parse_definition(THING, text)
     assert not isinstance(found, DefinitionError), found
     (message,) = found
@@ -33,7 +33,7 @@ def parse_message(text: str) -> MessageDefinition:
 
 
 def test_fields_keep_their_order_and_types() -> None:
-    """Primitives, messages of the own and of another package, arrays and bounds are told apart."""
+    """Primitives, messages of this and other packages, arrays and bounds are distinguished."""
     message = parse_message(
         "std_msgs/Header header\n"
         "geometry_msgs/msg/Point[] points\n"
@@ -69,7 +69,7 @@ def test_constants_have_values_of_their_type() -> None:
     )
 
 
-def test_defaults_are_kept_apart_from_types() -> None:
+def test_defaults_are_separate_from_types() -> None:
     """A default may be a scalar or, for arrays of primitives, a list."""
     message = parse_message(
         "float64 w 1\n"
@@ -89,8 +89,8 @@ def test_defaults_are_kept_apart_from_types() -> None:
     }
 
 
-def test_blank_lines_comments_and_tabs_are_no_matter() -> None:
-    """Layout and comments do not change a definition."""
+def test_layout_and_comments_are_ignored() -> None:
+    """Blank lines, comments and tabs do not change a definition."""
     assert parse_message("# head\n\n\tint8\tx\t3 # tail\r\n  \n") == MessageDefinition(
         THING, (("x", FieldType("int8")),), (), {"x": 3}
     )
@@ -114,16 +114,16 @@ def test_blank_lines_comments_and_tabs_are_no_matter() -> None:
         ("int8 x\n---\nint8 y\n", 1, "2 parts"),
     ],
 )
-def test_what_cannot_be_read_is_told_with_its_line(text: str, line: int, fragment: str) -> None:
-    """A fault is a value that names the line, not an exception."""
+def test_parse_error_has_its_line(text: str, line: int, fragment: str) -> None:
+    """An error is a returned value with the line, not an exception."""
     found = parse_definition(THING, text)
     assert isinstance(found, DefinitionError)
     assert found.line == line
     assert fragment in found.message
 
 
-def test_services_and_actions_have_their_parts() -> None:
-    """The parts are named as rosidl names them; empty ones are there all the same."""
+def test_services_and_actions_have_all_parts() -> None:
+    """The parts are named as in rosidl, and present even if they are empty."""
     service = parse_definition(InterfaceType("p_p", "srv", "Go"), "---\nbool success\n")
     action = parse_definition(InterfaceType("p_p", "action", "Go"), "int8 a\n---\n---\nint8 b")
     assert not isinstance(service, DefinitionError)
@@ -150,21 +150,21 @@ field_types = st.builds(
 
 
 @given(field_types)
-def test_a_field_type_reads_back_as_it_is_written(kind: FieldType) -> None:
-    """``parse_field_type`` inverts ``str``."""
+def test_field_type_round_trips_as_text(kind: FieldType) -> None:
+    """``parse_field_type`` is the inverse of ``str``."""
     assert parse_field_type(str(kind), "other") == kind
 
 
 @given(st.sampled_from(sorted(INTEGER_RANGES)), st.integers())
-def test_a_default_is_taken_only_within_its_range(base: str, value: int) -> None:
-    """An integer default that its type cannot hold is an error."""
+def test_integer_default_must_be_in_range(base: str, value: int) -> None:
+    """An integer default that its type cannot represent is an error."""
     found = parse_definition(THING, f"{base} x {value}")
     least, greatest = INTEGER_RANGES[base]
     assert isinstance(found, tuple) == (least <= value <= greatest)
 
 
 @given(st.text(alphabet="ab #\"'=[]<>\\-1,\t", max_size=30))
-def test_no_text_raises(line: str) -> None:
-    """Whatever stands in a file, the parser returns a value."""
+def test_arbitrary_text_does_not_raise(line: str) -> None:
+    """The parser returns a value for any text."""
     assert isinstance(parse_definition(THING, line), (tuple, DefinitionError))
     assert line.startswith(without_comment(line))

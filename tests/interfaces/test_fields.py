@@ -1,4 +1,4 @@
-"""Following field paths."""
+"""Resolving field paths."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ def message(name: str) -> InterfaceType:
         ("shape_msgs/SolidPrimitive", ("dimensions", 2), "float64", "SolidPrimitive"),
     ],
 )
-def test_a_path_leads_to_a_field(
+def test_path_resolves_to_field(
     kind: str, path: tuple[str | int, ...], type_text: str, parent: str
 ) -> None:
-    """Fields, nested ones and elements of arrays have a type and the message they stand in."""
+    """Fields, nested fields and array elements have a type and a parent message."""
     found = resolve(STORE, message(kind), path)
     assert isinstance(found, ResolvedField)
     assert str(found.type) == type_text
@@ -49,7 +49,7 @@ def test_a_path_leads_to_a_field(
     assert found.name in path
 
 
-def test_the_empty_path_is_the_message_itself() -> None:
+def test_empty_path_is_the_whole_message() -> None:
     """``topic /odom`` without a field means the whole message."""
     assert resolve(STORE, ODOMETRY, ()) == ResolvedField(FieldType(ODOMETRY), None, "")
 
@@ -69,14 +69,14 @@ def test_the_empty_path_is_the_message_itself() -> None:
         ("no_such/Thing", ("x",), 0, "no_such.Thing is not known", ()),
     ],
 )
-def test_a_path_that_leads_nowhere_says_where_it_breaks(
+def test_unresolved_path_gives_position_and_candidates(
     kind: str,
     path: tuple[str | int, ...],
     position: int,
     fragment: str,
     candidates: tuple[str, ...],
 ) -> None:
-    """The error has the index of the part that does not fit, the reason, and what was meant."""
+    """The error has the index of the wrong part, the reason, and similar names."""
     found = resolve(STORE, message(kind), path)
     assert isinstance(found, FieldError)
     assert found.position == position
@@ -84,8 +84,8 @@ def test_a_path_that_leads_nowhere_says_where_it_breaks(
     assert found.candidates == candidates
 
 
-def test_leaves_are_the_primitive_fields_in_order(tmp_path: Path) -> None:
-    """Nested messages are entered; arrays and unknown messages are leaves."""
+def test_leaves_are_primitive_fields_in_order(tmp_path: Path) -> None:
+    """Nested messages are expanded; arrays and unknown messages are leaves."""
     folder = tmp_path / "my_msgs/msg"
     folder.mkdir(parents=True)
     (folder / "Thing.msg").write_text("geometry_msgs/Point p\nfloat32[] r\nGone gone\n")
@@ -102,7 +102,7 @@ def test_leaves_are_the_primitive_fields_in_order(tmp_path: Path) -> None:
     ]
 
 
-def test_a_path_is_spelled_as_in_the_languages() -> None:
-    """Indices stand in brackets, also at the start and in a row."""
+def test_format_path_uses_brackets_for_indices() -> None:
+    """Indices are in brackets, also at the start and in sequence."""
     assert format_path(("a", 0, 1, "b", "c")) == "a[0][1].b.c"
     assert format_path((3, "x")) == "[3].x"

@@ -1,4 +1,4 @@
-"""The keywords are those of the languages, and are written down once."""
+"""Keywords of the target languages, listed once."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ SOURCE = Path(__file__).resolve().parents[2] / "src" / "deros"
     [("cc", "c99", C), ("c++", "c++17", CPP), ("c++", "c++20", CPP_20)],
     ids=["C", "C++17", "C++20"],
 )
-def test_compiler_accepts_none_as_a_name(
+def test_compiler_rejects_keywords_as_names(
     compiler: str, standard: str, words: frozenset[str], tmp_path: Path
 ) -> None:
-    """Every word is a syntax error where a name has to be; another word is not."""
+    """Every keyword is a syntax error as a variable name; another word is not."""
     if shutil.which(compiler) is None:
         pytest.skip(f"no {compiler}")
     file = tmp_path / "names.txt"
@@ -35,7 +35,7 @@ def test_compiler_accepts_none_as_a_name(
     subprocess.run(command, capture_output=True, check=True)
 
 
-def test_no_other_module_lists_keywords() -> None:
-    """What is written down twice becomes two lists."""
+def test_keywords_are_listed_in_one_module() -> None:
+    """A second list would diverge."""
     listing = [path for path in SOURCE.rglob("*.py") if "reinterpret_cast" in path.read_text()]
     assert [path.name for path in listing] == ["keywords.py"]

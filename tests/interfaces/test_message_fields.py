@@ -1,4 +1,4 @@
-"""The fields that rules speak of, as generators look them up."""
+"""Field lookups for generators."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from deros.interfaces.types import FieldType, InterfaceType
 STORE = InterfaceStore()
 
 
-def test_the_type_of_an_element_is_that_of_one_number() -> None:
-    """An index leads into the array."""
+def test_element_type_of_an_array() -> None:
+    """The type of an indexed element is that of one number."""
     imu = InterfaceType("sensor_msgs", "msg", "Imu")
     assert field_type(STORE, imu, ("orientation_covariance", 8)) == FieldType("float64")
 
 
-def test_arrays_that_may_be_too_short_come_outermost_first() -> None:
-    """An array of a fixed length always has the element."""
+def test_unsized_arrays_are_listed_outermost_first() -> None:
+    """An array of fixed length always has the element."""
     trajectory = InterfaceType("trajectory_msgs", "msg", "JointTrajectory")
     path = ("points", 2, "positions", 1)
     assert list(unsized_arrays(STORE, trajectory, path)) == [

@@ -38,14 +38,14 @@ TABLE = json.loads(Path(rep103.__file__).with_suffix(".json").read_text(encoding
     ],
 )
 def test_unit_of_a_field(kind: str, path: tuple[str | int, ...], unit: str | None) -> None:
-    """A unit holds wherever its message is nested, and for the elements of an array."""
+    """A unit applies wherever its message is nested, and to the elements of an array."""
     package, _, name = kind.partition("/")
     assert rep103.unit_of(STORE, InterfaceType(package, "msg", name), path) == unit
 
 
 @pytest.mark.parametrize("kind", sorted(TABLE))
-def test_the_table_names_real_fields_and_known_units(kind: str) -> None:
-    """Every row is a field of its message, and its unit can be read."""
+def test_table_has_real_fields_and_known_units(kind: str) -> None:
+    """Every row is a field of its message, and its unit can be parsed."""
     package, _, name = kind.partition("/")
     for field, unit in TABLE[kind].items():
         found = resolve(STORE, InterfaceType(package, "msg", name), (field,))

@@ -1,4 +1,4 @@
-"""Where definitions are found."""
+"""Lookup of interface definitions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TRIGGER = InterfaceType("std_srvs", "srv", "Trigger")
 
 
 def write(path: Path, text: str) -> None:
-    """Write a file and the folders above it."""
+    """Write a file and create its parent folders."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")
 
@@ -30,12 +30,12 @@ def install(prefix: Path, package: str, name: str, text: str) -> None:
 
 @pytest.fixture
 def embedded() -> InterfaceStore:
-    """A store that has nothing but the embedded definitions."""
+    """Create a store with only the embedded definitions."""
     return InterfaceStore(prefixes=())
 
 
 def test_embedded_messages_services_and_actions(embedded: InterfaceStore) -> None:
-    """Without ROS 2 on the machine the common interfaces are known all the same."""
+    """The common interfaces are known without ROS 2 on the machine."""
     message = embedded.message(BOOL)
     assert message is not None
     assert message.fields == (("data", FieldType("bool")),)
@@ -47,15 +47,15 @@ def test_embedded_messages_services_and_actions(embedded: InterfaceStore) -> Non
     assert [part.fields[0][0] for part in action] == ["order", "sequence", "sequence"]
 
 
-def test_services_that_every_node_has_are_embedded(embedded: InterfaceStore) -> None:
-    """They can be called in a model without any ROS on the machine."""
+def test_services_of_every_node_are_embedded(embedded: InterfaceStore) -> None:
+    """A model may call them without ROS 2 on the machine."""
     for kind in (*OF_EVERY_NODE.values(), *OF_MANAGED_NODES.values()):
         if kind.package != "type_description_interfaces":
             assert embedded.service(kind), kind
 
 
 def test_embedded_arrays_bounds_constants_and_defaults(embedded: InterfaceStore) -> None:
-    """The embedded definitions keep what the checks need."""
+    """The embedded definitions contain all that the checks need."""
     solid = embedded.message(InterfaceType("shape_msgs", "msg", "SolidPrimitive"))
     quaternion = embedded.message(InterfaceType("geometry_msgs", "msg", "Quaternion"))
     assert solid is not None
@@ -65,8 +65,8 @@ def test_embedded_arrays_bounds_constants_and_defaults(embedded: InterfaceStore)
     assert quaternion.defaults["w"] == 1.0
 
 
-def test_embedded_definitions_are_those_of_an_installed_jazzy(embedded: InterfaceStore) -> None:
-    """Every interface that both places have is the same in both."""
+def test_embedded_definitions_match_installed_jazzy(embedded: InterfaceStore) -> None:
+    """Every interface in both places is the same in both."""
     installed = InterfaceStore(prefixes=[Path(sys.prefix)])
     pytest.importorskip("std_msgs")
     compared = 0
@@ -82,8 +82,8 @@ def test_embedded_definitions_are_those_of_an_installed_jazzy(embedded: Interfac
     assert compared > 100
 
 
-def test_what_is_unknown_is_none(embedded: InterfaceStore) -> None:
-    """An unknown package, name or kind is an answer, not a failure."""
+def test_unknown_interface_is_none(embedded: InterfaceStore) -> None:
+    """An unknown package, name or kind returns None and does not raise."""
     assert embedded.message(InterfaceType("no_such", "msg", "Bool")) is None
     assert not embedded.has_package("no_such")
     assert embedded.has_package("std_msgs")
@@ -95,7 +95,7 @@ def test_what_is_unknown_is_none(embedded: InterfaceStore) -> None:
 
 
 @pytest.mark.parametrize("root", ["", "src", "src/deep/my_msgs", "src/deep/my_msgs/msg"])
-def test_a_folder_may_be_given_at_any_height(tmp_path: Path, root: str) -> None:
+def test_interface_folder_at_any_level(tmp_path: Path, root: str) -> None:
     """A workspace, a package and its msg folder all work as ``--interfaces``."""
     write(tmp_path / "src/deep/my_msgs/msg/Thing.msg", "int8 x\n")
     store = InterfaceStore([tmp_path / root], prefixes=())
@@ -107,7 +107,7 @@ def test_a_folder_may_be_given_at_any_height(tmp_path: Path, root: str) -> None:
     assert "std_msgs" in store.packages()
 
 
-def test_a_package_is_called_as_its_package_xml_says(tmp_path: Path) -> None:
+def test_package_name_comes_from_package_xml(tmp_path: Path) -> None:
     """The folder of a checkout may have another name than the package."""
     write(tmp_path / "repo/msg/Thing.msg", "")
     write(tmp_path / "repo/package.xml", "<package><name>real_msgs</name></package>")
@@ -116,8 +116,8 @@ def test_a_package_is_called_as_its_package_xml_says(tmp_path: Path) -> None:
     assert not store.has_package("repo")
 
 
-def test_the_first_place_that_has_a_package_defines_it(tmp_path: Path) -> None:
-    """Folders hide the ament index and that hides the embedded default, package by package."""
+def test_first_location_of_a_package_defines_it(tmp_path: Path) -> None:
+    """Folders hide the ament index, and the index the embedded definitions, per package."""
     write(tmp_path / "ws/std_msgs/msg/Bool.msg", "bool folder\n")
     install(tmp_path / "prefix", "std_msgs", "Int8", "int8 hidden\n")
     install(tmp_path / "prefix", "geometry_msgs", "Point", "int8 index\n")
@@ -132,10 +132,10 @@ def test_the_first_place_that_has_a_package_defines_it(tmp_path: Path) -> None:
     assert store.has_package("nav_msgs")
 
 
-def test_the_environment_names_the_prefixes(
+def test_prefixes_default_to_ament_prefix_path(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Without ``prefixes`` those of AMENT_PREFIX_PATH are asked; ones that are gone do no harm."""
+    """Missing prefixes in AMENT_PREFIX_PATH are ignored."""
     install(tmp_path, "my_msgs", "Thing", "int8 x\n")
     monkeypatch.setenv("AMENT_PREFIX_PATH", f"/no/such/prefix:{tmp_path}")
     store = InterfaceStore()
@@ -143,8 +143,8 @@ def test_the_environment_names_the_prefixes(
     assert "my_msgs" in store.packages()
 
 
-def test_an_unreadable_definition_exists_and_says_why(tmp_path: Path) -> None:
-    """A faulty or binary file is told apart from one that is not there."""
+def test_unreadable_definition_exists_with_a_problem(tmp_path: Path) -> None:
+    """A faulty or binary file is distinguished from a missing one."""
     write(tmp_path / "my_msgs/msg/Bad.msg", "int8 x\nint8\n")
     (tmp_path / "my_msgs/msg/Binary.msg").write_bytes(b"\xff\xfe\x00")
     store = InterfaceStore([tmp_path], prefixes=())
@@ -160,8 +160,8 @@ def test_an_unreadable_definition_exists_and_says_why(tmp_path: Path) -> None:
     assert store.problem(BOOL) is None
 
 
-def test_nothing_heavy_is_imported_for_what_is_installed(tmp_path: Path) -> None:
-    """An installed message and a common unit load neither rosbags nor pint nor numpy."""
+def test_installed_message_loads_no_heavy_modules(tmp_path: Path) -> None:
+    """An installed message and a common unit import neither rosbags nor pint nor numpy."""
     install(tmp_path, "std_msgs", "Bool", "bool data\n")
     program = (
         "import sys; from pathlib import Path\n"

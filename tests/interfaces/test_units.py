@@ -1,4 +1,4 @@
-"""Reading units and converting values."""
+"""Parsing units and converting values."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ decimals = st.decimals(
 
 
 def unit(text: str) -> Unit:
-    """Read a unit that must be known."""
+    """Parse a unit that must be known."""
     found = REGISTRY.parse(text)
     assert found is not None, text
     return found
 
 
 @pytest.mark.parametrize("word", WORDS)
-def test_the_table_agrees_with_pint(word: str) -> None:
-    """Each word of the table is what pint says it is, an angle kept as an angle."""
+def test_table_agrees_with_pint(word: str) -> None:
+    """Each unit of the table has the value that pint gives, with angles as their own dimension."""
     theirs = PINT.Quantity(Fraction(1), OWN_WORDS.get(word, word)).to_root_units()
     ours = unit(word)
     assert math.isclose(theirs.magnitude, ours.factor + ours.offset, rel_tol=1e-12)
@@ -78,8 +78,8 @@ def test_the_table_agrees_with_pint(word: str) -> None:
         ("furlong", "length"),
     ],
 )
-def test_units_have_a_dimension(text: str, dimension: str) -> None:
-    """Products, quotients and powers are read in the usual spellings."""
+def test_dimension_of_units(text: str, dimension: str) -> None:
+    """Products, quotients and powers are parsed in the usual spellings."""
     assert unit(text).dimension == dimension
 
 
@@ -102,20 +102,20 @@ def test_units_have_a_dimension(text: str, dimension: str) -> None:
         "dB",
     ],
 )
-def test_what_is_no_unit_is_none(text: str) -> None:
-    """An unknown or malformed unit is an answer, not a failure."""
+def test_invalid_unit_is_none(text: str) -> None:
+    """An unknown or malformed unit returns None and does not raise."""
     assert REGISTRY.parse(text) is None
 
 
 @given(st.text(max_size=8))
-def test_no_text_raises(text: str) -> None:
-    """Whatever is asked for, the registry answers."""
+def test_arbitrary_text_does_not_raise(text: str) -> None:
+    """Any text gives a unit with a positive factor or None."""
     found = REGISTRY.parse(text)
     assert found is None or found.factor > 0
 
 
-def test_deep_nesting_is_refused() -> None:
-    """Parentheses without end are no unit, and no stack overflow."""
+def test_deep_nesting_is_rejected() -> None:
+    """Thousands of parentheses are not a unit, and do not overflow the stack."""
     assert REGISTRY.parse("(" * 5000 + "m" + ")" * 5000) is None
 
 
@@ -140,12 +140,12 @@ def test_deep_nesting_is_refused() -> None:
     ],
 )
 def test_durations_are_exact(value: str, text: str, nanoseconds: int | None) -> None:
-    """A duration is a whole number of nanoseconds of 64 bits, or none at all."""
+    """A duration is a whole number of nanoseconds of 64 bits, or None."""
     assert REGISTRY.duration_ns(Decimal(value), unit(text)) == nanoseconds
 
 
-def test_angles_are_a_dimension_of_their_own() -> None:
-    """An angle is neither a ratio nor, per second, a frequency."""
+def test_angles_are_their_own_dimension() -> None:
+    """An angle is not a ratio, and an angle per second is not a frequency."""
     assert not REGISTRY.compatible(unit("rad"), unit("1"))
     assert not REGISTRY.compatible(unit("rad/s"), unit("Hz"))
     assert not REGISTRY.compatible(unit("rad"), unit("m/s"))
@@ -176,15 +176,15 @@ def test_conversions_round_once(value: str, source: str, target: str, result: fl
     assert REGISTRY.convert(Decimal(value), unit(source), unit(target)) == result
 
 
-def test_infinity_and_nan_stay_what_they_are() -> None:
-    """Conversion is for numbers; the others pass."""
+def test_infinity_and_nan_are_not_converted() -> None:
+    """Conversion applies to finite numbers only."""
     assert REGISTRY.convert(-math.inf, unit("m"), unit("cm")) == -math.inf
     assert math.isnan(REGISTRY.convert(math.nan, unit("m"), unit("cm")))
 
 
 @given(words, words, decimals)
 def test_conversions_round_trip(source: str, target: str, value: Decimal) -> None:
-    """There and back again is the same value, up to the rounding of one double."""
+    """Converting there and back gives the same value, up to the rounding of one double."""
     a, b = unit(source), unit(target)
     if not REGISTRY.compatible(a, b):
         return
@@ -195,8 +195,8 @@ def test_conversions_round_trip(source: str, target: str, value: Decimal) -> Non
 
 
 @given(words, words, decimals)
-def test_factor_and_convert_agree(source: str, target: str, value: Decimal) -> None:
-    """The factor and offset of two units do what ``convert`` does."""
+def test_factor_agrees_with_convert(source: str, target: str, value: Decimal) -> None:
+    """Factor and offset of two units give the result of ``convert``."""
     a, b = unit(source), unit(target)
     if not REGISTRY.compatible(a, b):
         return
@@ -207,14 +207,14 @@ def test_factor_and_convert_agree(source: str, target: str, value: Decimal) -> N
 
 
 @given(words, decimals)
-def test_a_unit_converts_to_itself_unchanged(word: str, value: Decimal) -> None:
-    """A value in the field's own unit is not touched by conversion."""
+def test_conversion_to_the_same_unit_is_exact(word: str, value: Decimal) -> None:
+    """A value in the unit of the field is not changed."""
     assert REGISTRY.convert(value, unit(word), unit(word)) == float(value)
     assert REGISTRY.factor(unit(word), unit(word)) == (1.0, 0.0)
 
 
-def test_a_program_defines_its_own_units() -> None:
-    """They may build on each other in any order, stand in compounds, and hide known ones."""
+def test_user_defined_units() -> None:
+    """They may refer to each other in any order, be part of compounds, and hide known ones."""
     registry = UnitRegistry(
         {
             "lap": (Decimal("2"), "round"),
@@ -244,20 +244,20 @@ def test_a_program_defines_its_own_units() -> None:
         {"x": (Decimal(1), "u0")} | {f"u{i}": (Decimal(1), f"u{i + 1}") for i in range(5000)},
     ],
 )
-def test_a_senseless_definition_is_unknown(
+def test_invalid_unit_definition_is_unknown(
     definitions: dict[str, tuple[Decimal | float, str]],
 ) -> None:
-    """Circles, factors that are not positive, and unknown bases give no unit."""
+    """Cycles, non-positive factors and unknown bases give no unit."""
     assert UnitRegistry(definitions).parse("x") is None
 
 
-def test_near_matches_are_suggested() -> None:
-    """A misspelt unit is met with known ones, the program's own included."""
+def test_similar_units_are_suggested() -> None:
+    """The suggestions include units defined by the program."""
     assert "metre" in REGISTRY.suggest("metres")
     assert UnitRegistry({"furlongs": (Decimal(1), "m")}).suggest("furlungs") == ["furlongs"]
 
 
-def test_pint_is_loaded_only_for_words_outside_the_table() -> None:
+def test_pint_is_loaded_only_for_units_outside_the_table() -> None:
     """Common units and their compounds do not load pint."""
     program = (
         "import sys; from deros.interfaces.units import UnitRegistry\n"

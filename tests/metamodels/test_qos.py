@@ -1,4 +1,4 @@
-"""QoS compatibility, compared with the ROS 2 function that decides it, for every pair of profiles."""
+"""QoS compatibility, compared with the deciding ROS 2 function for every pair of profiles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The project file: what it sets, that the command line wins, and what is wrong with it."""
+"""The project file: its settings, the precedence of the command line, and findings about it."""
 
 from __future__ import annotations
 
@@ -44,15 +44,15 @@ def _findings(*arguments: str) -> list[tuple[str, str, int]]:
 
 
 @pytest.mark.parametrize("shared", [False, True])
-def test_interfaces_come_from_the_project(shared: bool) -> None:
-    """The nearest file above the model counts, wherever the command runs."""
+def test_interfaces_come_from_the_project_file(shared: bool) -> None:
+    """The nearest file above the model applies, from any working directory."""
     assert [code for code, *_ in _findings("models/talker.rnd")] == ["DRS101"]
     _project('interfaces = ["msgs"]\n', shared)
     assert _findings("models/talker.rnd") == []
 
 
-def test_every_command_that_reads_models_knows_them() -> None:
-    """Simulating, showing, starting and generating find the same definitions."""
+def test_all_commands_use_the_interfaces_of_the_project() -> None:
+    """Simulating, graphing, starting and generating find the same definitions."""
     _project('interfaces = ["msgs"]\n')
     Path("models/s.system").write_text(
         'system S\nimports import "talker.rnd"\ntopics external topic /out : own_msgs.State\n'
@@ -68,15 +68,15 @@ def test_every_command_that_reads_models_knows_them() -> None:
     assert deros("graph", "models/s.system").code == 0
     assert (
         deros("up", "models/s.system", "--dry-run", "--package-path", ".").code == 2
-    )  # no program
+    )  # there is no program to start
     simulated = deros("simulate", "models/r.deros", "--trace", "t.jsonl")
     assert (simulated.code, "trigger" in simulated.out) == (0, True)
     assert deros("generate", "models/s.system", "--target", "launch", "-o", "out").code == 0
     assert deros("generate", "models/talker.rnd", "--target", "python", "-o", "out").code == 0
 
 
-def test_the_command_line_wins() -> None:
-    """Definitions, options, target and output of the command line go before the project's."""
+def test_command_line_overrides_the_project_file() -> None:
+    """This holds for interfaces, options, target and output."""
     _project(
         'output = "ws"\ncopyright = "2020 Project"\nmaintainer = "P <p@example.com>"\n'
         '[targets]\nrnd = "python"\n'
@@ -92,13 +92,13 @@ def test_the_command_line_wins() -> None:
 
 
 @pytest.mark.parametrize("target", ["python", "cpp"])
-def test_the_licence_is_that_of_the_project(target: str) -> None:
-    """It stands in the manifest, and above each file where there is a copyright holder."""
+def test_licence_of_the_project(target: str) -> None:
+    """It is in the manifest, and above each file if there is a copyright holder."""
     _project('licence = "BSD-3-Clause"\ncopyright = "2020 P"\n')
     assert deros("generate", "models/plain.rnd", "--target", target, "-o", "ws").code == 0
     manifest = Path("ws/plain_nodes/package.xml").read_text()
     assert "<license>BSD-3-Clause</license>" in manifest
-    assert "copyright" not in manifest  # ament's test knows other words for it
+    assert "copyright" not in manifest  # ament's test uses other words for it
     texts = [p.read_text() for p in Path("ws").rglob("*.py" if target == "python" else "*.cpp")]
     for text in filter(None, texts):
         assert "SPDX-License-Identifier: BSD-3-Clause" in text
@@ -106,15 +106,15 @@ def test_the_licence_is_that_of_the_project(target: str) -> None:
 
 
 @pytest.mark.parametrize("licence", ["", "x\ny", "a;b", "*/"])
-def test_a_licence_is_an_identifier(licence: str) -> None:
-    """Anything else could not stand in a manifest or a comment."""
+def test_licence_must_be_an_spdx_identifier(licence: str) -> None:
+    """Other text would not be valid in a manifest or a comment."""
     outcome = deros("generate", "models/plain.rnd", "--target", "cpp", "--licence", licence)
     assert outcome.code == 2
     assert "SPDX" in outcome.err
 
 
-def test_a_copyright_stays_in_its_comment() -> None:
-    """A project file from somebody else cannot bring code into what is generated."""
+def test_copyright_cannot_leave_its_comment() -> None:
+    """A project file from a third party cannot inject code into generated files."""
     _project('copyright = "2020 P\\nimport os"\n')
     assert deros("generate", "models/plain.rnd", "--target", "python", "-o", "ws").code == 0
     assert "# Copyright 2020 P import os\n" in Path("ws/plain_nodes/setup.py").read_text()
@@ -127,8 +127,8 @@ def _allow(code: str = "DRS212", path: str = "models/**", reason: str = "known")
 
 
 @pytest.mark.parametrize("shared", [False, True])
-def test_a_project_allows_by_code_and_path(shared: bool) -> None:
-    """Files of the pattern are silent; SARIF names the entry as an external suppression."""
+def test_project_allows_by_code_and_path(shared: bool) -> None:
+    """Matching files give no findings; SARIF lists the entry as an external suppression."""
     assert [code for code, *_ in _findings("models/deep/lone.system")] == ["DRS212"]
     allowance = _allow()
     _project(allowance.replace("[[allow", "[[tool.deros.allow") if shared else allowance, shared)
@@ -164,8 +164,8 @@ def test_a_project_allows_by_code_and_path(shared: bool) -> None:
         ('copyright = "\udcff"\n', codes.UNREADABLE_PROJECT),
     ],
 )
-def test_what_is_wrong_with_it_is_a_finding(text: str, code: Code) -> None:
-    """It points into the project file; generating sees it as well."""
+def test_faults_in_the_project_file_are_findings(text: str, code: Code) -> None:
+    """They point into the project file, and ``generate`` reports them too."""
     Path("deros.toml").write_bytes(text.encode(errors="surrogateescape"))
     found = [(c, f) for c, f, _ in _findings("models/plain.rnd")]
     assert (code.name, "deros.toml") in found
@@ -189,14 +189,14 @@ def test_what_is_wrong_with_it_is_a_finding(text: str, code: Code) -> None:
         ('tool = "deros\n', None),
     ],
 )
-def test_the_table_counts_however_it_is_written(text: str, expected: Code | None) -> None:
-    """What is no table is a finding; a file that does not speak of deros is left alone."""
+def test_table_in_pyproject_in_any_notation(text: str, expected: Code | None) -> None:
+    """A value that is not a table is a finding; a file without the table is ignored."""
     Path("pyproject.toml").write_text(text)
     found = [(code, file) for code, file, _ in _findings("models/plain.rnd")]
     assert found == ([] if expected is None else [(expected.name, "pyproject.toml")])
 
 
-def test_findings_name_the_line_and_near_keys() -> None:
+def test_finding_has_the_line_of_the_key_and_similar_keys() -> None:
     """The place is that of the key."""
     _project('copyright = "2020 P"\nmaintaner = "P <p@example.com>"\n')
     outcome = deros("check", "models/plain.rnd")
@@ -204,8 +204,8 @@ def test_findings_name_the_line_and_near_keys() -> None:
     assert "did you mean 'maintainer'?" in outcome.out
 
 
-def test_the_nearest_file_counts_and_others_are_passed_over() -> None:
-    """A pyproject.toml without the table is none, nor one that is broken elsewhere."""
+def test_nearest_file_with_the_table_applies() -> None:
+    """A pyproject.toml without the table, or with other syntax errors, is skipped."""
     _project('copyright = "above"\n')
     Path("models/pyproject.toml").write_text("[tool.ruff]\n")
     assert project_of("models/plain.rnd").options == {"copyright": "above"}
@@ -217,8 +217,8 @@ def test_the_nearest_file_counts_and_others_are_passed_over() -> None:
     assert project_of("msgs/own_msgs").options == {"copyright": "above"}
 
 
-def test_an_unneeded_entry_is_a_finding_of_the_whole_project() -> None:
-    """Checking one file says nothing about an entry for others."""
+def test_unneeded_entry_is_reported_for_the_whole_project_only() -> None:
+    """Checking one file gives no finding about entries for others."""
     _project(_allow() + _allow(code="DRS211", path="vendor/**"))
     Path("models/talker.rnd").unlink()
     assert _findings("models/plain.rnd") == []
@@ -231,8 +231,8 @@ def _depends(outcome: Outcome) -> str:
     return Path("d").read_text()
 
 
-def test_a_build_depends_on_the_project_file() -> None:
-    """A change of it generates anew."""
+def test_depfile_contains_the_project_file() -> None:
+    """A changed project file triggers generation."""
     command = ("generate", "models/plain.rnd", "--target", "python", "-o", "ws", "--depfile", "d")
     assert "deros.toml" not in _depends(deros(*command))
     _project('copyright = "2020 P"\n')

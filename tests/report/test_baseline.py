@@ -1,4 +1,4 @@
-"""``deros check --baseline``: only what is new is reported, and what is gone is said."""
+"""``deros check --baseline``: only new findings are reported, and absent ones are noted."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def _found(*more: str, files: tuple[str, ...] = ("lone.system",)) -> list[tuple[
     return [(d["code"], d["line"]) for d in json.loads(outcome.out)]
 
 
-def test_what_is_listed_is_not_reported() -> None:
-    """The findings at the time of writing are known; the last line counts them."""
+def test_findings_in_the_baseline_are_not_reported() -> None:
+    """The summary counts the known findings."""
     assert deros("check", "--strict", "lone.system").code == 1
     _write("lone.system")
     outcome = deros("check", "--strict", "lone.system", "--baseline", FILE)
@@ -41,23 +41,23 @@ def test_what_is_listed_is_not_reported() -> None:
     assert outcome.out == "1 file checked, no findings, 2 in the baseline\n"
 
 
-def test_findings_are_recognized_when_lines_move() -> None:
-    """Lines before, behind and between change nothing, nor do blanks."""
+def test_findings_are_recognised_when_lines_move() -> None:
+    """New lines and spaces around a finding do not matter."""
     _write("lone.system")
     Path("lone.system").write_text("// new\n\nsystem Lone\ntopics\n     topic /b\n\n topic /a\n")
     assert _found() == []
 
 
-def test_a_new_finding_is_reported() -> None:
-    """Also one of a code that the baseline has, in the same file."""
+def test_new_finding_is_reported() -> None:
+    """A finding is new even if the baseline has its code in the same file."""
     _write("lone.system")
     Path("lone.system").write_text(UNUSED + "  topic /c\n")
     assert _found() == [("DRS212", 5)]
     assert _found("--strict") == [("DRS212", 5)]
 
 
-def test_one_more_of_equal_findings_is_new() -> None:
-    """Equal findings count: of three where two were listed, one is new."""
+def test_additional_equal_finding_is_new() -> None:
+    """Equal findings are counted: of three, if two were listed, one is new."""
     rules = "const a = 1  /* deros: allow */\n"
     Path("r.deros").write_text(rules * 2)
     before = json.loads(deros("check", "--format", "json", "r.deros").out)
@@ -70,7 +70,7 @@ def test_one_more_of_equal_findings_is_new() -> None:
 
 
 def test_errors_are_always_reported() -> None:
-    """An error is not written, and stays one."""
+    """An error is not written to the baseline."""
     Path("bad.rnd").write_text("node bad : demo\nparameters\n  name a : int = 0.5\n")
     outcome = deros("check", "bad.rnd", "--baseline", FILE, "--write-baseline")
     assert outcome.code == 1
@@ -78,8 +78,8 @@ def test_errors_are_always_reported() -> None:
     assert _found(files=("bad.rnd",)) == [("DRS103", 3)]
 
 
-def test_an_entry_that_is_gone_is_a_remark() -> None:
-    """It points into the baseline, and fails nothing."""
+def test_absent_finding_is_a_note() -> None:
+    """It points into the baseline, and does not fail the run."""
     _write("lone.system")
     Path("lone.system").write_text("system Lone\ntopics\n  topic /b\n")
     outcome = deros("check", "--strict", "lone.system", "--baseline", FILE)
@@ -91,8 +91,8 @@ def test_an_entry_that_is_gone_is_a_remark() -> None:
     assert _found() == []
 
 
-def test_nothing_is_called_gone_that_was_not_looked_for() -> None:
-    """With fewer files than the baseline has, or behind an error, an entry may well be there."""
+def test_unchecked_entries_are_not_called_absent() -> None:
+    """With fewer files than in the baseline, or after an error, an entry may still apply."""
     Path("other.system").write_text(UNUSED)
     _write("lone.system", "other.system")
     assert _found(files=("other.system",)) == []
@@ -102,10 +102,10 @@ def test_nothing_is_called_gone_that_was_not_looked_for() -> None:
     assert _found(files=("other.system",)) == [("DRS023", 12), ("DRS023", 18)]
 
 
-def test_it_is_the_same_from_another_folder(
+def test_baseline_is_independent_of_the_working_directory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Paths in it are relative to its own folder, so that it can be checked in."""
+    """Its paths are relative to its own folder, so that it can be committed."""
     _write("lone.system")
     assert str(tmp_path) not in Path(FILE).read_text()
     (tmp_path / "sub").mkdir()
@@ -114,8 +114,8 @@ def test_it_is_the_same_from_another_folder(
     assert outcome.code == 0
 
 
-def test_the_same_findings_give_the_same_bytes() -> None:
-    """A baseline that is written again is the same file."""
+def test_baseline_is_deterministic() -> None:
+    """Writing the same findings again gives the same bytes."""
     _write("lone.system")
     first = Path(FILE).read_bytes()
     _write("lone.system")
@@ -136,8 +136,8 @@ def test_the_same_findings_give_the_same_bytes() -> None:
         "[" * 100_000,
     ],
 )
-def test_what_is_no_baseline_is_an_error(text: str | None) -> None:
-    """Then every finding is reported, and the run fails with 2."""
+def test_invalid_baseline_is_an_error(text: str | None) -> None:
+    """All findings are reported, and the exit code is 2."""
     if text is not None:
         Path(FILE).write_text(text)
     outcome = deros("check", "lone.system", "--baseline", FILE)
@@ -146,21 +146,21 @@ def test_what_is_no_baseline_is_an_error(text: str | None) -> None:
     assert outcome.out.count("DRS212") == 2
 
 
-def test_another_file_is_never_replaced() -> None:
-    """A slip on the command line does not cost a model."""
+def test_other_file_is_never_overwritten() -> None:
+    """A wrong command line cannot overwrite a model."""
     outcome = deros("check", "lone.system", "--baseline", "lone.system", "--write-baseline")
     assert outcome.code == 2
     assert Path("lone.system").read_text() == UNUSED
 
 
-def test_a_baseline_has_to_be_named() -> None:
-    """``--write-baseline`` alone is a mistake on the command line."""
+def test_write_baseline_needs_a_file() -> None:
+    """``--write-baseline`` alone is a usage error."""
     assert deros("check", "lone.system", "--write-baseline").code == 2
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
-def test_a_folder_that_cannot_be_written_is_an_error() -> None:
-    """The reason is said."""
+def test_unwritable_folder_is_an_error() -> None:
+    """The exit code is 2."""
     Path("closed").mkdir(mode=0o500)
     outcome = deros("check", "lone.system", "--baseline", "closed/b.json", "--write-baseline")
     assert outcome.code == 2
@@ -172,8 +172,8 @@ def _sarif(*more: str) -> list[dict[str, Any]]:
     return results
 
 
-def test_sarif_tells_new_known_and_absent_apart() -> None:
-    """``baselineState`` is that of SARIF 2.1.0, 3.27.24; fingerprints stay when lines move."""
+def test_sarif_distinguishes_new_known_and_absent_findings() -> None:
+    """``baselineState`` follows SARIF 2.1.0, 3.27.24; fingerprints are stable when lines move."""
     plain = _sarif()
     assert "baselineState" not in plain[0]
     _write("lone.system")
@@ -185,8 +185,8 @@ def test_sarif_tells_new_known_and_absent_apart() -> None:
     assert results[2]["partialFingerprints"] == plain[0]["partialFingerprints"]
 
 
-def test_allowed_findings_are_not_in_a_baseline() -> None:
-    """What is allowed needs no entry."""
+def test_allowed_findings_are_not_in_the_baseline() -> None:
+    """An allowed finding needs no entry."""
     Path("lone.system").write_text(UNUSED.replace("/a", "/a  // deros: allow DRS212 by hand"))
     _write("lone.system")
     assert [e["message"].split("'")[1] for e in json.loads(Path(FILE).read_text())["findings"]] == [

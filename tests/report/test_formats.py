@@ -31,7 +31,7 @@ WARNING = report(codes.UNUSED_TOPIC, "100% unused,\nreally: yes", _span("café")
 
 
 def test_text_shows_line_caret_hint_and_related_places() -> None:
-    """The caret stands under the word, behind a tab as in the line itself."""
+    """The caret is under the word, after a tab as in the line itself."""
     assert render.render_text([FINDING]) == (
         "models/a b.system:2:14: error[DRS203]: no import defines 'bäse'\n"
         "    2 | \tnode café : bäse, 100%\n"
@@ -41,16 +41,16 @@ def test_text_shows_line_caret_hint_and_related_places() -> None:
     )
 
 
-def test_text_never_disturbs_the_terminal() -> None:
-    """Control characters of a model are shown as replacement characters."""
+def test_control_characters_are_replaced() -> None:
+    """Control characters of a model do not reach the terminal."""
     source = SourceFile("x\x1b.rnd", "node \x1b[31m\x07 : x\n")
     text = render.render_text([report(codes.SYNTAX_ERROR, "found '\x1b'", Span(source, 5, 6))])
     assert "\x1b" not in text
     assert "\x07" not in text
 
 
-def test_long_lines_are_cut_around_the_place() -> None:
-    """A line of a megabyte shows the 160 characters that matter, and the caret fits them."""
+def test_long_lines_are_cut_around_the_span() -> None:
+    """Of a line of a megabyte, the relevant 160 characters are shown, with a matching caret."""
     source = SourceFile("x.rnd", "a" * 500_000 + "B" + "c" * 500_000)
     lines = render.render_text(
         [report(codes.SYNTAX_ERROR, "here", Span(source, 500_000, 500_001))]
@@ -59,8 +59,8 @@ def test_long_lines_are_cut_around_the_place() -> None:
     assert lines[1][lines[2].index("^")] == "B"
 
 
-def test_wide_characters_push_the_caret() -> None:
-    """A character two columns wide moves the caret by two."""
+def test_wide_characters_move_the_caret() -> None:
+    """A character that is two columns wide moves the caret by two."""
     source = SourceFile("x.rnd", "名前 x")
     line, caret = render.render_text(
         [report(codes.SYNTAX_ERROR, "here", Span(source, 3, 4))]
@@ -74,7 +74,7 @@ class _Terminal(io.StringIO):
 
 
 def test_colours_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A pipe gets plain text; so does a terminal of somebody who set NO_COLOR."""
+    """Pipes and terminals with NO_COLOR get plain text."""
     monkeypatch.delenv("NO_COLOR", raising=False)
     monkeypatch.setenv("TERM", "xterm-256color")
     plain, terminal, asked = io.StringIO(), _Terminal(), _Terminal()
@@ -87,7 +87,7 @@ def test_colours_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_json_objects_have_exactly_the_documented_keys() -> None:
-    """An array of flat objects; a finding without a hint has an empty one."""
+    """The output is an array of flat objects; a missing hint is an empty string."""
     first, second = json.loads(formats.render_json([FINDING, WARNING]))
     assert first == {
         "file": "models/a b.system",
@@ -106,7 +106,7 @@ def test_json_objects_have_exactly_the_documented_keys() -> None:
 
 
 def test_sarif_refers_to_rules_by_index() -> None:
-    """Each result names its rule, level and place; paths are URIs; related places are kept."""
+    """Each result has its rule, level and place; paths are URIs; related places are kept."""
     log = json.loads(formats.render_sarif([FINDING, WARNING, FINDING]))
     assert log["version"] == "2.1.0"
     (run,) = log["runs"]
@@ -124,7 +124,7 @@ def test_sarif_refers_to_rules_by_index() -> None:
 
 
 def test_github_annotations_are_escaped() -> None:
-    """One command a line, whatever the message holds."""
+    """Each finding is one command on one line, whatever the message contains."""
     error, warning = formats.render_github([FINDING, WARNING]).splitlines()
     assert error.startswith("::error file=models/a b.system,line=2,col=14,endLine=2,endColumn=18,")
     assert error.endswith("::no import defines 'bäse'%0Adid you mean 'base'?")
@@ -140,13 +140,13 @@ def test_github_annotations_are_escaped() -> None:
         ([WARNING, FINDING, WARNING], "1 error and 2 warnings in 3 files"),
     ],
 )
-def test_summary_counts(findings: list[Diagnostic], expected: str) -> None:
-    """The closing line counts what was found, worst first."""
+def test_summary_counts_findings(findings: list[Diagnostic], expected: str) -> None:
+    """The last line counts findings by severity, highest first."""
     assert render.summary(findings, 3) == expected
 
 
-def test_a_fix_is_an_edit_for_tools() -> None:
-    """JSON and SARIF give the place and the new text of a fix; text shows its hint alone."""
+def test_fix_is_a_machine_readable_edit() -> None:
+    """JSON and SARIF contain place and new text of a fix; text shows only the hint."""
     fix = Fix(_span("bäse"), "base")
     hint = "did you mean 'base'?"
     finding = report(codes.UNKNOWN_NODE_TYPE, "unknown", _span("bäse"), hint, fix=fix)
