@@ -26,12 +26,17 @@ demo: $(READY)  ## Generate the feeding robot, start it, play its fifteen test c
 	@$(ALONE) $(BIN)/python examples/feeding_robot/demo.py
 
 .PHONY: test
-test: $(READY)  ## Run all tests, those on the real middleware included
-	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) --dist worksteal
+test: $(READY)  ## Run the tests, those on the real middleware included
+	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow"
+
+.PHONY: test-all
+test-all: $(READY)  ## Run the slow tests too, and 500 examples of each property instead of 100
+	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) --dist worksteal --hypothesis-profile ci
 
 .PHONY: property
-property: $(READY)  ## Compare generated monitors with the reference on 120,000 random pairs (nightly)
+property: $(READY)  ## Compare monitors on 120,000 random pairs; 5,000 examples of each property (nightly)
 	@$(ALONE) $(BIN)/python tools/property.py --jobs $(JOBS)
+	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) -m hypothesis --hypothesis-profile nightly
 
 .PHONY: repeat
 repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (nightly)

@@ -6,8 +6,6 @@ import signal
 import sys
 from pathlib import Path
 
-from hypothesis import settings
-
 ROOT = Path(__file__).resolve().parent.parent
 
 if str(ROOT) not in sys.path:
@@ -17,9 +15,9 @@ if str(ROOT) not in sys.path:
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# How long one example takes depends on what else the machine does; it proves nothing.
-settings.register_profile("deros", deadline=None)
-settings.load_profile("deros")
+from tests.support import profiles  # noqa: E402  (after the root is on the path)
+
+profiles.register()
 
 pytest_plugins = ("tests.support.golden", "tests.support.ros")
 

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.cli import Outcome, deros
+from tests.support.profiles import scaled
 
 CASES = Path(__file__).resolve().parents[1] / "cases"
 
@@ -103,7 +104,7 @@ def test_damaged_bytes(models: Path, name: str) -> None:
         _findings(name)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=scaled(80))
 @given(content=st.binary(max_size=300), suffix=st.sampled_from([".rnd", ".system", ".deros"]))
 def test_random_bytes(
     tmp_path_factory: pytest.TempPathFactory, content: bytes, suffix: str

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from deros.metamodels.load import LoadedFile, Repository
 from tests.support.mutations import PIECES, TEXTS, mutated
+from tests.support.profiles import scaled
 
 
 def _sound(loaded: LoadedFile) -> None:
@@ -21,7 +22,7 @@ def _sound(loaded: LoadedFile) -> None:
         assert (found.span.line, found.span.column) <= (found.span.end_line, found.span.end_column)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=scaled(300))
 @given(mutated())
 def test_mutated_listings_do_not_raise(case: tuple[str, str]) -> None:
     """Truncated and mutated models load without an exception."""
@@ -29,7 +30,6 @@ def test_mutated_listings_do_not_raise(case: tuple[str, str]) -> None:
     _sound(Repository().load_text(f"fuzz.{suffix}", text))
 
 
-@settings(max_examples=100, deadline=None)
 @given(st.sampled_from(sorted(TEXTS)), st.data())
 def test_mutated_bytes_do_not_raise(suffix: str, data: st.DataObject) -> None:
     """Model files with some bytes replaced load without an exception."""
@@ -42,14 +42,12 @@ def test_mutated_bytes_do_not_raise(suffix: str, data: st.DataObject) -> None:
         _sound(Repository().load(path))
 
 
-@settings(max_examples=100, deadline=None)
 @given(st.sampled_from(sorted(TEXTS)), st.text(max_size=60))
 def test_arbitrary_text_does_not_raise(suffix: str, text: str) -> None:
     """Text that is not a model loads without an exception."""
     _sound(Repository().load_text(f"fuzz.{suffix}", text))
 
 
-@settings(max_examples=100, deadline=None)
 @given(st.sampled_from(sorted(TEXTS)), st.lists(PIECES, max_size=40))
 def test_arbitrary_tokens_do_not_raise(suffix: str, pieces: list[str]) -> None:
     """Words and symbols of the languages in any order load without an exception."""

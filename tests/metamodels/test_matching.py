@@ -16,6 +16,7 @@ from deros.metamodels.matching import DoesNotParse, make_quick
 from deros.metamodels.reading import Unreadable, prepare
 from deros.metamodels.recovery import recogniser
 from tests.support.mutations import TEXTS, mutated
+from tests.support.profiles import scaled
 
 
 def _tree(node: Any) -> Any:
@@ -75,7 +76,7 @@ def test_listings_give_the_same_tree(suffix: str, text: str) -> None:
     _same(LANGUAGES[f".{suffix}"], text)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=scaled(200))
 @example(("deros", "behaviour b: if e.r then { s; }; optional behaviour c: if e.r then { s"))
 @given(mutated())
 def test_mutated_listings_give_the_same_result(case: tuple[str, str]) -> None:

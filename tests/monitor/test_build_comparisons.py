@@ -18,6 +18,7 @@ from deros.monitor import ir
 from deros.monitor.bounds import integer_bound
 from deros.monitor.build import build
 from deros.monitor.evaluate import COMPARE
+from tests.support.profiles import scaled
 from tests.support.rules import condition, embedded_store, program
 
 SPEED = "topic /odom.twist.twist.linear.x"
@@ -68,7 +69,7 @@ def test_temperature_has_an_offset() -> None:
     assert bound("topic /battery.temperature > 68 degF") == 20.0
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=scaled(25))
 @given(st.decimals(-1000, 1000, allow_nan=False, places=6))
 def test_decimal_is_rounded_once(value: Decimal) -> None:
     """A written number is the double nearest to it."""

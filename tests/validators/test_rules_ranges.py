@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.profiles import scaled
 from tests.support.rules import findings
 
 DECLARED = """
@@ -122,7 +123,7 @@ def test_decided_condition_is_reported_once(condition: str, code: str, place: st
     assert found == [(code, place)]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=scaled(40))
 @given(st.integers(-20, 280), st.integers(-20, 280), st.booleans())
 def test_decided_pairs_agree_with_enumeration(low: int, high: int, both: bool) -> None:
     """A pair of comparisons is reported exactly if all 256 values give one verdict."""

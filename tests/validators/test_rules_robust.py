@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
 from deros.validators.rules import check_rules
+from tests.support.profiles import scaled
 from tests.support.rules import embedded_store
 
 _CASES = Path(__file__).resolve().parents[1] / "cases"
@@ -31,7 +32,7 @@ def programs(draw: st.DrawFn) -> str:
     return " ".join(tokens)
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=scaled(150), suppress_health_check=[HealthCheck.too_slow])
 @given(text=programs())
 def test_any_parsed_program_is_checked_without_exception(text: str) -> None:
     """Each finding has a message and a valid span."""

@@ -34,6 +34,7 @@ from tests.support.messages import (
     random_paths,
     read,
 )
+from tests.support.profiles import scaled
 
 TYPES = [
     kind
@@ -67,7 +68,7 @@ seeds = st.integers(0, 2**32)
 # Values -------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=scaled(8))
 @given(seed=seeds)
 @pytest.mark.parametrize("kind", TYPES, ids=str)
 def test_reads_what_rclpy_reads(kind: InterfaceType, seed: int) -> None:
@@ -79,7 +80,6 @@ def test_reads_what_rclpy_reads(kind: InterfaceType, seed: int) -> None:
         assert _same(decode.values(data), expected), (paths, decode.text)
 
 
-@settings(max_examples=500, deadline=None)
 @given(seed=seeds, big_endian=st.booleans())
 def test_reads_whatever_a_message_may_be(seed: int, big_endian: bool) -> None:
     """Types that no package has, with every alignment in every place, are read as well."""
@@ -114,7 +114,6 @@ def test_what_follows_an_array_is_found(element: str, length: int, big_endian: b
         assert decode.values(data) == [42, length]
 
 
-@settings(max_examples=100, deadline=None)
 @given(kind=st.sampled_from(TYPES), seed=seeds)
 def test_the_writer_agrees_with_the_middleware(kind: InterfaceType, seed: int) -> None:
     """The big endian data above is right: the middleware reads it as the message it was."""
@@ -124,7 +123,7 @@ def test_the_writer_agrees_with_the_middleware(kind: InterfaceType, seed: int) -
         assert repr(deserialize_message(data, message_class(kind))) == repr(message)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=scaled(20))
 @given(seed=seeds, big_endian=st.booleans())
 @pytest.mark.parametrize("name", ["Imu", "BatteryState", "CameraInfo", "LaserScan", "PointCloud2"])
 def test_reads_what_rosbags_writes(name: str, seed: int, big_endian: bool) -> None:
@@ -189,7 +188,7 @@ def test_an_element_that_is_not_there_is_nan() -> None:
 # Data that is not as it should be -----------------------------------------------------------------
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=scaled(60))
 @given(kind=st.sampled_from(TYPES), seed=seeds, big_endian=st.booleans())
 def test_truncated_data_is_refused(kind: InterfaceType, seed: int, big_endian: bool) -> None:
     """Wherever a message ends: an error, or the values of the whole one, which are inside."""
@@ -210,7 +209,6 @@ def _check_truncated(decode: Decoder, data: bytes, rng: random.Random) -> None:
         assert _same(values, whole), end
 
 
-@settings(max_examples=100, deadline=None)
 @given(kind=st.sampled_from(TYPES), seed=seeds)
 def test_damaged_data_raises_nothing_else(kind: InterfaceType, seed: int) -> None:
     """Whatever the bytes are, lengths of billions among them, the decoder ends, and soon."""

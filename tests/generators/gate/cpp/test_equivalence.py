@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,13 +24,14 @@ from tests.support.gate_traces import (
 )
 from tests.support.gates import ACTIONS, QUIET, STORE, Happening, message_type, play, span
 from tests.support.messages import message_types
+from tests.support.profiles import draws_new_examples, scaled
 
 pytestmark = needs_compiler
 
-EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "3000"))
-"""Traces in all; set, gates and traces are drawn anew in every run, else always the same."""
+EXAMPLES = scaled(3000)
+"""Traces in all."""
 
-SEED = random.randrange(2**32) if "DEROS_EXAMPLES" in os.environ else 4
+SEED = random.randrange(2**32) if draws_new_examples() else 4
 START_NS = 100
 TRACES_OF_A_TYPE = 8
 

@@ -2,26 +2,16 @@
 
 from __future__ import annotations
 
-import os
-
 from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
 from deros.monitor.gate_engine import GateEngine
 from tests.support.gates import ACTIONS, STORE, GeneratedGate, gates, happenings, play
 
-EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "500"))
-"""Examples; set, they are drawn anew in every run, else they are always the same."""
-
 START_NS = 100
 
 
-@settings(
-    max_examples=EXAMPLES,
-    deadline=None,
-    derandomize="DEROS_EXAMPLES" not in os.environ,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+@settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(st.data())
 def test_same_commands(data: st.DataObject) -> None:
     """Both publish the same messages at the same nanosecond; timers may be late, clocks step."""

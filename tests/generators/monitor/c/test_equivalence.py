@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
@@ -11,8 +10,9 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.interface import render_monitor
 from tests.support import c_pairs, counterexamples
 from tests.support.c_library import Loaded, needs_c
+from tests.support.profiles import scaled
 
-PROGRAMS = int(os.environ.get("DEROS_C_PROGRAMS", "90"))
+PROGRAMS = scaled(90)
 """Programs that are drawn per property, of each of which five traces are compared.
 
 The programs are the same in every run; others are drawn by ``make property``.

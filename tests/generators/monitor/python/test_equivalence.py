@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,23 +19,13 @@ from deros.monitor.ir import Program
 from tests.support import counterexamples
 from tests.support.counterexamples import Pair, pairs
 from tests.support.monitors import START_NS, call, compare, timed
+from tests.support.profiles import scaled
 from tests.support.rules_text import NODE_TEXT, SYSTEM_TEXT, rules_text
 from tests.support.strategies import Step, programs, traces
 
-EXAMPLES = int(os.environ.get("DEROS_EXAMPLES", "500"))
-"""Examples per property; set, they are drawn anew in every run, else they are always the same.
-
-There are four properties; many more examples are drawn by ``make property``.
-"""
-
 COUNTEREXAMPLES = sorted(counterexamples.FOLDER.glob("*.json"))
 
-thorough = settings(
-    max_examples=EXAMPLES,
-    deadline=None,
-    derandomize="DEROS_EXAMPLES" not in os.environ,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+thorough = settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 
 
 @thorough
@@ -76,7 +65,7 @@ def test_counterexample(path: Path) -> None:
 def test_counterexamples_can_be_kept(tmp_path: Path) -> None:
     """What is read is what was written."""
 
-    @settings(thorough, max_examples=50, derandomize=True)
+    @settings(thorough, max_examples=scaled(50), derandomize=True)
     @given(programs().flatmap(pairs))
     def check(pair: Pair) -> None:
         path = counterexamples.write(pair, tmp_path)
@@ -105,7 +94,7 @@ def _build(text: str, folder: Path) -> Program:
     return result.program
 
 
-@settings(thorough, max_examples=EXAMPLES)
+@thorough
 @given(data=st.data())
 def test_same_events_from_text(data: st.DataObject, robot: Path) -> None:
     """Rules written as a text mean what they were written from, and so does what they generate."""

@@ -20,6 +20,7 @@ from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.node_targets import files_of, node_of, refusal
+from tests.support.profiles import scaled
 
 
 def base_for(sections: str) -> str:
@@ -244,7 +245,7 @@ def test_long_names_do_not_break_the_linters(tmp_path: Path) -> None:
     assert_cpp_lint_clean(tmp_path / "chat")
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=scaled(25))
 @given(description=st.text(max_size=200), default=st.text(max_size=40))
 def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
     """Whatever a text holds, XML parses, and the code beside comments and literals stays."""

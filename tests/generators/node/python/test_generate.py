@@ -18,6 +18,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from tests.support.node_targets import files_of, node_of, refusal
+from tests.support.profiles import scaled
 
 
 def base_for(sections: str) -> str:
@@ -176,7 +177,7 @@ def test_ros_reads_every_parameter_file(parameters: str, tmp_path: Path) -> None
 # Any text -----------------------------------------------------------------------------------------
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=scaled(25))
 @given(description=st.text(max_size=200), default=st.text(max_size=40))
 def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
     """Whatever a text holds, Python compiles, XML parses, and YAML gives the default back."""

@@ -1,0 +1,46 @@
+"""Hypothesis profiles: how many examples each property draws, and whether they are new ones.
+
+======== ======== ======================== =====================================
+profile  examples drawn                    used by
+======== ======== ======================== =====================================
+local         100 the same in every run    ``make test``, and pytest by default
+ci            500 the same in every run    ``make test-all``
+nightly      5000 new ones in every run    ``make property``
+======== ======== ======================== =====================================
+
+``pytest --hypothesis-profile NAME`` selects one. Tests that take more time per example, or less,
+scale their number with :func:`scaled`.
+"""
+
+from __future__ import annotations
+
+from hypothesis import settings
+
+EXAMPLES = {"local": 100, "ci": 500, "nightly": 5000}
+"""Examples of each property by profile."""
+
+LEAST = 5
+"""The fewest examples that :func:`scaled` returns."""
+
+
+def register() -> None:
+    """Register the profiles and load the local one.
+
+    None has a deadline: the time of one example depends on the load of the machine.
+    """
+    for name, examples in EXAMPLES.items():
+        repeatable = name != "nightly"
+        settings.register_profile(
+            name, max_examples=examples, deadline=None, derandomize=repeatable, print_blob=True
+        )
+    settings.load_profile("local")
+
+
+def scaled(in_ci: int) -> int:
+    """Return the number of examples for a property that draws ``in_ci`` of them in CI."""
+    return max(LEAST, in_ci * settings().max_examples // EXAMPLES["ci"])
+
+
+def draws_new_examples() -> bool:
+    """Return whether the loaded profile draws other examples in every run."""
+    return not settings().derandomize
