@@ -8,8 +8,9 @@ import pytest
 
 from deros.diagnostics import Diagnostic
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.languages import metamodel
+from deros.metamodels.languages import DEROS
 from deros.metamodels.load import Repository
+from deros.metamodels.parsers import metamodel
 from deros.metamodels.rules import (
     ActionCall,
     Gate,
@@ -83,7 +84,7 @@ def test_documented_gate_is_parsed() -> None:
 
 def test_documented_gate_is_parsed_by_textx() -> None:
     """The metamodel that textX itself uses accepts it."""
-    model = metamodel("deros").model_from_str(PRINTED)
+    model = metamodel(DEROS).model_from_str(PRINTED)
     (gate,) = model.statements
     assert [line.action for line in gate.lines] == ["stop", "low_speed", None, None]
 

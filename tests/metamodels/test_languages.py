@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from importlib.metadata import Distribution
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +14,17 @@ from textx.exceptions import TextXSyntaxError
 
 from benchmarks.big_system import write
 from deros.metamodels.languages import (
+    DEROS,
     LANGUAGES,
+    ROSNODE,
+    ROSSYSTEM,
     Language,
+    entry_point,
     language_of,
-    metamodel,
-    quick_metamodel,
 )
 from deros.metamodels.load import Repository
 from deros.metamodels.matching import Token
+from deros.metamodels.parsers import fast_metamodel, metamodel
 from deros.metamodels.scoping import Reference
 from deros.metamodels.syntax import in_words
 from tests.support import paper
@@ -40,13 +44,39 @@ def _parser_rules(language: Language) -> list[Any]:
 
 def test_language_follows_from_the_suffix() -> None:
     """Each suffix belongs to one language."""
-    assert language_of("a/b.rnd") == "rosnode"
-    assert language_of("a.b.system") == "rossystem"
-    assert language_of("x.deros") == "deros"
+    assert language_of("a/b.rnd") is ROSNODE
+    assert language_of("a.b.system") is ROSSYSTEM
+    assert language_of("x.deros") is DEROS
     assert language_of("x.txt") is None
 
 
-@pytest.mark.parametrize("language", LANGUAGES.values())
+def test_entry_points_of_textx_are_the_declared_languages() -> None:
+    """The distribution offers textX each language under its name, and no other."""
+    points = Distribution.from_name("deros").entry_points.select(group="textx_languages")
+    described = {point.name: point.load() for point in points}
+    assert sorted(described) == sorted(each.name for each in LANGUAGES)
+    for language in LANGUAGES:
+        description = described[language.name]
+        assert description.name == language.name
+        assert description.pattern == f"*{language.suffix}"
+
+
+@pytest.mark.parametrize("language", LANGUAGES, ids=lambda each: each.name)
+def test_every_part_of_a_declaration_exists(language: Language) -> None:
+    """The grammar is a file, and each entry point of a declaration can be imported."""
+    assert language.grammar_file.is_file()
+    assert callable(entry_point(language.loader))
+    assert callable(entry_point(language.checks))
+    assert next(iter(entry_point(language.scaffold))) == f"$name{language.suffix}"
+
+
+def test_names_suffixes_and_kinds_are_unique() -> None:
+    """No two languages share a name, a suffix or the word for ``deros new``."""
+    for values in zip(*((each.name, each.suffix, each.kind) for each in LANGUAGES), strict=True):
+        assert len(set(values)) == len(LANGUAGES)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
 def test_metamodel_is_built_once(language: Language) -> None:
     """A second call returns the same metamodel."""
     assert metamodel(language) is metamodel(language)
@@ -54,7 +84,7 @@ def test_metamodel_is_built_once(language: Language) -> None:
 
 def test_textx_metamodel_accepts_comments() -> None:
     """The metamodel alone parses a text with comments."""
-    model = metamodel("rosnode").model_from_str(f"// first\n{paper.FIGURE_11}/* last */")
+    model = metamodel(ROSNODE).model_from_str(f"// first\n{paper.FIGURE_11}/* last */")
     assert model.name == "ci_safety_node"
     parameters = get_children_of_type("Parameter", model)
     assert [each.name for each in parameters] == [
@@ -67,7 +97,7 @@ def test_textx_metamodel_accepts_comments() -> None:
 def test_tokens_have_offsets() -> None:
     """Attribute values in the loader's models are strings with an offset."""
     text = "node  a : p publishes topic /x : std_msgs.Bool"
-    model = quick_metamodel("rosnode").model_from_str(text)
+    model = fast_metamodel(ROSNODE).model_from_str(text)
     (port,) = get_children_of_type("TopicPort", model)
     for token in (model.name, model.package, port.name, port.type):
         assert isinstance(token, Token)
@@ -76,7 +106,7 @@ def test_tokens_have_offsets() -> None:
 
 def test_unresolved_reference_has_no_target() -> None:
     """A name that textX cannot resolve is a reference without a target, not an error."""
-    model = metamodel("rossystem").model_from_str("system S node a : camera")
+    model = metamodel(ROSSYSTEM).model_from_str("system S node a : camera")
     (node,) = get_children_of_type("NodeInstance", model)
     assert isinstance(node.type, Reference)
     assert (node.type.name, node.type.target) == ("camera", None)
@@ -86,12 +116,12 @@ def test_syntax_error_position_matches_textx() -> None:
     """The loader reports syntax errors where textX does."""
     text = "node a : p\nparameters // none\n  name x double"
     with pytest.raises(TextXSyntaxError) as raised:
-        metamodel("rosnode").model_from_str(text)
+        metamodel(ROSNODE).model_from_str(text)
     (found,) = Repository().load_text("a.rnd", text).diagnostics
     assert (found.span.line, found.span.column) == (raised.value.line, raised.value.col)
 
 
-@pytest.mark.parametrize("language", LANGUAGES.values())
+@pytest.mark.parametrize("language", LANGUAGES)
 def test_every_token_has_a_readable_name(language: Language) -> None:
     """Syntax errors name tokens in words or as the keyword itself, not as a pattern."""
     for rule in _parser_rules(language):

@@ -11,12 +11,15 @@ from hypothesis import example, given, settings
 from textx.exceptions import TextXSyntaxError
 
 from deros.diagnostics import SourceFile
-from deros.metamodels.languages import LANGUAGES, Language, metamodel, quick_metamodel
-from deros.metamodels.matching import DoesNotParse, make_quick
+from deros.metamodels.languages import LANGUAGES, ROSNODE, Language
+from deros.metamodels.matching import DoesNotParse, install_fast_parser
+from deros.metamodels.parsers import fast_metamodel, metamodel
 from deros.metamodels.reading import Unreadable, prepare
 from deros.metamodels.recovery import recogniser
 from tests.support.mutations import TEXTS, mutated
 from tests.support.profiles import scaled
+
+_BY_SUFFIX = {each.suffix.removeprefix("."): each for each in LANGUAGES}
 
 
 def _tree(node: Any) -> Any:
@@ -39,7 +42,7 @@ def _parse(language: Language, text: str) -> Any:
 def _parse_quickly(language: Language, text: str) -> Any:
     """Return the result of the matchers, or of the recogniser where they fail."""
     try:
-        return _tree(quick_metamodel(language)._parser_blueprint.clone().parse(text))
+        return _tree(fast_metamodel(language)._parser_blueprint.clone().parse(text))
     except DoesNotParse:
         pass
     steps = recogniser(language)
@@ -71,9 +74,9 @@ def _same(language: Language, text: str) -> None:
 )
 def test_listings_give_the_same_tree(suffix: str, text: str) -> None:
     """Every sound text has the same parse tree with both parsers."""
-    tree = _parse_quickly(LANGUAGES[f".{suffix}"], prepare(SourceFile("text", text)))
+    tree = _parse_quickly(_BY_SUFFIX[suffix], prepare(SourceFile("text", text)))
     assert tree[1] == 0 or tree[0] == "Model"
-    _same(LANGUAGES[f".{suffix}"], text)
+    _same(_BY_SUFFIX[suffix], text)
 
 
 @settings(max_examples=scaled(200))
@@ -82,12 +85,12 @@ def test_listings_give_the_same_tree(suffix: str, text: str) -> None:
 def test_mutated_listings_give_the_same_result(case: tuple[str, str]) -> None:
     """Sound or broken, a text has the same result with both parsers."""
     suffix, text = case
-    _same(LANGUAGES[f".{suffix}"], text)
+    _same(_BY_SUFFIX[suffix], text)
 
 
 def test_expression_without_a_matcher_is_rejected() -> None:
     """A grammar that uses a new kind of expression fails when it is built."""
-    model = metamodel.__wrapped__("rosnode")
+    model = metamodel.__wrapped__(ROSNODE)
     model._parser_blueprint.parser_model.nodes.append(Not(StrMatch("x")))
     with pytest.raises(TypeError, match="Not"):
-        make_quick(model)
+        install_fast_parser(model)

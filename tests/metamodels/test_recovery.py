@@ -178,7 +178,7 @@ def test_fix_repairs_the_statement(name: str, text: str, edited: str) -> None:
     assert not _errors(_load(name, mended))
 
 
-@pytest.mark.parametrize("language", LANGUAGES.values())
+@pytest.mark.parametrize("language", LANGUAGES)
 def test_statements_are_derived_from_the_grammar(language: Language) -> None:
     """The statements and their first tokens are read from the grammar."""
     known = {
@@ -188,7 +188,7 @@ def test_statements_are_derived_from_the_grammar(language: Language) -> None:
     }
     steps = recogniser(language)
     first = {literal_of(token) for each in steps.lists for token in each.first}
-    assert known[language] <= first
+    assert known[language.name] <= first
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,8 @@ def condition(text: str, declarations: str = "") -> ir.Condition:
 
 def findings(statements: str) -> list[tuple[str, str, str]]:
     """Check ``statements``; return code, place (the text there) and message of each finding."""
-    return [shown(each) for each in check_rules(load(statements), embedded_store())]
+    model = load(statements)
+    return [shown(each) for each in check_rules(model, build(model, embedded_store()))]
 
 
 def shown(finding: Diagnostic) -> tuple[str, str, str]:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
+from deros.monitor.build import build
 from deros.validators.rules import check_rules
 from tests.support.rules import embedded_store, findings, shown
 
@@ -55,7 +56,7 @@ def check_text(directory: Path, system: str, text: str) -> list[str]:
     (directory / "S.system").write_text(f'system S imports import "talker.rnd" {system}')
     model = Repository().load_text(directory / "x.deros", f'use "S.system" import S {text}').model
     assert isinstance(model, Rules)
-    return [shown(each)[0] for each in check_rules(model, embedded_store())]
+    return [shown(each)[0] for each in check_rules(model, build(model, embedded_store()))]
 
 
 READ = """

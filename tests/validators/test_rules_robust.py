@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
+from deros.monitor.build import build
 from deros.validators.rules import check_rules
 from tests.support.profiles import scaled
 from tests.support.rules import embedded_store
@@ -39,6 +40,6 @@ def test_any_parsed_program_is_checked_without_exception(text: str) -> None:
     loaded = Repository().load_text(_CASES / "rules.deros", text)
     if not isinstance(loaded.model, Rules):
         return
-    for finding in check_rules(loaded.model, embedded_store()):
+    for finding in check_rules(loaded.model, build(loaded.model, embedded_store())):
         assert finding.message
         assert finding.span.end <= len(finding.span.source.text)

@@ -116,7 +116,7 @@ class Runner:
             self.ends["with errors"] += 1
             return
         for generator in discover().generators:
-            if generator.language != loaded.language:
+            if loaded.language is None or generator.language != loaded.language.name:
                 continue
             try:
                 files = generator(loaded.model, context)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.options import interfaces_option
+from deros.metamodels.languages import listed
 from deros.pipeline.outcome import exit_code
 
 if TYPE_CHECKING:
@@ -23,7 +24,14 @@ if TYPE_CHECKING:
 FORMATS = ("text", "json", "sarif", "github")
 
 
-@click.command()
+@click.command(
+    help=f"""Check models and report every finding.
+
+    FILES are {listed()}, and folders, of which all models are checked. What they import is checked
+    with them. Exits with 0 if nothing was found, 1 if something was (warnings count under
+    --strict), 2 if a file cannot be read.
+    """
+)
 @click.argument("files", nargs=-1, required=True, type=click.Path())
 @click.option("--strict", is_flag=True, help="Let warnings fail the run, too.")
 @click.option(
@@ -54,13 +62,7 @@ def check(
     write_baseline: bool,
     interfaces: tuple[Path, ...],
 ) -> None:
-    """Check models and report every finding.
-
-    FILES are node descriptions (*.rnd), system descriptions (*.system), safety rules (*.deros),
-    and folders, of which all models are checked. What they import is checked with them. Exits
-    with 0 if nothing was found, 1 if something was (warnings count under --strict), 2 if a file
-    cannot be read.
-    """
+    """Check models and report every finding."""
     if write_baseline and baseline is None:
         raise click.UsageError("--write-baseline needs --baseline FILE")
     with without_collector():
@@ -128,26 +130,18 @@ def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
     """Check the files, all models below folders, and what they import, as their projects say."""
     from deros.cli.models import named_models, to_be_checked
     from deros.diagnostics import has_errors, in_file_order
-    from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.load import Repository
-    from deros.pipeline.project import interfaces_of, projects_of, unneeded
-    from deros.validators.check import check_all
+    from deros.pipeline.project import unneeded
+    from deros.pipeline.workspace import load
 
     models = named_models(files)
-    projects = projects_of(each.path for each in models)
-    repository = Repository()
-    loaded = [repository.load(each.path) for each in models]
-    checked = check_all(
-        to_be_checked(models, loaded, repository),
-        repository,
-        InterfaceStore(interfaces_of(interfaces, projects)),
-        [each for project in projects for each in project.allowances],
-    )
-    findings = [*checked.findings, *(d for project in projects for d in project.diagnostics)]
-    if not has_errors(findings):
-        findings += unneeded(projects, files, checked.allowed)
     names = [each.path for each in models]
-    return Found(in_file_order(findings), checked.allowed, len(repository.files), names)
+    workspace = load(names, interfaces)
+    repository = workspace.repository
+    checked = workspace.check(to_be_checked(models, workspace.files, repository))
+    findings = checked.findings
+    if not has_errors(findings):
+        findings = in_file_order([*findings, *unneeded(workspace.projects, files, checked.allowed)])
+    return Found(findings, checked.allowed, len(repository.files), names)
 
 
 def report(found: Found, output_format: str, *, show_allowed: bool = False) -> None:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
+from deros.cli.findings import show
 from deros.cli.options import interfaces_option
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from deros.diagnostics import Diagnostic
     from deros.generators.output.writer import WriteReport
 
 
@@ -114,7 +114,7 @@ def generate(
         output = output_of(requests)
     try:
         made = pipeline.generate(*requests)
-        _show(made.findings)
+        show(made.findings)
         if scaffold is not None:
             kept = scaffold_files(made, request, scaffold)
             lacking = lacking_in(made, scaffold)
@@ -123,7 +123,7 @@ def generate(
             where = OutputSpec(output, overwrite, source, depfile, stamp)
             written, lacking = write(made, where, started)
     except pipeline.Refused as refused:
-        _show(refused.diagnostics)
+        show(refused.diagnostics)
         ctx.exit(refused.code)
     except pipeline.UnknownOption as error:
         raise click.NoSuchOption(error.option, str(error)) from error
@@ -135,7 +135,7 @@ def generate(
         raise click.ClickException(str(error)) from error
     except ValueError as error:
         raise click.UsageError(str(error)) from error
-    _show([*written.diagnostics, *lacking])
+    show([*written.diagnostics, *lacking])
     click.echo(_report(written))
 
 
@@ -160,14 +160,6 @@ def _apart(arguments: Sequence[str]) -> tuple[list[str], dict[str, str]]:
     if not words:
         raise click.UsageError("Missing argument 'FILES...'.")
     return words, pairs
-
-
-def _show(diagnostics: Sequence[Diagnostic]) -> None:
-    import sys
-
-    from deros.report.text import print_text
-
-    print_text(diagnostics, sys.stderr)
 
 
 def _report(written: WriteReport) -> str:

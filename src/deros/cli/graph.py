@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from deros.cli.findings import show, wrong_language
 from deros.cli.options import interfaces_option
 from deros.pipeline.outcome import exit_code
 
@@ -37,12 +37,12 @@ def graph(ctx: click.Context, file: str, form: str, interfaces: tuple[Path, ...]
     go to standard error, and errors fail the command, but what can be shown is shown.
     """
     from deros.metamodels.flatten import flatten
+    from deros.metamodels.languages import ROSSYSTEM
     from deros.metamodels.system import System
-    from deros.pipeline.project import check_one
-    from deros.report.text import print_text
+    from deros.pipeline.workspace import check_one
 
     loaded, findings = check_one(file, interfaces)
-    print_text(findings, sys.stderr)
+    show(findings)
     code = exit_code(findings)
     if isinstance(loaded.model, System):
         wiring = Wiring(flatten(loaded.model))
@@ -53,7 +53,7 @@ def graph(ctx: click.Context, file: str, form: str, interfaces: tuple[Path, ...]
         }
         click.echo("\n".join(write[form](wiring)))
     elif loaded.model is not None:
-        raise click.UsageError(f"'{file}' is no system description (*.system)")
+        raise wrong_language(file, ROSSYSTEM)
     ctx.exit(code)
 
 

@@ -17,6 +17,7 @@ from typing import NoReturn
 import click
 
 from deros import __version__
+from deros.metamodels.languages import listed
 
 INTERRUPTED = 130
 BROKEN_PIPE = 141
@@ -68,15 +69,18 @@ class LazyGroup(click.Group):
             formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
 
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help=f"""Describe, check and generate ROS 2 nodes, systems and safety monitors.
+
+    Models are text: {listed()}.
+    """,
+)
 @click.version_option(__version__, prog_name="deros")
 @click.option("--debug", is_flag=True, help="Show a traceback if deros itself fails.")
 def deros(debug: bool) -> None:
-    """Describe, check and generate ROS 2 nodes, systems and safety monitors.
-
-    Models are text: node descriptions (*.rnd), system descriptions (*.system) and safety rules
-    (*.deros).
-    """
+    """Run the command that the arguments name."""
     del debug  # read from the arguments by main(), which must know it even if parsing them fails
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.metamodels.globbing import MOST_FOLDERS
-from deros.metamodels.languages import LANGUAGES
+from deros.metamodels.languages import ROSSYSTEM, language_of, suffixes
 from deros.pipeline.project import project_of
 
 if TYPE_CHECKING:
@@ -42,12 +42,12 @@ def named_models(paths: Sequence[str]) -> list[Named]:
     """
     found: dict[str, Named] = {}
     for path in paths:
-        if not Path(path).is_dir() or Path(path).suffix in LANGUAGES:
+        if not Path(path).is_dir() or language_of(path) is not None:
             found[path] = Named(path, False)
             continue
         models = sorted(_models_below(path, project_of(path).output))
         if not models:
-            raise click.UsageError(f"the folder '{path}' has no model ({', '.join(LANGUAGES)})")
+            raise click.UsageError(f"the folder '{path}' has no model ({', '.join(suffixes())})")
         for each in models:
             found.setdefault(each, Named(each, True))
     return list(found.values())
@@ -62,7 +62,7 @@ def _models_below(folder: str, output: Path | None) -> Iterator[str]:
         yield from (
             os.path.normpath(Path(here, name))
             for name in names
-            if Path(name).suffix in LANGUAGES and not name.startswith(".")
+            if language_of(name) is not None and not name.startswith(".")
         )
 
 
@@ -90,7 +90,7 @@ def to_be_checked(
         if isinstance(each.model, System)
         for statement in each.model.imports
         for path in statement.files
-        if path.endswith(".system")
+        if language_of(path) is ROSSYSTEM
     }
     pairs = zip(named, loaded, strict=True)
     return [file for name, file in pairs if not (name.searched and id(file) in parts)]

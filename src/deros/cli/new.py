@@ -10,7 +10,7 @@ from deros.cli.scaffolds import KINDS, scaffold
 
 
 @click.command()
-@click.argument("kind", type=click.Choice(KINDS))
+@click.argument("kind", type=click.Choice(list(KINDS)))
 @click.argument("name")
 @click.option("--package", help="ROS package of its nodes.  [default: NAME in lower case]")
 @click.option(

@@ -10,12 +10,12 @@ import click
 
 from deros.cli.models import Named, named_models, to_be_checked
 from deros.pipeline.generate import Request
-from deros.pipeline.project import interfaces_of, project_of, projects_of
+from deros.pipeline.project import project_of
 
 if TYPE_CHECKING:
-    from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import LoadedFile
     from deros.metamodels.rules import Rules
+    from deros.monitor.build_cache import BuildCache
 
 
 def plan(
@@ -71,13 +71,13 @@ def _targets(model: Named, target: str | None) -> tuple[str, ...]:
 
     language = language_of(model.path)
     if target is not None:
-        known = language is not None and discover().find(language, target) is not None
+        known = language is not None and discover().find(language.name, target) is not None
         return (target,) if known or not model.searched else ()
-    targets = project_of(model.path).targets.get(Path(model.path).suffix.removeprefix("."), ())
+    suffix = Path(model.path).suffix.removeprefix(".")
+    targets = project_of(model.path).targets.get(suffix, ())
     if not targets and not model.searched:
         raise click.UsageError(
-            "Missing option '--target'; a project file may name targets: "
-            f"targets.{Path(model.path).suffix.removeprefix('.')}"
+            f"Missing option '--target'; a project file may name targets: targets.{suffix}"
         )
     return targets
 
@@ -86,20 +86,17 @@ def _worth_generating(
     named: Sequence[Named], options: Mapping[str, str], interfaces: tuple[Path, ...]
 ) -> list[Named]:
     """Leave out what was found in folders and is not to be generated."""
-    from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.load import Repository
     from deros.metamodels.node import NodeType
     from deros.metamodels.rules import Rules
+    from deros.pipeline.workspace import load
 
-    repository = Repository()
-    loaded = [repository.load(each.path) for each in named]
-    whole = {id(each) for each in to_be_checked(named, loaded, repository)}
-    store = InterfaceStore(interfaces_of(interfaces, projects_of(each.path for each in named)))
+    workspace = load([each.path for each in named], interfaces)
+    whole = {id(each) for each in to_be_checked(named, workspace.files, workspace.repository)}
     generated = {
         package
-        for each in loaded
+        for each in workspace.files
         if isinstance(each.model, Rules)
-        for package in _packages_of_rules(each.model, options, store)
+        for package in _packages_of_rules(each.model, options, workspace.builds)
     }
 
     def is_wanted(model: Named, file: LoadedFile) -> bool:
@@ -110,20 +107,21 @@ def _worth_generating(
             return node.executable is None and node.package not in generated
         return id(file) in whole
 
-    return [model for model, file in zip(named, loaded, strict=True) if is_wanted(model, file)]
+    return [
+        model for model, file in zip(named, workspace.files, strict=True) if is_wanted(model, file)
+    ]
 
 
 def _packages_of_rules(
-    rules: Rules, options: Mapping[str, str], store: InterfaceStore
+    rules: Rules, options: Mapping[str, str], builds: BuildCache
 ) -> Iterator[str]:
     """Return the packages that a safety node, its gates and their descriptions are made in."""
     from deros.generators.api.protocol import GenerationError
     from deros.generators.safety_node.cpp.node import twin_options
     from deros.generators.safety_node.node import safety_node
     from deros.metamodels.safety_nodes import cpp_twin
-    from deros.monitor.build import build
 
-    built = build(rules, store)
+    built = builds.of(rules)
     if built.program is None:
         return
     try:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from string import Template
 
+from deros.metamodels.languages import LANGUAGES, entry_point
+
 _NODE = """\
 node $name : $package "What this node does"
 
@@ -146,21 +148,20 @@ gate /wish -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
 }
 """
 
-_SCAFFOLDS: dict[str, dict[str, str]] = {
-    "node": {"$name.rnd": _NODE},
-    "system": {
-        "$name.system": _SYSTEM,
-        "${name}_base.rnd": _BASE_NODE,
-        "${name}_pilot.rnd": _PILOT_NODE,
-    },
-    "rules": {
-        "$name.deros": _RULES,
-        "$name.system": _WATCHED_SYSTEM,
-        "${name}_robot.rnd": _WATCHED_NODE,
-    },
+NODE = {"$name.rnd": _NODE}
+SYSTEM = {
+    "$name.system": _SYSTEM,
+    "${name}_base.rnd": _BASE_NODE,
+    "${name}_pilot.rnd": _PILOT_NODE,
+}
+RULES = {
+    "$name.deros": _RULES,
+    "$name.system": _WATCHED_SYSTEM,
+    "${name}_robot.rnd": _WATCHED_NODE,
 }
 
-KINDS = tuple(_SCAFFOLDS)
+KINDS = {each.kind: each for each in LANGUAGES}
+"""The languages by the word that ``deros new`` knows them by."""
 
 
 def scaffold(kind: str, name: str, package: str) -> dict[str, str]:
@@ -169,4 +170,5 @@ def scaffold(kind: str, name: str, package: str) -> dict[str, str]:
     def filled(template: str) -> str:
         return Template(template).substitute(name=name, package=package)
 
-    return {filled(path): filled(text) for path, text in _SCAFFOLDS[kind].items()}
+    templates: dict[str, str] = entry_point(KINDS[kind].scaffold)
+    return {filled(path): filled(text) for path, text in templates.items()}

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import click
 
+from deros.cli.findings import show, wrong_language
 from deros.cli.options import interfaces_option
 from deros.pipeline.outcome import exit_code
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from deros.diagnostics import Diagnostic, SourceFile
-    from deros.interfaces.store import InterfaceStore
     from deros.monitor.gate_simulation import GateAnswer
     from deros.monitor.ir import Program
     from deros.monitor.simulate import Explained, Monitor
+    from deros.pipeline.workspace import Workspace
 
 MONITORS = ("reference", "python")
 
@@ -123,13 +123,13 @@ def simulate(
     true, and their values. Steps of the clock and findings go to standard error. Exits with 0, with
     1 if the rules or the trace have errors, with 2 if one of them cannot be read.
     """  # noqa: D301 - click knows a block by the character itself
-    from deros.interfaces.store import InterfaceStore
     from deros.monitor.simulate import play
     from deros.monitor.trace import read_trace
-    from deros.pipeline.project import interfaces_of, project_of
+    from deros.pipeline.workspace import load
 
-    store = InterfaceStore(interfaces_of(interfaces, [project_of(rules)]))
-    program, findings = _load(rules, store)
+    workspace = load([rules], interfaces)
+    store = workspace.store
+    program, findings = _load(rules, workspace)
     if program is None:
         _fail(ctx, findings)
     source, findings = _read(trace_file)
@@ -138,7 +138,7 @@ def simulate(
     trace = read_trace(source, program, store)
     if any(each.is_error for each in trace.diagnostics):
         _fail(ctx, trace.diagnostics)
-    _report(trace.diagnostics)
+    show(trace.diagnostics)
     gates = None
     if with_gates or all_commands:
         from deros.monitor.gate_simulation import GateSimulation
@@ -148,23 +148,21 @@ def simulate(
     _show(happenings, output_format == "text")
 
 
-def _load(path: str, store: InterfaceStore) -> tuple[Program | None, list[Diagnostic]]:
-    """Return the program of a file of rules, or the errors that keep it from having one."""
+def _load(path: str, workspace: Workspace) -> tuple[Program | None, list[Diagnostic]]:
+    """Return the program of a file of rules, or the errors that prevent it."""
     from deros.diagnostics import in_file_order
-    from deros.metamodels.load import Repository
+    from deros.metamodels.languages import DEROS
     from deros.metamodels.rules import Rules
-    from deros.monitor.build import build
 
-    repository = Repository()
-    model = repository.load(path).model
-    findings = repository.diagnostics
+    (loaded,) = workspace.files
+    findings = workspace.repository.diagnostics
     program = None
-    if isinstance(model, Rules):
-        built = build(model, store)
+    if isinstance(loaded.model, Rules):
+        built = workspace.builds.of(loaded.model)
         findings += built.diagnostics
         program = built.program
-    elif model is not None:
-        raise click.UsageError(f"'{path}' holds no safety rules; they are in *.deros files")
+    elif loaded.model is not None:
+        raise wrong_language(path, DEROS)
     errors = [each for each in findings if each.is_error]
     return (None if errors else program), in_file_order(errors)
 
@@ -208,11 +206,5 @@ def _show(happenings: Iterable[Explained | GateAnswer], as_text: bool) -> None:
 
 
 def _fail(ctx: click.Context, findings: Sequence[Diagnostic]) -> NoReturn:
-    _report(findings)
+    show(findings)
     ctx.exit(exit_code(findings))
-
-
-def _report(findings: Sequence[Diagnostic]) -> None:
-    from deros.report.text import print_text
-
-    print_text(findings, sys.stderr)

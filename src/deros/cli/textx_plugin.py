@@ -1,4 +1,4 @@
-"""deros as a plug-in of textX: the three languages, and the command group.
+"""deros as a plug-in of textX: its languages and its commands.
 
 ``textx check`` and ``textx generate`` load a model through its language's metamodel; here that
 means our own loader and all our checks. The generators are in :mod:`deros.generators.builtin`.
@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deros.metamodels.languages import language_named
 from deros.metamodels.textx_registration import LanguageDesc, TextXError
 
 if TYPE_CHECKING:
@@ -30,8 +31,8 @@ def add_commands(textx: click.Group) -> None:
 
 
 def _checked_metamodel(language: Language) -> Any:
-    """Return the language's metamodel, whose models are checked before anybody gets them."""
-    from deros.metamodels.languages import metamodel
+    """Return the language's metamodel, which checks each model before it returns it."""
+    from deros.metamodels.parsers import metamodel
 
     result = metamodel(language)
     parse = result.model_from_file
@@ -122,10 +123,10 @@ def _render(diagnostics: Sequence[Diagnostic]) -> str:
     return render_text(diagnostics)
 
 
-def _language(name: Language, pattern: str, description: str) -> Any:
-    return LanguageDesc(name, pattern, description, functools.partial(_checked_metamodel, name))
-
-
-rosnode = _language("rosnode", "*.rnd", "ROS 2 node descriptions: parameters and ports of a node")
-rossystem = _language("rossystem", "*.system", "ROS 2 systems: nodes, topics and their wiring")
-deros = _language("deros", "*.deros", "DeRoS safety rules: what must not happen, and what then")
+def __getattr__(name: str) -> Any:
+    """Return the language of that name, as the group ``textx_languages`` of entry points asks."""
+    language = language_named(name)
+    if language is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    metamodel = functools.partial(_checked_metamodel, language)
+    return LanguageDesc(language.name, language.pattern, language.description, metamodel)

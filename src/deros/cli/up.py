@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import signal
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from deros.cli.findings import show, wrong_language
 from deros.cli.options import interfaces_option
 from deros.pipeline.outcome import FINDINGS, exit_code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from deros.diagnostics import Diagnostic
     from deros.metamodels.system import System
 
 
@@ -110,26 +109,21 @@ def _run(
     try:
         view = system_view(_checked_system(ctx, file, interfaces))
     except GenerationError as error:
-        _show(error.diagnostics)
+        show(error.diagnostics)
         return FINDINGS
     return main(view.name, table(view), arguments, f"deros up {file}")
 
 
 def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:
+    from deros.metamodels.languages import ROSSYSTEM
     from deros.metamodels.system import System as SystemModel
-    from deros.pipeline.project import check_one
+    from deros.pipeline.workspace import check_one
 
     loaded, findings = check_one(file, interfaces)
-    _show(findings)
+    show(findings)
     code = exit_code(findings)
     if code:
         ctx.exit(code)
     if not isinstance(loaded.model, SystemModel):
-        raise click.UsageError(f"'{file}' is no system description (*.system)")
+        raise wrong_language(file, ROSSYSTEM)
     return loaded.model
-
-
-def _show(diagnostics: Sequence[Diagnostic]) -> None:
-    from deros.report.text import print_text
-
-    print_text(diagnostics, sys.stderr)

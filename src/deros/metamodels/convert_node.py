@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from deros import codes
 from deros.diagnostics import Fix, Span, report
@@ -20,6 +20,9 @@ from deros.metamodels.node import (
     PortKind,
     Timer,
 )
+
+if TYPE_CHECKING:
+    from deros.metamodels.load import Loading
 
 _PARAMETER_TYPES = {each.value: each for each in ParameterType} | {
     "int": ParameterType.INTEGER,
@@ -73,6 +76,14 @@ def as_double(value: Value, kind: ParameterType) -> Value:
     if kind is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
         return tuple(float(item) if type(item) is int else item for item in value)
     return value
+
+
+def load_node_type(loading: Loading) -> NodeType:
+    """Load a node description."""
+    converter = NodeConverter(loading.source)
+    result = converter.node_type(loading.parse())
+    loading.diagnostics += converter.diagnostics
+    return result
 
 
 class NodeConverter(Converter):

@@ -12,6 +12,7 @@ from deros.diagnostics import SourceFile, Span
 from deros.metamodels.common import Name
 from deros.metamodels.convert import Converter, Sections
 from deros.metamodels.convert_system import unknown
+from deros.metamodels.languages import ROSSYSTEM
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.metamodels.rules import (
     Action,
@@ -46,10 +47,12 @@ from deros.metamodels.rules import (
     UnitDefinition,
     Use,
 )
+from deros.metamodels.scoping import FileIndex
 
 if TYPE_CHECKING:
+    from deros.metamodels.load import Loading
     from deros.metamodels.matching import Token
-    from deros.metamodels.scoping import FileIndex, Reference
+    from deros.metamodels.scoping import Reference
     from deros.metamodels.system import System
 
 _STEP = re.compile(r"[A-Za-z_]\w*|\d+")
@@ -59,6 +62,23 @@ _ATTRIBUTES = {
     "Latched": "latched",
     "Description": "description",
 }
+
+
+def load_rules(loading: Loading) -> Rules:
+    """Load safety rules; each ``use`` statement has an index of what its file defines."""
+    indexes: dict[int, FileIndex] = {}
+
+    def follow_uses(model: Any) -> None:
+        for statement in model.statements:
+            if type(statement).__name__ == "Use":
+                index = indexes[statement._tx_position] = FileIndex()
+                loading.follow(statement, index, (ROSSYSTEM,))
+
+    model = loading.parse(follow_uses)
+    converter = RulesConverter(loading.source, indexes)
+    result = converter.rules(model)
+    loading.diagnostics += converter.diagnostics
+    return result
 
 
 class RulesConverter(Converter):

@@ -11,8 +11,10 @@ from deros.interfaces.names import did_you_mean, near
 from deros.metamodels.common import QosProfile
 from deros.metamodels.convert import Converter, Sections
 from deros.metamodels.convert_node import as_double
+from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM
 from deros.metamodels.node import KINDS_BY_WORD, NodeType
 from deros.metamodels.qos import pinned_policies
+from deros.metamodels.scoping import FileIndex, attach_index
 from deros.metamodels.system import (
     Import,
     NodeInstance,
@@ -27,7 +29,8 @@ from deros.metamodels.system import (
 )
 
 if TYPE_CHECKING:
-    from deros.metamodels.scoping import FileIndex, Reference
+    from deros.metamodels.load import Loading
+    from deros.metamodels.scoping import Reference
 
 _WORDS = {
     "Namespace": "namespace",
@@ -38,6 +41,31 @@ _WORDS = {
     "Target": "target",
     "Package": "package",
 }
+
+
+def load_system(loading: Loading) -> System:
+    """Load a system description, its imports before its references are resolved."""
+    index = FileIndex()
+    imports: list[Import] = []
+
+    def follow_imports(model: Any) -> None:
+        statements = [
+            statement
+            for part in model.parts
+            if type(part).__name__ == "Imports"
+            for statement in part.imports
+        ]
+        imports.extend(loading.follow(each, index, (ROSNODE, ROSSYSTEM)) for each in statements)
+        index.complete &= not loading.source.mentions_lost("import")
+        attach_index(model, index)
+
+    model = loading.parse(follow_imports)
+    converter = SystemConverter(loading.source, index)
+    result = converter.system(model, imports)
+    loading.diagnostics += converter.diagnostics
+    for statement in converter.safety:
+        loading.refer(statement, (DEROS,))
+    return result
 
 
 class SystemConverter(Converter):

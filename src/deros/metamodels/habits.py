@@ -10,9 +10,10 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from deros.metamodels.languages import Language
+from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM, Language
 
 _LOOK_BACK = 400
+Languages = tuple[Language, ...]
 _Edit = Callable[[re.Match[str]], str]
 
 
@@ -50,7 +51,7 @@ class _Row:
     text: str | _Edit | None
     hint: str
     message: str = ""
-    languages: tuple[Language, ...] = ()
+    languages: Languages = ()
     reads_as: str | None = None
 
     def edit(self, match: re.Match[str]) -> str | None:
@@ -65,11 +66,10 @@ def _row(
     text: str | _Edit | None,
     hint: str,
     message: str = "",
-    languages: str = "",
+    languages: Languages = (),
     reads_as: str | None = None,
 ) -> _Row:
-    wanted = tuple(each for each in _LANGUAGES if each in languages.split())
-    return _Row(re.compile(pattern), text, hint, message, wanted, reads_as)
+    return _Row(re.compile(pattern), text, hint, message, languages, reads_as)
 
 
 def _interval(match: re.Match[str]) -> str:
@@ -84,8 +84,7 @@ def _lower(match: re.Match[str]) -> str:
     return match[0].lower()
 
 
-_LANGUAGES: tuple[Language, ...] = ("rosnode", "rossystem", "deros")
-_NODE, _SYSTEM, _RULES = _LANGUAGES
+_NODE, _SYSTEM, _RULES = (ROSNODE,), (ROSSYSTEM,), (DEROS,)
 _NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
 _UNIT = r"(?:[ ]*(?!(?:or|and|not|for|then|in)\b)[A-Za-z][\w/^]*)?"
 _OPERAND = r"[A-Za-z/][\w/.]*(?:\(\))?"
@@ -117,14 +116,14 @@ _ROWS = (
     _row("\u2192", "to", "write 'to'", languages=_SYSTEM),
     # Comments
     _row(
-        r"#+(?P<said>[^\n]*)", r"//\g<said>", _COMMENT, "'#' does not begin a comment here", "", " "
+        r"#+(?P<said>[^\n]*)", r"//\g<said>", _COMMENT, "'#' does not begin a comment here", (), " "
     ),
     _row(
         r"--(?P<said> [^\n]*)",
         r"//\g<said>",
         _COMMENT,
         "'--' does not begin a comment here",
-        "",
+        (),
         " ",
     ),
     _row(
@@ -132,7 +131,7 @@ _ROWS = (
         r"/*\g<said>*/",
         "a comment stands between '/*' and '*/'",
         "'<!--' does not begin a comment here",
-        "",
+        (),
         " ",
     ),
     # Conditions
@@ -173,7 +172,7 @@ _ROWS = (
         "a comparison has two sides",
         _RULES,
     ),
-    _row(r"\s*(?P<at>)\.\.+\s*", ", ", "write ',' between the ends", languages="deros rosnode"),
+    _row(r"\s*(?P<at>)\.\.+\s*", ", ", "write ',' between the ends", languages=_RULES + _NODE),
     _row(r"\s+to\s+(?P<at>)", ", ", "write ',' between the ends", languages=_RULES),
     # Behaviours
     _row(r"(?::|->|do\b)\s*(?=\{)", " then ", "write 'then'", languages=_RULES),
@@ -275,7 +274,7 @@ _ROWS = (
         r":\s*(?P<at>)(?P<name>[A-Z]\w*)(?![\w./:])",
         None,
         r"write the package before the name: 'PACKAGE.\g<name>'",
-        languages="rosnode rossystem",
+        languages=_NODE + _SYSTEM,
     ),
     _row(
         r"=\s*(?P<value>[^:\n]*?)\s*:\s*(?P<type>\w+)",
@@ -287,7 +286,7 @@ _ROWS = (
         r"=\s*(?P<at>)(?P<word>[A-Za-z_][\w/]*)(?![\w.(])",
         r'= "\g<word>"',
         r"write '\"\g<word>\"': a text stands in quotes",
-        languages="rosnode rossystem",
+        languages=_NODE + _SYSTEM,
     ),
     # System descriptions
     _row(

@@ -1,52 +1,119 @@
-"""The textX metamodels of the three languages, each built once per process.
+"""The languages, each declared once: whatever knows a language looks it up here.
 
-The grammars (``*.tx`` beside this file) are the languages.
+The functions of a language live in the room that they belong to and are named as entry points,
+``module:attribute``. So a declaration names functions of higher rooms without importing them, and a
+command loads only the languages that it meets.
 """
 
 from __future__ import annotations
 
-import functools
+import os
+from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import Any, Literal
-
-from textx import metamodel_from_file
-
-from deros.metamodels.matching import make_quick
-from deros.metamodels.scoping import SCOPE_PROVIDERS
-
-Language = Literal["rosnode", "rossystem", "deros"]
-
-LANGUAGES: dict[str, Language] = {".rnd": "rosnode", ".system": "rossystem", ".deros": "deros"}
-"""The language of a file, by the suffix of its name."""
+from typing import Any
 
 
-def language_of(path: str) -> Language | None:
-    """Return the language that a file's suffix stands for, or ``None``."""
-    return LANGUAGES.get(Path(path).suffix)
+@dataclass(frozen=True, slots=True)
+class Language:
+    """One language of models.
 
-
-@functools.cache
-def metamodel(language: Language) -> Any:
-    """Return the textX metamodel of a language, as textX and tools built on it use it.
-
-    Where a model names an element of another file, it holds a
-    :class:`~deros.metamodels.scoping.Reference`.
+    Attributes:
+        name: its name in textX, which generators refer to.
+        suffix: the ending of its files' names, ``.rnd``.
+        kind: the word for ``deros new``.
+        title: what its files are, in the plural.
+        description: one line for ``textx list-languages``.
+        grammar: the textX grammar, a file of this folder or an absolute path.
+        loader: entry point of the converter: it takes a :class:`~deros.metamodels.load.Loading` and
+            returns the typed model.
+        checks: entry point of the checks: they take a model and a
+            :class:`~deros.validators.context.CheckContext` and yield diagnostics.
+        scaffold: entry point of the templates for ``deros new``, by file name, main file first.
     """
-    result = metamodel_from_file(
-        str(Path(__file__).with_name(f"{language}.tx")), auto_init_attributes=False, autokwd=True
-    )
-    result.register_scope_providers(dict(SCOPE_PROVIDERS))
-    return result
+
+    name: str
+    suffix: str
+    kind: str
+    title: str
+    description: str
+    grammar: str
+    loader: str
+    checks: str
+    scaffold: str
+
+    @property
+    def pattern(self) -> str:
+        """The glob that its files match, ``*.rnd``."""
+        return f"*{self.suffix}"
+
+    @property
+    def grammar_file(self) -> Path:
+        """The path of the grammar."""
+        return Path(__file__).parent / self.grammar
 
 
-@functools.cache
-def quick_metamodel(language: Language) -> Any:
-    """Return the metamodel that the loader uses: it parses prepared text, without comments, fast.
+ROSNODE = Language(
+    name="rosnode",
+    suffix=".rnd",
+    kind="node",
+    title="node descriptions",
+    description="ROS 2 node descriptions: parameters and ports of a node",
+    grammar="rosnode.tx",
+    loader="deros.metamodels.convert_node:load_node_type",
+    checks="deros.validators.node:check",
+    scaffold="deros.cli.scaffolds:NODE",
+)
+ROSSYSTEM = Language(
+    name="rossystem",
+    suffix=".system",
+    kind="system",
+    title="system descriptions",
+    description="ROS 2 systems: nodes, topics and their wiring",
+    grammar="rossystem.tx",
+    loader="deros.metamodels.convert_system:load_system",
+    checks="deros.validators.system:check",
+    scaffold="deros.cli.scaffolds:SYSTEM",
+)
+DEROS = Language(
+    name="deros",
+    suffix=".deros",
+    kind="rules",
+    title="safety rules",
+    description="DeRoS safety rules: what must not happen, and the reaction if it does",
+    grammar="deros.tx",
+    loader="deros.metamodels.convert_rules:load_rules",
+    checks="deros.validators.rules:check",
+    scaffold="deros.cli.scaffolds:RULES",
+)
 
-    The values in its models are :class:`~deros.metamodels.matching.Token` objects, which know their
-    places; textX itself keeps the places of objects only.
-    """
-    result = metamodel.__wrapped__(language)
-    result._parser_blueprint.comments_model = None
-    make_quick(result)
-    return result
+LANGUAGES: tuple[Language, ...] = (ROSNODE, ROSSYSTEM, DEROS)
+"""Every language, in the order in which help texts list them."""
+
+
+def language_of(path: str | os.PathLike[str]) -> Language | None:
+    """Return the language of a file by the suffix of its name, or ``None``."""
+    suffix = Path(path).suffix
+    return next((each for each in LANGUAGES if each.suffix == suffix), None)
+
+
+def language_named(name: str) -> Language | None:
+    """Return the language with that name in textX, or ``None``."""
+    return next((each for each in LANGUAGES if each.name == name), None)
+
+
+def suffixes() -> tuple[str, ...]:
+    """Return the suffixes of all languages."""
+    return tuple(each.suffix for each in LANGUAGES)
+
+
+def listed() -> str:
+    """Return what models there are, as help texts list it: ``node descriptions (*.rnd), …``."""
+    *most, last = (f"{each.title} ({each.pattern})" for each in LANGUAGES)
+    return f"{', '.join(most)} and {last}"
+
+
+def entry_point(reference: str) -> Any:
+    """Import what an entry point names, ``module:attribute``."""
+    module, _, attribute = reference.partition(":")
+    return getattr(import_module(module), attribute)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,16 +13,14 @@ from typing import Any
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
-from deros.metamodels.convert_node import NodeConverter
-from deros.metamodels.convert_rules import RulesConverter
-from deros.metamodels.convert_system import SystemConverter
 from deros.metamodels.imports import find_files, listed_folders, shown_path
-from deros.metamodels.languages import LANGUAGES, Language, language_of, quick_metamodel
+from deros.metamodels.languages import Language, entry_point, language_of, suffixes
 from deros.metamodels.matching import DoesNotParse, Token
 from deros.metamodels.node import NodeType
+from deros.metamodels.parsers import fast_metamodel
 from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, too_deep
 from deros.metamodels.rules import Rules
-from deros.metamodels.scoping import FileIndex, attach_index
+from deros.metamodels.scoping import FileIndex
 from deros.metamodels.system import Import, RulesReference, SafetyInstance, System
 
 _FRAMES_TO_PARSE = 20_000
@@ -34,10 +32,11 @@ class LoadedFile:
 
     Attributes:
         path: as the user named it, or as the import that led to it resolves.
-        language: ``None`` when the suffix belongs to none of the three.
+        language: ``None`` when the suffix belongs to no language.
         source: ``None`` when the file could not be read.
-        model: what parses of it; ``None`` when its head does not, or nothing could be read.
-        diagnostics: what is wrong with reading, syntax and references of this file alone.
+        model: the part of it that parses; ``None`` when its head does not parse or the file could
+            not be read.
+        diagnostics: the faults in encoding, syntax and references of this file alone.
     """
 
     path: str
@@ -49,7 +48,7 @@ class LoadedFile:
 
 @dataclass(frozen=True, slots=True)
 class _Open:
-    """A file that is being loaded, and the import in it that is being followed."""
+    """A file that is being loaded, and the import statement that is being followed."""
 
     key: str
     path: str
@@ -133,14 +132,14 @@ class Repository:
         language = language_of(source.path)
         if language is None:
             message = (
-                f"'{source.path}' is no model: the name ends in none of {', '.join(LANGUAGES)}"
+                f"'{source.path}' is not a model: its name ends in none of {', '.join(suffixes())}"
             )
             found = report(codes.UNKNOWN_LANGUAGE, message, Span(source, 0, 0))
             return LoadedFile(source.path, None, source, None, (found,))
-        loading = _Loading(self, key, source)
+        loading = Loading(self, key, source, language)
         try:
             with _room_to_parse():
-                model = _LOADERS[language](loading)
+                model = entry_point(language.loader)(loading)
         except Unreadable as unreadable:
             return LoadedFile(source.path, language, source, None, (unreadable.diagnostic,))
         except _NoModel:
@@ -148,11 +147,11 @@ class Repository:
         return LoadedFile(source.path, language, source, model, tuple(loading.diagnostics))
 
     def find(
-        self, importer: str, pattern: str, span: Span, suffixes: tuple[str, ...]
+        self, importer: str, pattern: str, span: Span, languages: Sequence[Language]
     ) -> tuple[str, ...] | Diagnostic:
         """Find the files that an import means; the folders of a glob join :attr:`folders`."""
         self._folders.update(dict.fromkeys(listed_folders(importer, pattern)))
-        return find_files(importer, pattern, span, suffixes)
+        return find_files(importer, pattern, span, tuple(each.suffix for each in languages))
 
     def follow(self, importer: _Open, path: str) -> LoadedFile | Diagnostic:
         """Load the file ``path`` for an import; a cycle of imports is a diagnostic."""
@@ -170,105 +169,69 @@ class Repository:
             self._open.pop()
 
 
-class _Loading:
-    """The loading of one file's text: parsing, following its imports, converting."""
+class Loading:
+    """The loading of one file's text: what the converter of its language works with.
 
-    def __init__(self, repository: Repository, key: str, source: SourceFile) -> None:
+    Attributes:
+        source: the file.
+        diagnostics: the findings so far; the converter adds its own.
+    """
+
+    def __init__(
+        self, repository: Repository, key: str, source: SourceFile, language: Language
+    ) -> None:
         self._repository = repository
         self._key = key
-        self._source = source
+        self._language = language
+        self.source = source
         self.diagnostics: list[Diagnostic] = []
 
-    def node_type(self) -> NodeType:
-        """Load a node description."""
-        converter = NodeConverter(self._source)
-        result = converter.node_type(self._parse("rosnode"))
-        self.diagnostics += converter.diagnostics
-        return result
+    def parse(self, before_references: Callable[[Any], None] | None = None) -> Any:
+        """Return the textX model of the text, leaving out statements with syntax errors if need be.
 
-    def system(self) -> System:
-        """Load a system description."""
-        index = FileIndex()
-        imports: list[Import] = []
+        Args:
+            before_references: called with the model before its references are resolved.
 
-        def follow_imports(model: Any) -> None:
-            statements = [
-                each
-                for part in model.parts
-                if type(part).__name__ == "Imports"
-                for each in part.imports
-            ]
-            imports.extend(self._import(each, index, (".rnd", ".system")) for each in statements)
-            index.complete &= not self._source.mentions_lost("import")
-            attach_index(model, index)
+        Raises:
+            _NoModel: not even the head of the file parses.
+        """
+        text = prepare(self.source)
+        try:
+            return _model(self._language, text, before_references)
+        except DoesNotParse:
+            pass
+        from deros.metamodels.recovery import recover
 
-        model = self._parse("rossystem", follow_imports)
-        converter = SystemConverter(self._source, index)
-        result = converter.system(model, imports)
-        self.diagnostics += converter.diagnostics
-        for statement in converter.safety:
-            self._refer(statement)
-        return result
+        recovered = recover(self.source, text, self._language)
+        self.diagnostics += recovered.diagnostics
+        if recovered.text is None:
+            raise _NoModel
+        return _model(self._language, recovered.text, before_references)
 
-    def _refer(self, statement: SafetyInstance) -> None:
+    def refer(self, statement: SafetyInstance, languages: Sequence[Language]) -> None:
         """Find the rules that a ``safety`` statement names; they are loaded later."""
         span = statement.path_span
-        found = self._repository.find(self._source.path, statement.path, span, (".deros",))
+        found = self._repository.find(self.source.path, statement.path, span, languages)
         if isinstance(found, tuple) and len(found) > 1:
-            message = f"'{statement.path}' means {len(found)} files"
-            hint = "name the rules of one safety node"
+            message = f"'{statement.path}' matches {len(found)} files"
+            hint = "name the one file with the rules of the safety node"
             found = report(codes.UNKNOWN_IMPORT, message, span, hint)
         if isinstance(found, Diagnostic):
             self.diagnostics.append(found)
         else:
             self._repository.refer(statement.reference, found[0])
 
-    def rules(self) -> Rules:
-        """Load a DeRoS program."""
-        indexes: dict[int, FileIndex] = {}
-
-        def follow_uses(model: Any) -> None:
-            for statement in model.statements:
-                if type(statement).__name__ == "Use":
-                    index = indexes[statement._tx_position] = FileIndex()
-                    self._import(statement, index, (".system",))
-
-        model = self._parse("deros", follow_uses)
-        converter = RulesConverter(self._source, indexes)
-        result = converter.rules(model)
-        self.diagnostics += converter.diagnostics
-        return result
-
-    def _parse(self, language: Language, before_references: Any = None) -> Any:
-        """Parse the text, if need be without the statements that have syntax errors.
-
-        Raises:
-            _NoModel: not even the head of the file parses.
-        """
-        text = prepare(self._source)
-        try:
-            return _model(language, text, before_references)
-        except DoesNotParse:
-            pass
-        from deros.metamodels.recovery import recover
-
-        recovered = recover(self._source, text, language)
-        self.diagnostics += recovered.diagnostics
-        if recovered.text is None:
-            raise _NoModel
-        return _model(language, recovered.text, before_references)
-
-    def _import(self, statement: Any, index: FileIndex, suffixes: tuple[str, ...]) -> Import:
-        """Follow one import or use; what the file defines goes into ``index``."""
+    def follow(self, statement: Any, index: FileIndex, languages: Sequence[Language]) -> Import:
+        """Load the files of one ``import`` or ``use`` statement and index what they define."""
         token: Token = statement.path
-        span = Span(self._source, token.start, token.end)
+        span = Span(self.source, token.start, token.end)
         pattern = str(token[1:-1])
-        found = self._repository.find(self._source.path, pattern, span, suffixes)
+        found = self._repository.find(self.source.path, pattern, span, languages)
         if isinstance(found, Diagnostic):
             self.diagnostics.append(found)
             index.complete = False
             found = ()
-        importer = _Open(self._key, self._source.path, span)
+        importer = _Open(self._key, self.source.path, span)
         for path in found:
             loaded = self._repository.follow(importer, path)
             if isinstance(loaded, Diagnostic):
@@ -280,7 +243,7 @@ class _Loading:
                 index.add_system(loaded.model)
             else:
                 index.complete = False
-        whole = Span(self._source, statement._tx_position, statement._tx_position_end)
+        whole = Span(self.source, statement._tx_position, statement._tx_position_end)
         return Import(pattern, tuple(found), whole)
 
 
@@ -288,17 +251,10 @@ class _NoModel(Exception):  # noqa: N818 - the findings say what is wrong
     """A file has no head that could be read."""
 
 
-def _model(language: Language, text: str, before_references: Any) -> Any:
-    return quick_metamodel(language).model_from_str(
+def _model(language: Language, text: str, before_references: Callable[[Any], None] | None) -> Any:
+    return fast_metamodel(language).model_from_str(
         text, pre_ref_resolution_callback=before_references
     )
-
-
-_LOADERS: dict[Language, Any] = {
-    "rosnode": _Loading.node_type,
-    "rossystem": _Loading.system,
-    "deros": _Loading.rules,
-}
 
 
 def _identity(path: str) -> str:

@@ -83,12 +83,12 @@ class _Branch(NonTerminal):  # type: ignore[misc]
         self.position = nodes[0].position
 
 
-def make_quick(metamodel: Any) -> None:
-    """Let the parsers of a textX metamodel run by matchers; they raise :class:`DoesNotParse`."""
+def install_fast_parser(metamodel: Any) -> None:
+    """Make the parsers of a textX metamodel use matchers; they raise :class:`DoesNotParse`."""
     blueprint = metamodel._parser_blueprint
     match = _Compiler().matcher(blueprint.parser_model)
 
-    class QuickParser(type(blueprint)):  # type: ignore[misc]
+    class FastParser(type(blueprint)):  # type: ignore[misc]
         def _parse(self) -> Any:
             text = self.input
             found: list[Any] = []
@@ -98,7 +98,7 @@ def make_quick(metamodel: Any) -> None:
                 return found[0]
             raise DoesNotParse
 
-    blueprint.__class__ = QuickParser
+    blueprint.__class__ = FastParser
 
 
 class _Compiler:

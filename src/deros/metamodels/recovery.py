@@ -18,8 +18,9 @@ from arpeggio import ParsingExpression, RegExMatch
 from deros import codes
 from deros.diagnostics import ANY_NAME, Diagnostic, Fix, SourceFile, Span, report
 from deros.metamodels.grammar import is_name, literal_of
-from deros.metamodels.languages import Language, quick_metamodel
+from deros.metamodels.languages import Language
 from deros.metamodels.mending import Fault, Mend, is_line_start, mends
+from deros.metamodels.parsers import fast_metamodel
 from deros.metamodels.recognising import (
     Place,
     Recogniser,
@@ -67,7 +68,7 @@ def recover(source: SourceFile, prepared: str, language: Language) -> Recovered:
 @functools.cache
 def recogniser(language: Language) -> Recogniser:
     """Return the recogniser of a language, made at its first syntax error."""
-    return Recogniser(quick_metamodel(language)._parser_blueprint.parser_model)
+    return Recogniser(fast_metamodel(language)._parser_blueprint.parser_model)
 
 
 @dataclass(slots=True)
@@ -84,7 +85,7 @@ class _Stretch:
 class _Recovery:
     def __init__(self, source: SourceFile, prepared: str, language: Language) -> None:
         self._source = source
-        self._language: Language = language
+        self._language = language
         self._text = RepairedText.of(prepared)
         self._recogniser = recogniser(language)
         self._recogniser.forget()

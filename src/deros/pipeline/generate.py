@@ -76,29 +76,22 @@ def generate(*requests: Request) -> Generated:
             one file differently.
         ValueError: if a generator cannot read an option; ``UnknownOption`` if none has such a one.
     """
-    from deros.diagnostics import in_file_order
-    from deros.generators.api.protocol import Context, GenerationError
+    from deros.generators.api.protocol import GenerationError
     from deros.generators.output.writer import join
-    from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.load import Repository
-    from deros.pipeline.project import interfaces_of, projects_of
-    from deros.validators.check import check as check_loaded
-    from deros.validators.check import check_file
+    from deros.metamodels.languages import ROSSYSTEM
+    from deros.pipeline.workspace import load
 
-    projects = projects_of(each.file for each in requests)
-    folders = interfaces_of(requests[0].interfaces, projects)
-    context = Context(InterfaceStore(folders), Repository(), check_file)
-    loaded = [context.repository.load(each.file) for each in requests]
-    allowances = [each for project in projects for each in project.allowances]
-    findings = check_loaded(loaded, context.repository, context.store, allowances)
-    findings = in_file_order([*findings, *(d for each in projects for d in each.diagnostics)])
-    # What is made of a system itself needs its gates: then nothing is yet to be mended.
-    order = sorted((each.file for each in requests), key=lambda file: not file.endswith(".system"))
-    code = exit_code(blocking_diagnostics(findings, order[0]))
+    workspace = load([each.file for each in requests], requests[0].interfaces)
+    loaded = workspace.files
+    findings = workspace.check().findings
+    # The output of a system needs its gates, so then errors that generating would correct block.
+    systems = [each.path for each in loaded if each.language is ROSSYSTEM]
+    code = exit_code(blocking_diagnostics(findings, (systems or [loaded[0].path])[0]))
     if code or any(each.language is None for each in loaded):
         raise Refused(findings, code or FINDINGS)
     generators = [_generator(*pair, findings) for pair in zip(requests, loaded, strict=True)]
     options = _options(requests, generators)
+    context = workspace.context()
     try:
         outputs = [
             (file.path, generator(file.model, context, given))
@@ -106,7 +99,7 @@ def generate(*requests: Request) -> Generated:
         ]
     except GenerationError as error:
         raise Refused([*findings, *error.diagnostics], FINDINGS) from error
-    rests_on = tuple(each.path for each in projects if each.path is not None)
+    rests_on = tuple(each.path for each in workspace.projects if each.path is not None)
     files = join(outputs)
     return Generated(files, context, tuple(generators), tuple(findings), tuple(outputs), rests_on)
 
@@ -117,7 +110,7 @@ def _generator(request: Request, loaded: LoadedFile, findings: Sequence[Diagnost
     if request.generator is not None:
         return request.generator
     assert loaded.language is not None
-    generator = discover().find(loaded.language, request.target)
+    generator = discover().find(loaded.language.name, request.target)
     if generator is None:
         unknown = _unknown_target(discover(), loaded, request.target)
         raise Refused([*findings, unknown], UNUSABLE)
@@ -159,12 +152,12 @@ def _unknown_target(registry: Registry, loaded: LoadedFile, target: str) -> Diag
     from deros.validators.hints import did_you_mean
 
     assert loaded.language is not None
-    targets = registry.targets(loaded.language)
+    targets = registry.targets(loaded.language.name)
     hint = did_you_mean(target, targets, f"it has {', '.join(targets)}" if targets else "")
     for broken in registry.broken:
         hint += f"; {broken.entry_point} of {broken.distribution} is unusable: {broken.reason}"
     source = loaded.source or SourceFile(loaded.path, "")
-    message = f"no generator makes '{target}' from {loaded.language}"
+    message = f"no generator makes '{target}' from {loaded.language.name}"
     return finding(codes.UNKNOWN_TARGET, message, Span(source, 0, 0), hint.removeprefix("; "))
 
 

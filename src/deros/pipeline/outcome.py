@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Severity
+from deros.metamodels.languages import DEROS, language_of
 
 CLEAN = 0
 FINDINGS = 1
@@ -39,5 +40,5 @@ def blocking_diagnostics(findings: Sequence[Diagnostic], path: str) -> list[Diag
 
     A system is to contain the gates that its rules declare, and those are generated from the rules.
     """
-    mended = codes.MENDED_AFTER_GENERATION if path.endswith(".deros") else frozenset()
+    mended = codes.MENDED_AFTER_GENERATION if language_of(path) is DEROS else frozenset()
     return [each for each in findings if each.code not in mended]

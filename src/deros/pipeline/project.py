@@ -16,19 +16,16 @@ from typing import TYPE_CHECKING, Any
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, SourceFile, Span, report
 from deros.interfaces.files import read_regular
+from deros.metamodels.languages import suffixes
 from deros.validators.hints import did_you_mean
 
 if TYPE_CHECKING:
-    from deros.metamodels.load import LoadedFile
     from deros.validators.allowances import Allowed, ProjectAllowance
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
-
-LANGUAGES = ("rnd", "system", "deros")
-"""The suffixes of models, as ``targets`` names them."""
 
 _LARGEST = 4 << 20
 _TEXTS = ("copyright", "licence", "maintainer")
@@ -81,20 +78,6 @@ def projects_of(models: Iterable[str | Path]) -> list[Project]:
 def interfaces_of(given: Sequence[Path], projects: Iterable[Project]) -> tuple[Path, ...]:
     """Return the folders of the command line, which win, and those of the projects."""
     return (*given, *(folder for project in projects for folder in project.interfaces))
-
-
-def check_one(file: str, interfaces: Sequence[Path]) -> tuple[LoadedFile, list[Diagnostic]]:
-    """Load and check one model and all that it imports, as its project says."""
-    from deros.diagnostics import in_file_order
-    from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.load import Repository
-    from deros.validators.check import check
-
-    project = project_of(file)
-    store, repository = InterfaceStore(interfaces_of(interfaces, [project])), Repository()
-    loaded = repository.load(file)
-    findings = check([loaded], repository, store, project.allowances)
-    return loaded, in_file_order([*findings, *project.diagnostics])
 
 
 def unneeded(
@@ -217,9 +200,10 @@ class _Reader:
         if not isinstance(value, dict):
             self._wrong("targets", "is not a table")
             return {}
-        self._unknown(value, LANGUAGES, "targets.")
+        languages = [suffix.removeprefix(".") for suffix in suffixes()]
+        self._unknown(value, languages, "targets.")
         targets = {}
-        for language in LANGUAGES:
+        for language in languages:
             named = value.get(language, [])
             if isinstance(named, str):
                 named = [named]

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from deros.diagnostics import Code, Diagnostic, Span, in_file_order
 from deros.interfaces.store import InterfaceStore
+from deros.metamodels.languages import entry_point
 from deros.metamodels.load import LoadedFile, Repository
-from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
+from deros.monitor.build_cache import BuildCache
 from deros.validators.allowances import Allowed, ProjectAllowance, sort_out
 from deros.validators.consequences import without_consequences
+from deros.validators.context import CheckContext
 from deros.validators.safety_rules import as_generated, contained_systems, neighbours
 
 
@@ -29,9 +30,10 @@ def check(
     repository: Repository,
     store: InterfaceStore,
     project: Sequence[ProjectAllowance] = (),
+    builds: BuildCache | None = None,
 ) -> list[Diagnostic]:
     """Return the findings of :func:`check_all` that are not allowed."""
-    return check_all(named, repository, store, project).findings
+    return check_all(named, repository, store, project, builds).findings
 
 
 def check_all(
@@ -39,6 +41,7 @@ def check_all(
     repository: Repository,
     store: InterfaceStore,
     project: Sequence[ProjectAllowance] = (),
+    builds: BuildCache | None = None,
 ) -> Checked:
     """Return the findings of the files in ``named`` and of their imports, in file order.
 
@@ -50,7 +53,9 @@ def check_all(
         repository: where they were loaded, with all that they import.
         store: the definitions of messages.
         project: what the project's file allows.
+        builds: the rules built so far in this run; those of the checks are added.
     """
+    builds = builds or BuildCache(store)
     loaded = list({id(each): each for each in (*named, *repository.files)}.values())
     named_files = {id(each) for each in named}
     loaded += neighbours(loaded, repository)
@@ -58,11 +63,13 @@ def check_all(
     findings: list[Diagnostic] = []
     for each in loaded:
         findings.extend(each.diagnostics)
-        watchers = _Watchers()
+        rules: tuple[Rules, ...] = ()
+        rules_of_parts: tuple[Rules, ...] = ()
         if isinstance(each.model, System):
-            watchers = _watchers(each.model, watching)
-        whole = id(each) in named_files or bool(watchers.whole)
-        findings.extend(_check_model(each.model, whole, watchers, store))
+            rules, rules_of_parts = _rules_of(each.model, watching)
+        is_whole = id(each) in named_files or bool(rules)
+        context = CheckContext(store, builds, is_whole, rules, rules_of_parts)
+        findings.extend(_check_model(each, context))
     found = in_file_order(_said_once(as_generated(findings, watching)))
     sorted_out = sort_out(found, loaded, named, project)
     told = without_consequences(sorted_out.findings, findings, loaded)
@@ -82,27 +89,22 @@ def _said_once(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 def check_file(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
     """Return the findings of one file by itself, in file order, without those of its imports."""
-    found = _check_model(loaded.model, False, _Watchers(), store)
+    found = _check_model(loaded, CheckContext(store, BuildCache(store)))
     findings = in_file_order([*loaded.diagnostics, *found])
     sorted_out = sort_out(findings, [loaded], ())
     return list(without_consequences(sorted_out.findings, findings, [loaded]))
 
 
-@dataclass(frozen=True, slots=True)
-class _Watchers:
-    """The rules that use a system, and those that use a system which it contains."""
-
-    whole: tuple[Rules, ...] = ()
-    parts: tuple[Rules, ...] = ()
-
-
-def _watchers(system: System, watching: Mapping[int, list[Rules]]) -> _Watchers:
+def _rules_of(
+    system: System, watching: Mapping[int, list[Rules]]
+) -> tuple[tuple[Rules, ...], tuple[Rules, ...]]:
+    """Return the rules that use a system, and those that use a system that it contains."""
     whole = watching.get(id(system), [])
     parts: dict[int, Rules] = {}
     if watching:
         for part in contained_systems(system):
             parts |= {id(rules): rules for rules in watching.get(id(part), [])}
-    return _Watchers(tuple(whole), tuple(r for r in parts.values() if r not in whole))
+    return tuple(whole), tuple(r for r in parts.values() if r not in whole)
 
 
 def _watching_rules(loaded: Iterable[LoadedFile]) -> dict[int, list[Rules]]:
@@ -116,25 +118,7 @@ def _watching_rules(loaded: Iterable[LoadedFile]) -> dict[int, list[Rules]]:
     return watching
 
 
-def _check_model(
-    model: NodeType | System | Rules | None,
-    whole: bool,
-    watchers: _Watchers,
-    store: InterfaceStore,
-) -> Iterator[Diagnostic]:
-    """Run the family that the model belongs to; each is imported only when a model asks for it."""
-    if isinstance(model, NodeType):
-        from deros.validators.node import check_node
-
-        yield from check_node(model, store)
-    elif isinstance(model, System):
-        from deros.validators.system import check_system, check_written
-
-        if whole:
-            yield from check_system(model, store, watchers.whole, watchers.parts)
-        else:
-            yield from check_written(model, store)
-    elif isinstance(model, Rules):
-        from deros.validators.rules import check_rules
-
-        yield from check_rules(model, store)
+def _check_model(loaded: LoadedFile, context: CheckContext) -> Iterator[Diagnostic]:
+    """Run the checks of the file's language, which are imported at the first use."""
+    if loaded.model is not None and loaded.language is not None:
+        yield from entry_point(loaded.language.checks)(loaded.model, context)

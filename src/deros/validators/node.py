@@ -20,6 +20,7 @@ from deros.interfaces.names import (
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.units import UnitRegistry
 from deros.metamodels.node import FieldUnit, NodeType, Parameter, ParameterType, Port, PortKind
+from deros.validators.context import CheckContext
 from deros.validators.files import check_defaults
 from deros.validators.hints import did_you_mean
 from deros.validators.interfaces import type_finding
@@ -33,8 +34,9 @@ from deros.validators.values import (
 )
 
 
-def check_node(node: NodeType, store: InterfaceStore) -> Iterator[Diagnostic]:
+def check(node: NodeType, context: CheckContext) -> Iterator[Diagnostic]:
     """Yield all findings of one node description."""
+    store = context.store
     units = UnitRegistry()
     yield from _refused(check_node_name(node.name), node.name, node.name_span)
     yield from _refused(check_package_name(node.package), node.package, node.package_span)

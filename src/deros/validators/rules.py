@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.diagnostics import Diagnostic
-from deros.interfaces.store import InterfaceStore
 from deros.metamodels.rules import Rules
-from deros.monitor.build import build
+from deros.monitor.build import BuildResult
+from deros.validators.context import CheckContext
 from deros.validators.rules_gates import check_gates
 from deros.validators.rules_heartbeat import check_input_timeouts
 from deros.validators.rules_ranges import check_ranges
@@ -18,9 +18,13 @@ from deros.validators.rules_usage import check_usage
 from deros.validators.safety_wiring import check_users
 
 
-def check_rules(rules: Rules, store: InterfaceStore) -> Iterator[Diagnostic]:
-    """Yield every finding about the rules; the system that they use is checked for itself."""
-    result = build(rules, store)
+def check(rules: Rules, context: CheckContext) -> Iterator[Diagnostic]:
+    """Yield every finding about the rules; the system that they use is checked separately."""
+    yield from check_rules(rules, context.builds.of(rules))
+
+
+def check_rules(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
+    """Yield every finding about the rules, given the result of building them."""
     yield from result.diagnostics
     yield from check_usage(rules)
     yield from check_timeouts(rules)

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from deros.diagnostics import Diagnostic
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import LoadedFile, Repository
+    from deros.metamodels.rules import Rules
+    from deros.monitor.build import BuildResult
+    from deros.monitor.build_cache import BuildCache
 
 
 class Owner(enum.Enum):
@@ -51,18 +54,28 @@ def _as_loaded(loaded: LoadedFile, store: InterfaceStore) -> Sequence[Diagnostic
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """What a generator may look at besides its model.
+    """What a generator may use besides its model.
 
     Attributes:
         store: the message, service and action definitions.
         repository: the files loaded in this run, and the way to load more.
-        check: what is wrong with a file that a generator loads besides its model. By default only
-            what the loader finds; the checks, which the front end hands in, know more.
+        check: returns the findings of a file that a generator loads besides its model. By default
+            these are the loader's; the pipeline passes in all checks of one file.
+        builds: the rules that the checks have built in this run, if there were checks.
     """
 
     store: InterfaceStore
     repository: Repository
     check: Callable[[LoadedFile, InterfaceStore], Sequence[Diagnostic]] = _as_loaded
+    builds: BuildCache | None = None
+
+    def build(self, rules: Rules) -> BuildResult:
+        """Return rules built for a monitor, from this run's checks where they have built them."""
+        if self.builds is not None:
+            return self.builds.of(rules)
+        from deros.monitor.build import build
+
+        return build(rules, self.store)
 
 
 Files = Mapping[str, File]

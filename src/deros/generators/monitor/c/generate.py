@@ -5,7 +5,6 @@ from __future__ import annotations
 from deros.generators.api.protocol import Context, File, Files, GenerationError
 from deros.generators.monitor.c.render import render_monitor
 from deros.metamodels.rules import Rules
-from deros.monitor.build import build
 
 
 def generate(model: Rules, context: Context) -> Files:
@@ -14,7 +13,7 @@ def generate(model: Rules, context: Context) -> Files:
     Raises:
         GenerationError: if the rules have an error, or need more than a monitor of fixed size.
     """
-    built = build(model, context.store)
+    built = context.build(model)
     if built.program is None:
         raise GenerationError(built.diagnostics)
     return {name: File(text) for name, text in render_monitor(built.program).items()}

@@ -21,7 +21,6 @@ from deros.generators.safety_node.interface import package_options, safety_node,
 from deros.generators.text.notice import licensed_cpp, notice
 from deros.metamodels.rules import Rules
 from deros.metamodels.safety_nodes import cpp_twin
-from deros.monitor.build import build
 
 
 def generate(model: Rules, context: Context, options: Options) -> Files:
@@ -34,7 +33,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
         GenerationError: if the rules have an error, cannot be told in C, or names collide.
         ValueError: if an option cannot be read.
     """
-    built = build(model, context.store)
+    built = context.build(model)
     if built.program is None:
         raise GenerationError(built.diagnostics)
     options = package_options(model, options, "cpp")

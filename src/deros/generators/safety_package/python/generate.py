@@ -13,7 +13,6 @@ from deros.generators.safety_node.interface import package_options, safety_node,
 from deros.generators.safety_node.python.interface import node_files, safety_view
 from deros.generators.text.notice import licensed_python, notice
 from deros.metamodels.rules import Rules
-from deros.monitor.build import build
 
 
 def generate(model: Rules, context: Context, options: Options) -> Files:
@@ -27,7 +26,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
         GenerationError: if the rules have an error, or names collide.
         ValueError: if an option cannot be read.
     """
-    built = build(model, context.store)
+    built = context.build(model)
     if built.program is None:
         raise GenerationError(built.diagnostics)
     options = package_options(model, options, "python")

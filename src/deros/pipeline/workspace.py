@@ -1,0 +1,87 @@
+"""The models of one run: loaded, checked and built once, as their project files say."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from deros.pipeline.project import Project, interfaces_of, projects_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from deros.diagnostics import Diagnostic
+    from deros.generators.api.protocol import Context
+    from deros.interfaces.store import InterfaceStore
+    from deros.metamodels.load import LoadedFile, Repository
+    from deros.monitor.build_cache import BuildCache
+    from deros.validators.check import Checked
+
+
+@dataclass(frozen=True, slots=True)
+class Workspace:
+    """The models of one run and everything that is shared while they are processed.
+
+    Attributes:
+        files: the models that were asked for, in that order.
+        projects: the projects that they belong to.
+        repository: these models and everything that they import.
+        store: the message definitions.
+        builds: the rules built so far.
+    """
+
+    files: tuple[LoadedFile, ...]
+    projects: tuple[Project, ...]
+    repository: Repository
+    store: InterfaceStore
+    builds: BuildCache
+
+    def check(self, files: Sequence[LoadedFile] | None = None) -> Checked:
+        """Check models with everything that they import, and the project files.
+
+        Args:
+            files: the models that count as named by the user; all of them by default.
+
+        Returns:
+            The findings in file order, and those that a model or a project allows.
+        """
+        from deros.diagnostics import in_file_order
+        from deros.validators.check import Checked, check_all
+
+        allowances = [each for project in self.projects for each in project.allowances]
+        named = self.files if files is None else files
+        checked = check_all(named, self.repository, self.store, allowances, self.builds)
+        of_projects = [each for project in self.projects for each in project.diagnostics]
+        return Checked(in_file_order([*checked.findings, *of_projects]), checked.allowed)
+
+    def context(self) -> Context:
+        """Return what the generators of this run share with its checks."""
+        from deros.generators.api.protocol import Context
+        from deros.validators.check import check_file
+
+        return Context(self.store, self.repository, check_file, self.builds)
+
+
+def load(paths: Sequence[str], interfaces: Sequence[Path] = ()) -> Workspace:
+    """Load models and everything that they import.
+
+    Args:
+        paths: the files, as diagnostics are to show them.
+        interfaces: folders with message definitions, searched before those of the projects.
+    """
+    from deros.interfaces.store import InterfaceStore
+    from deros.metamodels.load import Repository
+    from deros.monitor.build_cache import BuildCache
+
+    projects = tuple(projects_of(paths))
+    store = InterfaceStore(interfaces_of(interfaces, projects))
+    repository = Repository()
+    files = tuple(repository.load(each) for each in paths)
+    return Workspace(files, projects, repository, store, BuildCache(store))
+
+
+def check_one(path: str, interfaces: Sequence[Path]) -> tuple[LoadedFile, list[Diagnostic]]:
+    """Load and check one model; return it with the findings."""
+    workspace = load([path], interfaces)
+    return workspace.files[0], workspace.check().findings

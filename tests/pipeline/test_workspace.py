@@ -1,0 +1,74 @@
+"""One run loads, checks and builds its models once, whichever command it is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.rules import Rules
+from deros.monitor import build as builder
+from deros.monitor.build import BuildResult
+from deros.pipeline.workspace import load
+from tests.support.cli import deros
+
+
+@pytest.fixture
+def built(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The names of the rules that have been built so far, one entry for each time."""
+    names: list[str] = []
+    genuine = builder.build
+
+    def counting(rules: Rules, store: InterfaceStore) -> BuildResult:
+        names.append(rules.name)
+        return genuine(rules, store)
+
+    monkeypatch.setattr(builder, "build", counting)
+    return names
+
+
+@pytest.fixture
+def models(tmp_path: Path) -> Path:
+    """A folder with rules, their system and its node."""
+    assert deros("new", "rules", "courier", "-o", tmp_path / "models").code == 0
+    return tmp_path / "models"
+
+
+@pytest.mark.parametrize("target", ["python", "cpp", "c"])
+def test_generating_builds_rules_once(
+    built: list[str], models: Path, tmp_path: Path, target: str
+) -> None:
+    """The generator gets the result that the checks have built."""
+    outcome = deros(
+        "generate", models / "courier.deros", "--target", target, "-o", tmp_path / "out"
+    )
+    assert outcome.code == 0, outcome.err
+    assert built == ["courier"]
+
+
+def test_checking_builds_rules_once(built: list[str], models: Path) -> None:
+    """Rules that are named, and that a system of the same folder names too, are built once."""
+    assert deros("check", models).code == 0
+    assert built == ["courier"]
+
+
+@pytest.mark.parametrize("monitor", ["reference", "python"])
+def test_simulating_builds_rules_once(
+    built: list[str], models: Path, tmp_path: Path, monitor: str
+) -> None:
+    """The program of the simulation is the only one that is built."""
+    trace = tmp_path / "trace.jsonl"
+    trace.write_text('{"t": "1", "topic": "/resume", "data": {"data": true}}\n')
+    outcome = deros("simulate", models / "courier.deros", "--trace", trace, "--monitor", monitor)
+    assert outcome.code == 0, outcome.err
+    assert built == ["courier"]
+
+
+def test_workspace_shares_its_builds_with_generators(models: Path) -> None:
+    """The context of generators returns the very result of the checks."""
+    workspace = load([str(models / "courier.deros")])
+    assert workspace.check().findings == []
+    model = workspace.files[0].model
+    assert isinstance(model, Rules)
+    assert workspace.context().build(model) is workspace.builds.of(model)
