@@ -10,8 +10,8 @@ from types import SimpleNamespace
 from typing import cast
 
 import deros.generators.runtime.cpp as runtime
-from deros.generators.safety_node.cpp.explained import explained_rules
-from deros.generators.safety_node.cpp.origins import table
+from deros.generators.safety_node.cpp.rule_metadata import table
+from deros.generators.safety_node.cpp.rule_state import explained_rules
 from deros.generators.safety_node.cpp.whys import why_behaviour, why_rule, whys
 from deros.generators.text.cpp import call, expression
 from deros.generators.text.templates import environment
@@ -112,7 +112,7 @@ def _told(engine: Engine, unit: Unit) -> str:
 
 def _source(units: Sequence[Unit]) -> str:
     parts = [
-        '#include "deros_runtime/runtime/told.cpp"',
+        '#include "deros_runtime/runtime/report_types.cpp"',
         '#include "deros_runtime/runtime/text.cpp"',
         "#include <cmath>",
         "#include <limits>",
@@ -125,7 +125,7 @@ def _source(units: Sequence[Unit]) -> str:
 
 
 def _told_in_cpp(unit: Unit) -> str:
-    """Return what the node has in its ``_origins.cpp``, without the tables."""
+    """Return what the node has in its ``_rule_metadata.cpp``, without the tables."""
     layout, program = unit.view.layout, unit.program
     rules = zip(program.rules, explained_rules(program, layout), strict=True)
     view = SimpleNamespace(
@@ -135,7 +135,7 @@ def _told_in_cpp(unit: Unit) -> str:
         rules="",
         prefix=unit.prefix,
         macro=layout.macro,
-        origins=["0"],
+        rule_metadata=["0"],
         whys=list(whys(program, layout)),
         explained=[
             (state, layout.verdicts[rule.index], why_rule(layout, rule.index))
@@ -146,7 +146,7 @@ def _told_in_cpp(unit: Unit) -> str:
             for number, _ in enumerate(unit.view.behaviour_names)
         ],
     )
-    template = environment("deros.generators.safety_node.cpp").get_template("origins.cpp.j2")
+    template = environment("deros.generators.safety_node.cpp").get_template("rule_metadata.cpp.j2")
     text: str = template.render(
         safety=view, standard=[], call=call, table=table, expression=expression
     )

@@ -11,8 +11,8 @@ from tests.support.cpp import compile_cpp, message_flags
 
 HEADERS = ("descriptor", "refusal")
 PURE = (
-    *("agenda", "instance", "latches", "machine", "regular_file", "sha256", "start_order", "text"),
-    *("told", "watch", "worker"),
+    *("event_loop", "instance", "latches", "monitor_runner", "realtime", "regular_file"),
+    *("report_types", "sha256", "start_order", "text", "worker"),
 )
 """The runtime that needs nothing but the system."""
 WITH_MESSAGES = ("diagnostics", "events")
@@ -39,9 +39,9 @@ def compiled(source: Path, folder: Path, files: Files | None = None) -> Path:
     sources = [source, *runtime_in(folder, package)]
     for path, file in (files or {}).items():
         name = Path(path).name
-        if name.endswith(("_messages.hpp", "_origins.hpp", "_monitor.h")):
+        if name.endswith(("_messages.hpp", "_rule_metadata.hpp", "_monitor.h")):
             (folder / name).write_text(file.text, encoding="utf-8")
-        elif name.endswith(("_messages.cpp", "_origins.cpp", "_monitor.c")):
+        elif name.endswith(("_messages.cpp", "_rule_metadata.cpp", "_monitor.c")):
             sources.append(folder / name)
             sources[-1].write_text(file.text, encoding="utf-8")
     flags = ("-O1", "-pthread", f"-I{folder}", *message_flags())

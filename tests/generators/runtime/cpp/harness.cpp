@@ -106,10 +106,10 @@ std::string answer(const std::vector<std::string> & words)
   }
   try {
     file.save(names);
-    if (what == "doubt") {
-      file.doubt();
-    } else if (what == "spoil") {
-      file.spoil();
+    if (what == "mark_dirty") {
+      file.mark_dirty();
+    } else if (what == "truncate") {
+      file.truncate();
     }
   } catch (const std::system_error & error) {
     return error.what();

@@ -31,9 +31,9 @@ def latch_file(folder: Path) -> LatchFile:
     return LatchFile(folder / "deros" / "robot.latches", OWNER)
 
 
-def test_the_agenda(tmp_path: Path) -> None:
-    """What comes is done in order, alarms ring at their time, and nothing is lost."""
-    program = compiled(HERE / "agenda.cpp", tmp_path)
+def test_event_loop(tmp_path: Path) -> None:
+    """Sources are served in order, timers fire when they are due, and nothing is lost."""
+    program = compiled(HERE / "event_loop.cpp", tmp_path)
     done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout) == (0, "all is so\n")
 
@@ -146,8 +146,8 @@ def test_a_file_that_is_not_the_nodes_own_counts_as_active(
     assert fragment in answer
 
 
-@pytest.mark.parametrize("how", ["doubt", "spoil"])
-def test_a_doubted_file_counts_as_active_in_both(
+@pytest.mark.parametrize("how", ["mark_dirty", "truncate"])
+def test_dirty_or_truncated_file_counts_as_active_in_both_languages(
     harness: Harness, tmp_path: Path, how: str
 ) -> None:
     """Whichever node comes next starts with all actions active."""

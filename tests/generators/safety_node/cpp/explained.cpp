@@ -7,7 +7,7 @@
 
 #include "every_thing_safety_cpp/runtime/text.hpp"
 #include "every_thing_safety_node_messages.hpp"
-#include "every_thing_safety_node_origins.hpp"
+#include "every_thing_safety_node_rule_metadata.hpp"
 
 namespace told = every_thing_safety_cpp;
 
@@ -29,7 +29,7 @@ sensor_msgs::msg::JointState joints(double last, int count)
 
 void tell(const every_thing_monitor & monitor)
 {
-  const told::runtime::Explanation state = told::explained(monitor);
+  const told::runtime::MonitorSnapshot state = told::explained(monitor);
   for (const auto & rule : state.rules) {
     const std::string value =
       rule.value ? told::runtime::shown(*rule.value) : std::string("unknown");
@@ -44,7 +44,7 @@ void tell(const every_thing_monitor & monitor)
     std::cout << '\n';
   }
   for (const std::size_t behaviour : state.holding) {
-    std::cout << "holds\t" << told::origins().behaviours[behaviour].name << '\t' <<
+    std::cout << "holds\t" << told::rule_metadata().behaviours[behaviour].name << '\t' <<
       told::runtime::cause_of(behaviour, state) << '\n';
   }
   std::cout << "." << std::endl;

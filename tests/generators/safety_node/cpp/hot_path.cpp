@@ -8,10 +8,10 @@
 #include <new>
 #include <vector>
 
-#include "every_thing_safety_cpp/runtime/agenda.hpp"
-#include "every_thing_safety_cpp/runtime/watch.hpp"
+#include "every_thing_safety_cpp/runtime/event_loop.hpp"
+#include "every_thing_safety_cpp/runtime/monitor_runner.hpp"
 #include "every_thing_safety_node_messages.hpp"
-#include "every_thing_safety_node_origins.hpp"
+#include "every_thing_safety_node_rule_metadata.hpp"
 
 namespace runtime = every_thing_safety_cpp::runtime;
 
@@ -46,23 +46,23 @@ void operator delete(void * memory, std::size_t /*size*/) noexcept
 namespace
 {
 
-class Node : public runtime::Watched
+class Node : public runtime::MonitorHost
 {
 public:
   Node()
-  : watch_(agenda_, runtime::Clock(), *this),
-    active_(every_thing_safety_cpp::origins().actions.size()),
-    speeds_(agenda_.add_source([this] {take_speed();}, 10)),
-    repeats_(agenda_, runtime::Clock(), [this] {repeat();})
+  : runner_(event_loop_, runtime::Clock(), *this),
+    active_(every_thing_safety_cpp::rule_metadata().actions.size()),
+    speeds_(event_loop_.add_source([this] {take_speed();}, 10)),
+    repeats_(event_loop_, runtime::Clock(), [this] {repeat();})
   {
   }
 
   void run()
   {
-    watch_.start();
-    agenda_.notify(speeds_);
-    repeats_.ring_at(runtime::steady_now());
-    agenda_.run();
+    runner_.start();
+    event_loop_.notify(speeds_);
+    repeats_.schedule(runtime::steady_now());
+    event_loop_.run();
   }
 
   void begin(runtime::Time start) override
@@ -82,7 +82,7 @@ public:
 
   bool show(const runtime::Event & event) override
   {
-    active_[EVERY_THING_ACTION_STOP] = event.kind == runtime::Kind::Trigger;
+    active_[EVERY_THING_ACTION_STOP] = event.kind == runtime::EventKind::Trigger;
     every_thing_safety_cpp::show_stop(state_, active_);
     shown_ += state_.data ? 1 : 0;
     return event.site % 2 == 0;  // the others as if they were robot code
@@ -107,7 +107,7 @@ public:
 
   void take(const runtime::Event & event)
   {
-    watch_.take(event);
+    runner_.take(event);
   }
 
   std::size_t shown() const
@@ -126,17 +126,17 @@ private:
     // Of the time that is told the clock goes on by 60 ms a message, so that every 'for' passes.
     now_ += 60'000'000;
     speed_.data = taken_ % 8 < 4 ? 0.9 : 0.1;
-    watch_.catch_up();
+    runner_.catch_up();
     every_thing_safety_cpp::take_speed(monitor_, now_, speed_);
-    watch_.settle();
+    runner_.settle();
     ++taken_;
     counts = taken_ > 100;
     if (taken_ == 2000) {
       counts = false;
-      agenda_.end();
+      event_loop_.end();
       return;
     }
-    agenda_.notify(speeds_);
+    event_loop_.notify(speeds_);
   }
 
   void repeat()
@@ -145,14 +145,14 @@ private:
     repeats_.repeat(100'000);
   }
 
-  runtime::Agenda agenda_;
-  runtime::Watch watch_;
+  runtime::EventLoop event_loop_;
+  runtime::MonitorRunner runner_;
   every_thing_monitor monitor_;
   std::vector<bool> active_;
   std_msgs::msg::Bool state_;
   std_msgs::msg::Float64 speed_;
   std::size_t speeds_;
-  runtime::Alarm repeats_;
+  runtime::OneShotTimer repeats_;
   runtime::Time now_ = runtime::steady_now();
   std::size_t taken_ = 0;
   std::size_t shown_ = 0;
@@ -163,7 +163,7 @@ private:
 
 void every_thing_emit(void * owner, int64_t t, every_thing_kind kind, uint32_t site)
 {
-  static_cast<Node *>(owner)->take({t, static_cast<runtime::Kind>(kind), site});
+  static_cast<Node *>(owner)->take({t, static_cast<runtime::EventKind>(kind), site});
 }
 
 int main()

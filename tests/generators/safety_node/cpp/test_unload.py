@@ -24,8 +24,8 @@ from tests.support.ros import Peer, stop
 pytestmark = [pytest.mark.ros, needs_rclcpp, needs_ros2]
 
 RULES = Path(__file__).resolve().parent / "models/base/robot.deros"
-GATE = ("base_command_gate.cpp", "base_command_gate_logic.cpp", "runtime/gatekeeper.cpp")
-NODE = ("base_safety_node.cpp", "runtime/guardian.cpp", "runtime/ports.cpp")
+GATE = ("base_command_gate.cpp", "base_command_gate_logic.cpp", "runtime/gate_runner.cpp")
+NODE = ("base_safety_node.cpp", "runtime/safety_node_core.cpp", "runtime/ports.cpp")
 TIMES = 20
 """How often a component is loaded and unloaded; what was wrong showed within three times."""
 

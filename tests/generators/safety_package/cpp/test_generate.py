@@ -39,11 +39,11 @@ def files_of_text(text: str) -> Files:
 
 @pytest.mark.parametrize("name", ["every_thing", "two_rules"])
 def test_the_files_are_as_kept(name: str, golden: Golden) -> None:
-    """Node, description, messages, origins and actions have the text that was reviewed.
+    """Node, description, messages, metadata and actions have the text that was reviewed.
 
     The rest comes from the generators of nodes and of monitors, and is kept with their tests.
     """
-    made = ("", "_main", "_messages", "_origins", "_actions", "_actions_base", "_cpp")
+    made = ("", "_main", "_messages", "_rule_metadata", "_actions", "_actions_base", "_cpp")
     stems = {f"{name}_safety_node{part}" for part in made}
     files = {
         path: file

@@ -30,12 +30,12 @@ from deros.metamodels.safety_nodes import RESET, TRIGGER
 from deros.monitor.ir import Program
 
 _SHARED = (
-    *("agenda", "clock_choice", "instance", "machine", "ports", "process", "publishers"),
-    *("regular_file", "sha256", "simulated", "start_order", "text", "worker"),
+    *("clock_choice", "event_loop", "instance", "ports", "process", "publishers", "realtime"),
+    *("regular_file", "sha256", "simulated_time", "start_order", "text", "worker"),
 )
 """The sources that gates have in common with the safety node."""
 
-_OWN = ("gate_report", "gatekeeper", "safety_source", "target_publishers")
+_OWN = ("gate_report", "gate_runner", "safety_source", "target_publishers")
 """Those that are the same for all gates."""
 
 _NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils", "rosgraph_msgs")
@@ -110,7 +110,7 @@ def _provided(view: GateView, node: NodeType) -> Provided:
 def render(template: str, view: GateView) -> str:
     """Return the text of one file of a gate: ``node``, ``logic`` or ``main``, with its ending."""
     loaded = environment("deros.generators.gate.cpp").get_template(f"{template}.j2")
-    own = [f"{view.name}_base", f"{view.name}_logic", "runtime/gatekeeper"]
+    own = [f"{view.name}_base", f"{view.name}_logic", "runtime/gate_runner"]
     if view.heeds_safety_node:
         own.append("runtime/safety_source")
     headers = [f"{view.package}/{name}.hpp" for name in own]

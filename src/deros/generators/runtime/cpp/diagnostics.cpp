@@ -33,43 +33,43 @@ void add_since(Values & values, Time since, Time now)
 }  // namespace
 
 Diagnostics::Diagnostics(
-  Agenda & agenda, const Origins & origins, double frequency, Outside outside)
-: origins_(origins),
+  EventLoop & event_loop, const RuleMetadata & metadata, double frequency, Outside outside)
+: metadata_(metadata),
   outside_(std::move(outside)),
   period_(std::llrint(1e9 / frequency)),
-  actions_(origins.actions.size()),
-  alarm_(agenda, Clock(), [this] {ring();}, outside_.put_off)
+  actions_(metadata.actions.size()),
+  timer_(event_loop, Clock(), [this] {ring();}, outside_.defer)
 {
 }
 
 void Diagnostics::begin()
 {
-  alarm_.ring_at(0);
+  timer_.schedule(0);
 }
 
 void Diagnostics::changed()
 {
   const Time soon = steady_now() + SOON;
-  if (!alarm_.is_set() || alarm_.due() > soon) {
-    alarm_.ring_at(soon);
+  if (!timer_.is_scheduled() || timer_.due() > soon) {
+    timer_.schedule(soon);
   }
   again_ = true;
 }
 
-void Diagnostics::ordered(const Event & event, const Explanation & after)
+void Diagnostics::ordered(const Event & event, const MonitorSnapshot & after)
 {
-  const Site & site = origins_.sites[event.site];
-  if (!site.action || (event.kind != Kind::Trigger && event.kind != Kind::Reset)) {
+  const Site & site = metadata_.sites[event.site];
+  if (!site.action || (event.kind != EventKind::Trigger && event.kind != EventKind::Reset)) {
     return;
   }
-  const bool active = event.kind == Kind::Trigger;
+  const bool active = event.kind == EventKind::Trigger;
   ActionState & state = actions_[*site.action];
   state.runs += active ? 1 : 0;
   if (state.active && active) {
     return;
   }
-  state.active = active && origins_.actions[*site.action].lasts;
-  state.cause = site.behaviour ? origins_.behaviours[*site.behaviour].name : "";
+  state.active = active && metadata_.actions[*site.action].lasts;
+  state.cause = site.behaviour ? metadata_.behaviours[*site.behaviour].name : "";
   state.because = site.behaviour ? cause_of(*site.behaviour, after) : "";
   state.since = event.t;
 }
@@ -109,18 +109,18 @@ void Diagnostics::ring()
   message.status.assign(first, first + static_cast<std::ptrdiff_t>(count));
   published_ += count;
   const bool is_rest = published_ < statuses_.size();
-  alarm_.ring_at(steady_now() + (is_rest ? PAUSE : again_ ? SOON : period_));
+  timer_.schedule(steady_now() + (is_rest ? PAUSE : again_ ? SOON : period_));
   outside_.publish(message);
 }
 
 void Diagnostics::make_statuses()
 {
   const Time now = outside_.now();
-  const Explanation state = outside_.explain();
+  const MonitorSnapshot state = outside_.explain();
   statuses_.clear();
   statuses_.push_back(node_status(state.rules.size()));
   for (std::size_t i = 0; i < actions_.size(); ++i) {
-    if (origins_.actions[i].is_shown) {
+    if (metadata_.actions[i].is_shown) {
       statuses_.push_back(action_status(i, now));
     }
   }
@@ -131,11 +131,11 @@ void Diagnostics::make_statuses()
 }
 
 /// Tell of each rule whether a behaviour holds because of it: it is true, or none it names is.
-std::vector<bool> Diagnostics::blamed(const Explanation & state) const
+std::vector<bool> Diagnostics::blamed(const MonitorSnapshot & state) const
 {
   std::vector<bool> found(state.rules.size());
   for (const std::size_t behaviour : state.holding) {
-    const auto & names = origins_.behaviours[behaviour].rules;
+    const auto & names = metadata_.behaviours[behaviour].rules;
     std::vector<std::size_t> named;
     std::vector<std::size_t> true_ones;
     for (std::size_t i = 0; i < state.rules.size(); ++i) {
@@ -172,7 +172,7 @@ Diagnostics::Status Diagnostics::node_status(std::size_t rule_count) const
 
 Diagnostics::Status Diagnostics::action_status(std::size_t action, Time now) const
 {
-  const Action & known = origins_.actions[action];
+  const Action & known = metadata_.actions[action];
   const ActionState & state = actions_[action];
   const std::string runs = std::to_string(state.runs);
   std::string message = state.active ? "active" : "inactive";

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 #include "deros_runtime/runtime/events.hpp"
-#include "deros_runtime/runtime/told.hpp"
+#include "deros_runtime/runtime/report_types.hpp"
 #include "diagnostic_msgs/msg/diagnostic_array.hpp"
 #include "diagnostic_msgs/msg/diagnostic_status.hpp"
 
@@ -31,14 +31,15 @@ public:
   struct Outside
   {
     std::string name;  // of the node, in full
-    std::function<Explanation()> explain;
+    std::function<MonitorSnapshot()> explain;
     std::function<Time()> now;  // the time in which the monitor is told
     std::function<std::string()> summary;  // what the node is not ready for; empty if it watches
     std::function<void(Message &)> publish;  // stamps it, too
-    std::function<Time()> put_off;  // what goes before
+    std::function<Time()> defer;  // what goes before
   };
 
-  Diagnostics(Agenda & agenda, const Origins & origins, double frequency, Outside outside);
+  Diagnostics(
+    EventLoop & event_loop, const RuleMetadata & metadata, double frequency, Outside outside);
 
   /// Publish for the first time, at once.
   void begin();
@@ -47,7 +48,7 @@ public:
   void changed();
 
   /// Follow an event of the monitor; after is what the monitor was worth after it.
-  void ordered(const Event & event, const Explanation & after);
+  void ordered(const Event & event, const MonitorSnapshot & after);
 
   /// Show an action as active that was so before the start.
   void latched(std::size_t action);
@@ -71,9 +72,9 @@ private:
   Status node_status(std::size_t rule_count) const;
   Status action_status(std::size_t action, Time now) const;
   Status rule_status(const RuleState & rule, bool blamed, Time now) const;
-  std::vector<bool> blamed(const Explanation & state) const;
+  std::vector<bool> blamed(const MonitorSnapshot & state) const;
 
-  const Origins & origins_;
+  const RuleMetadata & metadata_;
   Outside outside_;
   Time period_;
   Values faults_;
@@ -81,7 +82,7 @@ private:
   std::vector<Status> statuses_;  // of one state, published in parts
   std::size_t published_ = 0;
   bool again_ = false;
-  Alarm alarm_;
+  OneShotTimer timer_;
 };
 
 }  // namespace deros_runtime

@@ -34,7 +34,7 @@ std::string shown(const std::optional<bool> & value)
 }
 
 /// Add what the rules are worth that a behaviour depends on, and what they read.
-void add_values(Values & values, const Behaviour & behaviour, const Explanation & after)
+void add_values(Values & values, const Behaviour & behaviour, const MonitorSnapshot & after)
 {
   for (const RuleState & rule : after.rules) {
     const auto & named = behaviour.rules;
@@ -65,18 +65,18 @@ diagnostic_msgs::msg::DiagnosticStatus status(
   return made;
 }
 
-Events::Events(const Origins & origins, Outside outside)
-: origins_(origins), outside_(std::move(outside))
+Events::Events(const RuleMetadata & metadata, Outside outside)
+: metadata_(metadata), outside_(std::move(outside))
 {
 }
 
-void Events::ordered(const Event & event, Time done, const Explanation & after)
+void Events::ordered(const Event & event, Time done, const MonitorSnapshot & after)
 {
-  const Site & site = origins_.sites[event.site];
+  const Site & site = metadata_.sites[event.site];
   const std::string line = std::to_string(site.line);
   Values values = {
-    {"action", site.action ? origins_.actions[*site.action].name : ""},
-    {"origin", site.line != 0 ? origins_.rules + ':' + line : ""},
+    {"action", site.action ? metadata_.actions[*site.action].name : ""},
+    {"origin", site.line != 0 ? metadata_.rules + ':' + line : ""},
     {"time_ns", std::to_string(event.t)},
     {"published_ns", std::to_string(done)},
   };
@@ -84,24 +84,24 @@ void Events::ordered(const Event & event, Time done, const Explanation & after)
     set(values, "arguments", site.arguments);
   }
   if (site.behaviour) {
-    const Behaviour & behaviour = origins_.behaviours[*site.behaviour];
+    const Behaviour & behaviour = metadata_.behaviours[*site.behaviour];
     set(values, "behaviour", behaviour.name);
     set(values, "origin", behaviour.origin);
     set(values, "condition", behaviour.condition);
     set(values, "cause", cause_of(*site.behaviour, after));
     add_values(values, behaviour, after);
   }
-  if (event.kind == Kind::Refused) {
+  if (event.kind == EventKind::Refused) {
     const std::vector<std::size_t> holding = callers(*site.action, after.holding);
     const std::vector<std::size_t> unknown = callers(*site.action, after.unknown);
     set(values, "holding", names(holding));
     set(values, "unknown", names(unknown));
     for (const std::size_t behaviour : holding) {
-      set(values, "cause " + origins_.behaviours[behaviour].name, cause_of(behaviour, after));
+      set(values, "cause " + metadata_.behaviours[behaviour].name, cause_of(behaviour, after));
     }
     for (const auto & refusing : {holding, unknown}) {
       for (const std::size_t behaviour : refusing) {
-        add_values(values, origins_.behaviours[behaviour], after);
+        add_values(values, metadata_.behaviours[behaviour], after);
       }
     }
   }
@@ -119,11 +119,11 @@ void Events::tell(const char * kind, Level level, const std::string & message, V
 
 std::string Events::origin(std::size_t behaviour) const
 {
-  const Behaviour & found = origins_.behaviours[behaviour];
+  const Behaviour & found = metadata_.behaviours[behaviour];
   return found.name + " (" + found.origin + ": if " + found.condition + ')';
 }
 
-std::string Events::refusal(std::size_t action, const Explanation & present) const
+std::string Events::refusal(std::size_t action, const MonitorSnapshot & present) const
 {
   std::vector<std::string> holding;
   for (const std::size_t caller : callers(action, present.holding)) {
@@ -144,17 +144,17 @@ std::string Events::refusal(std::size_t action, const Explanation & present) con
 }
 
 /// Return a behaviour with its place in the rules, and what makes it hold.
-std::string Events::origin_holding(std::size_t behaviour, const Explanation & present) const
+std::string Events::origin_holding(std::size_t behaviour, const MonitorSnapshot & present) const
 {
-  const Behaviour & found = origins_.behaviours[behaviour];
+  const Behaviour & found = metadata_.behaviours[behaviour];
   const std::string cause = cause_of(behaviour, present);
   return cause.empty() ? origin(behaviour) : found.name + " (" + found.origin + "): " + cause;
 }
 
 /// Return a behaviour as origin() does, with the terms without a value.
-std::string Events::origin_unknown(std::size_t behaviour, const Explanation & present) const
+std::string Events::origin_unknown(std::size_t behaviour, const MonitorSnapshot & present) const
 {
-  const std::vector<std::string> & rules = origins_.behaviours[behaviour].rules;
+  const std::vector<std::string> & rules = metadata_.behaviours[behaviour].rules;
   std::vector<std::string> terms;
   for (const RuleState & rule : present.rules) {
     if (rule.value || std::find(rules.begin(), rules.end(), rule.name) == rules.end()) {
@@ -175,7 +175,7 @@ std::vector<std::size_t> Events::callers(
   std::size_t action, const std::vector<std::size_t> & among) const
 {
   std::vector<std::size_t> found;
-  for (const std::size_t caller : origins_.actions[action].callers) {
+  for (const std::size_t caller : metadata_.actions[action].callers) {
     if (std::find(among.begin(), among.end(), caller) != among.end()) {
       found.push_back(caller);
     }
@@ -187,23 +187,23 @@ std::string Events::names(const std::vector<std::size_t> & behaviours) const
 {
   std::vector<std::string> found;
   for (const std::size_t behaviour : behaviours) {
-    found.push_back(origins_.behaviours[behaviour].name);
+    found.push_back(metadata_.behaviours[behaviour].name);
   }
   return joined(found, ", ");
 }
 
 std::pair<std::string, Level> Events::described(
-  const Event & event, const Explanation & after) const
+  const Event & event, const MonitorSnapshot & after) const
 {
-  if (event.kind == Kind::ClockStep) {
+  if (event.kind == EventKind::ClockStep) {
     return {"the clock stepped back: all inputs are unknown until their next message", ERROR};
   }
-  const Site & site = origins_.sites[event.site];
-  const std::string & action = origins_.actions[*site.action].name;
-  if (event.kind == Kind::Reset) {
+  const Site & site = metadata_.sites[event.site];
+  const std::string & action = metadata_.actions[*site.action].name;
+  if (event.kind == EventKind::Reset) {
     return {action + " is reset", OK};
   }
-  if (event.kind == Kind::Refused) {
+  if (event.kind == EventKind::Refused) {
     return {action + " stays active, " + refusal(*site.action, after), WARN};
   }
   const std::string & what = site.text.empty() ? action : site.text;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "deros_runtime/runtime/told.hpp"
+#include "deros_runtime/runtime/report_types.hpp"
 #include "diagnostic_msgs/msg/diagnostic_status.hpp"
 
 namespace deros_runtime
@@ -44,14 +44,14 @@ public:
     Publish publish;
   };
 
-  Events(const Origins & origins, Outside outside);
+  Events(const RuleMetadata & metadata, Outside outside);
 
   /// Tell of an event of the monitor.
   /**
    * \param done when it was acted upon, in the monitor's time
    * \param after what the monitor was worth after it
    */
-  void ordered(const Event & event, Time done, const Explanation & after);
+  void ordered(const Event & event, Time done, const MonitorSnapshot & after);
 
   /// Tell of anything.
   void tell(const char * kind, Level level, const std::string & message, Values values = {});
@@ -60,17 +60,17 @@ public:
   std::string origin(std::size_t behaviour) const;
 
   /// Return why a reset of an action is refused; nothing if it is not.
-  std::string refusal(std::size_t action, const Explanation & present) const;
+  std::string refusal(std::size_t action, const MonitorSnapshot & present) const;
 
 private:
-  std::string origin_holding(std::size_t behaviour, const Explanation & present) const;
-  std::string origin_unknown(std::size_t behaviour, const Explanation & present) const;
+  std::string origin_holding(std::size_t behaviour, const MonitorSnapshot & present) const;
+  std::string origin_unknown(std::size_t behaviour, const MonitorSnapshot & present) const;
   std::vector<std::size_t> callers(
     std::size_t action, const std::vector<std::size_t> & among) const;
   std::string names(const std::vector<std::size_t> & behaviours) const;
-  std::pair<std::string, Level> described(const Event & event, const Explanation & after) const;
+  std::pair<std::string, Level> described(const Event & event, const MonitorSnapshot & after) const;
 
-  const Origins & origins_;
+  const RuleMetadata & metadata_;
   Outside outside_;
 };
 

@@ -36,9 +36,9 @@ std::string ago(Time time)
 }  // namespace
 
 GateReport::GateReport(
-  Agenda & agenda, rclcpp::Node & node, const Applying & gate, std::vector<std::string> lines,
-  std::function<Time()> now, std::function<void(const Message &)> publish,
-  const std::string & target)
+  EventLoop & event_loop, rclcpp::Node & node, const GateStatus & gate,
+  std::vector<std::string> lines, std::function<Time()> now,
+  std::function<void(const Message &)> publish, const std::string & target)
 : node_(node),
   gate_(gate),
   lines_(std::move(lines)),
@@ -48,15 +48,15 @@ GateReport::GateReport(
     node,
     [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
   target_(
-    agenda, node, target,
+    event_loop, node, target,
     [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
-  alarm_(agenda, Clock(), [this] {ring();})
+  timer_(event_loop, Clock(), [this] {ring();})
 {
 }
 
 void GateReport::begin()
 {
-  alarm_.ring_at(0);
+  timer_.schedule(0);
   target_.begin();
 }
 
@@ -114,14 +114,14 @@ void GateReport::watch_over(SubscribedTopic topic)
 void GateReport::hurry()
 {
   const Time soon = steady_now() + SOON;
-  if (!alarm_.is_set() || alarm_.due() > soon) {
-    alarm_.ring_at(soon);
+  if (!timer_.is_scheduled() || timer_.due() > soon) {
+    timer_.schedule(soon);
   }
 }
 
 void GateReport::ring()
 {
-  alarm_.ring_at(steady_now() + PERIOD);
+  timer_.schedule(steady_now() + PERIOD);
   const std::vector<bool> applying(gate_.applying(), gate_.applying() + lines_.size());
   if (applying != told_) {
     log();

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 #include "deros_runtime/runtime/publishers.hpp"
 #include "deros_runtime/runtime/target_publishers.hpp"
 #include "diagnostic_msgs/msg/diagnostic_array.hpp"
@@ -21,10 +21,10 @@ namespace deros_runtime
 {
 
 /// What is reported of the logic of a gate.
-class Applying
+class GateStatus
 {
 public:
-  virtual ~Applying() = default;
+  virtual ~GateStatus() = default;
 
   /// Tell of each line of the gate whether it applies.
   virtual const bool * applying() const = 0;
@@ -45,9 +45,9 @@ public:
    * \param target the topic that the gate publishes commands on
    */
   GateReport(
-    Agenda & agenda, rclcpp::Node & node, const Applying & gate, std::vector<std::string> lines,
-    std::function<Time()> now, std::function<void(const Message &)> publish,
-    const std::string & target);
+    EventLoop & event_loop, rclcpp::Node & node, const GateStatus & gate,
+    std::vector<std::string> lines, std::function<Time()> now,
+    std::function<void(const Message &)> publish, const std::string & target);
 
   /// Publish for the first time, at once.
   void begin();
@@ -78,7 +78,7 @@ private:
   diagnostic_msgs::msg::DiagnosticStatus status() const;
 
   rclcpp::Node & node_;
-  const Applying & gate_;
+  const GateStatus & gate_;
   const std::vector<std::string> lines_;
   std::function<Time()> now_;
   std::function<void(const Message &)> publish_;
@@ -88,7 +88,7 @@ private:
   std::vector<std::pair<std::string, std::string>> faults_;  // each with what it is about
   Publishers publishers_;
   TargetPublishers target_;
-  Alarm alarm_;
+  OneShotTimer timer_;
 };
 
 }  // namespace deros_runtime

@@ -230,7 +230,7 @@ void LatchFile::write_new(const std::filesystem::path & path, const Names & acti
   opened_ = std::move(file);
 }
 
-void LatchFile::doubt() noexcept
+void LatchFile::mark_dirty() noexcept
 {
   saved_.reset();
   if (opened_) {
@@ -239,7 +239,7 @@ void LatchFile::doubt() noexcept
   }
 }
 
-void LatchFile::spoil()
+void LatchFile::truncate()
 {
   const Descriptor file = open_regular(path_, O_WRONLY | O_CREAT);
   if (!file || ::ftruncate(file.get(), 0) != 0) {
@@ -287,7 +287,7 @@ LatchFile::Names Latches::active() const
   return names;
 }
 
-std::string Latches::keep()
+std::string Latches::persist()
 {
   const LatchFile::Names now = active();
   if (file_.says(now)) {
@@ -301,7 +301,7 @@ std::string Latches::keep()
   } catch (const std::system_error & error) {
     std::string text = file_.path().string() + " cannot be written: " + error.what();
     try {
-      file_.spoil();
+      file_.truncate();
       text += "; after a restart all latched actions are active";
     } catch (const std::system_error & second) {
       text += std::string("; nor emptied: ") + second.what();
@@ -318,7 +318,7 @@ std::string Latches::allow_reset(const LatchFile::Names & remaining)
   try {
     file_.save(remaining);
   } catch (const std::system_error & error) {
-    keep();
+    persist();
     return "nothing is reset, because " + file_.path().string() + " cannot be written: " +
            error.what();
   }

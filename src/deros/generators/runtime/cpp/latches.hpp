@@ -76,13 +76,13 @@ public:
    * This takes microseconds, because it does not wait for the disk: it outlives the process,
    * however that ends, though not a loss of power.
    */
-  void doubt() noexcept;
+  void mark_dirty() noexcept;
 
   /// Empty the file, which needs no space: it counts as 'all active' then.
   /**
    * \throw std::system_error if that is impossible, too
    */
-  void spoil();
+  void truncate();
 
 private:
   std::string text_of(const std::vector<std::string> & names) const;
@@ -115,10 +115,10 @@ public:
   LatchFile::Names active() const;
 
   /// Make sure, before an action is carried out, that no end of the process forgets it.
-  void foresee(std::size_t action) noexcept
+  void mark_pending(std::size_t action) noexcept
   {
     if (!active_[action]) {
-      file_.doubt();
+      file_.mark_dirty();
     }
   }
 
@@ -129,7 +129,7 @@ public:
   }
 
   /// Have the file say what is active; return why it does not. To be tried again then.
-  std::string keep();
+  std::string persist();
 
   /// Have the file say what a reset will leave active, in advance, or return why not.
   std::string allow_reset(const LatchFile::Names & remaining);

@@ -21,8 +21,8 @@ std::size_t depth_of(const rclcpp::QoS & qos)
 
 }  // namespace
 
-Ports::Ports(Agenda & agenda, Refuse refuse)
-: agenda_(agenda), refuse_(std::move(refuse))
+Ports::Ports(EventLoop & event_loop, Refuse refuse)
+: event_loop_(event_loop), refuse_(std::move(refuse))
 {
 }
 
@@ -70,9 +70,9 @@ void Ports::serve_messages(const rclcpp::SubscriptionBase::SharedPtr & subscript
         refuse_(from->get_topic_name(), error.message);
       }
     };
-  const std::size_t source = agenda_.add_source(take, depth_of(subscription->get_actual_qos()));
+  const std::size_t source = event_loop_.add_source(take, depth_of(subscription->get_actual_qos()));
   subscription->set_on_new_message_callback(
-    [this, source](std::size_t count) {agenda_.notify(source, count);});
+    [this, source](std::size_t count) {event_loop_.notify(source, count);});
   subscriptions_.push_back(subscription);
 }
 
@@ -89,9 +89,9 @@ void Ports::serve_shared(const rclcpp::SubscriptionBase::SharedPtr & subscriptio
         from->execute(data);
       }
     };
-  const std::size_t source = agenda_.add_source(take, depth_of(subscription->get_actual_qos()));
+  const std::size_t source = event_loop_.add_source(take, depth_of(subscription->get_actual_qos()));
   waitable->set_on_ready_callback(
-    [this, source](std::size_t count, int) {agenda_.notify(source, count);});
+    [this, source](std::size_t count, int) {event_loop_.notify(source, count);});
   shared_.push_back(waitable);
 }
 
@@ -104,9 +104,9 @@ void Ports::serve(const rclcpp::ServiceBase::SharedPtr & service)
         from->handle_request(header, request);
       }
     };
-  const std::size_t source = agenda_.add_source(take, UNLIMITED);
+  const std::size_t source = event_loop_.add_source(take, UNLIMITED);
   service->set_on_new_request_callback(
-    [this, source](std::size_t count) {agenda_.notify(source, count);});
+    [this, source](std::size_t count) {event_loop_.notify(source, count);});
   services_.push_back(service);
 }
 

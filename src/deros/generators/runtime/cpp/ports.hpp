@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 #include "rclcpp/rclcpp.hpp"
 
 namespace deros_runtime
 {
 
-/// The subscriptions and services of a callback group, served by the thread of an agenda.
+/// The subscriptions and services of a callback group, served by the thread of an event loop.
 /**
- * The middleware notes what comes with the agenda; there each message is taken into the same
+ * The middleware notes what comes with the event loop; there each message is taken into the same
  * object again and again. Within a process that shares messages by pointer, they come as they are.
  */
 class Ports
@@ -23,7 +23,7 @@ public:
   /// Takes a topic, and why a message of it cannot be read.
   using Refuse = std::function<void (const std::string &, const std::string &)>;
 
-  Ports(Agenda & agenda, Refuse refuse);
+  Ports(EventLoop & event_loop, Refuse refuse);
 
   /// From here on nothing is noted any more.
   ~Ports();
@@ -46,7 +46,7 @@ private:
   void serve_messages(const rclcpp::SubscriptionBase::SharedPtr & subscription);
   void serve_shared(const rclcpp::SubscriptionBase::SharedPtr & subscription);
 
-  Agenda & agenda_;
+  EventLoop & event_loop_;
   Refuse refuse_;
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
   std::vector<rclcpp::Waitable::SharedPtr> shared_;

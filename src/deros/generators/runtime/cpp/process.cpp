@@ -16,7 +16,7 @@
 #include <string_view>
 #include <thread>
 
-#include "deros_runtime/runtime/machine.hpp"
+#include "deros_runtime/runtime/realtime.hpp"
 #include "deros_runtime/runtime/refusal.hpp"
 
 namespace deros_runtime

@@ -43,7 +43,7 @@ public:
 
   Publishers(rclcpp::Node & node, Report report);
 
-  /// Watch over a topic, on which there may be any number of publishers if it is shared.
+  /// MonitorRunner over a topic, on which there may be any number of publishers if it is shared.
   void add(SubscribedTopic topic, bool is_shared = false);
   void add(
     const rclcpp::SubscriptionBase & subscription, const std::string & type,

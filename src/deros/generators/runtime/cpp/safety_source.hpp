@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 #include "deros_runtime/runtime/publishers.hpp"
 #include "rclcpp/rclcpp.hpp"
 
@@ -45,10 +45,10 @@ public:
    */
   SafetySource(rclcpp::Node & node, Time silence, Report report);
 
-  /// Watch over the publishers of the heartbeat.
+  /// MonitorRunner over the publishers of the heartbeat.
   void add_heartbeat(SubscribedTopic topic);
 
-  /// Watch over the publishers of a topic with states; return its number.
+  /// MonitorRunner over the publishers of a topic with states; return its number.
   std::size_t add_state(SubscribedTopic topic);
 
   /// Return who has sent a heartbeat.

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 
 namespace deros_runtime
 {

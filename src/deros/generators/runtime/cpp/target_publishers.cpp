@@ -24,19 +24,19 @@ constexpr Time EARLY = 2 * StartOrder::YOUNG;
 }  // namespace
 
 TargetPublishers::TargetPublishers(
-  Agenda & agenda, rclcpp::Node & node, const std::string & target, Report report)
+  EventLoop & event_loop, rclcpp::Node & node, const std::string & target, Report report)
 : node_(node),
   target_(node.get_node_topics_interface()->resolve_topic_name(target)),
   report_(std::move(report)),
   order_(steady_now()),
   early_until_(steady_now() + EARLY),
-  early_(agenda, Clock(), [this] {look_early();})
+  early_(event_loop, Clock(), [this] {look_early();})
 {
 }
 
 void TargetPublishers::begin()
 {
-  early_.ring_at(0);
+  early_.schedule(0);
 }
 
 void TargetPublishers::look_early()

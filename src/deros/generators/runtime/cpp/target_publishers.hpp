@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 #include "deros_runtime/runtime/start_order.hpp"
 #include "rclcpp/rclcpp.hpp"
 
@@ -24,7 +24,7 @@ public:
   using Report = std::function<void (const std::string &, const std::string &)>;
 
   TargetPublishers(
-    Agenda & agenda, rclcpp::Node & node, const std::string & target, Report report);
+    EventLoop & event_loop, rclcpp::Node & node, const std::string & target, Report report);
 
   /// Look often from now on, while a second gate might be met.
   void begin();
@@ -41,7 +41,7 @@ private:
   Report report_;
   StartOrder order_;
   const Time early_until_;
-  Alarm early_;
+  OneShotTimer early_;
 };
 
 }  // namespace deros_runtime

@@ -6,13 +6,13 @@
 #include <thread>
 #include <utility>
 
-#include "deros_runtime/runtime/machine.hpp"
+#include "deros_runtime/runtime/realtime.hpp"
 
 namespace deros_runtime
 {
 
-Worker::Worker(Agenda & agenda, Report report)
-: agenda_(agenda), report_(std::move(report))
+Worker::Worker(EventLoop & event_loop, Report report)
+: event_loop_(event_loop), report_(std::move(report))
 {
 }
 
@@ -28,7 +28,7 @@ void Worker::start()
 
 void Worker::stop()
 {
-  agenda_.end();
+  event_loop_.end();
   if (thread_.joinable()) {
     thread_.join();
   }
@@ -58,7 +58,7 @@ void Worker::run()
   std::exception_ptr failure;
   std::string why = "what was thrown says nothing of itself";
   try {
-    agenda_.run();
+    event_loop_.run();
   } catch (const std::exception & error) {
     failure = std::current_exception();
     why = error.what();

@@ -6,12 +6,12 @@
 #include <mutex>
 #include <thread>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 
 namespace deros_runtime
 {
 
-/// The thread of an agenda.
+/// The thread of an event loop.
 class Worker
 {
 public:
@@ -21,7 +21,7 @@ public:
   /**
    * \param report takes what is thrown in the thread, if nobody waits for its end
    */
-  Worker(Agenda & agenda, Report report);
+  Worker(EventLoop & event_loop, Report report);
   ~Worker();
   Worker(const Worker &) = delete;
   Worker & operator=(const Worker &) = delete;
@@ -41,7 +41,7 @@ public:
 private:
   void run();
 
-  Agenda & agenda_;
+  EventLoop & event_loop_;
   Report report_;
   mutable std::mutex mutex_;
   bool has_ended_ = false;

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from deros.generators.api.protocol import File, Owner
 from deros.generators.node.cpp.interface import Provided
 from deros.generators.runtime.interface import cpp_sources
-from deros.generators.safety_node.cpp.origins import table
+from deros.generators.safety_node.cpp.rule_metadata import table
 from deros.generators.safety_node.cpp.view import SafetyView
 from deros.generators.text.cpp import (
     call,
@@ -22,10 +22,10 @@ from deros.generators.text.notice import licensed_cpp
 from deros.generators.text.templates import environment
 
 RUNTIME = (
-    *("descriptor", "refusal"),
-    *("agenda", "clock_choice", "diagnostics", "events", "guardian", "instance", "latches"),
-    *("machine", "ports", "process", "publishers", "regular_file", "sha256", "siblings"),
-    *("simulated", "start_order", "text", "told", "watch", "worker"),
+    *("clock_choice", "descriptor", "diagnostics", "duplicate_instance", "event_loop"),
+    *("events", "instance", "latches", "monitor_runner", "ports", "process", "publishers"),
+    *("realtime", "refusal", "regular_file", "report_types", "safety_node_core", "sha256"),
+    *("simulated_time", "start_order", "text", "worker"),
 )
 """The parts of the runtime that every safety node has."""
 
@@ -41,7 +41,7 @@ _NEEDS = (
 
 def provided(view: SafetyView) -> Provided:
     """Return what the package has to know of the node, whose class is made here."""
-    own = [f"src/{view.stem}{part}.cpp" for part in ("", "_messages", "_origins")]
+    own = [f"src/{view.stem}{part}.cpp" for part in ("", "_messages", "_rule_metadata")]
     own += [f"src/{view.prefix}_monitor.c", *cpp_sources(RUNTIME)]
     if view.actions:
         own.append(f"src/{view.actions_stem}.cpp")
@@ -49,11 +49,11 @@ def provided(view: SafetyView) -> Provided:
 
 
 def node_files(view: SafetyView, holder: str) -> dict[str, File]:
-    """Return the node's class, its messages and origins, and the classes of the user's actions."""
+    """Return the node's class, its messages and metadata, and the classes of the user's actions."""
     root, include = view.package, f"{view.package}/include/{view.package}"
     headers = [
         f"{view.package}/{view.stem}_base.hpp",
-        f"{view.package}/runtime/guardian.hpp",
+        f"{view.package}/runtime/safety_node_core.hpp",
         "rclcpp/rclcpp.hpp",
         *view.headers,
     ]
@@ -68,8 +68,10 @@ def node_files(view: SafetyView, holder: str) -> dict[str, File]:
         f"{inner}_main.cpp": _file("main.cpp", view, holder),
         f"{inner}_messages.hpp": messages,
         f"{inner}_messages.cpp": _file("messages.cpp", view, holder),
-        f"{inner}_origins.hpp": _file("origins.hpp", view, holder, f"{view.stem}_origins"),
-        f"{inner}_origins.cpp": _file("origins.cpp", view, holder),
+        f"{inner}_rule_metadata.hpp": _file(
+            "rule_metadata.hpp", view, holder, f"{view.stem}_rule_metadata"
+        ),
+        f"{inner}_rule_metadata.cpp": _file("rule_metadata.cpp", view, holder),
     }
     return files | (_action_files(view, holder) if view.actions else {})
 

@@ -9,9 +9,9 @@ from deros import codes
 from deros.diagnostics import report
 from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.interface import MonitorView, monitor_view
-from deros.generators.safety_node.cpp.explained import explained_rules
 from deros.generators.safety_node.cpp.messages import arguments, literal
-from deros.generators.safety_node.cpp.origins import Item, origins_view
+from deros.generators.safety_node.cpp.rule_metadata import Item, rule_metadata_view
+from deros.generators.safety_node.cpp.rule_state import explained_rules
 from deros.generators.safety_node.cpp.whys import Why, why_behaviour, why_rule, whys
 from deros.generators.safety_node.messages import is_stamped
 from deros.generators.safety_node.node import bound_actions
@@ -107,7 +107,7 @@ class SafetyView:
         explained: the expressions of the rules' states, each with the monitor's field of the
             verdict, and the function that tells why the rule is true.
         whys: these functions, and those of behaviours and of what behaviours negate.
-        origins: the tables of behaviours, actions and sites.
+        rule_metadata: the tables of behaviours, actions and sites.
         latched: name and enumerator of each latched action.
         optional: enumerator of each behaviour that can be disabled, the function that does it, and
             the field of its parameter.
@@ -129,7 +129,7 @@ class SafetyView:
     actions: tuple[ActionView, ...]
     explained: tuple[tuple[Expression, str, str], ...]
     whys: tuple[Why, ...]
-    origins: list[Item]
+    rule_metadata: list[Item]
     latched: tuple[tuple[str, str], ...]
     optional: tuple[tuple[str, str, str], ...]
     diagnostics: str
@@ -232,7 +232,7 @@ def safety_view(
             )
         ),
         whys=tuple(whys(program, monitor.layout)),
-        origins=origins_view(model, program, monitor, f"{stem}_actions.cpp"),
+        rule_metadata=rule_metadata_view(model, program, monitor, f"{stem}_actions.cpp"),
         latched=tuple((a.name, a.enumerator) for a in monitor.actions if a.latched),
         optional=tuple(_optional(monitor)),
         diagnostics=cpp_identifier(diagnostics.name),

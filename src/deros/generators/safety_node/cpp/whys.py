@@ -14,7 +14,7 @@ from deros.generators.monitor.c.interface import (
     integer,
     known_of,
 )
-from deros.generators.safety_node.cpp.explained import reading, shown_text
+from deros.generators.safety_node.cpp.rule_state import reading, shown_text
 from deros.generators.text import logic
 from deros.generators.text.c import flat, lay_out_if
 from deros.generators.text.cpp import Call, Chain, Expression, cpp_string, layout

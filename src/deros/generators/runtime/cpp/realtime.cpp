@@ -1,4 +1,4 @@
-#include "deros_runtime/runtime/machine.hpp"
+#include "deros_runtime/runtime/realtime.hpp"
 
 #include <fcntl.h>
 #include <sched.h>

@@ -1,5 +1,5 @@
-#ifndef DEROS_RUNTIME__RUNTIME__MACHINE_HPP_
-#define DEROS_RUNTIME__RUNTIME__MACHINE_HPP_
+#ifndef DEROS_RUNTIME__RUNTIME__REALTIME_HPP_
+#define DEROS_RUNTIME__RUNTIME__REALTIME_HPP_
 
 #include <cstdint>
 #include <string>
@@ -27,4 +27,4 @@ std::vector<std::string> prepare(std::int64_t priority, bool lock_memory);
 
 }  // namespace deros_runtime
 
-#endif  // DEROS_RUNTIME__RUNTIME__MACHINE_HPP_
+#endif  // DEROS_RUNTIME__RUNTIME__REALTIME_HPP_

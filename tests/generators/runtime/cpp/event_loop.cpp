@@ -1,4 +1,4 @@
-// The agenda: what comes is done in order, alarms ring at their time, and nothing is lost.
+// The event loop: what comes is done in order, timers ring at their time, and nothing is lost.
 
 #include <cstddef>
 #include <cstdio>
@@ -7,14 +7,14 @@
 #include <thread>
 #include <vector>
 
-#include "tested/runtime/agenda.hpp"
+#include "tested/runtime/event_loop.hpp"
 #include "tested/runtime/worker.hpp"
 
 namespace
 {
 
-using tested::runtime::Agenda;
-using tested::runtime::Alarm;
+using tested::runtime::EventLoop;
+using tested::runtime::OneShotTimer;
 using tested::runtime::Clock;
 using tested::runtime::Time;
 using tested::runtime::Worker;
@@ -32,107 +32,107 @@ void require(bool holds, const char * what)
 
 void what_comes_is_done_in_its_order()
 {
-  Agenda agenda;
+  EventLoop event_loop;
   std::vector<int> done;
-  const std::size_t first = agenda.add_source([&] {done.push_back(1);}, 2);
-  const std::size_t second = agenda.add_source([&] {done.push_back(2);}, 10);
-  const std::size_t last = agenda.add_source([&] {agenda.end();}, 1);
-  agenda.notify(second);
-  agenda.notify(first, 5);  // of which two have room
-  agenda.notify(second, 2);
-  agenda.notify(last);
-  agenda.run();
+  const std::size_t first = event_loop.add_source([&] {done.push_back(1);}, 2);
+  const std::size_t second = event_loop.add_source([&] {done.push_back(2);}, 10);
+  const std::size_t last = event_loop.add_source([&] {event_loop.end();}, 1);
+  event_loop.notify(second);
+  event_loop.notify(first, 5);  // of which two have room
+  event_loop.notify(second, 2);
+  event_loop.notify(last);
+  event_loop.run();
   require(done == std::vector<int>({2, 1, 1, 2, 2}), "the order of what came");
 }
 
 void a_flood_starves_no_alarm()
 {
-  Agenda agenda;
+  EventLoop event_loop;
   std::size_t flood = 0;
-  flood = agenda.add_source([&] {agenda.notify(flood);}, 1);
-  Alarm alarm(agenda, Clock(), [&] {agenda.end();});
-  alarm.ring_at(steady_now() + 5 * MILLISECOND);
-  agenda.notify(flood);
-  agenda.run();
+  flood = event_loop.add_source([&] {event_loop.notify(flood);}, 1);
+  OneShotTimer timer(event_loop, Clock(), [&] {event_loop.end();});
+  timer.schedule(steady_now() + 5 * MILLISECOND);
+  event_loop.notify(flood);
+  event_loop.run();
 }
 
 void an_alarm_is_never_early_and_repeats()
 {
-  Agenda agenda;
+  EventLoop event_loop;
   const Time start = steady_now();
   std::vector<Time> rung;
-  Alarm alarm(
-    agenda, Clock(), [&] {
+  OneShotTimer timer(
+    event_loop, Clock(), [&] {
       rung.push_back(steady_now());
       if (rung.size() == 3) {
-        agenda.end();
+        event_loop.end();
       }
-      alarm.repeat(2 * MILLISECOND);
+      timer.repeat(2 * MILLISECOND);
     });
-  alarm.ring_at(start + 3 * MILLISECOND);
-  agenda.run();
+  timer.schedule(start + 3 * MILLISECOND);
+  event_loop.run();
   for (std::size_t i = 0; i < rung.size(); ++i) {
     const Time due = start + static_cast<Time>(3 + 2 * i) * MILLISECOND;
-    require(rung[i] >= due, "an alarm does not ring early");
+    require(rung[i] >= due, "an timer does not ring early");
   }
 }
 
 void what_can_wait_waits_but_not_for_ever()
 {
-  Agenda agenda;
+  EventLoop event_loop;
   const Time start = steady_now();
   Time rung = 0;
-  Alarm alarm(
-    agenda, Clock(), [&] {
+  OneShotTimer timer(
+    event_loop, Clock(), [&] {
       rung = steady_now();
-      agenda.end();
+      event_loop.end();
     },
     [] {return MILLISECOND;});
-  alarm.ring_at(start);
-  agenda.run();
+  timer.schedule(start);
+  event_loop.run();
   require(rung - start >= 50 * MILLISECOND, "it is put off for as long as it has to be");
 }
 
 void an_alarm_of_another_clock_is_looked_at_when_something_comes()
 {
-  Agenda agenda;
+  EventLoop event_loop;
   Time simulated = 0;
-  const std::size_t tick = agenda.add_source([&] {simulated += 10;}, 10);
-  Alarm alarm(agenda, {[&] {return simulated;}, false}, [&] {agenda.end();});
-  alarm.ring_at(30);
-  agenda.notify(tick, 3);
-  agenda.run();
+  const std::size_t tick = event_loop.add_source([&] {simulated += 10;}, 10);
+  OneShotTimer timer(event_loop, {[&] {return simulated;}, false}, [&] {event_loop.end();});
+  timer.schedule(30);
+  event_loop.notify(tick, 3);
+  event_loop.run();
   require(simulated == 30, "it rings at its own clock's time");
 }
 
 void what_comes_from_another_thread_wakes_it()
 {
-  Agenda agenda;
+  EventLoop event_loop;
   int left = 1000;
-  const std::size_t source = agenda.add_source(
+  const std::size_t source = event_loop.add_source(
     [&] {
       if (--left == 0) {
-        agenda.end();
+        event_loop.end();
       }
     }, 1000);
   std::thread other([&] {
       for (int i = 0; i < 1000; ++i) {
-        agenda.notify(source);
+        event_loop.notify(source);
       }
     });
-  agenda.run();
+  event_loop.run();
   other.join();
   require(left == 0, "nothing is lost");
 }
 
 void a_worker_tells_what_ended_it()
 {
-  Agenda agenda;
-  const std::size_t source = agenda.add_source([] {throw std::runtime_error("broken");}, 1);
+  EventLoop event_loop;
+  const std::size_t source = event_loop.add_source([] {throw std::runtime_error("broken");}, 1);
   bool is_told = false;
-  Worker worker(agenda, [&](const char *) {is_told = true;});
+  Worker worker(event_loop, [&](const char *) {is_told = true;});
   worker.start();
-  agenda.notify(source);
+  event_loop.notify(source);
   worker.stop();
   require(worker.failure() != nullptr || !is_told, "a failure is kept");
 }

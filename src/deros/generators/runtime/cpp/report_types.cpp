@@ -1,4 +1,4 @@
-#include "deros_runtime/runtime/told.hpp"
+#include "deros_runtime/runtime/report_types.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -62,7 +62,7 @@ void add(Causes & all, const Causes & further)
   all.insert(all.end(), further.begin(), further.end());
 }
 
-std::string cause_of(std::size_t behaviour, const Explanation & state)
+std::string cause_of(std::size_t behaviour, const MonitorSnapshot & state)
 {
   const auto found = std::find(state.holding.begin(), state.holding.end(), behaviour);
   return found == state.holding.end() ? "" :

@@ -1,4 +1,4 @@
-#include "deros_runtime/runtime/guardian.hpp"
+#include "deros_runtime/runtime/safety_node_core.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "deros_runtime/runtime/instance.hpp"
-#include "deros_runtime/runtime/machine.hpp"
+#include "deros_runtime/runtime/realtime.hpp"
 #include "deros_runtime/runtime/text.hpp"
 
 namespace deros_runtime
@@ -22,7 +22,7 @@ namespace
 {
 
 constexpr Time SOON = 2'000'000;  // ns after an action, when it is told of
-constexpr Time CHORES = 100'000'000;  // ns from one look at what is not urgent to the next
+constexpr Time HOUSEKEEPING = 100'000'000;  // ns from one look at what is not urgent to the next
 
 std::size_t domain_of(rclcpp::Node & node)
 {
@@ -36,11 +36,11 @@ std::string heartbeat_of(rclcpp::Node & node)
 
 }  // namespace
 
-Guardian::Guardian(
-  rclcpp::Node & node, Robot & robot, const Origins & origins, Settings settings)
+SafetyNodeCore::SafetyNodeCore(
+  rclcpp::Node & node, SafetyNodeHooks & hooks, const RuleMetadata & metadata, Settings settings)
 : node_(node),
-  robot_(robot),
-  origins_(origins),
+  hooks_(hooks),
+  metadata_(metadata),
   settings_(std::move(settings)),
   name_(node.get_fully_qualified_name()),
   grace_(std::llrint(settings_.startup_grace * 1e9)),
@@ -48,27 +48,27 @@ Guardian::Guardian(
   refused_(prepare(settings_.realtime_priority, settings_.lock_memory)),
   clock_choice_(refuse_clock_change(node)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
-  simulated_(simulated_time(node, agenda_, [this](bool back) {watch_.clock_changed(back);})),
-  watch_(agenda_, clock_of(simulated_), *this),
-  events_(origins, outside_of_events()),
-  diagnostics_(agenda_, origins, settings_.diagnostics_freq, outside_of_diagnostics()),
-  siblings_(
+  simulated_(simulated_time(node, event_loop_, [this](bool back) {runner_.clock_changed(back);})),
+  runner_(event_loop_, clock_of(simulated_), *this),
+  events_(metadata, outside_of_events()),
+  diagnostics_(event_loop_, metadata, settings_.diagnostics_freq, outside_of_diagnostics()),
+  duplicates_(
     node, heartbeat_of(node),
     [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);}),
   publishers_(
     node,
     [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);}),
-  active_(origins.actions.size()),
-  enabled_(origins.behaviours.size(), true),
-  publishing_(agenda_, clock_of(simulated_), [this] {publish();}),
-  telling_(agenda_, Clock(), [this] {tell();}, [this] {return watch_.put_off();}),
-  chores_(agenda_, Clock(), [this] {do_chores();}),
-  switching_(agenda_.add_source([this] {switch_behaviours();}, 1)),
+  active_(metadata.actions.size()),
+  enabled_(metadata.behaviours.size(), true),
+  publishing_(event_loop_, clock_of(simulated_), [this] {publish();}),
+  telling_(event_loop_, Clock(), [this] {tell();}, [this] {return runner_.defer();}),
+  housekeeping_(event_loop_, Clock(), [this] {do_housekeeping();}),
+  switching_(event_loop_.add_source([this] {switch_behaviours();}, 1)),
   ports_(
-    agenda_,
+    event_loop_,
     [this](const std::string & topic, const std::string & why) {refuse(topic, why);}),
   worker_(
-    agenda_,
+    event_loop_,
     [this](const char * why) {
       if (node_.get_node_base_interface()->get_context()->is_valid()) {  // else all nodes end
         RCLCPP_FATAL(node_.get_logger(), "%s", why);
@@ -85,19 +85,20 @@ Guardian::Guardian(
   }
 }
 
-Guardian::~Guardian()
+SafetyNodeCore::~SafetyNodeCore()
 {
   stop();
 }
 
 // Start
 
-void Guardian::start(const std::vector<Topic> & topics, const std::vector<std::string> & states)
+void SafetyNodeCore::start(
+  const std::vector<Topic> & topics, const std::vector<std::string> & states)
 {
   tell_start();
   open_latches();
   for (const std::string & topic : states) {
-    siblings_.add(node_.get_node_topics_interface()->resolve_topic_name(topic));
+    duplicates_.add(node_.get_node_topics_interface()->resolve_topic_name(topic));
   }
   if (simulated_) {
     publishers_.add(simulated_->subscription(), "rosgraph_msgs/msg/Clock");
@@ -113,57 +114,57 @@ void Guardian::start(const std::vector<Topic> & topics, const std::vector<std::s
         return found;
       });
   }
-  watch_.start();
+  runner_.start();
   run_latched();
-  chores_.ring_at(0);
+  housekeeping_.schedule(0);
   diagnostics_.begin();
   ports_.serve(*group_);
   worker_.start();
 }
 
-void Guardian::begin(Time start)
+void SafetyNodeCore::begin(Time start)
 {
-  robot_.start_monitor(start, grace_);
+  hooks_.start_monitor(start, grace_);
   std::fill(active_.begin(), active_.end(), false);
-  for (std::size_t i = 0; latches_ && i < origins_.actions.size(); ++i) {
-    const Action & action = origins_.actions[i];
+  for (std::size_t i = 0; latches_ && i < metadata_.actions.size(); ++i) {
+    const Action & action = metadata_.actions[i];
     if (action.latch && latches_->is_active(*action.latch)) {
-      robot_.latch(i);
+      hooks_.latch(i);
       active_[i] = true;
     }
   }
-  for (std::size_t i = 0; i < origins_.behaviours.size(); ++i) {
-    if (origins_.behaviours[i].is_optional) {
-      enabled_[i] = robot_.is_chosen(i);
-      robot_.enable(start, i, enabled_[i]);
+  for (std::size_t i = 0; i < metadata_.behaviours.size(); ++i) {
+    if (metadata_.behaviours[i].is_optional) {
+      enabled_[i] = hooks_.is_chosen(i);
+      hooks_.enable(start, i, enabled_[i]);
     }
   }
   is_starting_ = true;
-  robot_.show_states(active_);
-  publishing_.ring_at(start + period_);
+  hooks_.show_states(active_);
+  publishing_.schedule(start + period_);
 }
 
-void Guardian::tell_start()
+void SafetyNodeCore::tell_start()
 {
-  const std::string count = std::to_string(origins_.rule_count);
-  events_.tell("start", OK, "watching " + count + " rules of " + origins_.rules);
+  const std::string count = std::to_string(metadata_.rule_count);
+  events_.tell("start", OK, "watching " + count + " rules of " + metadata_.rules);
   for (const std::string & text : refused_) {
     events_.tell("not_permitted", WARN, text);
   }
-  for (std::size_t i = 0; i < origins_.actions.size(); ++i) {
-    const Action & action = origins_.actions[i];
-    if (action.is_code && !robot_.is_filled_in(i)) {
+  for (std::size_t i = 0; i < metadata_.actions.size(); ++i) {
+    const Action & action = metadata_.actions[i];
+    if (action.is_code && !hooks_.is_filled_in(i)) {
       const std::string text =
-        "action " + action.name + " does nothing: write its code in " + origins_.actions_file;
+        "action " + action.name + " does nothing: write its code in " + metadata_.actions_file;
       events_.tell("unfilled", ERROR, text, {{"action", action.name}});
     }
   }
 }
 
-void Guardian::open_latches()
+void SafetyNodeCore::open_latches()
 {
   std::vector<std::string> known;
-  for (const Action & action : origins_.actions) {
+  for (const Action & action : metadata_.actions) {
     if (action.latch) {
       known.push_back(action.name);
     }
@@ -182,10 +183,10 @@ void Guardian::open_latches()
 }
 
 /// Show what was active when the last process of this node ended.
-void Guardian::latch_again()
+void SafetyNodeCore::latch_again()
 {
-  for (std::size_t i = 0; i < origins_.actions.size(); ++i) {
-    const Action & action = origins_.actions[i];
+  for (std::size_t i = 0; i < metadata_.actions.size(); ++i) {
+    const Action & action = metadata_.actions[i];
     if (!action.latch || !latches_->is_active(*action.latch)) {
       continue;
     }
@@ -196,84 +197,84 @@ void Guardian::latch_again()
 }
 
 /// Run the robot code of what was active then; the states are out.
-void Guardian::run_latched()
+void SafetyNodeCore::run_latched()
 {
   std::vector<Event> calls;
-  for (const Action & action : origins_.actions) {
+  for (const Action & action : metadata_.actions) {
     if (action.is_code && action.first_call && action.latch && latches_->is_active(*action.latch)) {
-      calls.push_back({0, Kind::Trigger, *action.first_call});
+      calls.push_back({0, EventKind::Trigger, *action.first_call});
     }
   }
-  watch_.run_again(calls);
+  runner_.run_again(calls);
 }
 
 // What the monitor orders
 
-void Guardian::advance(Time now)
+void SafetyNodeCore::advance(Time now)
 {
-  robot_.advance_monitor(now);
+  hooks_.advance_monitor(now);
 }
 
-Time Guardian::due() const
+Time SafetyNodeCore::due() const
 {
-  return robot_.next_deadline();
+  return hooks_.next_deadline();
 }
 
-std::optional<std::size_t> Guardian::action_of(const Event & event) const
+std::optional<std::size_t> SafetyNodeCore::action_of(const Event & event) const
 {
-  return origins_.sites[event.site].action;
+  return metadata_.sites[event.site].action;
 }
 
-bool Guardian::show(const Event & event)
+bool SafetyNodeCore::show(const Event & event)
 {
   const std::optional<std::size_t> number = action_of(event);
-  if (!number || event.kind == Kind::Refused) {
+  if (!number || event.kind == EventKind::Refused) {
     return true;
   }
-  const Action & action = origins_.actions[*number];
-  if (action.latch && event.kind == Kind::Trigger) {
-    latches_->foresee(*action.latch);
+  const Action & action = metadata_.actions[*number];
+  if (action.latch && event.kind == EventKind::Trigger) {
+    latches_->mark_pending(*action.latch);
   }
   if (action.is_bound) {
-    active_[*number] = event.kind == Kind::Trigger;
-    robot_.show_state(*number, active_);
+    active_[*number] = event.kind == EventKind::Trigger;
+    hooks_.show_state(*number, active_);
     return true;
   }
-  return !action.is_code || event.kind != Kind::Trigger;
+  return !action.is_code || event.kind != EventKind::Trigger;
 }
 
-void Guardian::run_code(const Event & event)
+void SafetyNodeCore::run_code(const Event & event)
 {
   const std::size_t number = *action_of(event);
-  if (robot_.is_filled_in(number)) {
-    robot_.run(event.site);
+  if (hooks_.is_filled_in(number)) {
+    hooks_.run(event.site);
   } else {
     const std::string call =
-      origins_.actions[number].name + '(' + origins_.sites[event.site].arguments + ')';
+      metadata_.actions[number].name + '(' + metadata_.sites[event.site].arguments + ')';
     log(
       ERROR, "action " + call + " should have been carried out now: write its code in " +
-      origins_.actions_file);
+      metadata_.actions_file);
   }
 }
 
 /// Remember what explains some events; the last slot is shared if there are not enough of them.
-void Guardian::remember(std::size_t count)
+void SafetyNodeCore::remember(std::size_t count)
 {
   slot_ = std::min(slot_ + 1, SLOTS);
-  robot_.remember(slot_ - 1);
+  hooks_.remember(slot_ - 1);
   slots_.resize(count, slot_ - 1);
 }
 
-void Guardian::after(const std::vector<Event> & events, const std::vector<Time> & done)
+void SafetyNodeCore::after(const std::vector<Event> & events, const std::vector<Time> & done)
 {
   if (latches_) {
     for (const Event & event : events) {
       const std::optional<std::size_t> number = action_of(event);
-      if (number && origins_.actions[*number].latch) {
-        latches_->follow(*origins_.actions[*number].latch, event.kind != Kind::Reset);
+      if (number && metadata_.actions[*number].latch) {
+        latches_->follow(*metadata_.actions[*number].latch, event.kind != EventKind::Reset);
       }
     }
-    latches_->keep();
+    latches_->persist();
   }
   for (std::size_t i = 0; i < events.size(); ++i) {
     untold_.push_back({events[i], done[i], slots_[i]});
@@ -281,19 +282,19 @@ void Guardian::after(const std::vector<Event> & events, const std::vector<Time> 
   slots_.clear();
   if (slot_ == SLOTS) {
     tell();
-  } else if (!telling_.is_set()) {  // later, so that those who have to act find a processor
-    telling_.ring_at(steady_now() + SOON);
+  } else if (!telling_.is_scheduled()) {  // later, so that those who have to act find a processor
+    telling_.schedule(steady_now() + SOON);
   }
 }
 
-void Guardian::tell()
+void SafetyNodeCore::tell()
 {
   std::optional<std::size_t> slot;
-  Explanation after;
+  MonitorSnapshot after;
   for (const Untold & each : untold_) {
     if (slot != each.slot) {
       slot = each.slot;
-      after = robot_.explain(slot);
+      after = hooks_.explain(slot);
     }
     events_.ordered(each.event, each.done, after);
     diagnostics_.ordered(each.event, after);
@@ -303,14 +304,14 @@ void Guardian::tell()
   diagnostics_.changed();
 }
 
-void Guardian::tell_failure(const Event & event, const char * why)
+void SafetyNodeCore::tell_failure(const Event & event, const char * why)
 {
   const std::optional<std::size_t> number = action_of(event);
-  const std::string name = number ? origins_.actions[*number].name : "";
+  const std::string name = number ? metadata_.actions[*number].name : "";
   RCLCPP_FATAL(node_.get_logger(), "action %s failed: %s", name.c_str(), why);
 }
 
-void Guardian::tell_fault(const std::string & subject, const std::string & text)
+void SafetyNodeCore::tell_fault(const std::string & subject, const std::string & text)
 {
   if (diagnostics_.fault(subject, text) && !text.empty()) {
     events_.tell("fault", ERROR, subject + ": " + text, {{"subject", subject}});
@@ -318,7 +319,7 @@ void Guardian::tell_fault(const std::string & subject, const std::string & text)
 }
 
 /// Tell, once per topic, of a message that cannot be read; it counts for nothing.
-void Guardian::refuse(const std::string & topic, const std::string & why)
+void SafetyNodeCore::refuse(const std::string & topic, const std::string & why)
 {
   const std::string text = topic + " has carried data that cannot be read";
   if (diagnostics_.fault("data of " + topic, text)) {
@@ -328,38 +329,38 @@ void Guardian::refuse(const std::string & topic, const std::string & why)
 
 // States and heartbeat
 
-void Guardian::stepped()
+void SafetyNodeCore::stepped()
 {
   publish();
 }
 
 /// Repeat the states, and beat.
-void Guardian::publish()
+void SafetyNodeCore::publish()
 {
   publishing_.repeat(period_);
-  robot_.show_states(active_);
+  hooks_.show_states(active_);
   if (is_ready()) {
     ++beats_;
-    robot_.beat(beats_);
+    hooks_.beat(beats_);
   }
 }
 
 /// Look after what is not urgent.
-void Guardian::do_chores()
+void SafetyNodeCore::do_housekeeping()
 {
-  chores_.repeat(CHORES);
-  siblings_.look();
+  housekeeping_.repeat(HOUSEKEEPING);
+  duplicates_.look();
   publishers_.look();
   if (latches_) {
-    latches_->keep();
+    latches_->persist();
   }
 }
 
 /// Tell whether the start is over: within the grace, inputs are waited for.
-bool Guardian::is_ready()
+bool SafetyNodeCore::is_ready()
 {
   if (is_starting_) {
-    if (robot_.is_waiting() && watch_.now() < watch_.began_at() + grace_) {
+    if (hooks_.is_waiting() && runner_.now() < runner_.began_at() + grace_) {
       return false;
     }
     is_starting_ = false;
@@ -369,7 +370,7 @@ bool Guardian::is_ready()
 }
 
 /// Return in words what the node does not do; nothing if it watches all rules.
-std::string Guardian::unready() const
+std::string SafetyNodeCore::not_ready_reason() const
 {
   if (is_starting_) {
     return "starting: no heartbeat until all inputs have come, or are missing";
@@ -377,7 +378,7 @@ std::string Guardian::unready() const
   std::vector<std::string> disabled;
   for (std::size_t i = 0; i < enabled_.size(); ++i) {
     if (!enabled_[i]) {
-      disabled.push_back(origins_.behaviours[i].name);
+      disabled.push_back(metadata_.behaviours[i].name);
     }
   }
   return disabled.empty() ? "" : "disabled: " + joined(disabled, ", ");
@@ -385,15 +386,15 @@ std::string Guardian::unready() const
 
 // Requests
 
-std::string Guardian::reset(bool & success)
+std::string SafetyNodeCore::reset(bool & success)
 {
   success = false;
-  const Time now = watch_.advance();
-  const Explanation present = robot_.explain(std::nullopt);
+  const Time now = runner_.advance();
+  const MonitorSnapshot present = hooks_.explain(std::nullopt);
   std::vector<std::pair<std::string, std::string>> active;  // and why it stays so
   LatchFile::Names remaining;
-  for (std::size_t i = 0; i < origins_.actions.size(); ++i) {
-    const Action & action = origins_.actions[i];
+  for (std::size_t i = 0; i < metadata_.actions.size(); ++i) {
+    const Action & action = metadata_.actions[i];
     if (action.latch && latches_->is_active(*action.latch)) {
       active.emplace_back(action.name, events_.refusal(i, present));
       if (!active.back().second.empty()) {
@@ -405,8 +406,8 @@ std::string Guardian::reset(bool & success)
   if (!refusal.empty()) {
     return refusal;
   }
-  success = robot_.reset_monitor(now);
-  watch_.settle();
+  success = hooks_.reset_monitor(now);
+  runner_.settle();
   std::sort(active.begin(), active.end());
   std::vector<std::string> told;
   for (const auto & [name, why] : active) {
@@ -415,23 +416,23 @@ std::string Guardian::reset(bool & success)
   return told.empty() ? "no latched action was active" : joined(told, "; ");
 }
 
-void Guardian::parameters_changed()
+void SafetyNodeCore::parameters_changed()
 {
-  agenda_.notify(switching_);
+  event_loop_.notify(switching_);
 }
 
 /// Enable or disable the behaviours whose parameter has changed.
-void Guardian::switch_behaviours()
+void SafetyNodeCore::switch_behaviours()
 {
-  for (std::size_t i = 0; i < origins_.behaviours.size(); ++i) {
-    const Behaviour & behaviour = origins_.behaviours[i];
-    if (!behaviour.is_optional || robot_.is_chosen(i) == enabled_[i]) {
+  for (std::size_t i = 0; i < metadata_.behaviours.size(); ++i) {
+    const Behaviour & behaviour = metadata_.behaviours[i];
+    if (!behaviour.is_optional || hooks_.is_chosen(i) == enabled_[i]) {
       continue;
     }
     const bool enabled = !enabled_[i];
     enabled_[i] = enabled;
-    robot_.enable(watch_.catch_up(), i, enabled);
-    watch_.settle();
+    hooks_.enable(runner_.catch_up(), i, enabled);
+    runner_.settle();
     const char * kind = enabled ? "enabled" : "disabled";
     events_.tell(
       kind, enabled ? OK : WARN, behaviour.name + " is " + kind, {{"behaviour", behaviour.name}});
@@ -441,7 +442,7 @@ void Guardian::switch_behaviours()
 
 // Life
 
-void Guardian::stop()
+void SafetyNodeCore::stop()
 {
   worker_.stop();
   if (!untold_.empty()) {
@@ -449,19 +450,19 @@ void Guardian::stop()
   }
 }
 
-void Guardian::when_ended(std::function<void()> ended)
+void SafetyNodeCore::when_ended(std::function<void()> ended)
 {
   worker_.when_ended(std::move(ended));
 }
 
-std::exception_ptr Guardian::failure() const
+std::exception_ptr SafetyNodeCore::failure() const
 {
   return worker_.failure();
 }
 
 // The world outside
 
-void Guardian::log(Level level, const std::string & text) const
+void SafetyNodeCore::log(Level level, const std::string & text) const
 {
   if (level == OK) {
     RCLCPP_INFO(node_.get_logger(), "%s", text.c_str());
@@ -472,28 +473,28 @@ void Guardian::log(Level level, const std::string & text) const
   }
 }
 
-Events::Outside Guardian::outside_of_events()
+Events::Outside SafetyNodeCore::outside_of_events()
 {
   return {
     name_,
     [this] {return node_.now().nanoseconds();},
     [this](Level level, const std::string & text) {log(level, text);},
-    [this](const Events::Status & event) {robot_.report_event(event);},
+    [this](const Events::Status & event) {hooks_.report_event(event);},
   };
 }
 
-Diagnostics::Outside Guardian::outside_of_diagnostics()
+Diagnostics::Outside SafetyNodeCore::outside_of_diagnostics()
 {
   return {
     name_,
-    [this] {return robot_.explain(std::nullopt);},
-    [this] {return watch_.now();},
-    [this] {return unready();},
+    [this] {return hooks_.explain(std::nullopt);},
+    [this] {return runner_.now();},
+    [this] {return not_ready_reason();},
     [this](Diagnostics::Message & message) {
       message.header.stamp = node_.now();
-      robot_.report_diagnostics(message);
+      hooks_.report_diagnostics(message);
     },
-    [this] {return watch_.put_off();},
+    [this] {return runner_.defer();},
   };
 }
 

@@ -1,5 +1,5 @@
-#ifndef DEROS_RUNTIME__RUNTIME__TOLD_HPP_
-#define DEROS_RUNTIME__RUNTIME__TOLD_HPP_
+#ifndef DEROS_RUNTIME__RUNTIME__REPORT_TYPES_HPP_
+#define DEROS_RUNTIME__RUNTIME__REPORT_TYPES_HPP_
 
 #include <cstddef>
 #include <cstdint>
@@ -8,20 +8,20 @@
 #include <utility>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 #include "deros_runtime/runtime/text.hpp"
 
 namespace deros_runtime
 {
 
 /// What a monitor did, or saw the clock do.
-enum class Kind { Trigger, Reset, Refused, ClockStep };
+enum class EventKind { Trigger, Reset, Refused, ClockStep };
 
 /// Something that happened to a monitor; site is the place in the rules that it comes from.
 struct Event
 {
   Time t;
-  Kind kind;
+  EventKind kind;
   std::size_t site;
 };
 
@@ -59,7 +59,7 @@ struct Site
 };
 
 /// The rules as those know them who read the reports of a node.
-struct Origins
+struct RuleMetadata
 {
   std::string rules;  // the name of their file
   std::size_t rule_count;
@@ -167,7 +167,7 @@ inline double seconds(Time time)
 }
 
 /// All that a monitor is worth since an event.
-struct Explanation
+struct MonitorSnapshot
 {
   std::vector<RuleState> rules;
   std::vector<std::size_t> holding;  // the behaviours whose conditions hold
@@ -180,8 +180,8 @@ struct Explanation
  * A message may show that the clock has stepped back, and change at once what the step brought
  * about.
  */
-std::string cause_of(std::size_t behaviour, const Explanation & state);
+std::string cause_of(std::size_t behaviour, const MonitorSnapshot & state);
 
 }  // namespace deros_runtime
 
-#endif  // DEROS_RUNTIME__RUNTIME__TOLD_HPP_
+#endif  // DEROS_RUNTIME__RUNTIME__REPORT_TYPES_HPP_

@@ -1,4 +1,4 @@
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 
 #include <time.h>
 
@@ -16,7 +16,7 @@ namespace deros_runtime
 namespace
 {
 
-constexpr Time PATIENCE = 50'000'000;  // ns that an alarm may be put off in all
+constexpr Time PATIENCE = 50'000'000;  // ns that an timer may be put off in all
 constexpr Time NEVER = std::numeric_limits<Time>::max();
 
 }  // namespace
@@ -28,7 +28,7 @@ Time steady_now()
   return static_cast<Time>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
-std::size_t Agenda::add_source(std::function<void()> take, std::size_t capacity)
+std::size_t EventLoop::add_source(std::function<void()> take, std::size_t capacity)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   sources_.push_back({std::move(take), capacity, 0});
@@ -36,7 +36,7 @@ std::size_t Agenda::add_source(std::function<void()> take, std::size_t capacity)
   return sources_.size() - 1;
 }
 
-void Agenda::notify(std::size_t source, std::size_t count)
+void EventLoop::notify(std::size_t source, std::size_t count)
 {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -50,7 +50,7 @@ void Agenda::notify(std::size_t source, std::size_t count)
   came_.notify_one();
 }
 
-void Agenda::end()
+void EventLoop::end()
 {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -59,7 +59,7 @@ void Agenda::end()
   came_.notify_one();
 }
 
-void Agenda::run()
+void EventLoop::run()
 {
   while (true) {
     const std::size_t source = next_source();
@@ -72,12 +72,12 @@ void Agenda::run()
         return;
       }
     }
-    ring_alarms();
+    fire_timers();
   }
 }
 
 /// Wait until there is something to do; return the source whose turn it is, if it is one's.
-std::size_t Agenda::next_source()
+std::size_t EventLoop::next_source()
 {
   const Times next = next_times();
   std::unique_lock<std::mutex> lock(mutex_);
@@ -103,66 +103,66 @@ std::size_t Agenda::next_source()
   return source;
 }
 
-/// Return when the next alarm rings that waits for steady time, and when to wake up for it.
-Agenda::Times Agenda::next_times() const
+/// Return when the next timer rings that waits for steady time, and when to wake up for it.
+EventLoop::Times EventLoop::next_times() const
 {
   Times next{NEVER, NEVER};
-  for (const Alarm * alarm : alarms_) {
-    if (alarm->is_set_ && alarm->clock_.is_steady) {
-      next.ring = std::min(next.ring, alarm->wait_until_);
-      next.wake = std::min(next.wake, alarm->wait_until_ - alarm->lead_);
+  for (const OneShotTimer * timer : timers_) {
+    if (timer->is_scheduled_ && timer->clock_.is_steady) {
+      next.ring = std::min(next.ring, timer->wait_until_);
+      next.wake = std::min(next.wake, timer->wait_until_ - timer->lead_);
     }
   }
   return next;
 }
 
-void Agenda::ring_alarms()
+void EventLoop::fire_timers()
 {
-  for (Alarm * alarm : alarms_) {
-    alarm->ring_if_due();
+  for (OneShotTimer * timer : timers_) {
+    timer->fire_if_due();
   }
 }
 
-Alarm::Alarm(
-  Agenda & agenda, Clock clock, std::function<void()> callback, std::function<Time()> put_off,
+OneShotTimer::OneShotTimer(
+  EventLoop & event_loop, Clock clock, std::function<void()> callback, std::function<Time()> defer,
   Time lead)
-: clock_(std::move(clock)), callback_(std::move(callback)), put_off_(std::move(put_off)),
+: clock_(std::move(clock)), callback_(std::move(callback)), defer_(std::move(defer)),
   lead_(lead)
 {
-  agenda.alarms_.push_back(this);
+  event_loop.timers_.push_back(this);
 }
 
-void Alarm::ring_at(Time due)
+void OneShotTimer::schedule(Time due)
 {
   due_ = due;
   wait_until_ = due;
-  is_set_ = true;
+  is_scheduled_ = true;
 }
 
-void Alarm::repeat(Time period)
+void OneShotTimer::repeat(Time period)
 {
   const Time now = clock_.now();
   const Time due = due_ + period;
-  ring_at(now < due && due <= now + period ? due : now + period);
+  schedule(now < due && due <= now + period ? due : now + period);
 }
 
-void Alarm::ring_if_due()
+void OneShotTimer::fire_if_due()
 {
-  if (!is_set_) {
+  if (!is_scheduled_) {
     return;
   }
   const Time now = clock_.now();
   if (now < wait_until_) {
     return;
   }
-  if (put_off_ && now - due_ < PATIENCE) {
-    const Time pause = put_off_();
+  if (defer_ && now - due_ < PATIENCE) {
+    const Time pause = defer_();
     if (pause > 0) {
       wait_until_ = now + pause;
       return;
     }
   }
-  is_set_ = false;
+  is_scheduled_ = false;
   callback_();
 }
 

@@ -1,4 +1,4 @@
-#include "deros_runtime/runtime/gatekeeper.hpp"
+#include "deros_runtime/runtime/gate_runner.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -9,7 +9,7 @@
 
 #include "deros_runtime/runtime/gate_numbers.hpp"
 #include "deros_runtime/runtime/instance.hpp"
-#include "deros_runtime/runtime/machine.hpp"
+#include "deros_runtime/runtime/realtime.hpp"
 
 namespace deros_runtime
 {
@@ -21,9 +21,9 @@ constexpr Time CHECK_PERIOD = 1'000'000'000;  // ns
 
 }  // namespace
 
-Gatekeeper::Gatekeeper(
-  rclcpp::Node & node, Kept & gate, std::vector<std::string> lines, const std::string & target,
-  Settings settings)
+GateRunner::GateRunner(
+  rclcpp::Node & node, GateLogic & gate, std::vector<std::string> lines,
+  const std::string & target, Settings settings)
 : node_(node),
   gate_(gate),
   refused_(prepare(settings.realtime_priority, settings.lock_memory)),
@@ -31,16 +31,16 @@ Gatekeeper::Gatekeeper(
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
   simulated_(
     settings.losses_in_simulated_time ?
-    simulated_time(node, agenda_, [this](bool) {advance();}) : nullptr),
+    simulated_time(node, event_loop_, [this](bool) {advance();}) : nullptr),
   clock_(clock_of(simulated_)),
   report_(
-    agenda_, node, gate, std::move(lines), [this] {return now();},
+    event_loop_, node, gate, std::move(lines), [this] {return now();},
     [this](const GateReport::Message & message) {gate_.report(message);}, target),
-  deadline_(agenda_, clock_, [this] {advance();}),
-  check_(agenda_, Clock(), [this] {check_publishers();}),
-  ports_(agenda_, [](const std::string &, const std::string &) {}),
+  deadline_(event_loop_, clock_, [this] {advance();}),
+  check_(event_loop_, Clock(), [this] {check_publishers();}),
+  ports_(event_loop_, [](const std::string &, const std::string &) {}),
   worker_(
-    agenda_,
+    event_loop_,
     [this](const char * why) {
       if (node_.get_node_base_interface()->get_context()->is_valid()) {  // else all nodes end
         RCLCPP_FATAL(node_.get_logger(), "%s", why);
@@ -59,7 +59,7 @@ Gatekeeper::Gatekeeper(
   }
 }
 
-Gatekeeper::~Gatekeeper()
+GateRunner::~GateRunner()
 {
   stop();
   for (const auto & subscription : subscriptions_) {
@@ -67,43 +67,43 @@ Gatekeeper::~Gatekeeper()
   }
 }
 
-void Gatekeeper::start()
+void GateRunner::start()
 {
   for (const std::string & refusal : refused_) {
     report_.fault("process", refusal);
   }
   report_.begin();
-  check_.ring_at(0);
+  check_.schedule(0);
   advance();
   worker_.start();
 }
 
-void Gatekeeper::settle()
+void GateRunner::settle()
 {
   const Time due = gate_.next_deadline();
-  if (due != NEVER && !(deadline_.is_set() && deadline_.due() <= due)) {
-    deadline_.ring_at(due);
+  if (due != NEVER && !(deadline_.is_scheduled() && deadline_.due() <= due)) {
+    deadline_.schedule(due);
   }
   report_.look();
 }
 
-void Gatekeeper::stop()
+void GateRunner::stop()
 {
   worker_.stop();
 }
 
-void Gatekeeper::when_ended(std::function<void()> ended)
+void GateRunner::when_ended(std::function<void()> ended)
 {
   worker_.when_ended(std::move(ended));
 }
 
-std::exception_ptr Gatekeeper::failure() const
+std::exception_ptr GateRunner::failure() const
 {
   return worker_.failure();
 }
 
 /// Have the thread take each message, into the same memory again and again.
-void Gatekeeper::serve(
+void GateRunner::serve(
   const rclcpp::SubscriptionBase::SharedPtr & subscription, const std::string & type)
 {
   const auto data = subscription->create_serialized_message();
@@ -113,22 +113,22 @@ void Gatekeeper::serve(
         from->handle_serialized_message(data, info);
       }
     };
-  const std::size_t source = agenda_.add_source(take, subscription->get_actual_qos().depth());
+  const std::size_t source = event_loop_.add_source(take, subscription->get_actual_qos().depth());
   subscription->set_on_new_message_callback(
-    [this, source](std::size_t count) {agenda_.notify(source, count);});
+    [this, source](std::size_t count) {event_loop_.notify(source, count);});
   subscriptions_.push_back(subscription);
   report_.watch_over({subscription->get_topic_name(), type, subscription->get_actual_qos()});
 }
 
 /// Look once a second who publishes what.
-void Gatekeeper::check_publishers()
+void GateRunner::check_publishers()
 {
-  check_.ring_at(steady_now() + CHECK_PERIOD);
+  check_.schedule(steady_now() + CHECK_PERIOD);
   gate_.check_publishers();
 }
 
 /// Do what is due.
-void Gatekeeper::advance()
+void GateRunner::advance()
 {
   gate_.advance(now());
   settle();

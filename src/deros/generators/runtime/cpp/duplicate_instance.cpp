@@ -1,4 +1,4 @@
-#include "deros_runtime/runtime/siblings.hpp"
+#include "deros_runtime/runtime/duplicate_instance.hpp"
 
 #include <algorithm>
 #include <string>
@@ -12,7 +12,8 @@
 namespace deros_runtime
 {
 
-Siblings::Siblings(rclcpp::Node & node, std::string heartbeat, Report report)
+DuplicateInstanceDetector::DuplicateInstanceDetector(
+  rclcpp::Node & node, std::string heartbeat, Report report)
 : node_(node),
   heartbeat_(std::move(heartbeat)),
   report_(std::move(report)),
@@ -20,7 +21,7 @@ Siblings::Siblings(rclcpp::Node & node, std::string heartbeat, Report report)
 {
 }
 
-void Siblings::look()
+void DuplicateInstanceDetector::look()
 {
   look_at_heartbeat();
   look_at_readers();
@@ -35,7 +36,7 @@ void Siblings::look()
     "published by " + found + ", too: whoever obeys it cannot tell them apart");
 }
 
-void Siblings::look_at_heartbeat()
+void DuplicateInstanceDetector::look_at_heartbeat()
 {
   const bool has_double = node_.count_publishers(heartbeat_) > 1;
   const std::string text =
@@ -47,7 +48,7 @@ void Siblings::look_at_heartbeat()
 }
 
 /// Look whether whoever subscribes to the next of the topics is served.
-void Siblings::look_at_readers()
+void DuplicateInstanceDetector::look_at_readers()
 {
   const std::string & topic = next_read_ == 0 ? heartbeat_ : states_[next_read_ - 1];
   next_read_ = (next_read_ + 1) % (states_.size() + 1);
@@ -55,7 +56,7 @@ void Siblings::look_at_readers()
 }
 
 /// Return the names of the nodes that publish on a topic besides this one.
-std::string Siblings::others(const std::string & topic) const
+std::string DuplicateInstanceDetector::others(const std::string & topic) const
 {
   if (node_.count_publishers(topic) <= 1) {
     return "";

@@ -24,7 +24,7 @@ Item = str | Text | list["Item"]
 """An expression, or an initialiser list of several."""
 
 
-def origins_view(
+def rule_metadata_view(
     model: Rules, program: Program, monitor: MonitorView, actions_file: str
 ) -> list[Item]:
     """Return the initialiser of the table of all that the reports name."""

@@ -1,5 +1,5 @@
-#ifndef DEROS_RUNTIME__RUNTIME__GUARDIAN_HPP_
-#define DEROS_RUNTIME__RUNTIME__GUARDIAN_HPP_
+#ifndef DEROS_RUNTIME__RUNTIME__SAFETY_NODE_CORE_HPP_
+#define DEROS_RUNTIME__RUNTIME__SAFETY_NODE_CORE_HPP_
 
 #include <cstddef>
 #include <cstdint>
@@ -10,18 +10,18 @@
 #include <string>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
 #include "deros_runtime/runtime/clock_choice.hpp"
 #include "deros_runtime/runtime/descriptor.hpp"
 #include "deros_runtime/runtime/diagnostics.hpp"
+#include "deros_runtime/runtime/duplicate_instance.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 #include "deros_runtime/runtime/events.hpp"
 #include "deros_runtime/runtime/latches.hpp"
+#include "deros_runtime/runtime/monitor_runner.hpp"
 #include "deros_runtime/runtime/ports.hpp"
 #include "deros_runtime/runtime/publishers.hpp"
-#include "deros_runtime/runtime/siblings.hpp"
-#include "deros_runtime/runtime/simulated.hpp"
-#include "deros_runtime/runtime/told.hpp"
-#include "deros_runtime/runtime/watch.hpp"
+#include "deros_runtime/runtime/report_types.hpp"
+#include "deros_runtime/runtime/simulated_time.hpp"
 #include "deros_runtime/runtime/worker.hpp"
 #include "rclcpp/rclcpp.hpp"
 
@@ -32,10 +32,10 @@ namespace deros_runtime
 using Active = std::vector<bool>;
 
 /// What the rules of one robot add to a safety node; actions and behaviours by their numbers.
-class Robot
+class SafetyNodeHooks
 {
 public:
-  virtual ~Robot() = default;
+  virtual ~SafetyNodeHooks() = default;
 
   /// Start the monitor; timeouts count from grace nanoseconds later.
   virtual void start_monitor(Time start, Time grace) = 0;
@@ -61,7 +61,7 @@ public:
   virtual void remember(std::size_t slot) = 0;
 
   /// Return what the monitor was worth then, or is now.
-  virtual Explanation explain(std::optional<std::size_t> slot) const = 0;
+  virtual MonitorSnapshot explain(std::optional<std::size_t> slot) const = 0;
 
   /// Publish the topic that shows an action, or all of them.
   virtual void show_state(std::size_t action, const Active & active) = 0;
@@ -83,7 +83,7 @@ public:
 constexpr std::size_t SLOTS = 32;
 
 /// The part of a safety node that is the same for all rules; all of it runs in one thread.
-class Guardian : private Watched
+class SafetyNodeCore : private MonitorHost
 {
 public:
   /// The parameters of the node.
@@ -107,8 +107,10 @@ public:
 
   /// Refuse to be a second one of the node's name, and prepare the process.
   /** \throw Refusal if there is one */
-  Guardian(rclcpp::Node & node, Robot & robot, const Origins & origins, Settings settings);
-  ~Guardian() override;
+  SafetyNodeCore(
+    rclcpp::Node & node, SafetyNodeHooks & hooks, const RuleMetadata & metadata,
+    Settings settings);
+  ~SafetyNodeCore() override;
 
   /// Return the callback group of the ports that this thread serves.
   const rclcpp::CallbackGroup::SharedPtr & group() const
@@ -127,19 +129,19 @@ public:
   /// Settle what is due before a message, and return the time that the monitor is told.
   Time catch_up()
   {
-    return watch_.catch_up();
+    return runner_.catch_up();
   }
 
   /// Do what the monitor ordered; to be called after each message.
   void settle()
   {
-    watch_.settle();
+    runner_.settle();
   }
 
   /// Take an event while the monitor evaluates.
   void take(const Event & event) noexcept
   {
-    watch_.take(event);
+    runner_.take(event);
   }
 
   /// Reset the latched actions that no behaviour calls for any more; return what to answer.
@@ -180,17 +182,17 @@ private:
   void tell_fault(const std::string & subject, const std::string & text);
   void refuse(const std::string & topic, const std::string & why);
   void publish();
-  void do_chores();
+  void do_housekeeping();
   void switch_behaviours();
   bool is_ready();
-  std::string unready() const;
+  std::string not_ready_reason() const;
   void log(Level level, const std::string & text) const;
   Events::Outside outside_of_events();
   Diagnostics::Outside outside_of_diagnostics();
 
   rclcpp::Node & node_;
-  Robot & robot_;
-  const Origins & origins_;
+  SafetyNodeHooks & hooks_;
+  const RuleMetadata & metadata_;
   const Settings settings_;
   const std::string name_;
   const Time grace_;
@@ -199,12 +201,12 @@ private:
   Descriptor lock_;
   const ClockChoice clock_choice_;
   rclcpp::CallbackGroup::SharedPtr group_;
-  Agenda agenda_;
+  EventLoop event_loop_;
   std::unique_ptr<SimulatedTime> simulated_;
-  Watch watch_;
+  MonitorRunner runner_;
   Events events_;
   Diagnostics diagnostics_;
-  Siblings siblings_;
+  DuplicateInstanceDetector duplicates_;
   Publishers publishers_;
   std::unique_ptr<Latches> latches_;
   Active active_;
@@ -214,14 +216,14 @@ private:
   std::size_t slot_ = 0;  // how many are in use
   std::uint64_t beats_ = 0;
   bool is_starting_ = true;
-  Alarm publishing_;
-  Alarm telling_;
-  Alarm chores_;
-  std::size_t switching_;  // the source of the agenda
+  OneShotTimer publishing_;
+  OneShotTimer telling_;
+  OneShotTimer housekeeping_;
+  std::size_t switching_;  // the source of the event loop
   Ports ports_;
   Worker worker_;
 };
 
 }  // namespace deros_runtime
 
-#endif  // DEROS_RUNTIME__RUNTIME__GUARDIAN_HPP_
+#endif  // DEROS_RUNTIME__RUNTIME__SAFETY_NODE_CORE_HPP_

@@ -1,4 +1,4 @@
-#include "deros_runtime/runtime/simulated.hpp"
+#include "deros_runtime/runtime/simulated_time.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -15,7 +15,7 @@ constexpr std::size_t TICKS = 100;  // that may wait: each is due at its place a
 }  // namespace
 
 SimulatedTime::SimulatedTime(
-  rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed)
+  rclcpp::Node & node, EventLoop & event_loop, std::function<void(bool)> changed)
 : changed_(std::move(changed)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false))
 {
@@ -24,10 +24,10 @@ SimulatedTime::SimulatedTime(
   options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
   subscription_ = node.create_subscription<Message>(
     "/clock", rclcpp::ClockQoS(rclcpp::KeepLast(TICKS)),
-    [](const Message &) { /* taken by the agenda */}, options);
-  const std::size_t source = agenda.add_source([this] {take();}, TICKS);
+    [](const Message &) { /* taken by the event loop */}, options);
+  const std::size_t source = event_loop.add_source([this] {take();}, TICKS);
   subscription_->set_on_new_message_callback(
-    [&agenda, source](std::size_t count) {agenda.notify(source, count);});
+    [&event_loop, source](std::size_t count) {event_loop.notify(source, count);});
 }
 
 SimulatedTime::~SimulatedTime()
@@ -50,12 +50,12 @@ void SimulatedTime::take()
 }
 
 std::unique_ptr<SimulatedTime> simulated_time(
-  rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed)
+  rclcpp::Node & node, EventLoop & event_loop, std::function<void(bool)> changed)
 {
   if (!node.get_parameter("use_sim_time").as_bool()) {
     return nullptr;
   }
-  return std::make_unique<SimulatedTime>(node, agenda, std::move(changed));
+  return std::make_unique<SimulatedTime>(node, event_loop, std::move(changed));
 }
 
 Time start_time(const rclcpp::Node & node, bool may_be_simulated)

@@ -1,17 +1,17 @@
-#ifndef DEROS_RUNTIME__RUNTIME__SIMULATED_HPP_
-#define DEROS_RUNTIME__RUNTIME__SIMULATED_HPP_
+#ifndef DEROS_RUNTIME__RUNTIME__SIMULATED_TIME_HPP_
+#define DEROS_RUNTIME__RUNTIME__SIMULATED_TIME_HPP_
 
 #include <functional>
 #include <memory>
 
-#include "deros_runtime/runtime/agenda.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 #include "rclcpp/rclcpp.hpp"
 #include "rosgraph_msgs/msg/clock.hpp"
 
 namespace deros_runtime
 {
 
-/// The time of a simulation as an agenda's thread sees it: in order with all that comes.
+/// Simulated time as the thread of an event loop sees it: in order with messages and requests.
 /**
  * rclcpp takes /clock in a thread of its own, whose time runs ahead of messages that wait to be
  * taken: an input would be found missing while its message is there.
@@ -20,9 +20,10 @@ class SimulatedTime
 {
 public:
   /**
-   * \param changed is called, in the agenda's thread, whenever time has gone on, or back if told so
+   * \param changed is called in the thread of the event loop whenever the time changes; its
+   *   argument is whether time has gone back
    */
-  SimulatedTime(rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed);
+  SimulatedTime(rclcpp::Node & node, EventLoop & event_loop, std::function<void(bool)> changed);
 
   /// From here on nothing is noted any more.
   ~SimulatedTime();
@@ -55,7 +56,7 @@ private:
 
 /// Return the simulated time of a node under use_sim_time, and nothing for others.
 std::unique_ptr<SimulatedTime> simulated_time(
-  rclcpp::Node & node, Agenda & agenda, std::function<void(bool)> changed);
+  rclcpp::Node & node, EventLoop & event_loop, std::function<void(bool)> changed);
 
 /// Return the time at which a node starts: 0 under use_sim_time, as SimulatedTime has it.
 /** \param may_be_simulated whether use_sim_time decides on the time that is meant */
@@ -66,4 +67,4 @@ Clock clock_of(const std::unique_ptr<SimulatedTime> & simulated);
 
 }  // namespace deros_runtime
 
-#endif  // DEROS_RUNTIME__RUNTIME__SIMULATED_HPP_
+#endif  // DEROS_RUNTIME__RUNTIME__SIMULATED_TIME_HPP_

@@ -1,22 +1,22 @@
-#ifndef DEROS_RUNTIME__RUNTIME__WATCH_HPP_
-#define DEROS_RUNTIME__RUNTIME__WATCH_HPP_
+#ifndef DEROS_RUNTIME__RUNTIME__MONITOR_RUNNER_HPP_
+#define DEROS_RUNTIME__RUNTIME__MONITOR_RUNNER_HPP_
 
 #include <cstddef>
 #include <exception>
 #include <functional>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
-#include "deros_runtime/runtime/told.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
+#include "deros_runtime/runtime/report_types.hpp"
 
 namespace deros_runtime
 {
 
 /// A monitor, and those who do what it orders.
-class Watched
+class MonitorHost
 {
 public:
-  virtual ~Watched() = default;
+  virtual ~MonitorHost() = default;
 
   /// Have the monitor start at an instant; again when simulated time begins.
   virtual void begin(Time start) = 0;
@@ -56,10 +56,10 @@ public:
  * It runs on steady time, which never steps, or on ROS time under use_sim_time. The owner hands
  * messages to the monitor, with the time of catch_up(), and calls settle() then.
  */
-class Watch
+class MonitorRunner
 {
 public:
-  Watch(Agenda & agenda, Clock clock, Watched & watched);
+  MonitorRunner(EventLoop & event_loop, Clock clock, MonitorHost & watched);
 
   /// Return the time that the monitor is told.
   Time now() const
@@ -94,7 +94,7 @@ public:
   Time advance();
 
   /// Return for how long what can wait has to, as a deadline is near.
-  Time put_off() const;
+  Time defer() const;
 
   /// Start when simulated time begins, and settle a step back without waiting.
   void clock_changed(bool back);
@@ -110,7 +110,7 @@ private:
   void arm();
 
   Clock clock_;
-  Watched & watched_;
+  MonitorHost & host_;
   Time began_at_ = 0;
   bool has_started_ = false;
   std::vector<Event> events_;  // of this evaluation, in the monitor's order
@@ -119,9 +119,9 @@ private:
   Indices code_;  // the indices of those whose code is still to be run
   std::size_t remembered_ = 0;  // how many of them can be explained
   std::exception_ptr failure_;  // the first one
-  Alarm deadline_;
+  OneShotTimer deadline_;
 };
 
 }  // namespace deros_runtime
 
-#endif  // DEROS_RUNTIME__RUNTIME__WATCH_HPP_
+#endif  // DEROS_RUNTIME__RUNTIME__MONITOR_RUNNER_HPP_

@@ -1,8 +1,8 @@
 /// \file
 /// The part of a gate's node that is the same for all gates.
 
-#ifndef DEROS_RUNTIME__RUNTIME__GATEKEEPER_HPP_
-#define DEROS_RUNTIME__RUNTIME__GATEKEEPER_HPP_
+#ifndef DEROS_RUNTIME__RUNTIME__GATE_RUNNER_HPP_
+#define DEROS_RUNTIME__RUNTIME__GATE_RUNNER_HPP_
 
 #include <cstddef>
 #include <cstdint>
@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "deros_runtime/runtime/agenda.hpp"
 #include "deros_runtime/runtime/clock_choice.hpp"
 #include "deros_runtime/runtime/descriptor.hpp"
+#include "deros_runtime/runtime/event_loop.hpp"
 #include "deros_runtime/runtime/gate_report.hpp"
 #include "deros_runtime/runtime/ports.hpp"
-#include "deros_runtime/runtime/simulated.hpp"
+#include "deros_runtime/runtime/simulated_time.hpp"
 #include "deros_runtime/runtime/worker.hpp"
 #include "rclcpp/rclcpp.hpp"
 #include "rclcpp/serialization.hpp"
@@ -27,7 +27,7 @@ namespace deros_runtime
 {
 
 /// The logic of a gate, and where it tells of itself.
-class Kept : public Applying
+class GateLogic : public GateStatus
 {
 public:
   /// Do what is due up to and including now.
@@ -60,7 +60,7 @@ bool read(const rclcpp::SerializedMessage & data, MessageT & message)
  * It runs on steady time, which never steps, whatever the robot's time is; for tests, it can run
  * on /clock, if the node does.
  */
-class Gatekeeper
+class GateRunner
 {
 public:
   /// Takes a message as it came.
@@ -77,12 +77,12 @@ public:
 
   /// Refuse to be a second one of the node's name, and prepare the process.
   /** \throw Refusal if there is one */
-  Gatekeeper(
-    rclcpp::Node & node, Kept & gate, std::vector<std::string> lines, const std::string & target,
-    Settings settings);
-  ~Gatekeeper();
-  Gatekeeper(const Gatekeeper &) = delete;
-  Gatekeeper & operator=(const Gatekeeper &) = delete;
+  GateRunner(
+    rclcpp::Node & node, GateLogic & gate, std::vector<std::string> lines,
+    const std::string & target, Settings settings);
+  ~GateRunner();
+  GateRunner(const GateRunner &) = delete;
+  GateRunner & operator=(const GateRunner &) = delete;
 
   /// Hear a topic, whose messages are handed over as they came; to be called before start().
   template<typename MessageT>
@@ -158,17 +158,17 @@ private:
   void check_publishers();
 
   rclcpp::Node & node_;
-  Kept & gate_;
+  GateLogic & gate_;
   std::vector<std::string> refused_;  // by the machine
   Descriptor lock_;
   const ClockChoice clock_choice_;
   rclcpp::CallbackGroup::SharedPtr group_;  // that no executor spins
-  Agenda agenda_;
+  EventLoop event_loop_;
   std::unique_ptr<SimulatedTime> simulated_;
   const Clock clock_;
   GateReport report_;
-  Alarm deadline_;
-  Alarm check_;
+  OneShotTimer deadline_;
+  OneShotTimer check_;
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
   Ports ports_;
   Worker worker_;
@@ -176,4 +176,4 @@ private:
 
 }  // namespace deros_runtime
 
-#endif  // DEROS_RUNTIME__RUNTIME__GATEKEEPER_HPP_
+#endif  // DEROS_RUNTIME__RUNTIME__GATE_RUNNER_HPP_

@@ -1,5 +1,5 @@
-#ifndef DEROS_RUNTIME__RUNTIME__AGENDA_HPP_
-#define DEROS_RUNTIME__RUNTIME__AGENDA_HPP_
+#ifndef DEROS_RUNTIME__RUNTIME__EVENT_LOOP_HPP_
+#define DEROS_RUNTIME__RUNTIME__EVENT_LOOP_HPP_
 
 #include <atomic>
 #include <condition_variable>
@@ -25,20 +25,20 @@ struct Clock
   bool is_steady = true;
 };
 
-class Alarm;
+class OneShotTimer;
 
-/// All that a thread has to do: what comes from outside, in order, and alarms.
+/// All that a thread has to do: what comes from outside, in order, and timers.
 /**
- * The thread that calls run() does it all. It waits on one condition, with the next alarm as the
+ * The thread that calls run() does it all. It waits on one condition, with the next timer as the
  * limit, so that what comes wakes it directly. Nothing is allocated while it runs. Alarms of other
  * clocks than the steady one are looked at whenever it wakes, so their clock should be a source.
  */
-class Agenda
+class EventLoop
 {
 public:
-  Agenda() = default;
-  Agenda(const Agenda &) = delete;
-  Agenda & operator=(const Agenda &) = delete;
+  EventLoop() = default;
+  EventLoop(const EventLoop &) = delete;
+  EventLoop & operator=(const EventLoop &) = delete;
 
   /// Add a source of things to do; take() does one of them. To be called before run().
   /**
@@ -57,7 +57,7 @@ public:
   void end();
 
 private:
-  friend class Alarm;
+  friend class OneShotTimer;
 
   struct Source
   {
@@ -76,10 +76,10 @@ private:
 
   std::size_t next_source();
   Times next_times() const;
-  void ring_alarms();
+  void fire_timers();
 
   std::vector<Source> sources_;
-  std::vector<Alarm *> alarms_;
+  std::vector<OneShotTimer *> timers_;
 
   std::mutex mutex_;
   std::condition_variable came_;
@@ -89,24 +89,24 @@ private:
   std::atomic<bool> ends_{false};
 };
 
-/// Rings at an instant of a clock, once; belongs to the thread of its agenda.
-class Alarm
+/// Rings at an instant of a clock, once; belongs to the thread of its event loop.
+class OneShotTimer
 {
 public:
   /**
-   * \param put_off tells of an alarm that is not urgent for how long something else goes before it
+   * \param defer tells of an timer that is not urgent for how long something else goes before it
    * \param lead for how long before it rings the thread stays awake, so that it rings on the dot
    */
-  Alarm(
-    Agenda & agenda, Clock clock, std::function<void()> callback,
-    std::function<Time()> put_off = {}, Time lead = 0);
-  Alarm(const Alarm &) = delete;
-  Alarm & operator=(const Alarm &) = delete;
+  OneShotTimer(
+    EventLoop & event_loop, Clock clock, std::function<void()> callback,
+    std::function<Time()> defer = {}, Time lead = 0);
+  OneShotTimer(const OneShotTimer &) = delete;
+  OneShotTimer & operator=(const OneShotTimer &) = delete;
 
   /// Tell whether it is going to ring, and return for when it is set, or was last.
-  bool is_set() const
+  bool is_scheduled() const
   {
-    return is_set_;
+    return is_scheduled_;
   }
   Time due() const
   {
@@ -114,7 +114,7 @@ public:
   }
 
   /// Ring at an instant, or at once if it is past; what was set before is forgotten.
-  void ring_at(Time due);
+  void schedule(Time due);
 
   /// Ring again a period after the last time, or after now if either was long ago.
   void repeat(Time period);
@@ -122,23 +122,23 @@ public:
   /// Do not ring.
   void cancel()
   {
-    is_set_ = false;
+    is_scheduled_ = false;
   }
 
 private:
-  friend class Agenda;
+  friend class EventLoop;
 
-  void ring_if_due();
+  void fire_if_due();
 
   Clock clock_;
   std::function<void()> callback_;
-  std::function<Time()> put_off_;
+  std::function<Time()> defer_;
   Time lead_;
   Time due_ = 0;
   Time wait_until_ = 0;
-  bool is_set_ = false;
+  bool is_scheduled_ = false;
 };
 
 }  // namespace deros_runtime
 
-#endif  // DEROS_RUNTIME__RUNTIME__AGENDA_HPP_
+#endif  // DEROS_RUNTIME__RUNTIME__EVENT_LOOP_HPP_

@@ -1,5 +1,5 @@
-#ifndef DEROS_RUNTIME__RUNTIME__SIBLINGS_HPP_
-#define DEROS_RUNTIME__RUNTIME__SIBLINGS_HPP_
+#ifndef DEROS_RUNTIME__RUNTIME__DUPLICATE_INSTANCE_HPP_
+#define DEROS_RUNTIME__RUNTIME__DUPLICATE_INSTANCE_HPP_
 
 #include <cstddef>
 #include <functional>
@@ -19,15 +19,15 @@ namespace deros_runtime
  * temporary files; the second contradicts it. It also looks whether whoever subscribes to one of
  * these topics is served.
  */
-class Siblings
+class DuplicateInstanceDetector
 {
 public:
   /// Takes the topic and what is wrong with it, empty if nothing is.
   using Report = std::function<void (const std::string &, const std::string &)>;
 
-  Siblings(rclcpp::Node & node, std::string heartbeat, Report report);
+  DuplicateInstanceDetector(rclcpp::Node & node, std::string heartbeat, Report report);
 
-  /// Watch over a topic with states.
+  /// MonitorRunner over a topic with states.
   void add(std::string topic)
   {
     states_.push_back(std::move(topic));
@@ -52,4 +52,4 @@ private:
 
 }  // namespace deros_runtime
 
-#endif  // DEROS_RUNTIME__RUNTIME__SIBLINGS_HPP_
+#endif  // DEROS_RUNTIME__RUNTIME__DUPLICATE_INSTANCE_HPP_

@@ -1,4 +1,4 @@
-#include "deros_runtime/runtime/watch.hpp"
+#include "deros_runtime/runtime/monitor_runner.hpp"
 
 #include <cstddef>
 #include <exception>
@@ -19,10 +19,10 @@ constexpr std::size_t EVENTS = 1024;  // of one evaluation, for which there is r
 
 }  // namespace
 
-Watch::Watch(Agenda & agenda, Clock clock, Watched & watched)
+MonitorRunner::MonitorRunner(EventLoop & event_loop, Clock clock, MonitorHost & watched)
 : clock_(std::move(clock)),
-  watched_(watched),
-  deadline_(agenda, clock_, [this] {advance();}, {}, LEAD)
+  host_(watched),
+  deadline_(event_loop, clock_, [this] {advance();}, {}, LEAD)
 {
   events_.reserve(EVENTS);
   done_.reserve(EVENTS);
@@ -30,30 +30,30 @@ Watch::Watch(Agenda & agenda, Clock clock, Watched & watched)
   code_.reserve(EVENTS);
 }
 
-void Watch::start()
+void MonitorRunner::start()
 {
   has_started_ = true;
   began_at_ = now();
-  watched_.begin(began_at_);
+  host_.begin(began_at_);
   deadline_.cancel();
   arm();
 }
 
-Time Watch::catch_up()
+Time MonitorRunner::catch_up()
 {
   const Time t = now();
-  for (Time due = watched_.due(); due <= t; due = watched_.due()) {
-    watched_.advance(due);
+  for (Time due = host_.due(); due <= t; due = host_.due()) {
+    host_.advance(due);
     remember();
   }
   return t;
 }
 
-void Watch::take(const Event & event) noexcept
+void MonitorRunner::take(const Event & event) noexcept
 {
   Indices * left = nullptr;
   try {
-    left = watched_.show(event) ? nullptr : &code_;
+    left = host_.show(event) ? nullptr : &code_;
   } catch (...) {
     left = &unpublished_;  // it is tried again, and reported, when the monitor is through
   }
@@ -64,7 +64,7 @@ void Watch::take(const Event & event) noexcept
   events_.push_back(event);
 }
 
-void Watch::settle()
+void MonitorRunner::settle()
 {
   if (!events_.empty()) {
     remember();
@@ -73,25 +73,25 @@ void Watch::settle()
   arm();
 }
 
-void Watch::run_again(const std::vector<Event> & events)
+void MonitorRunner::run_again(const std::vector<Event> & events)
 {
   for (const Event & event : events) {
-    attempt([this](const Event & each) {watched_.run_code(each);}, event);
+    attempt([this](const Event & each) {host_.run_code(each);}, event);
   }
   fail_if_something_failed();
 }
 
-Time Watch::advance()
+Time MonitorRunner::advance()
 {
   const Time t = catch_up();
-  watched_.advance(t);
+  host_.advance(t);
   settle();
   return t;
 }
 
-Time Watch::put_off() const
+Time MonitorRunner::defer() const
 {
-  const Time due = watched_.due();
+  const Time due = host_.due();
   if (due == NEVER || !clock_.is_steady) {
     return 0;
   }
@@ -99,32 +99,32 @@ Time Watch::put_off() const
   return left < NEAR ? left + AFTER : 0;
 }
 
-void Watch::clock_changed(bool back)
+void MonitorRunner::clock_changed(bool back)
 {
   const bool begins = has_started_ && began_at_ == 0;
   if (begins) {
     start();
   }
   if (begins || back) {
-    watched_.stepped();
+    host_.stepped();
     advance();
   }
 }
 
 /// Do all that is left of what was ordered, and only then fail if something failed.
-void Watch::carry_out()
+void MonitorRunner::carry_out()
 {
   for (const std::size_t i : unpublished_) {
-    attempt([this](const Event & event) {watched_.show(event);}, events_[i]);
+    attempt([this](const Event & event) {host_.show(event);}, events_[i]);
     done_[i] = now();
   }
   for (const std::size_t i : code_) {
-    attempt([this](const Event & event) {watched_.run_code(event);}, events_[i]);
+    attempt([this](const Event & event) {host_.run_code(event);}, events_[i]);
     done_[i] = now();
   }
   unpublished_.clear();
   code_.clear();
-  watched_.after(events_, done_);
+  host_.after(events_, done_);
   events_.clear();
   done_.clear();
   remembered_ = 0;
@@ -132,43 +132,43 @@ void Watch::carry_out()
 }
 
 /// Remember what explains the events of the last instant, if there are any.
-void Watch::remember()
+void MonitorRunner::remember()
 {
   if (events_.size() > remembered_) {
-    watched_.remember(events_.size());
+    host_.remember(events_.size());
     remembered_ = events_.size();
   }
 }
 
 /// Do something; tell and note what it throws.
-void Watch::attempt(const Act & act, const Event & event)
+void MonitorRunner::attempt(const Act & act, const Event & event)
 {
   try {
     act(event);
   } catch (const std::exception & error) {
     failure_ = failure_ ? failure_ : std::current_exception();
-    watched_.tell_failure(event, error.what());
+    host_.tell_failure(event, error.what());
   } catch (...) {
     failure_ = failure_ ? failure_ : std::current_exception();
-    watched_.tell_failure(event, "what it threw says nothing of itself");
+    host_.tell_failure(event, "what it threw says nothing of itself");
   }
 }
 
 /// End the node, and its heartbeat with it, if something was thrown.
-void Watch::fail_if_something_failed()
+void MonitorRunner::fail_if_something_failed()
 {
   if (failure_) {
-    watched_.tell();
+    host_.tell();
     std::rethrow_exception(failure_);
   }
 }
 
-/// Set the alarm to the monitor's next deadline; one that rings earlier may stay.
-void Watch::arm()
+/// Set the timer to the monitor's next deadline; one that rings earlier may stay.
+void MonitorRunner::arm()
 {
-  const Time due = watched_.due();
-  if (due != NEVER && !(deadline_.is_set() && deadline_.due() <= due)) {
-    deadline_.ring_at(due);
+  const Time due = host_.due();
+  if (due != NEVER && !(deadline_.is_scheduled() && deadline_.due() <= due)) {
+    deadline_.schedule(due);
   }
 }
 
