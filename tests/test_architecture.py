@@ -33,7 +33,7 @@ def _modules() -> list[Path]:
 
 def _is_text(path: Path) -> bool:
     """Whether a module is never imported: its text goes out into generated packages."""
-    folders = ("runtime/python",)
+    folders = ("runtime/python/deros_runtime",)
     return path.parent in [SOURCE / "generators" / folder for folder in folders]
 
 

@@ -13,8 +13,8 @@ _NAMESPACE = "deros_runtime"
 
 
 def python_runtime(package: str, modules: Iterable[str], notice: str = "") -> dict[str, File]:
-    """Return modules of :mod:`deros.generators.runtime.python` as files of a package."""
-    folder = resources.files("deros.generators.runtime.python")
+    """Return modules of the package ``deros_runtime`` as files of a package."""
+    folder = resources.files("deros.generators.runtime.python") / "deros_runtime"
     return {
         f"{package}/{package}/{module}.py": File(
             licensed_python((folder / f"{module}.py").read_text(encoding="utf-8"), notice)

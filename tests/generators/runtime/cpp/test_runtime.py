@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from deros.generators.runtime.python.instance import Refusal, claim, file_stem
-from deros.generators.runtime.python.latches import LatchFile, default_path
-from deros.generators.runtime.python.start_order import StartOrder
+from deros.generators.runtime.python.deros_runtime.instance import Refusal, claim, file_stem
+from deros.generators.runtime.python.deros_runtime.latches import LatchFile, default_path
+from deros.generators.runtime.python.deros_runtime.start_order import StartOrder
 from tests.support.cpp import needs_compiler
 from tests.support.safety_cpp import Harness, compiled
 

@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from deros.generators.runtime.python.clock_choice import refuse_clock_change
+from deros.generators.runtime.python.deros_runtime.clock_choice import refuse_clock_change
 from tests.support.ros import Peer
 
 

@@ -13,8 +13,8 @@ import pytest
 pytest.importorskip("rclpy")
 pytest.importorskip("diagnostic_msgs.msg")
 
-from deros.generators.runtime.python.diagnostics import CHUNK, Diagnostics
-from deros.generators.runtime.python.events import Behaviour
+from deros.generators.runtime.python.deros_runtime.diagnostics import CHUNK, Diagnostics
+from deros.generators.runtime.python.deros_runtime.event_reporter import Behaviour
 
 OK, WARN, ERROR, STALE = range(4)
 
@@ -69,13 +69,13 @@ class Shown:
 
     def ring(self) -> dict[str, Any]:
         """Publish now, and return the statuses by the last part of their name."""
-        self.diagnostics._alarm.ring()
+        self.diagnostics._timer.fire()
         return {each.name.rpartition(": ")[2]: each for each in self.messages[-1].status}
 
     @property
     def wait(self) -> float:
         """In how many seconds the next message is due."""
-        due: int = self.diagnostics._alarm.due
+        due: int = self.diagnostics._timer.due
         return (due - time.monotonic_ns()) / 1e9
 
 
@@ -121,8 +121,8 @@ def test_an_action_shows_cause_and_time() -> None:
     """Since when, by what; a further trigger does not move the start."""
     shown = Shown()
     why = Explanation((), {"stopping": ("a.a: speed 2.0 > 1", "b.b: lidar.missing()")})
-    shown.diagnostics.ordered(Event("trigger", "stop"), why)
-    shown.diagnostics.ordered(Event("trigger", "stop", "another", 5_500_000_000), why)
+    shown.diagnostics.update(Event("trigger", "stop"), why)
+    shown.diagnostics.update(Event("trigger", "stop", "another", 5_500_000_000), why)
     status = shown.ring()["action stop"]
     values = {each.key: each.value for each in status.values}
     assert (status.level[0], status.message) == (WARN, "active")
@@ -133,9 +133,9 @@ def test_an_action_shows_cause_and_time() -> None:
         "since": "1.000 s ago",
         "since_ns": "5000000000",
     }
-    shown.diagnostics.ordered(Event("refused", "stop"), Explanation())
+    shown.diagnostics.update(Event("refused", "stop"), Explanation())
     assert shown.ring()["action stop"].message == "active"
-    shown.diagnostics.ordered(Event("reset", "stop"), Explanation())
+    shown.diagnostics.update(Event("reset", "stop"), Explanation())
     assert shown.ring()["action stop"].message == "inactive"
 
 

@@ -13,7 +13,7 @@ from typing import IO
 
 import pytest
 
-from deros.generators.runtime.python.instance import Refusal, claim, file_stem
+from deros.generators.runtime.python.deros_runtime.instance import Refusal, claim, file_stem
 
 NAME = "/cell/robot_safety"
 
@@ -42,7 +42,7 @@ def test_the_lock_ends_with_its_process(tmp_path: Path) -> None:
     """However it ends: a killed node can be started again at once."""
     code = (
         "import os, signal, sys; from pathlib import Path;"
-        "from deros.generators.runtime.python.instance import claim;"
+        "from deros.generators.runtime.python.deros_runtime.instance import claim;"
         f"lock = claim({NAME!r}, 7, Path(sys.argv[1]));"
         "os.kill(os.getpid(), signal.SIGKILL)"
     )

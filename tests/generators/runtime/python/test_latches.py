@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from deros.generators.runtime.python.latches import Latches, LatchFile, default_path
+from deros.generators.runtime.python.deros_runtime.latches import Latches, LatchFile, default_path
 
 KNOWN = ("halt", "stop")
 
@@ -55,29 +55,29 @@ def test_without_a_file_nothing_is_active(tmp_path: Path) -> None:
 def test_what_is_being_done_when_the_process_ends_is_active(tmp_path: Path) -> None:
     """Between the trigger and the save all actions count as active; a save ends the doubt."""
     latches, _ = latches_in(tmp_path)
-    latches.foresee("beep")
+    latches.mark_pending("beep")
     assert file_in(tmp_path).load(KNOWN) == (frozenset(), "")
-    latches.foresee("stop")
+    latches.mark_pending("stop")
     active, problem = file_in(tmp_path).load(KNOWN)
     assert active == frozenset(KNOWN)
     assert "is damaged" in problem
-    latches.follow("trigger", "stop")
-    assert latches.keep() == ""
-    latches.foresee("stop")
+    latches.record("trigger", "stop")
+    assert latches.persist() == ""
+    latches.mark_pending("stop")
     assert file_in(tmp_path).load(KNOWN) == (frozenset({"stop"}), "")
 
 
 def test_what_was_active_is_active_after_a_restart(tmp_path: Path) -> None:
     """The file says what the last process knew, no more and no less."""
     latches, _ = latches_in(tmp_path)
-    latches.follow("trigger", "stop")
-    latches.follow("trigger", "beep")
-    assert latches.keep() == ""
+    latches.record("trigger", "stop")
+    latches.record("trigger", "beep")
+    assert latches.persist() == ""
     again, told = latches_in(tmp_path)
     assert again.active == {"stop"}
     assert told.texts == []
-    again.follow("reset", "stop")
-    again.keep()
+    again.record("reset", "stop")
+    again.persist()
     assert latches_in(tmp_path)[0].active == frozenset()
 
 
@@ -145,12 +145,12 @@ def test_when_the_disk_is_full_a_restart_finds_all_active(
 ) -> None:
     """The old file, which says 'inactive', does not outlive the trigger that it does not know."""
     latches, told = latches_in(tmp_path)
-    latches.follow("trigger", "stop")
+    latches.record("trigger", "stop")
     with monkeypatch.context() as full:
         without_space(full)
-        assert "No space left" in latches.keep()
+        assert "No space left" in latches.persist()
     assert file_in(tmp_path).load(KNOWN)[0] == set(KNOWN)
-    assert latches.keep() == ""
+    assert latches.persist() == ""
     assert told.texts[-1] == ""
     assert file_in(tmp_path).load(KNOWN) == (frozenset({"stop"}), "")
 
@@ -160,8 +160,8 @@ def test_a_reset_that_cannot_be_kept_is_refused(
 ) -> None:
     """Who has reset the robot must not find it stopped again after a restart, nor the reverse."""
     latches, _ = latches_in(tmp_path)
-    latches.follow("trigger", "stop")
-    latches.keep()
+    latches.record("trigger", "stop")
+    latches.persist()
     with monkeypatch.context() as full:
         without_space(full)
         assert latches.allow_reset(frozenset()).startswith("nothing is reset, because")
@@ -174,9 +174,9 @@ def test_a_reset_that_cannot_be_kept_is_refused(
 def test_no_half_written_file_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A full disk is not filled further."""
     latches, _ = latches_in(tmp_path)
-    latches.follow("trigger", "stop")
+    latches.record("trigger", "stop")
     without_space(monkeypatch)
-    latches.keep()
+    latches.persist()
     assert [path.name for path in (tmp_path / "deros").iterdir()] == ["robot.latches"]
 
 
@@ -208,10 +208,10 @@ def test_a_file_without_end_is_not_read_to_the_end(tmp_path: Path) -> None:
 def test_what_is_saved_is_not_written_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """keep() may be called at every heartbeat."""
+    """persist() may be called at every heartbeat."""
     latches, _ = latches_in(tmp_path)
     without_space(monkeypatch)
-    assert latches.keep() == ""
+    assert latches.persist() == ""
 
 
 @pytest.mark.parametrize(("home", "expected"), [("/ros", "/ros"), ("", "~/.ros")])

@@ -11,9 +11,11 @@ import pytest
 pytest.importorskip("rclpy")
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
-from deros.generators.runtime.python.instance import Refusal
-from deros.generators.runtime.python.publishers import Publishers
-from deros.generators.runtime.python.siblings import Siblings
+from deros.generators.runtime.python.deros_runtime.duplicate_instance import (
+    DuplicateInstanceDetector,
+)
+from deros.generators.runtime.python.deros_runtime.instance import Refusal
+from deros.generators.runtime.python.deros_runtime.publishers import PublisherCheck
 
 RELIABLE = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -34,7 +36,7 @@ def report(*publishers: Any, shared: tuple[str, ...] = ()) -> tuple[str, str]:
     node = Mock(subscriptions=[subscription])
     node.get_publishers_info_by_topic.return_value = list(publishers)
     found = Mock()
-    Publishers(node, found, shared).look()
+    PublisherCheck(node, found, shared).check()
     topic, text = found.call_args.args
     return topic, text
 
@@ -66,7 +68,7 @@ def test_a_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
 
 def test_a_node_without_subscriptions_has_nothing_to_look_at() -> None:
     """It just looks on."""
-    Publishers(Mock(subscriptions=[]), Mock(side_effect=AssertionError)).look()
+    PublisherCheck(Mock(subscriptions=[]), Mock(side_effect=AssertionError)).check()
 
 
 def _told(found: Mock, topic: str) -> list[str]:
@@ -79,19 +81,19 @@ def test_a_second_heartbeat_is_reported_and_ends_the_node_that_started_last() ->
     node, found = Mock(), Mock()
     node.get_publishers_info_by_topic.return_value = []  # nor is anybody known to read
     node.count_publishers.return_value = 2
-    siblings = Siblings(node, "/safety/heartbeat", [], found)
-    siblings._order = Mock()
-    siblings._order.gives_way.return_value = False
-    siblings.look()
-    assert siblings._order.gives_way.call_args.args[0]
+    detector = DuplicateInstanceDetector(node, "/safety/heartbeat", [], found)
+    detector._order = Mock()
+    detector._order.gives_way.return_value = False
+    detector.check()
+    assert detector._order.gives_way.call_args.args[0]
     assert _told(found, "/safety/heartbeat")[-1].startswith("another node publishes this heartbeat")
-    siblings._order.gives_way.return_value = True
+    detector._order.gives_way.return_value = True
     with pytest.raises(Refusal, match="this one started last"):
-        siblings.look()
-    siblings._order.gives_way.return_value = False
+        detector.check()
+    detector._order.gives_way.return_value = False
     node.count_publishers.return_value = 1
-    siblings.look()
-    assert not siblings._order.gives_way.call_args.args[0]
+    detector.check()
+    assert not detector._order.gives_way.call_args.args[0]
     assert _told(found, "/safety/heartbeat")[-1] == ""
 
 
@@ -104,9 +106,9 @@ def test_another_publisher_of_a_state_is_named() -> None:
     node.get_fully_qualified_name.return_value = "/safety"
     own = SimpleNamespace(node_name="safety", node_namespace="/")
     node.get_publishers_info_by_topic.return_value = [own, publisher()]
-    siblings = Siblings(node, "/safety/heartbeat", ["/stop", "/slow"], found)
+    detector = DuplicateInstanceDetector(node, "/safety/heartbeat", ["/stop", "/slow"], found)
     for _ in range(3):
-        siblings.look()
+        detector.check()
     text = "published by /arm/driver, too: whoever obeys it cannot tell them apart"
     assert _told(found, "/stop") == [text, text]
     assert _told(found, "/slow") == [""]

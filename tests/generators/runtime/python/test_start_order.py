@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deros.generators.runtime.python.start_order import PATIENCE, YOUNG, StartOrder
+from deros.generators.runtime.python.deros_runtime.start_order import PATIENCE, YOUNG, StartOrder
 
 LOOK = 100_000_000
 """From one look at the graph to the next, in ns."""

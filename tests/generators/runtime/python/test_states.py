@@ -12,7 +12,7 @@ std_msgs = pytest.importorskip("std_msgs.msg")
 
 from rclpy.serialization import deserialize_message  # noqa: E402
 
-from deros.generators.runtime.python.states import StateTopic  # noqa: E402
+from deros.generators.runtime.python.deros_runtime.states import StateTopic  # noqa: E402
 
 
 class Published:

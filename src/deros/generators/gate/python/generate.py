@@ -20,14 +20,14 @@ MODULES = ("logic", "message")
 """The modules of a gate besides that of its node, by the end of their names."""
 
 RUNTIME = (
-    "alarm",
     "clock_choice",
     "gate_report",
-    "gate_watch",
+    "gate_runner",
     "instance",
-    "machine",
+    "one_shot_timer",
     "process",
     "publishers",
+    "realtime",
     "regular_file",
     "safety_source",
     "start_order",

@@ -281,10 +281,10 @@ def _imports(
     own = {f"{base.module}_{module} as {module}" for module in ("logic", "message")}
     imports |= {
         "rclpy.serialization": {"deserialize_message"},
-        node.package: {*own, "machine"},
+        node.package: {*own, "realtime"},
         f"{node.package}.{base.base_module}": {base.base_class},
-        f"{node.package}.gate_report": {"decoded", "Report"},
-        f"{node.package}.gate_watch": {"GateWatch"},
+        f"{node.package}.gate_report": {"decoded", "GateReport"},
+        f"{node.package}.gate_runner": {"GateRunner"},
         f"{node.package}.instance": {"claim"},
         f"{node.package}.process": {"run"},
     }

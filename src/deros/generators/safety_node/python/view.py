@@ -40,20 +40,20 @@ from deros.monitor.actions import LOG_STATE
 from deros.monitor.ir import Action, Binding, Program, Scalar
 
 RUNTIME = (
-    "alarm",
     "clock_choice",
     "diagnostics",
-    "events",
+    "duplicate_instance",
+    "event_reporter",
     "instance",
-    "machine",
+    "monitor_runner",
+    "one_shot_timer",
     "process",
     "publishers",
+    "realtime",
     "regular_file",
-    "reports",
-    "siblings",
+    "report_queue",
     "start_order",
     "waker",
-    "watch",
 )
 """The modules of every safety node that are the same for all programs."""
 
@@ -244,16 +244,16 @@ def _imports(
     imports |= {
         "rclpy.clock": {"Clock"},
         "rclpy.clock_type": {"ClockType"},
-        package: {"machine", "monitor", "process"},
-        f"{package}.alarm": {"Alarm"},
+        package: {"monitor", "process", "realtime"},
+        f"{package}.one_shot_timer": {"OneShotTimer"},
         f"{package}.diagnostics": {"Diagnostics"},
-        f"{package}.events": {"Events", "OK", "WARN", "ERROR"},
+        f"{package}.event_reporter": {"EventReporter", "OK", "WARN", "ERROR"},
         f"{package}.instance": {"claim"},
         f"{package}.origins": {"ACTIONS", "BEHAVIOURS", "RULES"},
-        f"{package}.publishers": {"Publishers"},
-        f"{package}.reports": {"Reports"},
-        f"{package}.siblings": {"Siblings"},
-        f"{package}.watch": {"Watch"},
+        f"{package}.publishers": {"PublisherCheck"},
+        f"{package}.report_queue": {"ReportQueue"},
+        f"{package}.duplicate_instance": {"DuplicateInstanceDetector"},
+        f"{package}.monitor_runner": {"MonitorRunner"},
         f"{package}.{base.base_module}": {base.base_class},
     }
     if base.subscriptions:

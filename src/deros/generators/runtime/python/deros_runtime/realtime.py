@@ -17,13 +17,13 @@ MCL_CURRENT, MCL_FUTURE = 1, 2
 ON_LINUX = sys.platform.startswith('linux')
 
 
-def sharpen_timers() -> None:
+def minimize_timer_slack() -> None:
     """Have the kernel wake this thread, and those it starts, without the usual 50 us of slack."""
     if ON_LINUX:
         ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0)
 
 
-def never_wait_for_readers() -> None:
+def make_output_nonblocking() -> None:
     """
     Lose what is written to a full pipe as output, rather than wait until somebody reads it.
 
@@ -38,7 +38,7 @@ def never_wait_for_readers() -> None:
                 os.close(opened)
 
 
-def prepare(priority: int, lock_memory: bool, garbage_collection: bool) -> list[str]:
+def configure_process(priority: int, lock_memory: bool, garbage_collection: bool) -> list[str]:
     """
     Set the process up as its parameters say; return what was not permitted, each in words.
 
@@ -64,7 +64,7 @@ def _raise_priority(priority: int) -> Iterator[str]:
         yield f'realtime_priority {priority} is not permitted: {error}'
 
 
-def may_lock_all() -> bool:
+def can_lock_memory() -> bool:
     """Tell whether locked memory can grow: a limit would fail later what is asked for then."""
     limit, _ = resource.getrlimit(resource.RLIMIT_MEMLOCK)
     return limit == resource.RLIM_INFINITY or os.geteuid() == 0
@@ -74,7 +74,7 @@ def _lock_memory() -> Iterator[str]:
     if not ON_LINUX:
         yield f'lock_memory is not there on {sys.platform}'
         return
-    if not may_lock_all():
+    if not can_lock_memory():
         yield 'lock_memory is not permitted: it needs an unlimited RLIMIT_MEMLOCK'
         return
     library = ctypes.CDLL(None, use_errno=True)

@@ -10,9 +10,9 @@ from typing import Any
 from rclpy.clock import Clock
 from rclpy.node import Node
 
-from .alarm import Alarm
 from .diagnostics import Diagnostics
-from .events import Events
+from .event_reporter import EventReporter
+from .one_shot_timer import OneShotTimer
 
 SOON = 2_000_000  # ns after an action, when it is told of: those who have to act come first
 CHUNK = 4  # reports at once: more of them would keep the monitor waiting for too long
@@ -20,7 +20,7 @@ PAUSE = 1_000_000  # ns from one chunk to the next, in which messages are judged
 ROOM = 16  # reports that can wait; of one more, the oldest is told of at once
 
 
-class Reports:
+class ReportQueue:
     """
     Tells of what was done, in order.
 
@@ -32,22 +32,22 @@ class Reports:
         self,
         node: Node,
         steady: Clock,
-        events: Events,
+        events: EventReporter,
         diagnostics: Diagnostics,
         prepare: Callable[[], None],
-        put_off: Callable[[], int],
+        defer: Callable[[], int],
     ) -> None:
         """
         Prepare.
 
-        prepare is called after some have been told, for what can come next; put_off is that of an
-        alarm.
+        prepare is called after some have been told, for what can come next; defer is that of an
+        timer.
         """
         self._events = events
         self._diagnostics = diagnostics
         self._prepare = prepare
         self._waiting: deque[tuple[Any, ...]] = deque()
-        self._alarm = Alarm(node, steady, time.monotonic_ns, self._ring, put_off)
+        self._timer = OneShotTimer(node, steady, time.monotonic_ns, self._fire, defer)
 
     def add(self, events: Sequence[Any], done: Sequence[int], states: Sequence[Any]) -> None:
         """
@@ -58,17 +58,17 @@ class Reports:
         self._waiting.append((events, done, states))
         if len(self._waiting) > ROOM:
             self._tell_of(1)
-        if not self._alarm.is_set:
-            self._alarm.ring_at(time.monotonic_ns() + SOON)
+        if not self._timer.is_scheduled:
+            self._timer.schedule(time.monotonic_ns() + SOON)
 
-    def tell_rest(self) -> None:
+    def flush(self) -> None:
         """Tell of all that is left, at the end."""
         self._tell_of(len(self._waiting))
 
-    def _ring(self) -> None:
+    def _fire(self) -> None:
         self._tell_of(min(CHUNK, len(self._waiting)))
         if self._waiting:
-            self._alarm.ring_at(time.monotonic_ns() + PAUSE)
+            self._timer.schedule(time.monotonic_ns() + PAUSE)
 
     def _tell_of(self, count: int) -> None:
         for _ in range(count):
@@ -78,5 +78,5 @@ class Reports:
 
     def _tell(self, events: Sequence[Any], done: Sequence[int], states: Sequence[Any]) -> None:
         for event, done_at, explained in zip(events, done, states, strict=False):
-            self._events.ordered(event, done_at, explained)
-            self._diagnostics.ordered(event, explained)
+            self._events.report_monitor_event(event, done_at, explained)
+            self._diagnostics.update(event, explained)

@@ -12,9 +12,9 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
-from .alarm import Alarm
-from .publishers import Publishers
-from .target_publishers import TargetPublishers
+from .one_shot_timer import OneShotTimer
+from .publishers import PublisherCheck
+from .target_publishers import TargetPublisherCheck
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 PERIOD = 1_000_000_000  # ns
@@ -29,20 +29,20 @@ def decoded(data: bytes, kind: type) -> Any:
         return None
 
 
-class Applying(Protocol):
+class GateStatus(Protocol):
     """What is reported of the logic of a gate."""
 
     applying: tuple[bool, ...]
     since: int
 
 
-class Report:
+class GateReport:
     """Publishes one status, regularly and soon after a change, which it also logs."""
 
     def __init__(
         self,
         node: Node,
-        gate: Applying,
+        gate: GateStatus,
         lines: Sequence[str],
         now: Callable[[], int],
         publish: Callable[[DiagnosticArray], None],
@@ -58,14 +58,14 @@ class Report:
         self._publish = publish
         self._told: tuple[bool, ...] = ()
         self._cause = ''
-        self._publishers = Publishers(node, self.fault)
-        self._target = TargetPublishers(node, target, self.fault)
-        self._alarm = Alarm(
-            node, Clock(clock_type=ClockType.STEADY_TIME), time.monotonic_ns, self._ring
+        self._publishers = PublisherCheck(node, self.fault)
+        self._target = TargetPublisherCheck(node, target, self.fault)
+        self._timer = OneShotTimer(
+            node, Clock(clock_type=ClockType.STEADY_TIME), time.monotonic_ns, self._fire
         )
-        self._alarm.ring_at(0)
+        self._timer.schedule(0)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Report soon if other lines apply than were reported; takes next to no time."""
         if self._gate.applying is not self._told:
             self._hurry()
@@ -98,19 +98,19 @@ class Report:
 
     def _hurry(self) -> None:
         soon = time.monotonic_ns() + SOON
-        if not self._alarm.is_set or self._alarm.due > soon:
-            self._alarm.ring_at(soon)
+        if not self._timer.is_scheduled or self._timer.due > soon:
+            self._timer.schedule(soon)
 
-    def _ring(self) -> None:
-        self._alarm.ring_at(time.monotonic_ns() + PERIOD)
+    def _fire(self) -> None:
+        self._timer.schedule(time.monotonic_ns() + PERIOD)
         if self._gate.applying != self._told:
             self._log()
         self._told = self._gate.applying
         message = DiagnosticArray(status=[self._status()])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publish(message)
-        self._publishers.look()
-        self._target.look()
+        self._publishers.check()
+        self._target.check()
 
     def _log(self) -> None:
         applying = '; '.join(self._applying())

@@ -11,7 +11,12 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from deros.generators.runtime.python.watch import AFTER, NEAR, ActionError, Watch
+from deros.generators.runtime.python.deros_runtime.monitor_runner import (
+    AFTER,
+    NEAR,
+    ActionError,
+    MonitorRunner,
+)
 
 
 class Event(NamedTuple):
@@ -54,15 +59,15 @@ class Monitor:
 
 
 class Owner:
-    """What a watch calls, in the order called."""
+    """What a runner calls, in the order called."""
 
     def __init__(self, *actions: str, failing: bool = False) -> None:
-        """Start a watch off simulated time."""
+        """Start a runner off simulated time."""
         self.calls: list[str] = []
         self.steady = Mock()
         node = Mock()
         node.get_parameter.return_value.value = False
-        self.watch = Watch(
+        self.runner = MonitorRunner(
             node,
             self.steady,
             lambda _start, emit: Monitor(list(actions), emit, failing),
@@ -72,7 +77,7 @@ class Owner:
             lambda: self.calls.append("tell"),
             lambda: self.calls.append("stepped"),
         )
-        self.watch.start()
+        self.runner.start()
 
     def show(self, event: Event) -> bool:
         """Show a stop at once; what cannot be shown fails once, and the rest is code."""
@@ -100,21 +105,21 @@ class Owner:
 def test_all_is_done_before_anything_is_told() -> None:
     """The actions come first."""
     owner = Owner("stop", "beep")
-    owner.watch.advance()
+    owner.runner.advance()
     assert owner.calls == ["show stop", "run beep", "after stop beep"]
 
 
 def test_what_is_published_waits_for_no_code() -> None:
     """A stop that is ordered after code is out before that; it is told of in its place."""
     owner = Owner("beep", "stop")
-    owner.watch.advance()
+    owner.runner.advance()
     assert owner.calls == ["show stop", "run beep", "after beep stop"]
 
 
 def test_what_could_not_be_published_is_tried_again_before_code_runs() -> None:
     """A failure in the middle of an evaluation is no failure of the monitor."""
     owner = Owner("beep", "unshowable", "stop")
-    owner.watch.advance()
+    owner.runner.advance()
     assert owner.calls == [
         "no unshowable",
         "show stop",
@@ -129,7 +134,7 @@ def test_failing_code_keeps_nothing_else_from_being_done(bad: str) -> None:
     """Whatever it raises, the rest is done and told, and then an ordinary error ends the node."""
     owner = Owner(bad, "beep", "stop")
     with pytest.raises(ActionError) as raised:
-        owner.watch.advance()
+        owner.runner.advance()
     assert raised.value.__cause__ is BAD[bad]
     assert owner.calls == [
         "show stop",
@@ -144,7 +149,7 @@ def test_code_of_before_the_start_is_run_whatever_fails() -> None:
     """One that fails keeps no other from being run again."""
     owner = Owner()
     with pytest.raises(ActionError):
-        owner.watch.run_again([Event("throws"), Event("beep")])
+        owner.runner.run_again([Event("throws"), Event("beep")])
     assert owner.calls == ["run throws", "run beep", "tell"]
 
 
@@ -154,10 +159,10 @@ def test_code_that_comes_back_finds_nothing_to_be_done() -> None:
 
     def come_back(event: Event) -> None:
         owner.run(event)
-        owner.watch.settle()
+        owner.runner.settle()
 
-    owner.watch._run = come_back
-    owner.watch.advance()
+    owner.runner._run = come_back
+    owner.runner.advance()
     assert owner.calls == ["show stop", "run beep", "after beep stop"]
 
 
@@ -165,30 +170,30 @@ def test_what_a_failing_monitor_has_ordered_is_done() -> None:
     """An error in the rules ends the node, but not before the stop is out."""
     owner = Owner("stop", "beep", failing=True)
     with pytest.raises(ArithmeticError):
-        owner.watch.advance()
+        owner.runner.advance()
     assert owner.calls == ["show stop", "run beep", "after stop beep"]
 
 
 def test_what_is_done_is_done_once() -> None:
     """A second look finds nothing ordered."""
     owner = Owner("stop", "beep")
-    owner.watch.advance()
-    owner.watch.settle()
+    owner.runner.advance()
+    owner.runner.settle()
     assert owner.calls == ["show stop", "run beep", "after stop beep"]
 
 
 def test_what_can_wait_waits_while_a_deadline_is_near() -> None:
     """From shortly before it until shortly after it, and not on account of one that is far."""
     owner = Owner()
-    watch = owner.watch
-    assert watch.put_off() <= AFTER
+    runner = owner.runner
+    assert runner.defer() <= AFTER
     now = time.monotonic_ns()
-    watch.now = lambda: now
+    runner.now = lambda: now
     for left, pause in ((NEAR + 10**9, 0), (NEAR - 10**6, NEAR - 10**6 + AFTER), (-(10**9), 0)):
-        watch.monitor.next_deadline = now + left
-        assert max(watch.put_off(), 0) == pause
-    watch.monitor.next_deadline = None
-    assert watch.put_off() == 0
+        runner.monitor.next_deadline = now + left
+        assert max(runner.defer(), 0) == pause
+    runner.monitor.next_deadline = None
+    assert runner.defer() == 0
 
 
 class Counter:
@@ -216,13 +221,13 @@ def test_each_of_several_late_events_is_explained_by_what_was_known_then() -> No
     """A call that comes late settles one instant after the other; it publishes all at once."""
     told: list[tuple[str, int]] = []
     owner = Owner()
-    watch = owner.watch
-    watch.monitor = Counter(watch._take)
-    watch._show = lambda _event: True
-    watch._after = lambda events, _, states: told.extend(
+    runner = owner.runner
+    runner.monitor = Counter(runner._take)
+    runner._show = lambda _event: True
+    runner._after = lambda events, _, states: told.extend(
         (event.action, state) for event, state in zip(events, states, strict=True)
     )
-    watch.catch_up(3)
+    runner.catch_up(3)
     assert told == []
-    watch.settle()
+    runner.settle()
     assert told == [("stop 1", 1), ("stop 2", 2), ("stop 3", 3)]

@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip("rclpy")
 pytest.importorskip("diagnostic_msgs.msg")
 
-from deros.generators.runtime.python.events import Behaviour, Events
+from deros.generators.runtime.python.deros_runtime.event_reporter import Behaviour, EventReporter
 
 
 class Event(NamedTuple):
@@ -57,7 +57,9 @@ def told(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
     node, published = Mock(), list[Any]()
     node.get_fully_qualified_name.return_value = "/safety"
     node.get_clock.return_value.now.return_value.nanoseconds = 9
-    Events(node, "robot.deros", BEHAVIOURS, published.append).ordered(event, 6, after)
+    EventReporter(node, "robot.deros", BEHAVIOURS, published.append).report_monitor_event(
+        event, 6, after
+    )
     (status,) = published
     log = node.get_logger.return_value
     ((line,), _) = next(

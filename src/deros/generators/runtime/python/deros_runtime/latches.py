@@ -93,7 +93,7 @@ class LatchFile:
                 if is_new and stat.S_ISREG(path.lstat().st_mode):
                     path.unlink()
 
-    def doubt(self) -> None:
+    def mark_dirty(self) -> None:
         """
         Have the file count as 'all active' until it is saved again.
 
@@ -105,7 +105,7 @@ class LatchFile:
             with contextlib.suppress(OSError):
                 os.pwrite(self._opened.fileno(), b'?', 0)
 
-    def spoil(self) -> None:
+    def truncate(self) -> None:
         """
         Empty the file, which needs no space: it counts as 'all active' then.
 
@@ -176,17 +176,17 @@ class Latches:
         if problem:
             tell('latches', f'{problem}; all latched actions are active')
 
-    def foresee(self, action: str) -> None:
+    def mark_pending(self, action: str) -> None:
         """Make sure, before an action is carried out, that no end of the process forgets it."""
         if action in self._known and action not in self.active:
-            self._file.doubt()
+            self._file.mark_dirty()
 
-    def follow(self, kind: str, action: str) -> None:
+    def record(self, kind: str, action: str) -> None:
         """Follow an event of the monitor."""
         if action in self._known:
             self.active = self.active - {action} if kind == 'reset' else self.active | {action}
 
-    def keep(self) -> str:
+    def persist(self) -> str:
         """Have the file say what is active; return why it does not. To be tried again then."""
         if self._file.saved == self.active:
             if self._file.is_in_place:
@@ -197,7 +197,7 @@ class Latches:
         except OSError as error:
             text = f'{self._file.path} cannot be written: {error}'
             try:
-                self._file.spoil()
+                self._file.truncate()
                 text += '; after a restart all latched actions are active'
             except OSError as second:
                 text += f'; nor emptied: {second}'
@@ -211,7 +211,7 @@ class Latches:
         try:
             self._file.save(remaining)
         except OSError as error:
-            self.keep()
+            self.persist()
             return f'nothing is reset, because {self._file.path} cannot be written: {error}'
         self._tell('latches', '')
         return ''

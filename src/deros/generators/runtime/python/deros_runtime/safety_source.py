@@ -9,7 +9,7 @@ from rclpy.event_handler import EventHandler, QoSSubscriptionEventType
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
-from .publishers import heard_publishers, listed, node_of
+from .publishers import matched_publishers, node_names, node_of
 
 TURNS = 3  # of the executor's queue, which deals with an event in two
 State = Callable[..., bool]  # takes the time, what is active, and whether that is trusted
@@ -143,17 +143,17 @@ class SafetySource:
     def _safety_node(self) -> str:
         """Return the name of the safety node; empty if it is not known, or there are several."""
         heard = [self._heartbeat] if self._heartbeat else [s for s, _, _ in self._states.values()]
-        publishers = [heard_publishers(self._node, each) for each in heard]
+        publishers = [matched_publishers(self._node, each) for each in heard]
         nodes = {node_of(info) for infos in publishers for info in infos}
         return nodes.pop() if len(nodes) == 1 and max(map(len, publishers)) == 1 else ''
 
     def _is_of_safety_node(self, topic: str) -> bool:
         subscription, _, _ = self._states[topic]
         safety_node = self._safety_node()
-        found = heard_publishers(self._node, subscription)
+        found = matched_publishers(self._node, subscription)
         nodes = [node_of(info) for info in found]
         is_stranger = safety_node and len(nodes) == 1 and nodes[0] not in ('', safety_node)
-        text = f'{listed(found)} publishes it, not the safety node {safety_node}'
+        text = f'{node_names(found)} publishes it, not the safety node {safety_node}'
         self._report(f'state on {subscription.topic_name}', text if is_stranger else '')
         return bool(safety_node) and nodes == [safety_node]
 

@@ -11,8 +11,8 @@ from rclpy.clock import Clock, JumpThreshold, TimeJump
 from rclpy.duration import Duration
 from rclpy.node import Node
 
-from .alarm import Alarm
 from .clock_choice import refuse_clock_change
+from .one_shot_timer import OneShotTimer
 
 NEAR = 2_000_000  # ns before a deadline in which nothing is begun that can wait
 AFTER = 1_000_000  # ns after it in which what it orders is done
@@ -22,7 +22,7 @@ class ActionError(Exception):
     """The code of an action has failed; the text names it."""
 
 
-class Watch:
+class MonitorRunner:
     """
     Runs a monitor on steady time, which never steps, or on ROS time under use_sim_time.
 
@@ -69,7 +69,7 @@ class Watch:
         self._states: list[Any] = []  # what the monitor explained after each of them
         refuse_clock_change(node)
         self.now, self.clock = self._choose_clock(steady)
-        self._deadline = Alarm(node, self.clock, self.now, self._on_deadline)
+        self._deadline = OneShotTimer(node, self.clock, self.now, self._on_deadline)
 
     def start(self) -> None:
         """Start the monitor: its timeouts count from now."""
@@ -107,7 +107,7 @@ class Watch:
         """Run the code of actions that were active before the start, of each of them."""
         self._fail_with([error for event in events for error in self._attempt(self._run, event)])
 
-    def put_off(self) -> int:
+    def defer(self) -> int:
         """Return for how long what can wait has to, in nanoseconds, as a deadline is near."""
         deadline = self.monitor.next_deadline
         if deadline is None or self.clock is not self._steady:
@@ -118,8 +118,8 @@ class Watch:
     def _choose_clock(self, steady: Clock) -> tuple[Callable[[], int], Clock]:
         if not self._node.get_parameter('use_sim_time').value:
             return time.monotonic_ns, steady  # what that clock shows, in a thirtieth of the time
-        # The callback of a jump may not do much, so it leaves the rest to an alarm due at once.
-        self._step = Alarm(self._node, steady, time.monotonic_ns, self._on_step)
+        # The callback of a jump may not do much, so it leaves the rest to an timer due at once.
+        self._step = OneShotTimer(self._node, steady, time.monotonic_ns, self._on_step)
         jumps = JumpThreshold(
             min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
         )
@@ -133,22 +133,22 @@ class Watch:
         if begins:
             self.start()
         if begins or jump.delta.nanoseconds < 0:
-            self._step.ring_at(0)
+            self._step.schedule(0)
 
     def _on_step(self) -> None:
         self._stepped()
         self._on_deadline()
 
     def _on_deadline(self) -> None:
-        self._deadline.is_set = False
+        self._deadline.is_scheduled = False
         self.advance()
 
     def _arm(self) -> None:
-        """Set the alarm to the monitor's next deadline; one that rings earlier may stay."""
+        """Set the timer to the monitor's next deadline; one that rings earlier may stay."""
         deadline = self.monitor.next_deadline
-        alarm = self._deadline
-        if deadline is not None and not (alarm.is_set and alarm.due <= deadline):
-            alarm.ring_at(deadline)
+        timer = self._deadline
+        if deadline is not None and not (timer.is_scheduled and timer.due <= deadline):
+            timer.schedule(deadline)
 
     def _take(self, event: Any) -> None:
         """Show at once what an event asks for; robot code waits until all of them are shown."""

@@ -18,7 +18,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import ok, try_shutdown
 
 from .instance import Refusal
-from .machine import never_wait_for_readers, sharpen_timers
+from .realtime import make_output_nonblocking, minimize_timer_slack
 from .waker import StopSignals, Waker
 
 WAIT = 1.0  # seconds; a wait without a limit is not woken by events in every release
@@ -37,8 +37,8 @@ def run(
     does, nor look as if it had been told to end. So does a shutdown of the context from within. A
     Refusal ends it with its text.
     """
-    never_wait_for_readers()
-    sharpen_timers()  # before any thread of the middleware starts, so that it inherits them
+    make_output_nonblocking()
+    minimize_timer_slack()  # before any thread of the middleware starts, so that it inherits them
     signals = StopSignals()
     try:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)

@@ -19,7 +19,7 @@ class Behaviour(NamedTuple):
     rules: tuple[str, ...]  # that it depends on, also through the behaviours around it
 
 
-class Events:
+class EventReporter:
     """Tells what happened, to the log and on a topic; always after it has been acted upon."""
 
     def __init__(
@@ -35,7 +35,7 @@ class Events:
         self._behaviours = behaviours
         self._publish = publish
 
-    def ordered(self, event: Any, done: int, after: Any) -> None:
+    def report_monitor_event(self, event: Any, done: int, after: Any) -> None:
         """
         Tell of an event of the monitor.
 
@@ -65,9 +65,9 @@ class Events:
             told |= {f'cause {name}': cause(name, after) for name in event.holding}
             for name in (*event.holding, *event.unknown):
                 told |= self._values(name, after)
-        self.tell(event.kind, level, message, **told)
+        self.report(event.kind, level, message, **told)
 
-    def tell(self, kind: str, level: bytes, message: str, **values: object) -> None:
+    def report(self, kind: str, level: bytes, message: str, **values: object) -> None:
         """Tell of anything."""
         self._log(level, message)
         told = {'kind': kind, **values, 'ros_time_ns': self._node.get_clock().now().nanoseconds}

@@ -11,13 +11,13 @@ from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.node import Node
 
-from .alarm import Alarm
 from .clock_choice import refuse_clock_change, USE_SIM_TIME
+from .one_shot_timer import OneShotTimer
 
 NEVER = 1 << 62  # or later, in nanoseconds; timers cannot wait for that
 
 
-class Gate(Protocol):
+class GateLogic(Protocol):
     """What the logic of a gate does by itself."""
 
     @property
@@ -28,7 +28,7 @@ class Gate(Protocol):
         """Do what is due up to and including t."""
 
 
-class GateWatch:
+class GateRunner:
     """
     Runs a gate on steady time, which never steps, whatever the robot's time is.
 
@@ -40,9 +40,9 @@ class GateWatch:
         self._node = node
         refuse_clock_change(node)
         self.now, clock = self._choose_clock(in_simulated_time)
-        self._deadline = Alarm(node, clock, self.now, self.advance)
+        self._deadline = OneShotTimer(node, clock, self.now, self.advance)
 
-    def start(self, gate: Gate, settled: Callable[[], None]) -> None:
+    def start(self, gate: GateLogic, settled: Callable[[], None]) -> None:
         """Start with a gate; settled is called whenever something has happened to it."""
         self._gate = gate
         self._settled = settled
@@ -54,22 +54,22 @@ class GateWatch:
         self.settle()
 
     def settle(self) -> None:
-        """Wake up for the next deadline; an alarm that rings earlier may stay."""
+        """Wake up for the next deadline; an timer that rings earlier may stay."""
         due = self._gate.next_deadline
-        if due < NEVER and not (self._deadline.is_set and self._deadline.due <= due):
-            self._deadline.ring_at(due)
+        if due < NEVER and not (self._deadline.is_scheduled and self._deadline.due <= due):
+            self._deadline.schedule(due)
         self._settled()
 
     def _choose_clock(self, in_simulated_time: bool) -> tuple[Callable[[], int], Clock]:
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         if not (in_simulated_time and self._node.get_parameter(USE_SIM_TIME).value):
             return time.monotonic_ns, steady  # what that clock shows, in a thirtieth of the time
-        # The callback of a jump may not do much, so it leaves the rest to an alarm due at once.
-        self._step = Alarm(self._node, steady, time.monotonic_ns, self.advance)
+        # The callback of a jump may not do much, so it leaves the rest to an timer due at once.
+        self._step = OneShotTimer(self._node, steady, time.monotonic_ns, self.advance)
         jumps = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
         clock = self._node.get_clock()
         self._jumps = clock.create_jump_callback(jumps, post_callback=self._on_clock_jump)
         return lambda: clock.now().nanoseconds, clock
 
     def _on_clock_jump(self, _jump: TimeJump) -> None:
-        self._step.ring_at(0)
+        self._step.schedule(0)

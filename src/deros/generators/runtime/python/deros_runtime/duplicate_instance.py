@@ -9,11 +9,11 @@ import time
 from rclpy.node import Node
 
 from .instance import Refusal
-from .publishers import listed, node_of, unserved_readers
+from .publishers import node_names, node_of, unmatched_subscriptions
 from .start_order import StartOrder
 
 
-class Siblings:
+class DuplicateInstanceDetector:
     """
     Looks whether somebody else publishes the heartbeat of a node, or the states of its actions.
 
@@ -38,18 +38,18 @@ class Siblings:
         self._report = report
         self._order = StartOrder(time.monotonic_ns())
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Look now; raises Refusal if there is a second node and this one started last."""
-        self._look_at_heartbeat()
+        self._check_heartbeat()
         topic = next(self._states, None)
         if topic is not None:
             others = self._others(topic)
             text = f'published by {others}, too: whoever obeys it cannot tell them apart'
             self._report(topic, text if others else '')
         topic = next(self._offered)
-        self._report(f'readers of {topic}', unserved_readers(self._node, topic))
+        self._report(f'readers of {topic}', unmatched_subscriptions(self._node, topic))
 
-    def _look_at_heartbeat(self) -> None:
+    def _check_heartbeat(self) -> None:
         has_double = self._node.count_publishers(self._heartbeat) > 1
         text = 'another node publishes this heartbeat: whoever heeds it cannot tell them apart'
         if self._order.gives_way(has_double, time.monotonic_ns()):
@@ -62,4 +62,4 @@ class Siblings:
             return ''
         own = self._node.get_fully_qualified_name()
         infos = self._node.get_publishers_info_by_topic(topic)
-        return listed([info for info in infos if node_of(info) != own])
+        return node_names([info for info in infos if node_of(info) != own])

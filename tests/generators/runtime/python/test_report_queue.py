@@ -9,23 +9,29 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from deros.generators.runtime.python import reports as module
-from deros.generators.runtime.python.reports import CHUNK, PAUSE, ROOM, SOON, Reports
+from deros.generators.runtime.python.deros_runtime import report_queue
+from deros.generators.runtime.python.deros_runtime.report_queue import (
+    CHUNK,
+    PAUSE,
+    ROOM,
+    SOON,
+    ReportQueue,
+)
 from tests.support.clockwork import Clockwork
 
 
 class Telling(Clockwork):
-    """Reports on a clock that the test moves, and what they have told."""
+    """A queue on a clock that the test moves, and what they have told."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Begin at zero, with nothing to tell."""
         super().__init__()
         self.told: list[int] = []
         self.pauses = 0
-        monkeypatch.setattr(module, "time", Mock(monotonic_ns=self.read))
+        monkeypatch.setattr(report_queue, "time", Mock(monotonic_ns=self.read))
         self.diagnostics = Mock()
-        events: Any = Mock(ordered=self.note)
-        self.reports = Reports(self.node, self.clock, events, self.diagnostics, self.pause, int)
+        events: Any = Mock(report_monitor_event=self.note)
+        self.reports = ReportQueue(self.node, self.clock, events, self.diagnostics, self.pause, int)
 
     def note(self, event: Any, done: int, states: Any) -> None:
         """Note what is told, with all that belongs to it."""
@@ -75,7 +81,7 @@ def test_messages_come_between_chunks(telling: Telling) -> None:
     assert telling.told == everything
     assert telling.pauses == 3
     assert telling.diagnostics.changed.call_count == 3
-    assert telling.diagnostics.ordered.call_count == len(everything)
+    assert telling.diagnostics.update.call_count == len(everything)
 
 
 def test_what_comes_later_is_told_later(telling: Telling) -> None:
@@ -94,5 +100,5 @@ def test_a_backlog_does_not_grow_for_ever(telling: Telling) -> None:
     everything = list(range(3 * ROOM))
     telling.add(*everything)
     assert telling.told == everything[:-ROOM]
-    telling.reports.tell_rest()
+    telling.reports.flush()
     assert telling.told == everything

@@ -10,16 +10,16 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from .alarm import Alarm
 from .instance import Refusal
-from .publishers import listed, node_of, unserved_readers
+from .one_shot_timer import OneShotTimer
+from .publishers import node_names, node_of, unmatched_subscriptions
 from .start_order import StartOrder, YOUNG
 
 PERIOD = 100_000_000  # ns from look to look, while a second gate might be met
 EARLY = 2 * YOUNG  # ns after its start; a gate that met it while young has given way by then
 
 
-class TargetPublishers:
+class TargetPublisherCheck:
     """Looks for publishers on the target of a gate beside its own, and for unserved readers."""
 
     def __init__(self, node: Node, target: str, report: Callable[[str, str], None]) -> None:
@@ -31,19 +31,21 @@ class TargetPublishers:
         self._order = StartOrder(started)
         self._early_until = started + EARLY
         clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._early = Alarm(node, clock, time.monotonic_ns, self._look_early)
-        self._early.ring_at(0)
+        self._early = OneShotTimer(node, clock, time.monotonic_ns, self._check_early)
+        self._early.schedule(0)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Look now; raises Refusal if there is a second gate and this one started last."""
         others, second = self._found()
         faults = [second] if second else []
         if others:
-            faults.append(f'published past the gate: {listed(others)}')
+            faults.append(f'published past the gate: {node_names(others)}')
         self._report(self._target, '; '.join(faults))
-        self._report(f'readers of {self._target}', unserved_readers(self._node, self._target))
+        self._report(
+            f'readers of {self._target}', unmatched_subscriptions(self._node, self._target)
+        )
 
-    def _look_early(self) -> None:
+    def _check_early(self) -> None:
         if self._early.due < self._early_until:
             self._early.repeat(PERIOD)
         self._found()

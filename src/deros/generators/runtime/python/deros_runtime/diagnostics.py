@@ -13,8 +13,8 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.clock import Clock
 from rclpy.node import Node
 
-from .alarm import Alarm
-from .events import Behaviour, cause, shown
+from .event_reporter import Behaviour, cause, shown
+from .one_shot_timer import OneShotTimer
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
@@ -50,9 +50,9 @@ class Diagnostics:
         actions: Mapping[str, bool],
         publish: Callable[[DiagnosticArray], None],
         frequency: float,
-        put_off: Callable[[], int],
+        defer: Callable[[], int],
     ) -> None:
-        """Prepare; actions tells of each whether it has a state, put_off what goes before."""
+        """Prepare; actions tells of each whether it has a state, defer what goes before."""
         self.faults: dict[str, str] = {}  # by what they are about
         self.actions = {name: ActionState(lasts) for name, lasts in actions.items()}
         self._node = node
@@ -61,7 +61,7 @@ class Diagnostics:
         self._period = round(1e9 / frequency)
         self._rest: Iterator[DiagnosticStatus] | None = None
         self._again = False
-        self._alarm = Alarm(node, steady, time.monotonic_ns, self._ring, put_off)
+        self._timer = OneShotTimer(node, steady, time.monotonic_ns, self._fire, defer)
 
     def begin(
         self, explain: Callable[[], Any], now: Callable[[], int], summary: Callable[[], str]
@@ -73,16 +73,16 @@ class Diagnostics:
         that is told, and summary what the node is not ready for; empty if it watches.
         """
         self._explain, self._now, self._summary = explain, now, summary
-        self._alarm.ring_at(0)
+        self._timer.schedule(0)
 
     def changed(self) -> None:
         """Publish soon."""
         soon = time.monotonic_ns() + SOON
-        if not self._alarm.is_set or self._alarm.due > soon:
-            self._alarm.ring_at(soon)
+        if not self._timer.is_scheduled or self._timer.due > soon:
+            self._timer.schedule(soon)
         self._again = True
 
-    def ordered(self, event: Any, explained: Any) -> None:
+    def update(self, event: Any, explained: Any) -> None:
         """Follow an event of the monitor; explained is what it explains after it."""
         before = self.actions.get(event.action)
         if before is None or event.kind not in ('trigger', 'reset'):
@@ -112,17 +112,17 @@ class Diagnostics:
         self.changed()
         return True
 
-    def _ring(self) -> None:
+    def _fire(self) -> None:
         if self._rest is None:
             self._again = False
             self._rest = self._statuses()
         statuses = list(itertools.islice(self._rest, CHUNK))
         now = time.monotonic_ns()
         if len(statuses) == CHUNK:
-            self._alarm.ring_at(now + PAUSE)
+            self._timer.schedule(now + PAUSE)
         else:
             self._rest = None
-            self._alarm.ring_at(now + (SOON if self._again else self._period))
+            self._timer.schedule(now + (SOON if self._again else self._period))
         if statuses:
             message = DiagnosticArray(status=statuses)
             message.header.stamp = self._node.get_clock().now().to_msg()

@@ -12,7 +12,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from deros.generators.runtime.python import machine
+from deros.generators.runtime.python.deros_runtime import realtime
 
 
 @pytest.fixture(autouse=True)
@@ -26,7 +26,7 @@ def test_by_default_nothing_is_changed(monkeypatch: pytest.MonkeyPatch) -> None:
     """No priority, no locked memory, the garbage collection as it is."""
     monkeypatch.setattr(os, "sched_setscheduler", Mock(side_effect=AssertionError))
     monkeypatch.setattr(ctypes, "CDLL", Mock(side_effect=AssertionError))
-    assert machine.prepare(0, lock_memory=False, garbage_collection=True) == []
+    assert realtime.configure_process(0, lock_memory=False, garbage_collection=True) == []
     assert gc.isenabled()
 
 
@@ -34,7 +34,7 @@ def test_every_thread_gets_the_priority(monkeypatch: pytest.MonkeyPatch) -> None
     """Those of the middleware, which bring the messages, as well as the node's own."""
     setting = Mock()
     monkeypatch.setattr(os, "sched_setscheduler", setting)
-    assert machine.prepare(40, lock_memory=False, garbage_collection=True) == []
+    assert realtime.configure_process(40, lock_memory=False, garbage_collection=True) == []
     threads = {call.args[0] for call in setting.call_args_list}
     assert threads == {int(thread) for thread in os.listdir("/proc/self/task")}  # noqa: PTH208
     for call in setting.call_args_list:
@@ -50,8 +50,8 @@ def test_what_is_not_permitted_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     library.mlockall.return_value = -1
     monkeypatch.setattr(ctypes, "CDLL", lambda *_, **__: library)
     monkeypatch.setattr(ctypes, "get_errno", lambda: 1)
-    monkeypatch.setattr(machine, "may_lock_all", lambda: True)
-    priority, memory = machine.prepare(40, lock_memory=True, garbage_collection=True)
+    monkeypatch.setattr(realtime, "can_lock_memory", lambda: True)
+    priority, memory = realtime.configure_process(40, lock_memory=True, garbage_collection=True)
     assert priority.startswith("realtime_priority 40 is not permitted")
     assert memory == "lock_memory is not permitted: Operation not permitted"
 
@@ -61,28 +61,28 @@ def test_memory_is_locked_for_good(monkeypatch: pytest.MonkeyPatch) -> None:
     library = Mock()
     library.mlockall.return_value = 0
     monkeypatch.setattr(ctypes, "CDLL", lambda *_, **__: library)
-    monkeypatch.setattr(machine, "may_lock_all", lambda: True)
-    assert machine.prepare(0, lock_memory=True, garbage_collection=True) == []
+    monkeypatch.setattr(realtime, "can_lock_memory", lambda: True)
+    assert realtime.configure_process(0, lock_memory=True, garbage_collection=True) == []
     library.mlockall.assert_called_once_with(3)
 
 
 def test_memory_is_not_locked_under_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Else the node would end when, hours later, it needs more than the limit."""
     monkeypatch.setattr(ctypes, "CDLL", Mock(side_effect=AssertionError))
-    monkeypatch.setattr(machine, "may_lock_all", lambda: False)
-    (refusal,) = machine.prepare(0, lock_memory=True, garbage_collection=True)
+    monkeypatch.setattr(realtime, "can_lock_memory", lambda: False)
+    (refusal,) = realtime.configure_process(0, lock_memory=True, garbage_collection=True)
     assert refusal == "lock_memory is not permitted: it needs an unlimited RLIMIT_MEMLOCK"
 
 
 def test_garbage_collection_can_be_left_out() -> None:
     """It is the parameter's choice."""
-    assert machine.prepare(0, lock_memory=False, garbage_collection=False) == []
+    assert realtime.configure_process(0, lock_memory=False, garbage_collection=False) == []
     assert not gc.isenabled()
 
 
 def test_sharp_timers_are_asked_of_the_kernel() -> None:
     """The slack of this thread's timers is what Linux allows least."""
-    machine.sharpen_timers()
+    realtime.minimize_timer_slack()
     assert ctypes.CDLL(None).prctl(30, 0, 0, 0, 0) == 1  # PR_GET_TIMERSLACK
 
 
@@ -90,8 +90,8 @@ def test_a_full_pipe_is_not_waited_for() -> None:
     """What does not fit is lost; whoever shares the pipe goes on waiting for its reader."""
     reader, writer = os.pipe()
     code = (
-        "import os; from deros.generators.runtime.python import machine\n"
-        "machine.never_wait_for_readers()\n"
+        "import os; from deros.generators.runtime.python.deros_runtime import realtime\n"
+        "realtime.make_output_nonblocking()\n"
         "try:\n while True: os.write(2, bytes(4096))\nexcept BlockingIOError: os._exit(7)"
     )
     done = subprocess.run([sys.executable, "-c", code], stderr=writer, timeout=60)

@@ -21,18 +21,18 @@ def node_of(info: TopicEndpointInfo) -> str:
     return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
 
 
-def heard_publishers(node: Node, subscription: Subscription) -> list[TopicEndpointInfo]:
+def matched_publishers(node: Node, subscription: Subscription) -> list[TopicEndpointInfo]:
     """Return the publishers whose messages a subscription gets, as far as the graph knows."""
     infos = node.get_publishers_info_by_topic(subscription.topic_name)
     return [info for info in infos if not _unheard(info, subscription)]
 
 
-def listed(infos: list[TopicEndpointInfo]) -> str:
+def node_names(infos: list[TopicEndpointInfo]) -> str:
     """Return the names of the nodes of publishers, in order."""
     return ', '.join(sorted(node_of(info) or 'a node that is not known yet' for info in infos))
 
 
-def unserved_readers(node: Node, topic: str) -> str:
+def unmatched_subscriptions(node: Node, topic: str) -> str:
     """Return which subscriptions of a topic get nothing from this node, and why."""
     own = node.get_fully_qualified_name()
     infos = node.get_publishers_info_by_topic(topic)
@@ -51,7 +51,7 @@ def unserved_readers(node: Node, topic: str) -> str:
     return '; '.join(unserved)
 
 
-class Publishers:
+class PublisherCheck:
     """
     Looks, one topic at a time, at the publishers on the topics that a node subscribes to.
 
@@ -73,7 +73,7 @@ class Publishers:
         self._shared = shared
         self._subscriptions = itertools.cycle(list(node.subscriptions))
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Look at the next topic."""
         subscription = next(self._subscriptions, None)
         if subscription is not None:
@@ -91,7 +91,7 @@ class Publishers:
                 heard.append(info)
         yield from unheard
         if len(heard) > 1 and topic not in self._shared:
-            yield f'{len(heard)} publishers where one is expected: {listed(heard)}'
+            yield f'{len(heard)} publishers where one is expected: {node_names(heard)}'
 
 
 def _unheard(info: TopicEndpointInfo, subscription: Subscription) -> str:

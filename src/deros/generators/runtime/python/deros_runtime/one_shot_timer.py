@@ -1,0 +1,134 @@
+"""One-shot timers; all those of one clock share a single timer of rclpy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from rclpy.clock import Clock
+from rclpy.node import Node
+
+MAX_DEFERRAL = 50_000_000  # ns that a timer may be deferred in all
+TOLERANCE = 100_000  # ns by which a timer of rclpy may be off from what it was set to
+
+
+class OneShotTimer:
+    """
+    Calls back once, at an instant of a clock.
+
+    Of several timers that are due, the earliest fires first, and messages are handled before the
+    next one fires.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        clock: Clock,
+        now: Callable[[], int],
+        callback: Callable[[], None],
+        defer: Callable[[], int] | None = None,
+    ) -> None:
+        """
+        Create the timer; it is not scheduled.
+
+        now returns the time of the clock in nanoseconds. defer, which timers that are not urgent
+        have, returns for how many nanoseconds the callback has to wait for something else.
+        """
+        self.due = 0  # for which it is scheduled, or was last
+        self.wait_until = 0  # the same, or later if it has been deferred
+        self.is_scheduled = False
+        self._now = now
+        self._callback = callback
+        self._defer = defer
+        self._shared_timer = _shared_timer(node, clock, now)
+        self._shared_timer.timers.append(self)
+
+    def schedule(self, due: int) -> None:
+        """Fire at an instant, or at once if it is past; this replaces an earlier schedule."""
+        self.due = self.wait_until = due
+        self.is_scheduled = True
+        self._shared_timer.adjust()
+
+    def repeat(self, period: int) -> None:
+        """Fire again a period after the last time, or after now if either was long ago."""
+        latest = self._now() + period
+        due = self.due + period
+        self.schedule(due if latest - period < due <= latest else latest)
+
+    def fire(self) -> None:
+        """Call back, or defer that."""
+        now = self._now()
+        if self._defer is not None and now - self.due < MAX_DEFERRAL:
+            pause = self._defer()
+            if pause > 0:
+                self.wait_until = now + pause
+                return
+        self.is_scheduled = False
+        self._callback()
+
+
+class SharedTimer:
+    """
+    The one timer of a clock, which expires when the first of its one-shot timers is due.
+
+    While a timer has expired and not been called yet, the EventsExecutor calls it once more each
+    time that any timer is set, and after each of these calls it looks for expired timers again:
+    with several of them, set in such calls, the calls of a busy node multiply until no message
+    gets its turn. One timer, set only when it has to be, cannot do that; and a call that comes too
+    early has no effect.
+    """
+
+    def __init__(self, node: Node, clock: Clock, now: Callable[[], int]) -> None:
+        """Create the timer; nothing is due."""
+        self.timers: list[OneShotTimer] = []
+        self._now = now
+        self._due: int | None = None  # when the timer expires
+        self._is_firing = False
+        self._timer = node.create_timer(1.0, self._expire, clock=clock, autostart=False)
+
+    def adjust(self) -> None:
+        """Make the timer expire when the first one-shot timer is due, if not earlier."""
+        if self._is_firing:
+            return  # the callback may schedule several
+        first = self._first()
+        if first is not None and (self._due is None or first.wait_until < self._due):
+            self._due = first.wait_until
+            self._wait(self._due - self._now())
+
+    def _first(self) -> OneShotTimer | None:
+        scheduled = (timer for timer in self.timers if timer.is_scheduled)
+        return min(scheduled, key=lambda timer: timer.wait_until, default=None)
+
+    def _expire(self) -> None:
+        if self._due is None:
+            self._timer.cancel()
+            return
+        now = self._now()
+        if now < self._due:
+            left = self._timer.time_until_next_call()
+            if left is None or abs(self._due - now - left) > TOLERANCE:  # the clock has stepped
+                self._wait(self._due - now)
+            return
+        self._timer.cancel()
+        self._due = None
+        self._is_firing = True
+        try:
+            first = self._first()
+            if first is not None and first.wait_until <= now:
+                first.fire()
+        finally:
+            self._is_firing = False
+            self.adjust()
+
+    def _wait(self, time: int) -> None:
+        """Expire once in so many nanoseconds; a call before that postpones it by one only."""
+        self._timer.timer_period_ns = max(time, 1)
+        self._timer.reset()
+        self._timer.timer_period_ns = 1
+
+
+def _shared_timer(node: Node, clock: Clock, now: Callable[[], int]) -> SharedTimer:
+    """Return the shared timer of a node for a clock."""
+    shared_timers: dict[Clock, SharedTimer] = vars(node).setdefault('_shared_timers', {})
+    if clock not in shared_timers:
+        shared_timers[clock] = SharedTimer(node, clock, now)
+    return shared_timers[clock]
