@@ -1,4 +1,4 @@
-"""Bearings of a sector: what is suspect in them is said, with a hint that mends it."""
+"""Bearings of a sector: doubtful ones are reported, with a hint that fixes them."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def _findings(sector: str, constants: str = "") -> list[Diagnostic]:
         "-view, view",
     ],
 )
-def test_usual_sectors(sector: str) -> None:
-    """Radians with a point, angles with a unit, the whole scan and the back need no finding."""
+def test_usual_sectors_have_no_findings(sector: str) -> None:
+    """Radians with a point, angles with a unit, the whole scan and the rear are accepted."""
     assert _findings(sector, "const view = toRad(30)\n") == []
 
 
@@ -50,14 +50,14 @@ def test_usual_sectors(sector: str) -> None:
         ("0, wide", "wide", "it is the bearing 140 deg"),
     ],
 )
-def test_bearings_that_are_probably_mistyped(sector: str, place: str, hint: str) -> None:
-    """Constants count as what stands in their place."""
+def test_probably_mistyped_bearings_are_reported(sector: str, place: str, hint: str) -> None:
+    """Constants count as their values."""
     found = _findings(sector, "const view = 45\nconst wide = 500 deg\n")
     assert (found[0].code.name, found[0].span.text, found[0].hint) == ("DRS364", place, hint)
 
 
-def test_the_declaration_of_a_constant_is_named() -> None:
-    """It is there that a unit is lacking."""
+def test_finding_names_the_declaration_of_the_constant() -> None:
+    """The missing unit belongs there."""
     found = _findings("-view, view", "const view = 45\n")
     assert [each.related[0].span.text for each in found] == ["const view = 45"] * 2
 
@@ -76,15 +76,15 @@ def test_the_declaration_of_a_constant_is_named() -> None:
         ("view, -view", "runs through the back, 270.2 deg wide"),
     ],
 )
-def test_sectors_that_are_probably_not_meant(sector: str, wrong: str) -> None:
-    """Both ends are plausible, what lies between them is not."""
+def test_probably_unintended_sectors_are_reported(sector: str, wrong: str) -> None:
+    """Both ends are plausible, but the sector between them is not."""
     (found,) = _findings(sector, "const view = toRad(44.9)\n")
     assert (found.code.name, found.span.text) == ("DRS365", sector)
     assert wrong in found.message
 
 
-def test_the_hint_for_swapped_ends_mends_it() -> None:
-    """What it proposes is the sector in front."""
+def test_hint_for_swapped_ends_fixes_the_finding() -> None:
+    """It proposes the sector ahead."""
     (found,) = _findings("30 deg, -30 deg")
     assert found.hint.endswith("the rest is '-30 deg, 30 deg'")
     assert _findings("-30 deg, 30 deg") == []

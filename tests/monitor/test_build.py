@@ -1,4 +1,4 @@
-"""Whole programs: the paper's listings build, and what is built has its place and its order."""
+"""Whole programs: the listings of the paper build, with the right spans and order."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from tests.support.rules import build_rules, embedded_store, program
 
 
 @pytest.mark.parametrize("listing", paper.RULES)
-def test_listing_of_the_paper(listing: str, tmp_path: Path) -> None:
-    """Every DeRoS listing of the paper checks clean of errors against the system of figure 12."""
+def test_listing_of_the_paper_has_no_errors(listing: str, tmp_path: Path) -> None:
+    """Every DeRoS listing of the paper checks without errors against the system of figure 12."""
     paper.write_system(tmp_path)
     repository = Repository()
     loaded = repository.load_text(tmp_path / "safety.deros", paper.RULES[listing])
@@ -29,8 +29,8 @@ def test_listing_of_the_paper(listing: str, tmp_path: Path) -> None:
     assert build(loaded.model, embedded_store()).program is not None
 
 
-def test_figure_2(tmp_path: Path) -> None:
-    """The program of figure 2 has the rules, durations and bounds that the paper describes."""
+def test_figure_2_builds_the_described_program(tmp_path: Path) -> None:
+    """Rules, durations and bounds are those that the paper describes."""
     paper.write_system(tmp_path)
     loaded = Repository().load_text(tmp_path / "safety.deros", paper.FIGURE_2)
     assert isinstance(loaded.model, Rules)
@@ -61,8 +61,8 @@ def test_figure_2(tmp_path: Path) -> None:
     assert built.actions[0].triggered_by == (0, 1)
 
 
-def test_inputs_are_those_that_rules_read() -> None:
-    """An input that no rule reads is no part of the program; equal topic terms are one input."""
+def test_only_read_inputs_are_in_the_program() -> None:
+    """An input that no rule reads is omitted; equal topic terms are one input."""
     built = program(
         """
         input unused = topic /flag.data
@@ -77,8 +77,8 @@ def test_inputs_are_those_that_rules_read() -> None:
     assert [each.leaves for each in built.inputs] == [(0,), (1,)]
 
 
-def test_a_topic_has_one_meaning_per_timeout() -> None:
-    """A topic term does not share the timeout of an input that names the same field."""
+def test_inputs_with_different_timeouts_are_separate() -> None:
+    """A topic term does not share the timeout of an input for the same field."""
     built = program(
         """
         input v = topic /speed.data timeout 1 sec
@@ -88,8 +88,8 @@ def test_a_topic_has_one_meaning_per_timeout() -> None:
     assert [each.timeout_ns for each in built.inputs] == [1_000_000_000, None]
 
 
-def test_missing_reads_the_value_that_an_input_names() -> None:
-    """A NaN must make a sensor missing, so the named field is read though no rule compares it."""
+def test_missing_reads_the_field_of_its_input() -> None:
+    """A NaN makes a sensor missing, so the field is read even if no rule compares it."""
     built = program(
         "input v = topic /speed.data timeout 1 sec entity e { r: v.missing(); }",
     )
@@ -97,8 +97,8 @@ def test_missing_reads_the_value_that_an_input_names() -> None:
     assert built.rules[0].condition == ir.Missing(0)
 
 
-def test_missing_reads_all_numbers_of_a_part_but_not_of_a_whole_message() -> None:
-    """An orientation of NaN is no orientation; a message may have numbers that are not in use."""
+def test_missing_reads_the_numbers_of_a_part_only() -> None:
+    """A NaN orientation is missing; a whole message may have unused numbers."""
     part = program(
         "input q = topic /imu.orientation timeout 1 sec entity e { r: q.missing(); }",
     )
@@ -111,8 +111,8 @@ def test_missing_reads_all_numbers_of_a_part_but_not_of_a_whole_message() -> Non
     assert whole.leaves == ()
 
 
-def test_part_of_an_input() -> None:
-    """A path may go on where an input ends, and stays a part of that one input."""
+def test_path_may_continue_an_input() -> None:
+    """The fields are leaves of that one input."""
     built = program(
         """
         input imu = topic /imu timeout 1 sec
@@ -127,7 +127,7 @@ def test_part_of_an_input() -> None:
 
 
 def test_behaviours_are_numbered_outer_before_inner() -> None:
-    """Index, default name and parent follow the order written; a body keeps its order."""
+    """Index, default name and parent follow the source; a body keeps its order."""
     built = program(
         """
         action stop; action slow;
@@ -151,8 +151,8 @@ def test_behaviours_are_numbered_outer_before_inner() -> None:
     assert [each.triggered_by for each in built.actions] == [(1, 2), (0,), (0,)]
 
 
-def test_intervals_are_numbered_as_evaluated() -> None:
-    """The inner `for` comes before the outer one, a rule's before those of behaviours."""
+def test_intervals_are_numbered_in_evaluation_order() -> None:
+    """The inner `for` comes before the outer one, that of a rule before those of behaviours."""
     built = program(
         """
         action stop;
@@ -171,7 +171,7 @@ def test_intervals_are_numbered_as_evaluated() -> None:
     assert [each.index for each in (inner, outer, behaviour)] == [0, 1, 2]
 
 
-def test_constants_of_one_another() -> None:
+def test_constants_may_refer_to_constants() -> None:
     """A constant may be another one, with a sign, in any order of declaration."""
     built = program(
         """
@@ -186,7 +186,7 @@ def test_constants_of_one_another() -> None:
     assert (within.lower, within.upper) == (ir.Const(-2.0), ir.Const(2.0))
 
 
-def test_several_systems(tmp_path: Path) -> None:
+def test_rules_may_use_several_systems(tmp_path: Path) -> None:
     """The topics of all used systems are known."""
     for name, topic in (("A", "/a"), ("B", "/b")):
         text = f"system {name} topics external topic {topic} : std_msgs.Bool"
@@ -198,7 +198,7 @@ def test_several_systems(tmp_path: Path) -> None:
 
 
 def test_no_program_without_its_system() -> None:
-    """A system that could not be loaded is the loader's finding; what it lacks is none."""
+    """A system that cannot be loaded is a finding of the loader, and has no further findings."""
     text = 'use "nowhere.system" import Nowhere entity e { r: topic /speed.data > 1; }'
     loaded = Repository().load_text("x.deros", text)
     assert isinstance(loaded.model, Rules)
@@ -208,7 +208,7 @@ def test_no_program_without_its_system() -> None:
 
 
 def test_every_fault_is_reported() -> None:
-    """Faults of all parts come together, and none hides another."""
+    """Faults of all parts are reported together, and none hides another."""
     result = build_rules(
         """
         action stop publishes 3 on /stop : std_msgs.Bool reset_by sto;

@@ -1,4 +1,4 @@
-"""Actions: what bound ones publish, and the constants that are passed to others."""
+"""Actions: published values, and constant arguments of other actions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.support.rules import build_rules, program
 
 
 def binding(text: str, declarations: str = "") -> ir.Binding:
-    """Return what an action publishes."""
+    """Return the message that an action publishes."""
     built = program(f"{declarations}\naction act publishes {text};").actions[0].binding
     assert built is not None
     return built
@@ -32,30 +32,30 @@ def binding(text: str, declarations: str = "") -> ir.Binding:
         ("30 deg on /far : sensor_msgs.Range", ("field_of_view",), 0.5235987901687622),
     ],
 )
-def test_value_goes_into_the_first_field_that_fits(
+def test_value_goes_into_the_first_matching_field(
     text: str, path: tuple[str, ...], value: ir.Scalar
 ) -> None:
-    """The first primitive field of the kind, range and unit takes it, as it can hold it."""
+    """The first primitive field of matching kind, range and unit gets it, in its own type."""
     found = binding(text, "const slow = 0.5 m/s")
     assert (found.path, found.value) == (path, value)
     assert type(found.value) is type(value)
 
 
-def test_binding_names_topic_and_type() -> None:
+def test_binding_has_topic_and_type() -> None:
     """A relative topic is put under the root."""
     assert binding("true on stop : std_msgs.Bool") == ir.Binding(
         "/stop", InterfaceType("std_msgs", "msg", "Bool"), ("data",), True
     )
 
 
-def test_active_state_that_cannot_be_told() -> None:
-    """Publishing the field's default is a warning: nobody could tell active from inactive."""
+def test_indistinguishable_active_state_is_a_warning() -> None:
+    """Publishing the default of the field makes active and inactive look the same."""
     result = build_rules("action slow publishes 0 on /mode : std_msgs.UInt8;")
     assert [each.code.name for each in result.diagnostics] == ["DRS333"]
     assert result.program is not None
 
 
-def test_reset_and_latch() -> None:
+def test_reset_and_latch_of_actions() -> None:
     """A reset is the index of another action, declared before or after."""
     built = program(
         """
@@ -71,8 +71,8 @@ def test_reset_and_latch() -> None:
     ]
 
 
-def test_arguments_stand_as_written() -> None:
-    """An integer stays one, a converted constant is in the unit converted to."""
+def test_arguments_keep_their_types() -> None:
+    """An integer stays one; a converted constant has the target unit."""
     built = program(
         """
         action beep(a, b, c, d, f);

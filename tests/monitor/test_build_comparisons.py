@@ -52,18 +52,18 @@ def bound(text: str, declarations: str = "") -> ir.Scalar:
         ("topic /speed.data > 10 deg", 10.0),
     ],
 )
-def test_constant_in_the_unit_of_the_field(text: str, value: float) -> None:
-    """A constant is converted exactly and rounded once; without a unit to go by it stands as is."""
+def test_constant_is_converted_to_the_unit_of_the_field(text: str, value: float) -> None:
+    """It is converted exactly and rounded once; without a unit it is kept as written."""
     assert bound(text) == value
 
 
-def test_unit_of_ones_own() -> None:
-    """A unit that the rules define converts like any other."""
+def test_user_defined_unit() -> None:
+    """A unit defined in the rules converts like any other."""
     declarations = "unit knot = 0.514444 m/s  const limit = 2 knot"
     assert bound(f"{SPEED} > limit", declarations) == 1.028888
 
 
-def test_temperature_has_an_offset() -> None:
+def test_temperature_units_have_an_offset() -> None:
     """A field in degrees Celsius is compared with kelvins and degrees Fahrenheit."""
     assert bound("topic /battery.temperature > 300 K") == 26.85
     assert bound("topic /battery.temperature > 68 degF") == 20.0
@@ -72,7 +72,7 @@ def test_temperature_has_an_offset() -> None:
 @settings(max_examples=scaled(25))
 @given(st.decimals(-1000, 1000, allow_nan=False, places=6))
 def test_decimal_is_rounded_once(value: Decimal) -> None:
-    """A written number is the double nearest to it."""
+    """A written number becomes the nearest double."""
     assert bound(f"topic /speed.data > {value:f}") == float(value)
 
 
@@ -81,14 +81,14 @@ def test_decimal_is_rounded_once(value: Decimal) -> None:
     number=st.fractions(-300, 300, max_denominator=8),
     operator=st.sampled_from(sorted(COMPARE)),
 )
-def test_integer_bound_means_the_same(value: int, number: Fraction, operator: ir.Operator) -> None:
-    """For every integer the comparison brought to an integer bound has the exact verdict."""
+def test_integer_bound_is_equivalent(value: int, number: Fraction, operator: ir.Operator) -> None:
+    """For every integer, the comparison with an integer bound has the exact verdict."""
     brought, limit = integer_bound(operator, number)
     assert COMPARE[brought](value, limit) is COMPARE[operator](Fraction(value), number)
 
 
 def test_integer_bound_beyond_doubles() -> None:
-    """A number that rounds to an integer is not taken for one."""
+    """A number that only rounds to an integer is not treated as one."""
     operator, limit = integer_bound("=", Fraction(2**60) + Fraction(1, 2))
     assert (operator, limit) == ("=", 0.5)
     assert integer_bound(">", Fraction(2**63 - 1)) == (">", 2**63 - 1)
@@ -108,8 +108,8 @@ def test_integer_bound_beyond_doubles() -> None:
         (f"2 != {MODE}", "!=", 2),
     ],
 )
-def test_comparison_of_an_integer(text: str, operator: str, value: float) -> None:
-    """Integers are compared with integers; a constant on the left is moved to the right."""
+def test_comparison_with_an_integer_field(text: str, operator: str, value: float) -> None:
+    """The bound becomes an integer, and a constant on the left moves to the right."""
     assert condition(text) == ir.Compare(ir.Read(0), operator, ir.Const(value))  # type: ignore[arg-type]
     assert type(bound(text)) is type(value)
 
@@ -123,8 +123,8 @@ def test_comparison_of_an_integer(text: str, operator: str, value: float) -> Non
         ("topic /speed.data in [1, 2)", (1.0, 2.0, True, False)),
     ],
 )
-def test_interval(text: str, within: tuple[float, float, bool, bool]) -> None:
-    """Ends stay as they are written, but those of integers are drawn in to integers."""
+def test_interval_bounds(text: str, within: tuple[float, float, bool, bool]) -> None:
+    """Bounds stay as written; those of integers are narrowed to integers."""
     lower, upper, lower_closed, upper_closed = within
     expected = ir.Within(ir.Read(0), ir.Const(lower), ir.Const(upper), lower_closed, upper_closed)
     assert condition(text) == expected
@@ -132,13 +132,13 @@ def test_interval(text: str, within: tuple[float, float, bool, bool]) -> None:
 
 
 def test_interval_between_fields() -> None:
-    """The ends may be read from topics."""
+    """The bounds may be read from topics."""
     found = condition(f"topic /speed.data in [{MODE}, 3]")
     assert found == ir.Within(ir.Read(0), ir.Read(1), ir.Const(3.0), True, True)
 
 
-def test_field_against_field() -> None:
-    """Fields of one unit compare as they are, others through a factor."""
+def test_comparison_of_two_fields() -> None:
+    """Fields of one unit compare directly, others through a factor."""
     same = condition(f"{SPEED} > topic /odom.twist.twist.linear.y")
     assert same == ir.Compare(ir.Read(0), ">", ir.Read(1))
     stamp = "topic /imu.header.stamp"
@@ -147,21 +147,21 @@ def test_field_against_field() -> None:
 
 
 def test_message_constant_by_name() -> None:
-    """A name that the rules do not declare may be a constant of the message on the other side."""
+    """An undeclared name may be a constant of the message on the other side."""
     status = "topic /status.level"
     assert condition(f"{status} = ERROR") == ir.Compare(ir.Read(0), "=", ir.Const(2))
     assert condition(f"WARN != {status}") == ir.Compare(ir.Read(0), "!=", ir.Const(1))
     assert bound(f"{status} = ERROR", "const ERROR = 7") == 7
 
 
-def test_message_constants_that_are_numbers_have_an_order() -> None:
+def test_numeric_message_constants_are_ordered() -> None:
     """Levels are compared as levels: at least a warning."""
     found = condition("topic /status.level >= WARN")
     assert found == ir.Compare(ir.Read(0), ">=", ir.Const(1))
 
 
-def test_booleans_and_texts() -> None:
-    """A boolean stands alone or is compared; a text is compared."""
+def test_comparison_of_booleans_and_strings() -> None:
+    """A boolean may stand alone or be compared; a string is compared."""
     flag = "topic /flag.data"
     assert condition(flag) == ir.Truth(ir.Read(0))
     assert condition(f"{flag} != true") == ir.Compare(ir.Read(0), "!=", ir.Const(True))
@@ -169,7 +169,7 @@ def test_booleans_and_texts() -> None:
     assert condition("true") == ir.Truth(ir.Const(True))
 
 
-def test_missing_against_a_boolean() -> None:
+def test_missing_compared_with_a_boolean() -> None:
     """`missing()` may be compared with true and false."""
     declared = "input v = topic /speed.data timeout 1 sec"
     assert condition("v.missing() = false", declared) == ir.Not(ir.Missing(0))
@@ -193,8 +193,8 @@ def test_missing_against_a_boolean() -> None:
         ),
     ],
 )
-def test_age(text: str, expected: ir.Condition) -> None:
-    """An age is compared with whole nanoseconds; a plain number is in seconds."""
+def test_comparison_of_an_age(text: str, expected: ir.Condition) -> None:
+    """An age is compared in whole nanoseconds; a plain number is in seconds."""
     assert condition(text, "input v = topic /speed.data timeout 9 sec") == expected
 
 
@@ -203,7 +203,7 @@ def test_age(text: str, expected: ir.Condition) -> None:
     [("4sec", 4 * 10**9), ("0.1 ms", 10**5), ("2 min", 12 * 10**10), ("0 sec", 0), ("1 ns", 1)],
 )
 def test_duration_is_exact(duration: str, nanoseconds: int) -> None:
-    """Durations are whole nanoseconds, not rounded ones."""
+    """Durations are exact in nanoseconds."""
     found = condition(f"topic /flag.data for {duration}")
     assert isinstance(found, ir.For)
     assert found.duration_ns == nanoseconds
@@ -213,7 +213,7 @@ def test_duration_is_exact(duration: str, nanoseconds: int) -> None:
 
 
 def test_functions_of_functions() -> None:
-    """The rate of an angle is an angle per second; each rate has a memory of its own."""
+    """The rate of an angle is an angle per second; each rate has its own memory."""
     declared = "input q = topic /imu.orientation"
     found = condition("q.yaw().rate().abs() > 90 deg/s or q.yaw().rate() > 1", declared)
     yaw = ir.Apply("yaw", tuple(ir.Read(leaf) for leaf in range(4)), 0)
@@ -227,14 +227,14 @@ def test_functions_of_functions() -> None:
 
 
 def test_norm_has_the_unit_of_its_components() -> None:
-    """The length of a velocity is a speed."""
+    """The norm of a velocity is a speed."""
     found = condition("topic /odom.twist.twist.linear.norm() > 3.6 km/h")
     reads = tuple(ir.Read(leaf) for leaf in range(3))
     assert found == ir.Compare(ir.Apply("norm", reads, 0), ">", ir.Const(1.0))
 
 
-def test_nearest_reads_the_scan() -> None:
-    """NaN beams are the function's business; a NaN in the scan's geometry makes it unknown."""
+def test_nearest_reads_ranges_and_geometry() -> None:
+    """The function handles NaN beams; NaN in the geometry of the scan makes it unknown."""
     built = program("entity e { r: topic /scan.nearest(-30 deg, 0.5) < 40 cm; }")
     assert [(leaf.path, leaf.nan_is_unknown) for leaf in built.leaves] == [
         (("ranges",), False),
@@ -249,8 +249,8 @@ def test_nearest_reads_the_scan() -> None:
     assert built.rules[0].condition == ir.Compare(nearest, "<", ir.Const(0.4))
 
 
-def test_counting_ignores_nan_unless_another_function_cares() -> None:
-    """`count()` alone reads an array whatever it holds; with `max()` a NaN makes it unknown."""
+def test_count_ignores_nan_unless_another_function_does_not() -> None:
+    """`count()` alone accepts any elements; with `max()` a NaN makes the array unknown."""
     declared = "input p = topic /joints.position"
     counted = program(f"{declared} entity e {{ r: p.count() > 3; }}")
     assert [leaf.nan_is_unknown for leaf in counted.leaves] == [False]
@@ -258,8 +258,8 @@ def test_counting_ignores_nan_unless_another_function_cares() -> None:
     assert [leaf.nan_is_unknown for leaf in both.leaves] == [True]
 
 
-def test_count_of_texts() -> None:
-    """Any array has a length, also one of texts or of messages."""
+def test_count_applies_to_any_array() -> None:
+    """Arrays of strings and messages have a length too."""
     built = program(
         "entity e { r: topic /joints.name.count() != 6; s: /status.values.count() > 1; }"
     )
@@ -269,8 +269,8 @@ def test_count_of_texts() -> None:
     ]
 
 
-def test_unit_annotated_on_a_port(tmp_path: Path) -> None:
-    """A node description tells the unit of a field that no convention knows, also of elements."""
+def test_unit_from_a_node_description(tmp_path: Path) -> None:
+    """A node description gives the unit of a field without a convention, also of elements."""
     (tmp_path / "gauge.rnd").write_text(
         "node gauge : gauges publishes"
         " topic depth : std_msgs.Float64 { data [cm] }"
@@ -293,8 +293,8 @@ def test_unit_annotated_on_a_port(tmp_path: Path) -> None:
     assert bounds == [ir.Const(200.0), ir.Const(2000.0), ir.Const(10.0)]
 
 
-def test_messages_of_ones_own(tmp_path: Path) -> None:
-    """A message of x and y alone is a plane vector, and a bounded array has so many elements."""
+def test_user_defined_messages(tmp_path: Path) -> None:
+    """A message with only x and y is a plane vector, and a bounded array has a maximum length."""
     (tmp_path / "shapes" / "msg").mkdir(parents=True)
     definition = "float64 x\nfloat64 y\n"
     (tmp_path / "shapes" / "msg" / "Flat.msg").write_text(definition)

@@ -1,4 +1,4 @@
-"""Findings point at what is wrong, not at all that stands around it."""
+"""Spans of findings: the faulty part, not the text around it."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from tests.support.rules import findings
         ("action stop reset_by okay;", "DRS312", "okay"),
     ],
 )
-def test_place(statements: str, code: str, place: str) -> None:
-    """The span of the finding is exactly the faulty part."""
+def test_span_is_exactly_the_faulty_part(statements: str, code: str, place: str) -> None:
+    """The finding does not mark the text around the fault."""
     found = {name: text for name, text, _ in findings(statements)}
     assert found[code] == place
 
 
-def test_field_below_an_input() -> None:
-    """A wrong field that a rule adds to an input is pointed at in the rule."""
+def test_unknown_field_below_an_input_is_marked_in_the_rule() -> None:
+    """The wrong field is in the rule, not in the input."""
     statements = """
         input imu = topic /imu timeout 1 sec
         entity e { r: imu.angular_velocity.w > 1; }
@@ -40,8 +40,8 @@ def test_field_below_an_input() -> None:
     assert found["DRS302"] == ("w", "geometry_msgs.Vector3 has no field 'w'")
 
 
-def test_a_fault_is_reported_once() -> None:
-    """What follows from a reported fault is not reported again."""
+def test_fault_is_reported_once() -> None:
+    """Consequences of a reported fault are not reported."""
     statements = """
         action stop;
         const limit = 3 blah

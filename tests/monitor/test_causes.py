@@ -1,4 +1,4 @@
-"""The culprit is named: which parts of a condition make it true, and with which values."""
+"""Causes: the parts of a condition that make it true, with their values."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Monitor = Callable[..., Engine]
 
 
 class Driver:
-    """A monitor of rules that is fed with values by the paths of their fields."""
+    """A monitor of rules whose inputs are set by field paths."""
 
     def __init__(self, monitor: Monitor, text: str) -> None:
         """Start at 0."""
@@ -42,7 +42,7 @@ class Driver:
         self.monitor = monitor(self.program)
 
     def send(self, t_ms: int, topic: str, **values: LeafValue) -> None:
-        """Send a message; the last part of a field's path names it, all others are 0."""
+        """Send a message; fields are given by the last part of their paths, all others are 0."""
         leaves: dict[int, LeafValue] = {}
         for leaf in self.program.leaves:
             if self.program.inputs[leaf.input].topic == topic:
@@ -54,7 +54,7 @@ class Driver:
         return self.monitor.explain().rules[rule].causes
 
     def why(self, behaviour: str = "b") -> tuple[str, ...]:
-        """Return why a behaviour holds."""
+        """Return the causes of a behaviour."""
         return self.monitor.explain().causes[behaviour]
 
 
@@ -100,10 +100,10 @@ def rule(condition: str) -> str:
         ("true", "/flag", {"data": True}, "true"),
     ],
 )
-def test_a_comparison_is_told_with_its_value(
+def test_comparison_shows_its_value(
     monitor: Monitor, condition: str, topic: str, values: dict[str, LeafValue], expected: str
 ) -> None:
-    """The bound is as its author wrote it, and negated it is the plain opposite."""
+    """The bound is as written, and a negated comparison becomes its opposite."""
     driver = Driver(monitor, rule(condition) + " entity z { z: f or m = 1; }")
     driver.send(100, topic, **values)
     assert driver.causes() == (expected,)
@@ -111,8 +111,8 @@ def test_a_comparison_is_told_with_its_value(
 
 
 @monitors
-def test_of_an_or_the_true_operands_are_told_and_of_an_and_all(monitor: Monitor) -> None:
-    """Whatever else stands beside them."""
+def test_true_operands_of_or_and_all_of_and_are_shown(monitor: Monitor) -> None:
+    """Operands that do not contribute are omitted."""
     driver = Driver(monitor, rule("(v > 1 or f or m = 2) and not (u > 1 or m = 3)"))
     driver.send(100, "/speed", data=3.0)
     driver.send(100, "/odom", x=0.5)
@@ -123,8 +123,8 @@ def test_of_an_or_the_true_operands_are_told_and_of_an_and_all(monitor: Monitor)
 
 
 @monitors
-def test_of_a_negated_and_the_false_operands_are_told(monitor: Monitor) -> None:
-    """One is enough, and what is unknown is none."""
+def test_false_operands_of_a_negated_and_are_shown(monitor: Monitor) -> None:
+    """One false operand suffices, and unknown ones are omitted."""
     driver = Driver(monitor, rule("not (v > 1 and f and m = 2)"))
     driver.send(100, "/speed", data=3.0)
     driver.send(100, "/mode", data=1)
@@ -134,8 +134,8 @@ def test_of_a_negated_and_the_false_operands_are_told(monitor: Monitor) -> None:
 
 
 @monitors
-def test_a_for_is_told_when_it_is_due(monitor: Monitor) -> None:
-    """Beside another part that is true, one that is not due yet is no cause."""
+def test_for_is_shown_when_it_is_due(monitor: Monitor) -> None:
+    """Next to another true part, one that is not due yet is not a cause."""
     driver = Driver(monitor, rule("(u > 1 or u > 5 for 500 ms) or f"))
     driver.send(100, "/odom", x=3.0)
     driver.send(200, "/flag", data=True)
@@ -149,8 +149,8 @@ def test_a_for_is_told_when_it_is_due(monitor: Monitor) -> None:
 
 
 @monitors
-def test_a_negated_for_is_told_by_what_is_short_or_false(monitor: Monitor) -> None:
-    """Its operand has not lasted yet, or is false."""
+def test_negated_for_shows_a_short_or_false_operand(monitor: Monitor) -> None:
+    """Its operand has not lasted long enough, or is false."""
     driver = Driver(monitor, rule("f and not (u > 1 for 0.5 sec)"))
     driver.send(100, "/flag", data=True)
     driver.send(100, "/odom", x=3.0)
@@ -160,8 +160,8 @@ def test_a_negated_for_is_told_by_what_is_short_or_false(monitor: Monitor) -> No
 
 
 @monitors
-def test_a_for_around_a_for(monitor: Monitor) -> None:
-    """The inner duration comes first; what is not yet so is told in the author's words."""
+def test_nested_for_shows_both_durations(monitor: Monitor) -> None:
+    """The inner duration comes first; an operand that is not due yet is shown as written."""
     driver = Driver(monitor, rule("((u > 1 for 0.1 sec) or f for 0.2 sec) and m = 0"))
     driver.send(0, "/mode", data=0)
     driver.send(100, "/odom", x=3.0)
@@ -173,8 +173,8 @@ def test_a_for_around_a_for(monitor: Monitor) -> None:
 
 
 @monitors
-def test_silence_is_told(monitor: Monitor) -> None:
-    """An age with its value, the questions about messages as they are asked."""
+def test_silence_shows_its_age(monitor: Monitor) -> None:
+    """An age is shown with its value, questions about messages as written."""
     driver = Driver(monitor, rule("v.missing() or v.age() >= 500 ms or not v.unknown()"))
     driver.send(100, "/speed", data=3.0)
     assert driver.causes() == ("not v.unknown()",)
@@ -187,8 +187,8 @@ def test_silence_is_told(monitor: Monitor) -> None:
 
 
 @monitors
-def test_a_failsafe_rule_names_what_is_unknown(monitor: Monitor) -> None:
-    """Where it is true by its values, those are told."""
+def test_failsafe_rule_shows_unknown_terms(monitor: Monitor) -> None:
+    """If it is true by its values, those are shown."""
     text = "entity e { failsafe r: v > 5 and v.rate() < 1; } behaviour b: if e.r then { stop; };"
     driver = Driver(monitor, text)
     driver.send(100, "/speed", data=6.0)
@@ -201,8 +201,8 @@ def test_a_failsafe_rule_names_what_is_unknown(monitor: Monitor) -> None:
 
 
 @monitors
-def test_a_behaviour_is_told_by_its_rules(monitor: Monitor) -> None:
-    """Those that hold, negated ones by why they are false, and the conditions around it first."""
+def test_behaviour_shows_its_rules(monitor: Monitor) -> None:
+    """Conditions of outer behaviours come first; negated rules show why they are false."""
     text = """
     entity e { fast: v > 1 and f; slow: u < 1; off: m = 0; }
     behaviour outer: if (e.fast for 0.1 sec) or e.off then {
@@ -231,8 +231,8 @@ def test_a_behaviour_is_told_by_its_rules(monitor: Monitor) -> None:
 
 
 @monitors
-def test_a_rule_that_is_not_true_has_no_cause(monitor: Monitor) -> None:
-    """Nor has a behaviour that does not hold, be it disabled only."""
+def test_false_rule_has_no_cause(monitor: Monitor) -> None:
+    """A behaviour that does not hold, or is disabled, has none either."""
     text = "entity e { r: v > 1; } optional behaviour b: if e.r then { stop; };"
     driver = Driver(monitor, text)
     assert driver.causes() == ()
@@ -242,8 +242,8 @@ def test_a_rule_that_is_not_true_has_no_cause(monitor: Monitor) -> None:
     assert driver.monitor.explain().causes == {}
 
 
-def test_intervals_within_negated_ones_do_not_multiply() -> None:
-    """The emitted text grows with the rule, not with the powers of two."""
+def test_nested_negated_intervals_do_not_explode() -> None:
+    """The emitted text grows linearly with the rule."""
     condition = "u > 1"
     for _ in range(30):
         condition = f"not ({condition} for 1 sec)"

@@ -1,4 +1,4 @@
-"""Commands as plain data: what zero is for a message of any type, and what has no limits."""
+"""Commands as plain data: the zero of a message of any type, and fields without limits."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from tests.support.gate_driver import MS, STOP, Driver, at, twist
 
 
 def zero_after(kind: str, command: Message, t_ms: float = 1500) -> Message:
-    """Return the zero that a stop brings after ``command``."""
+    """Return the zero that a stop publishes after ``command``."""
     gate = Driver(STOP, kind=kind)
     gate.engine.state(0, "/stop", {"data": False})
     (passed,) = gate.engine.command(1, command)
@@ -16,7 +16,7 @@ def zero_after(kind: str, command: Message, t_ms: float = 1500) -> Message:
     return output.message
 
 
-def test_zero_keeps_the_frame_and_takes_the_time() -> None:
+def test_zero_has_the_last_frame_and_the_current_time() -> None:
     """The header has the time of the zero and the frame of the last command."""
     header = {"stamp": {"sec": 1, "nanosec": 2}, "frame_id": "base_link"}
     assert zero_after("geometry_msgs.TwistStamped", {"header": header, "twist": twist(0.5)}) == {
@@ -29,7 +29,7 @@ def test_zero_keeps_the_frame_and_takes_the_time() -> None:
 
 
 def test_zero_has_arrays_as_long_as_the_last_command() -> None:
-    """Numbers in them are zero, the names of joints stay."""
+    """Numbers in them are zero; joint names stay."""
     command = {
         "header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""},
         "name": ["left", "right"],
@@ -47,21 +47,21 @@ def test_zero_has_arrays_as_long_as_the_last_command() -> None:
 
 
 def test_zero_before_any_command_has_empty_arrays() -> None:
-    """There is no length to go by."""
+    """The length is not known yet."""
     gate = Driver(STOP, kind="sensor_msgs.JointState")
     (output,) = gate.engine.advance(0)
     assert output.message["velocity"] == output.message["name"] == []
 
 
 def test_zero_keeps_the_layout_of_an_array() -> None:
-    """It says which number is which, and is no command by itself."""
+    """The layout identifies the numbers, and is not a command itself."""
     layout = {"dim": [{"label": "joint", "size": 2, "stride": 2}], "data_offset": 1}
     zero = zero_after("std_msgs.Float64MultiArray", {"layout": layout, "data": [1.0, 2.0]})
     assert zero == {"layout": layout, "data": [0.0, 0.0]}
 
 
-def test_zero_of_a_quaternion_is_no_rotation() -> None:
-    """Four zeros are no rotation at all."""
+def test_zero_of_a_quaternion_is_the_identity() -> None:
+    """Four zeros would not be a rotation."""
     command = {
         "position": {"x": 1.0, "y": 2.0, "z": 3.0},
         "orientation": {"x": 1.0, "y": 0.0, "z": 0.0, "w": 0.0},
@@ -72,7 +72,7 @@ def test_zero_of_a_quaternion_is_no_rotation() -> None:
 
 
 def test_zero_in_arrays_of_messages() -> None:
-    """There are as many points as before, and each is zero; a duration is a number like any."""
+    """The number of points stays, and each is zero, including durations."""
     stamp = {"sec": 3, "nanosec": 4}
     point = {
         "positions": [1.0],
@@ -108,8 +108,8 @@ def test_zero_before_any_command_has_full_fixed_arrays() -> None:
     assert output.message["covariance"] == [0.0] * 36
 
 
-def test_limit_of_an_element_that_the_command_lacks() -> None:
-    """There is nothing to limit; the elements that are there are."""
+def test_limit_of_a_missing_element_is_ignored() -> None:
+    """The existing elements are limited."""
     line = "stop: limit data[0] to [0, 1], data[3] to [0, 1];"
     gate = Driver(line, kind="std_msgs.Int32MultiArray")
     layout = {"dim": [], "data_offset": 0}

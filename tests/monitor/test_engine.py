@@ -1,4 +1,4 @@
-"""The reference engine, called as a node calls it."""
+"""The reference engine, called as by a node."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _flag(engine: Engine, t_ns: int, value: bool) -> list[Event]:
     return engine.message(t_ns, "/flag", {1: value})
 
 
-def test_reset_of_latched_actions(latched: Program) -> None:
+def test_reset_ends_latched_actions(latched: Program) -> None:
     """Each active latched action is reset, unless its condition still holds."""
     engine = Engine(latched)
     _speed(engine, 1, 0.6)
@@ -54,8 +54,8 @@ def test_reset_of_latched_actions(latched: Program) -> None:
     ]
 
 
-def test_refused_reset_is_not_remembered(latched: Program) -> None:
-    """After a refusal it takes another call to reset; a call with nothing active does nothing."""
+def test_refused_reset_is_not_repeated(latched: Program) -> None:
+    """After a refusal another call is needed; a call without active actions does nothing."""
     engine = Engine(latched)
     assert engine.reset(0) is True
     _speed(engine, 1, 0.6)
@@ -66,16 +66,16 @@ def test_refused_reset_is_not_remembered(latched: Program) -> None:
     assert [e.kind for e in engine.events] == ["trigger", "refused", "reset"]
 
 
-def test_reset_settles_deadlines_first() -> None:
-    """A timeout that is due when the reset comes decides on it."""
+def test_deadlines_come_before_a_reset() -> None:
+    """A timeout due at the time of the reset decides about it."""
     rules = LATCHED.replace("/speed.data", "/speed.data timeout 5 ns")
     engine = Engine(program(rules.replace("v > 0.5;", "v.missing();")))
     assert engine.reset(5) is False
     assert [(e.t_ns, e.kind) for e in engine.events] == [(5, "trigger"), (5, "refused")]
 
 
-def test_events_tell_their_place(latched: Program) -> None:
-    """A trigger names its behaviour and the call in it, a reset the action's declaration."""
+def test_events_have_their_span(latched: Program) -> None:
+    """A trigger has the span of its call in the behaviour, a reset that of the action."""
     engine = Engine(latched)
     (trigger,) = _speed(engine, 1, 0.6)
     assert trigger.span is not None
@@ -87,8 +87,8 @@ def test_events_tell_their_place(latched: Program) -> None:
     assert (reset.behaviour, reset.span.line) == (None, 2)
 
 
-def test_next_deadline() -> None:
-    """It is the earliest instant at which something can happen without a message."""
+def test_next_deadline_is_the_earliest() -> None:
+    """It is the earliest time at which anything can change without a message."""
     engine = Engine(program(TIMED), start_ns=1_000)
     assert engine.next_deadline == 1_000 + 10**9
     _speed(engine, 2_000, 0.6)
@@ -99,37 +99,37 @@ def test_next_deadline() -> None:
     assert engine.next_deadline is None
 
 
-def test_advance_into_the_past_is_a_step_back() -> None:
-    """Whatever the call, an earlier time shows that the clock stepped back."""
+def test_advance_into_the_past_is_a_clock_step() -> None:
+    """In any call, an earlier time means that the clock stepped back."""
     engine = Engine(program(TIMED))
     _speed(engine, 10**9, 0.1)
     assert [(e.t_ns, e.kind) for e in engine.advance(3)] == [(3, "clock_step")]
     assert engine.next_deadline == 3 + 10**9
 
 
-def test_unknown_topic_is_refused(latched: Program) -> None:
-    """Calling it with a topic that no input is on is the caller's mistake."""
+def test_unknown_topic_raises(latched: Program) -> None:
+    """A topic without an input is an error of the caller."""
     with pytest.raises(ValueError, match="/odometry"):
         Engine(latched).message(1, "/odometry", {})
 
 
 def test_grace_delays_the_first_timeouts() -> None:
-    """Timeouts count from the end of the grace, but from a message as soon as one comes."""
+    """Timeouts count from the end of the grace period, or from the first message."""
     engine = Engine(program(TIMED), start_ns=100, grace_ns=50)
     assert engine.next_deadline == 150 + 10**9
     _speed(engine, 120, 0.1)
     assert engine.next_deadline == 120 + 10**9
 
 
-def test_grace_is_for_the_start_alone() -> None:
-    """After a step of the clock timeouts count from the new time."""
+def test_grace_applies_only_at_the_start() -> None:
+    """After a clock step, timeouts count from the new time."""
     engine = Engine(program(TIMED), start_ns=100, grace_ns=50)
     engine.advance(10)
     assert engine.next_deadline == 10 + 10**9
 
 
-def test_waiting_ends_with_the_first_message_or_its_absence() -> None:
-    """A monitor waits for inputs with a timeout, until they come or go missing."""
+def test_waiting_ends_with_the_first_message_or_timeout() -> None:
+    """A monitor waits for inputs with a timeout until they arrive or are missing."""
     heard, unheard = Engine(program(TIMED)), Engine(program(TIMED))
     assert heard.waiting
     _speed(heard, 1, 0.1)
@@ -140,16 +140,16 @@ def test_waiting_ends_with_the_first_message_or_its_absence() -> None:
     assert not unheard.waiting
 
 
-def test_nan_is_no_first_message(latched: Program) -> None:
-    """A message that does not count is still waited for; without a timeout nothing is."""
+def test_nan_is_not_a_first_message(latched: Program) -> None:
+    """The monitor still waits for a valid message; inputs without a timeout are not awaited."""
     engine = Engine(program(TIMED))
     _speed(engine, 1, math.nan)
     assert engine.waiting
     assert not Engine(latched).waiting
 
 
-def test_latched_actions_can_be_active_from_the_start(latched: Program) -> None:
-    """Such an action makes no event until it is reset; names of others are ignored."""
+def test_latched_actions_may_be_active_at_the_start(latched: Program) -> None:
+    """They have no event until they are reset; unknown names are ignored."""
     engine = Engine(latched, latched={"stop", "gone"})
     assert engine.events == []
     _speed(engine, 1, 0.1)
@@ -158,7 +158,7 @@ def test_latched_actions_can_be_active_from_the_start(latched: Program) -> None:
 
 
 def test_reset_is_refused_before_the_first_event(latched: Program) -> None:
-    """Nothing is known at the start, so an action that outlived a restart stays active."""
+    """Nothing is known at the start, so an action that survived a restart stays active."""
     engine = Engine(latched, latched={"stop", "low"})
     assert engine.reset(1) is False
     _speed(engine, 2, 0.1)
@@ -171,8 +171,8 @@ def test_reset_is_refused_before_the_first_event(latched: Program) -> None:
     ]
 
 
-def test_missing_is_unknown_before_the_first_event_too() -> None:
-    """The start is no event: until the first one no condition has been evaluated."""
+def test_missing_is_unknown_before_the_first_event() -> None:
+    """The start is not an event: no condition has been evaluated before the first one."""
     rules = LATCHED.replace("/speed.data", "/speed.data timeout 5 ns")
     engine = Engine(program(rules.replace("v > 0.5;", "v.missing();")), latched={"stop"})
     assert engine.reset(1) is False
@@ -182,7 +182,7 @@ def test_missing_is_unknown_before_the_first_event_too() -> None:
 
 @pytest.mark.parametrize("value", [math.nan, None])
 def test_reset_is_refused_while_the_cause_is_unknown(latched: Program, value: float) -> None:
-    """A value that says nothing does not say that the danger is over."""
+    """An unknown value does not show that the danger is over."""
     engine = Engine(latched)
     _speed(engine, 1, 0.6)
     engine.message(2, "/speed", {0: value})
@@ -192,8 +192,8 @@ def test_reset_is_refused_while_the_cause_is_unknown(latched: Program, value: fl
     assert engine.reset(5) is True
 
 
-def test_reset_is_refused_after_a_step_of_the_clock(latched: Program) -> None:
-    """The step makes every input unknown, until its next message."""
+def test_reset_is_refused_after_a_clock_step(latched: Program) -> None:
+    """The step makes every input unknown until its next message."""
     engine = Engine(latched)
     _speed(engine, 5, 0.6)
     _speed(engine, 6, 0.1)
@@ -203,8 +203,8 @@ def test_reset_is_refused_after_a_step_of_the_clock(latched: Program) -> None:
     assert engine.reset(5) is True
 
 
-def test_refused_reset_names_what_holds_and_what_is_unknown() -> None:
-    """Both kinds of behaviours are named; one that is known to be false is not."""
+def test_refused_reset_lists_holding_and_unknown_behaviours() -> None:
+    """Behaviours known to be false are not listed."""
     rules = LATCHED + "if e.flag then { stop; };\nif e.fast for 1 sec then { stop; };\n"
     engine = Engine(program(rules))
     _speed(engine, 1, 0.6)
@@ -213,8 +213,8 @@ def test_refused_reset_names_what_holds_and_what_is_unknown() -> None:
     assert engine.events[-1].unknown == ("behaviour_3",)
 
 
-def test_disabled_outer_behaviour_is_known_to_be_false() -> None:
-    """Whatever is nested in it refuses nothing, even while it is unknown."""
+def test_disabled_outer_behaviour_does_not_refuse_a_reset() -> None:
+    """Behaviours nested in it are false, even while they are unknown."""
     rules = LATCHED.replace(
         "if e.fast then { stop; };",
         "optional behaviour fast: if e.fast then { if e.flag then { stop; }; };",
@@ -226,7 +226,7 @@ def test_disabled_outer_behaviour_is_known_to_be_false() -> None:
     assert engine.reset(4) is True
 
 
-def test_action_that_nothing_triggers_can_be_reset() -> None:
+def test_action_without_a_trigger_can_be_reset() -> None:
     """No condition refuses it."""
     rules = LATCHED.replace("if e.fast then { stop; };", "")
     assert Engine(program(rules), latched={"stop"}).reset(1) is True
@@ -236,7 +236,7 @@ OPTIONAL = LATCHED.replace("if e.fast then", "optional behaviour fast: if e.fast
 
 
 def test_disabled_behaviour_does_not_act() -> None:
-    """Its condition counts as false, so that it neither acts nor keeps a reset from being done."""
+    """Its condition counts as false: it neither acts nor prevents a reset."""
     engine = Engine(program(OPTIONAL))
     _speed(engine, 1, 0.6)
     engine.advance(6)
@@ -245,8 +245,8 @@ def test_disabled_behaviour_does_not_act() -> None:
     assert engine.reset(9) is True
 
 
-def test_intervals_of_a_disabled_behaviour_go_on() -> None:
-    """Enabled while its condition is true, for long enough, a behaviour acts at once."""
+def test_intervals_of_a_disabled_behaviour_continue() -> None:
+    """Enabled after its condition has held long enough, a behaviour acts at once."""
     engine = Engine(program(OPTIONAL))
     engine.enable(0, "fast", False)
     _speed(engine, 1, 0.6)
@@ -256,15 +256,15 @@ def test_intervals_of_a_disabled_behaviour_go_on() -> None:
 
 
 def test_only_optional_behaviours_can_be_disabled() -> None:
-    """To disable another is refused, whether there is one or not."""
+    """Other behaviours and unknown names raise."""
     engine = Engine(program(OPTIONAL))
     for name in ("behaviour_2", "nobody"):
         with pytest.raises(ValueError, match=name):
             engine.enable(1, name, False)
 
 
-def test_explain_tells_values_and_since_when() -> None:
-    """A rule that is not true is false only if all that it reads is known."""
+def test_explain_shows_values_and_times() -> None:
+    """A rule is false only if everything that it reads is known."""
     engine = Engine(program(TIMED), start_ns=5)
     fast, old, gone = engine.explain().rules
     assert (fast.name, fast.value, fast.since, fast.reads) == ("e.fast", None, 5, (("v", None),))
@@ -278,8 +278,8 @@ def test_explain_tells_values_and_since_when() -> None:
     assert (gone.value, gone.since) == (True, 10 + 10**9)
 
 
-def test_explain_names_rates_as_rules_do() -> None:
-    """What a rate is made of, to take the shortest way round, is not shown."""
+def test_explain_shows_rates_as_written() -> None:
+    """The unwrapping of angles inside a rate is not shown."""
     rules = """use "robot.system" import Robot
     action stop;
     input q = topic /imu.orientation
@@ -291,8 +291,8 @@ def test_explain_names_rates_as_rules_do() -> None:
     assert names == ["q.yaw().rate(0.1 sec)", "q.roll().rate().abs()"]
 
 
-def test_explain_names_terms_as_rules_do() -> None:
-    """A function stands behind what it is applied to; bearings are in radians."""
+def test_explain_shows_terms_as_written() -> None:
+    """A function follows its operand; bearings are in radians."""
     rules = """use "robot.system" import Robot
     action stop;
     input scan = topic /scan

@@ -1,4 +1,4 @@
-"""The function table: what the functions compute, and that the texts of the targets agree."""
+"""The function table: results of the functions, and agreement of the target languages."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ BEAMS = st.lists(st.floats(width=32), max_size=20)
 
 
 def _namespace() -> dict[str, Any]:
-    """Execute all Python texts as a generated module would hold them."""
+    """Execute all Python texts as in a generated module."""
     found: dict[str, Any] = {
         "functools": functools,
         "math": math,
@@ -48,7 +48,7 @@ NAMESPACE = _namespace()
 
 
 def text_of(name: str) -> Callable[..., float | None]:
-    """Return what the Python text of a function calls; of a quaternion, made into a function."""
+    """Return the function that a Python text calls; for quaternions, a wrapper around the text."""
     row = FUNCTIONS[name]
     if row.python_of_unit:
         return of_quaternion(row.python_of_unit)
@@ -57,7 +57,7 @@ def text_of(name: str) -> Callable[..., float | None]:
 
 
 def of_quaternion(lines: Sequence[str]) -> Callable[..., float | None]:
-    """Return the function that a handler works out in place, normalising as it does."""
+    """Return the function that a handler computes inline, with the same normalisation."""
     body = [*lines[:-1], f"return {lines[-1]}"]
     text = "\n    ".join(["def of_unit(ux: float, uy: float, uz: float, uw: float):", *body])
     found: dict[str, Any] = {"math": math}
@@ -74,7 +74,7 @@ def of_quaternion(lines: Sequence[str]) -> Callable[..., float | None]:
 
 
 def same(a: float | None, b: float | None) -> bool:
-    """Tell whether two results are equal to the last bit, unknown and signed zero included."""
+    """Return whether two results are equal to the last bit, including unknown and signed zero."""
     if a is None or b is None:
         return a is b
     return struct.pack("d", a) == struct.pack("d", b)
@@ -86,17 +86,17 @@ def about(axis: tuple[float, float, float], angle: float) -> tuple[float, float,
     return x, y, z, math.cos(angle / 2.0)
 
 
-# What the functions compute -------------------------------------------------------------------
+# Results of the functions ---------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
     ("name", "axis"), [("roll", (1, 0, 0)), ("pitch", (0, 1, 0)), ("yaw", (0, 0, 1))]
 )
 @given(angle=st.floats(-1.5, 1.5), scale=st.floats(1e-3, 1e3))
-def test_angle_about_its_axis(
+def test_angle_of_a_rotation_about_one_axis(
     name: str, axis: tuple[float, float, float], angle: float, scale: float
 ) -> None:
-    """A rotation about one axis is that angle, however long the quaternion is."""
+    """The result does not depend on the length of the quaternion."""
     evaluate = FUNCTIONS[name].evaluate
     assert evaluate is not None
     quaternion = (scale * each for each in about(axis, angle))
@@ -105,7 +105,7 @@ def test_angle_about_its_axis(
 
 @given(direction=ANGLES, angle=st.floats(0.0, math.pi), turn=ANGLES)
 def test_tilt_is_the_angle_to_the_vertical(direction: float, angle: float, turn: float) -> None:
-    """A tilt about any level axis is that angle, whatever the yaw, and is acos(1 - 2(x² + y²))."""
+    """It is the angle about any level axis, whatever the yaw: acos(1 - 2(x² + y²))."""
     x, y, _, w = about((math.cos(direction), math.sin(direction), 0.0), angle)
     s, c = math.sin(turn / 2.0), math.cos(turn / 2.0)
     turned = (c * x - s * y, c * y + s * x, s * w, c * w)
@@ -116,46 +116,46 @@ def test_tilt_is_the_angle_to_the_vertical(direction: float, angle: float, turn:
 
 @pytest.mark.parametrize("name", ["roll", "pitch", "yaw", "tilt"])
 @pytest.mark.parametrize("quaternion", [(0.0, 0.0, 0.0, 0.0), (math.inf, 0.0, 0.0, 1.0)])
-def test_no_attitude(name: str, quaternion: tuple[float, ...]) -> None:
-    """A quaternion without a finite length above 0 tells no angle."""
+def test_invalid_quaternion_gives_no_angle(name: str, quaternion: tuple[float, ...]) -> None:
+    """The length must be finite and above 0."""
     evaluate = FUNCTIONS[name].evaluate
     assert evaluate is not None
     assert evaluate(*quaternion) is None
 
 
 def test_pitch_at_the_pole() -> None:
-    """Rounding past a sine of 1 still gives a quarter turn."""
+    """A sine rounded to more than 1 still gives a quarter turn."""
     half = math.sqrt(0.5)
     assert values.pitch(0.0, half + 1e-16, 0.0, half) == pytest.approx(math.pi / 2.0)
 
 
-def test_rate() -> None:
-    """A change of 3 in half a second is 6 per second; one instant, or inf to inf, tells nothing."""
+def test_rate_of_change() -> None:
+    """A change of 3 in half a second is 6 per second; equal times and inf to inf give None."""
     assert values.rate(5.0, 2.0, 500_000_000) == 6.0
     assert values.rate(5.0, 2.0, 0) is None
     assert values.rate(math.inf, math.inf, 1) is None
     assert values.rate(math.inf, 1.0, 1) == math.inf
 
 
-def test_empty_array() -> None:
-    """An empty array has no least and no greatest element, and 0 elements."""
+def test_functions_of_an_empty_array() -> None:
+    """An empty array has no minimum and no maximum, and 0 elements."""
     assert (values.least([]), values.greatest([]), values.count([])) == (None, None, 0)
 
 
 def scan(*ranges: float, start: float = -1.0, end: float = 1.0) -> float | None:
-    """Ask a scan of beams 0.5 rad apart from -1 rad on, valid from 0.1 to 10 m."""
+    """Evaluate nearest() on beams 0.5 rad apart from -1 rad on, valid from 0.1 to 10 m."""
     return values.nearest(ranges, -1.0, 0.5, 0.1, 10.0, start, end)
 
 
-def test_nearest_of_a_sector() -> None:
-    """Only beams between the bearings count, those on the bounds included."""
+def test_nearest_in_a_sector() -> None:
+    """Beams between the bearings count, including those on the bounds."""
     assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.5, end=0.5) == 2.0
     assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.6, end=-0.4) == 2.0
     assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.4, end=-0.1) is None
 
 
-def test_nearest_through_the_back() -> None:
-    """A sector whose end is less than its start runs through the back, as angles beyond pi do."""
+def test_nearest_through_the_rear() -> None:
+    """A sector whose end is less than its start includes the rear, as do angles beyond pi."""
     quarter = math.pi / 2.0
     ranges = [1.0, 2.0, 3.0, 4.0]  # ahead, left, behind, right
     ask = (ranges, 0.0, quarter, 0.1, 10.0)
@@ -164,8 +164,8 @@ def test_nearest_through_the_back() -> None:
     assert values.nearest(*ask, -math.pi, math.pi) == 1.0
 
 
-def test_nearest_of_special_beams() -> None:
-    """NaN and too short are invalid, -inf is the least range, far and inf are nothing there."""
+def test_nearest_with_special_beams() -> None:
+    """NaN and short beams are invalid, -inf is the minimum range, far and inf mean no obstacle."""
     nan, inf = math.nan, math.inf
     assert scan(nan, 0.05, 3.0, nan, nan) == 3.0
     assert scan(nan, -inf, 3.0, nan, nan) == 0.1
@@ -173,8 +173,8 @@ def test_nearest_of_special_beams() -> None:
     assert scan(nan, nan, 0.05, nan, nan) is None
 
 
-def test_usable_scan() -> None:
-    """A scan counts as a message when any beam of it is valid, wherever it points."""
+def test_scan_with_a_valid_beam_is_usable() -> None:
+    """A scan counts as a message if any of its beams is valid, in any direction."""
     guard = FUNCTIONS["nearest"].guard
     assert guard is not None
     assert not guard.evaluate([math.nan, 0.05], 0.1)
@@ -183,14 +183,16 @@ def test_usable_scan() -> None:
     assert not guard.evaluate([], 0.1)
 
 
-# The texts agree ------------------------------------------------------------------------------
+# The target languages agree -------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["roll", "pitch", "yaw", "tilt"])
 @given(x=NUMBERS, y=NUMBERS, z=NUMBERS, w=NUMBERS)
 @example(x=0.0, y=0.0, z=0.0, w=0.0)
-def test_python_of_a_quaternion(name: str, x: float, y: float, z: float, w: float) -> None:
-    """The Python text gives the reference's result to the last bit."""
+def test_python_angles_agree_with_the_reference(
+    name: str, x: float, y: float, z: float, w: float
+) -> None:
+    """The Python text gives the result of the reference to the last bit."""
     evaluate = FUNCTIONS[name].evaluate
     assert evaluate is not None
     result = evaluate(x, y, z, w)
@@ -200,8 +202,10 @@ def test_python_of_a_quaternion(name: str, x: float, y: float, z: float, w: floa
 
 
 @given(value=NUMBERS, previous=NUMBERS, elapsed_ns=st.integers(0, 10**15))
-def test_python_of_numbers(value: float, previous: float, elapsed_ns: int) -> None:
-    """Rate, abs and norm agree, on all numbers."""
+def test_python_scalar_functions_agree_with_the_reference(
+    value: float, previous: float, elapsed_ns: int
+) -> None:
+    """Rate, abs and norm agree on all numbers."""
     arguments = (value, previous, elapsed_ns)
     assert same(text_of("rate")(*arguments), values.rate(*arguments))
     assert same(text_of("abs")(value), values.absolute(value))
@@ -209,8 +213,8 @@ def test_python_of_numbers(value: float, previous: float, elapsed_ns: int) -> No
 
 
 @given(array=st.lists(NUMBERS, max_size=8))
-def test_python_of_arrays(array: list[float]) -> None:
-    """Min, max and count agree, on empty arrays too."""
+def test_python_array_functions_agree_with_the_reference(array: list[float]) -> None:
+    """Min, max and count agree, also on empty arrays."""
     for name in ("min", "max", "count"):
         evaluate = FUNCTIONS[name].evaluate
         assert evaluate is not None
@@ -224,10 +228,10 @@ SCANS = st.tuples(
 
 
 @given(arguments=SCANS)
-def test_python_of_a_scan(arguments: tuple[Any, ...]) -> None:
-    """Nearest agrees on scans of every kind, and so does the test that a scan is usable."""
+def test_python_nearest_agrees_with_the_reference(arguments: tuple[Any, ...]) -> None:
+    """Nearest and the test for usable scans agree on all scans."""
     ranges, angle_min, increment, *rest = arguments
-    limits = [float(np.float32(limit)) for limit in rest[:2]]  # as they come in a message
+    limits = [float(np.float32(limit)) for limit in rest[:2]]  # rounded as in a message
     nearest = values.nearest(ranges, angle_min, increment, *limits, *rest[2:])
     usable = values.scan_usable(ranges, limits[0])
     assert usable or nearest is None
@@ -237,8 +241,8 @@ def test_python_of_a_scan(arguments: tuple[Any, ...]) -> None:
         assert NAMESPACE["scan_usable"](given_as, limits[0]) is usable
 
 
-def test_every_function_of_values_has_its_texts() -> None:
-    """What the monitor evaluates, each target can call."""
+def test_every_value_function_has_a_text_in_each_language() -> None:
+    """Each target can call every function that the engine evaluates."""
     for row in FUNCTIONS.values():
         if row.evaluate is not None:
             built_in = ("abs", "len")
@@ -267,7 +271,7 @@ OF_ELEMENTS = (("BASE", "float64"), ("ELEMENT", "double"), ("RESULT", "double"),
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
-    """All C texts, compiled as strictly as possible, their functions made visible."""
+    """Compile all C texts with strict warnings and export their functions."""
     compiler = shutil.which("cc")
     if compiler is None:
         pytest.skip("no C compiler")
@@ -289,13 +293,13 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
 
 
 def _signatures(source: str) -> list[str]:
-    """Return the prototypes of all functions; none begins with a blank."""
+    """Return the prototypes of all functions; none begins with a space."""
     heads = re.findall(r"^(\w[^;{}]*\))\n\{", source, flags=re.MULTILINE)
     return [f"{head};" for head in heads]
 
 
 def call_c(library: ctypes.CDLL, name: str, *arguments: Any) -> float | None:
-    """Call a function of doubles; an array is passed as pointer and count, NaN is unknown."""
+    """Call a C function of doubles; an array is passed as pointer and count, NaN is unknown."""
     function = getattr(library, name)
     function.restype = ctypes.c_double
     passed: list[Any] = []
@@ -309,7 +313,7 @@ def call_c(library: ctypes.CDLL, name: str, *arguments: Any) -> float | None:
 
 
 def rate_in_c(library: ctypes.CDLL, value: float, previous: float, ns: int) -> float | None:
-    """Call rate(), which keeps the message before behind pointers."""
+    """Call rate(), which stores the last message behind pointers."""
     last, last_t = ctypes.c_double(previous), ctypes.c_int64(7)
     library.rate.restype = ctypes.c_double
     arguments = (ctypes.c_double(value), ctypes.c_int64(7 + ns))
@@ -322,45 +326,53 @@ def rate_in_c(library: ctypes.CDLL, value: float, previous: float, ns: int) -> f
 @pytest.mark.parametrize("name", ["roll", "pitch", "yaw", "tilt"])
 @given(x=MODERATE, y=MODERATE, z=MODERATE, w=MODERATE)
 @example(x=0.0, y=0.0, z=0.0, w=0.0)
-def test_c_of_quaternions(
+def test_c_angles_agree_with_the_reference(
     library: ctypes.CDLL, name: str, x: float, y: float, z: float, w: float
 ) -> None:
-    """The C texts give the reference's angles to the last bit."""
+    """The C texts give the angles of the reference to the last bit."""
     length = call_c(library, "length_of", x, y, z, w)
     unit = [math.nan if length is None else part / length for part in (x, y, z, w)]
     assert same(call_c(library, name, *unit), getattr(values, name)(x, y, z, w))
 
 
 @given(x=NUMBERS, y=NUMBERS, elapsed_ns=st.integers(0, 10**15))
-def test_c_of_rate(library: ctypes.CDLL, x: float, y: float, elapsed_ns: int) -> None:
-    """The C text of rate gives the reference's results to the last bit."""
+def test_c_rate_agrees_with_the_reference(
+    library: ctypes.CDLL, x: float, y: float, elapsed_ns: int
+) -> None:
+    """The C text gives the results of the reference to the last bit."""
     assert same(rate_in_c(library, x, y, elapsed_ns), values.rate(x, y, elapsed_ns))
 
 
 @given(x=MODERATE, y=MODERATE, z=MODERATE)
-def test_c_of_norm(library: ctypes.CDLL, x: float, y: float, z: float) -> None:
-    """The C text of norm gives the reference's result to the last bit."""
+def test_c_norm_agrees_with_the_reference(
+    library: ctypes.CDLL, x: float, y: float, z: float
+) -> None:
+    """The C text gives the results of the reference to the last bit."""
     assert same(call_c(library, "norm", x, y, z), values.norm(x, y, z))
 
 
 @given(value=st.integers(-(2**63) + 1, 2**63 - 1))
-def test_c_of_magnitude(library: ctypes.CDLL, value: int) -> None:
-    """The C text of abs gives the reference's result of integers."""
+def test_c_magnitude_agrees_with_the_reference(library: ctypes.CDLL, value: int) -> None:
+    """The C text gives the results of the reference for integers."""
     library.magnitude.restype = ctypes.c_int64
     assert library.magnitude(ctypes.c_int64(value)) == values.absolute(value)
 
 
 @given(array=st.lists(NUMBERS, max_size=8))
-def test_c_of_arrays(library: ctypes.CDLL, array: list[float]) -> None:
-    """The C texts of arrays give the reference's results."""
+def test_c_array_functions_agree_with_the_reference(
+    library: ctypes.CDLL, array: list[float]
+) -> None:
+    """The C texts give the results of the reference."""
     elements = (ctypes.c_double * len(array))(*array)
     assert call_c(library, "least_float64", elements) == values.least(array)
     assert call_c(library, "greatest_float64", elements) == values.greatest(array)
 
 
 @given(arguments=SCANS)
-def test_c_of_a_scan(library: ctypes.CDLL, arguments: tuple[Any, ...]) -> None:
-    """The C texts of nearest, and of the test that a scan is usable, give the reference's."""
+def test_c_nearest_agrees_with_the_reference(
+    library: ctypes.CDLL, arguments: tuple[Any, ...]
+) -> None:
+    """The C texts of nearest and of the test for usable scans give the results of the reference."""
     ranges, *rest = arguments
     beams = (ctypes.c_float * len(ranges))(*ranges)
     assert call_c(library, "nearest", beams, *rest) == values.nearest(*arguments)

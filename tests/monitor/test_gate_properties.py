@@ -1,4 +1,4 @@
-"""What holds for the reference gate whatever happens to it, in whatever order."""
+"""Properties of the reference gate under any sequence of events."""
 
 from __future__ import annotations
 
@@ -36,20 +36,20 @@ calls = st.one_of(
 
 
 def histories(of_waits: st.SearchStrategy[int]) -> st.SearchStrategy[list[Happening]]:
-    """Draw what happens: how long after the one before, what, and with which value."""
+    """Draw a sequence of events: time since the one before, kind, and value."""
     return st.lists(st.builds(lambda wait, call: (wait, *call), of_waits, calls), max_size=40)
 
 
 @cache
 def built(*lines: str) -> Program:
-    """Build a gate of these lines."""
+    """Build a gate of the given lines."""
     text = " ".join(lines)
     return program(f"{ACTIONS}gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {{ {text} }}")
 
 
 @st.composite
 def gates(draw: st.DrawFn, *orders: tuple[str, ...]) -> tuple[Gate, Program]:
-    """Draw a gate with one of these orders of lines, its times a few nanoseconds."""
+    """Draw a gate with one of the given orders of lines and times of a few nanoseconds."""
     whole = built(*draw(st.sampled_from(orders)))
     (gate,) = whole.gates
     lines = tuple(
@@ -71,7 +71,7 @@ ALL_ORDERS = (
 
 
 class Run:
-    """A gate at work; after each call, ``check`` sees the run and what the call published."""
+    """A running gate; ``check`` gets the run and the published commands after each call."""
 
     def __init__(self, gate: tuple[Gate, Program]) -> None:
         """Start at 0."""
@@ -88,7 +88,7 @@ class Run:
     def live(
         self, history: list[Happening], check: Callable[[list[Output]], None] = lambda _: None
     ) -> None:
-        """Let things happen; before each, deadlines are settled one by one, as a timer does."""
+        """Run events; before each, handle deadlines one by one, as a timer does."""
         for wait, call, value in history:
             if wait < 0:
                 self.counter = self.beat = self.good = None
@@ -102,8 +102,8 @@ class Run:
             check(self.happen(call, value))
 
     def happen(self, call: str, value: Any) -> list[Output]:
-        """Let one thing happen now, and remember it."""
-        # What was due before comes first, with the memory of before.
+        """Handle one event now, and record it."""
+        # Deadlines due before the event come first, with the state before it.
         published = self.engine.advance(self.now)
         if call == "command":
             published = published + self.engine.command(self.now, value)
@@ -133,38 +133,38 @@ class Run:
         return next(each for each in self.gate.lines if each.lost == lost)
 
     def is_silent(self, lost: str, t_ns: int) -> bool:
-        """Tell whether the heartbeat, or good commands, have been silent for the line's time."""
+        """Return whether heartbeat or valid commands have been silent for the time of the line."""
         last = self.beat if lost == "heartbeat" else self.good
         return last is None or t_ns - last >= (self.line(lost).lost_ns or 0)
 
 
 def speed(output: Output) -> float:
-    """Return the speed that is commanded."""
+    """Return the commanded speed."""
     value: float = output.message["linear"]["x"]
     return value
 
 
 def is_zero(message: Message) -> bool:
-    """Tell whether every number of a command is 0."""
+    """Return whether every number of a command is 0."""
     return all(not value for part in message.values() for value in part.values())
 
 
 @given(gates(*ALL_ORDERS), histories(waits_and_steps))
-def test_nothing_but_finite_commands(gate: tuple[Gate, Program], history: list[Happening]) -> None:
-    """NaN and infinity never pass, whatever lines there are."""
+def test_only_finite_commands_are_published(
+    gate: tuple[Gate, Program], history: list[Happening]
+) -> None:
+    """NaN and infinity never pass, whatever the lines."""
     run = Run(gate)
     run.live(history)
     assert all(is_finite(each.message) for each in run.engine.outputs)
 
 
 @given(gates(ZERO_FIRST), histories(waits_and_steps))
-def test_silence_commands_nothing_but_zeros(
-    gate: tuple[Gate, Program], history: list[Happening]
-) -> None:
-    """From the instant that heartbeat or input have been silent for their time, all is zero.
+def test_silence_publishes_only_zeros(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """From the time that heartbeat or input have been silent for their time, all is zero.
 
-    A heartbeat whose counter does not advance is silence, and so is one that nobody, or more than
-    one, may have sent.
+    A heartbeat whose counter does not advance counts as silence, and so does one whose publisher is
+    unknown or ambiguous.
     """
     run = Run(gate)
 
@@ -178,10 +178,8 @@ def test_silence_commands_nothing_but_zeros(
 
 
 @given(gates(ZERO_FIRST), histories(waits_and_steps))
-def test_stop_commands_nothing_but_zeros(
-    gate: tuple[Gate, Program], history: list[Happening]
-) -> None:
-    """Unless the gate has been told that the action is not active."""
+def test_stop_publishes_only_zeros(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """This holds unless the gate knows that the action is inactive."""
     run = Run(gate)
 
     def check(published: list[Output]) -> None:
@@ -194,8 +192,8 @@ def test_stop_commands_nothing_but_zeros(
 
 
 @given(gates(*ALL_ORDERS), histories(waits_and_steps))
-def test_limits_are_met(gate: tuple[Gate, Program], history: list[Happening]) -> None:
-    """In every command that is published while the limit's action is, or may be, active."""
+def test_limits_are_never_exceeded(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """This holds for every command published while the action is, or may be, active."""
     run = Run(gate)
 
     def check(published: list[Output]) -> None:
@@ -210,7 +208,7 @@ def test_limits_are_met(gate: tuple[Gate, Program], history: list[Happening]) ->
 def test_gate_can_always_be_opened(
     gate: tuple[Gate, Program], history: list[Happening], command: Message
 ) -> None:
-    """After two heartbeats, and word that nothing is active, the very command passes at once."""
+    """After two heartbeats and all states inactive, the next command passes at once."""
     run = Run(gate)
     beats = [(0, "beat", 1), (0, "beat", 1)]
     run.live([*history, *beats, (0, "/stop", False), (0, "/low_speed", False)])
@@ -220,8 +218,8 @@ def test_gate_can_always_be_opened(
 
 
 @given(gates(*ALL_ORDERS), histories(waits_and_steps))
-def test_only_commands_drive(gate: tuple[Gate, Program], history: list[Happening]) -> None:
-    """What is published without a command is zero, or slower than what was published before."""
+def test_only_commands_cause_motion(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """Output without a command is zero, or slower than the output before."""
     run = Run(gate)
     before = [0.0]
 
@@ -237,8 +235,8 @@ def test_only_commands_drive(gate: tuple[Gate, Program], history: list[Happening
 
 
 @given(gates(*ALL_ORDERS), histories(waits))
-def test_zeros_are_steady(gate: tuple[Gate, Program], history: list[Happening]) -> None:
-    """When everything falls silent there are zeros, never further apart than the period."""
+def test_zeros_are_periodic(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """When all inputs are silent, zeros are never further apart than the period."""
     run = Run(gate)
     run.live([*history, (LONG, "wait", None)])
     lost = run.now - LONG + max(each.lost_ns or 0 for each in gate[0].lines)
@@ -251,8 +249,10 @@ def test_zeros_are_steady(gate: tuple[Gate, Program], history: list[Happening]) 
 
 
 @given(gates(*ALL_ORDERS), histories(waits_and_steps))
-def test_late_calls_decide_alike(gate: tuple[Gate, Program], history: list[Happening]) -> None:
-    """A gate without any timer publishes the same for what comes; only zeros fall out."""
+def test_late_calls_give_the_same_commands(
+    gate: tuple[Gate, Program], history: list[Happening]
+) -> None:
+    """A gate without a timer publishes the same for each message; only zeros are missing."""
     timely, late = Run(gate), Run(gate)
     timely.live(history)
     late.now = 0

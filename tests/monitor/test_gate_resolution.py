@@ -1,4 +1,4 @@
-"""Gates of the rules become those of the program: topics, periods, actions, limits in the field."""
+"""Gates of the rules become gates of the program: topics, periods, actions, converted limits."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _findings(text: str) -> list[tuple[str, str, str]]:
 
 
 def test_gate_of_the_program() -> None:
-    """Relative topics are put under the root, lines keep their order and name actions by index."""
+    """Relative topics are put under the root; lines keep their order, actions are indices."""
     gate = _gate(
         """gate nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz "The drive" {
           slow: limit linear.x to [-0.1, 0.1]; stop: zero;
@@ -59,8 +59,8 @@ def test_gate_of_the_program() -> None:
     assert [len(line.limits) for line in gate.lines] == [1, 0, 0, 1]
 
 
-def test_gates_are_numbered_in_the_order_written() -> None:
-    """Each has its index."""
+def test_gates_are_numbered_in_source_order() -> None:
+    """Each gate has its index."""
     text = "".join(f"gate /a -> /b{n} : std_msgs.Int8 rate 1 Hz {{ {LOST} }}\n" for n in range(3))
     assert [(each.index, each.target) for each in program(text).gates] == [
         (0, "/b0"),
@@ -73,8 +73,8 @@ def test_gates_are_numbered_in_the_order_written() -> None:
     ("rate", "period_ns"),
     [("20 Hz", 50_000_000), ("30 Hz", 33_333_333), ("1 kHz", 1_000_000)],
 )
-def test_period(rate: str, period_ns: int) -> None:
-    """Zeros come at the rate or a trifle faster, never slower."""
+def test_gate_period_is_rounded_down(rate: str, period_ns: int) -> None:
+    """Zeros are published at the rate or slightly faster, never slower."""
     assert _gate(f"gate /a -> /b : std_msgs.Int8 rate {rate} {{ {LOST} }}").period_ns == period_ns
 
 
@@ -93,8 +93,10 @@ def test_period(rate: str, period_ns: int) -> None:
         ("linear.x to [-2 knot, 0]", (-1.028888, 0.0)),
     ],
 )
-def test_ends_are_in_the_unit_of_the_field(text: str, ends: tuple[float, float]) -> None:
-    """Converted exactly; a unit of an end's own goes before the one behind the interval."""
+def test_limits_are_converted_to_the_unit_of_the_field(
+    text: str, ends: tuple[float, float]
+) -> None:
+    """The conversion is exact; a unit at a bound overrides the one after the interval."""
     declarations = """unit knot = 0.514444 m/s
     const low = 50 cm/s const high = 3.6 km/h const plain = 3"""
     limit = _limit(text, declarations=declarations)
@@ -102,16 +104,16 @@ def test_ends_are_in_the_unit_of_the_field(text: str, ends: tuple[float, float])
     assert limit.type == FieldType("float64")
 
 
-def test_ends_of_a_field_without_a_unit() -> None:
-    """They stand as written, and two units are brought to one."""
+def test_limits_of_a_field_without_a_unit() -> None:
+    """They stay as written, and two units are converted to one."""
     limit = _limit("data to [-1 deg, 90 deg]", "std_msgs.Float64")
     assert (limit.lower, limit.upper) == (-1.0, 90.0)
     limit = _limit("data to [-1 m, 90 cm]", "std_msgs.Float64")
     assert (limit.lower, limit.upper) == (-1.0, 0.9)
 
 
-def test_unit_that_a_node_description_annotates(tmp_path: Path) -> None:
-    """What the reader of the target says of its field goes before what nobody knows."""
+def test_limit_uses_the_unit_from_a_node_description(tmp_path: Path) -> None:
+    """The description of the target's subscriber determines the unit of the field."""
     files = {
         "pump.rnd": "node pump : p\nsubscribes\n  topic flow : std_msgs.Float64 { data [m/s] }\n",
         "a.system": 'system S\nimports\n  import "pump.rnd"\ntopics\n  topic /flow\n'
@@ -129,7 +131,7 @@ def test_unit_that_a_node_description_annotates(tmp_path: Path) -> None:
     assert built.gates[0].lines[0].limits[0].upper == 10.0
 
 
-def test_ends_are_such_as_the_field_holds() -> None:
+def test_limits_are_representable_in_the_field() -> None:
     """Rounded to a float32, cut to the range of an integer; integers stay integers."""
     narrow = _limit("data to [-0.1, 0.1]", "std_msgs.Float32")
     assert narrow.upper == struct.unpack("<f", struct.pack("<f", 0.1))[0]
@@ -138,41 +140,41 @@ def test_ends_are_such_as_the_field_holds() -> None:
     assert isinstance(whole.lower, int)
 
 
-def test_elements_and_nested_fields() -> None:
-    """Paths lead through arrays and messages."""
+def test_limits_of_elements_and_nested_fields() -> None:
+    """Paths may contain arrays and messages."""
     limit = _limit("points[1].velocities[0] to [0, 1]", "trajectory_msgs.JointTrajectory")
     assert limit.path == ("points", 1, "velocities", 0)
 
 
-def test_constants_of_the_message() -> None:
-    """They may be the ends of limits."""
+def test_message_constants_as_limits() -> None:
+    """Constants of the message may be bounds of limits."""
     limit = _limit("level to [OK, WARN]", "diagnostic_msgs.DiagnosticStatus")
     assert (limit.lower, limit.upper) == (0, 1)
 
 
-def test_array_needs_an_index() -> None:
-    """There is no limit of a whole array."""
+def test_limit_of_a_whole_array_is_an_error() -> None:
+    """An index is needed."""
     text = "gate /a -> /b : std_msgs.Float64MultiArray rate 1 Hz { stop: limit data to [0, 1]; }"
     assert _findings(text) == [
         ("DRS303", "data", "a number is needed here, 'data' is a float64[]"),
     ]
 
 
-def test_layout_of_an_array_has_no_limits() -> None:
-    """It commands nothing."""
+def test_array_layout_cannot_be_limited() -> None:
+    """It does not command anything."""
     text = """gate /a -> /b : std_msgs.Float64MultiArray rate 1 Hz {
       stop: limit layout.data_offset to [0, 1]; }"""
     assert [each[0] for each in _findings(text)] == ["DRS337"]
 
 
-def test_unit_of_another_kind_at_one_end() -> None:
-    """It is found where it stands."""
+def test_incompatible_unit_of_one_bound_is_an_error() -> None:
+    """The span is that bound."""
     text = "gate /a -> /b : geometry_msgs.Twist rate 1 Hz { stop: limit linear.x to [-1, 1 rad]; }"
     assert [each[:2] for each in _findings(text)] == [("DRS306", "1 rad")]
 
 
-def test_end_that_is_read_from_a_topic() -> None:
-    """A limit does not change while the gate works."""
+def test_limit_read_from_a_topic_is_an_error() -> None:
+    """A limit does not change while the gate runs."""
     text = """input v = topic /speed.data timeout 1 sec
     gate /a -> /b : geometry_msgs.Twist rate 1 Hz { stop: limit linear.x to [0, v]; }"""
     assert _findings(text) == [
@@ -180,8 +182,8 @@ def test_end_that_is_read_from_a_topic() -> None:
     ]
 
 
-def test_type_with_an_unknown_part(tmp_path: Path) -> None:
-    """A gate makes zeros of whole messages, so every part of one must be known."""
+def test_type_with_an_unknown_part_is_an_error(tmp_path: Path) -> None:
+    """A gate creates zeros of whole messages, so every part of the type must be known."""
     folder = tmp_path / "my_msgs" / "msg"
     folder.mkdir(parents=True)
     (folder / "Wish.msg").write_text("float64 speed\nother_msgs/Extra extra\n", encoding="utf-8")
@@ -194,16 +196,16 @@ def test_type_with_an_unknown_part(tmp_path: Path) -> None:
     ]
 
 
-def test_topics_that_ros_refuses() -> None:
-    """Each is named; private ones belong to a node, and a gate stands between two."""
+def test_invalid_gate_topics_are_errors() -> None:
+    """Each is reported; private topics belong to a node, and a gate is between two nodes."""
     assert _findings(f"gate ~/a -> /b/2c : std_msgs.Int8 rate 1 Hz {{ {LOST} }}") == [
         ("DRS332", "~/a", "the topic '~/a' is private: rules name the topics of other nodes"),
         ("DRS332", "/b/2c", "the topic '/b/2c' has a part that starts with a digit ('2c')"),
     ]
 
 
-def test_optional_behaviour_of_the_program() -> None:
-    """The word reaches the program."""
+def test_optional_behaviours_are_marked() -> None:
+    """The keyword reaches the program."""
     built = program(
         """entity e { r: topic /flag.data; }
         optional behaviour a: if e.r then { log_state("a"); };
@@ -222,7 +224,7 @@ def test_optional_behaviour_of_the_program() -> None:
         ("/_", "topic_gate"),
     ],
 )
-def test_name_of_the_node(target: str, name: str) -> None:
-    """It is made of the target's name."""
+def test_gate_node_name(target: str, name: str) -> None:
+    """It is derived from the target."""
     assert gate_node_name(target) == name
     assert check_node_name(name) is None

@@ -1,4 +1,4 @@
-"""The reference gate after a zero: what it takes until commands pass again."""
+"""The reference gate after a zero: conditions for commands to pass again."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ RESUME = "resume on zero command;"
 # until reset --------------------------------------------------------------------------------------
 
 
-def test_a_latched_loss_outlasts_its_end() -> None:
-    """The heartbeat is back, the stop is known to be off, commands come: zero until the reset."""
+def test_latched_loss_survives_its_end() -> None:
+    """With heartbeat, states and commands back, zero is published until the reset."""
     gate = Driver(STOP, HEARTBEAT).open()
     assert gate.reset(1) == ()
     gate.drive(10, 0.5)
@@ -33,8 +33,8 @@ def test_a_latched_loss_outlasts_its_end() -> None:
     assert gate.drive(402, 0.5) == [(402, "pass", 0.5)]
 
 
-def test_a_start_is_latched() -> None:
-    """A gate that has been started again cannot know what was latched before, and needs a reset."""
+def test_start_is_latched() -> None:
+    """A restarted gate cannot know earlier latches, and needs a reset."""
     gate = Driver(STOP, HEARTBEAT).open()
     assert gate.engine.applying == (False, False, True)
     assert gate.drive(10, 0.5) == []
@@ -42,8 +42,8 @@ def test_a_start_is_latched() -> None:
     assert gate.drive(12, 0.5) == [(12, "pass", 0.5)]
 
 
-def test_a_reset_publishes_nothing() -> None:
-    """It starts nothing: the next command is the first to pass."""
+def test_reset_publishes_nothing() -> None:
+    """It starts no motion: the next command is the first to pass."""
     gate = Driver(STOP, HEARTBEAT).open()
     before = len(gate.engine.outputs)
     gate.drive(10, 0.5)
@@ -52,8 +52,8 @@ def test_a_reset_publishes_nothing() -> None:
     assert gate.wait(200) == []
 
 
-def test_a_reset_is_refused_while_something_is_lost_or_active() -> None:
-    """It names the lines that apply, and is not remembered."""
+def test_reset_is_refused_during_a_loss_or_stop() -> None:
+    """It returns the lines that apply, and is not repeated."""
     gate = Driver(STOP, HEARTBEAT, INPUT)
     assert gate.reset(0) == (0, 1, 2)
     gate.beat(1)
@@ -67,8 +67,8 @@ def test_a_reset_is_refused_while_something_is_lost_or_active() -> None:
     assert gate.drive(9, 0.5) == [(9, "pass", 0.5)]
 
 
-def test_a_limit_of_an_action_refuses_no_reset() -> None:
-    """A robot that may be slow may be reset; one whose input is lost may not, slow or not."""
+def test_limit_of_an_action_does_not_refuse_a_reset() -> None:
+    """A slow robot may be reset; one with a lost input may not, slow or not."""
     gate = Driver(LOW, HEARTBEAT, "lost input for 0.5 sec: limit linear.x to [-0.2, 0.2];").open()
     gate.state(1, "low_speed", True)
     assert gate.reset(2) == ()
@@ -77,14 +77,14 @@ def test_a_limit_of_an_action_refuses_no_reset() -> None:
     assert gate.reset(510) == (2,)
 
 
-def test_a_reset_beats_no_deadline_of_its_instant() -> None:
-    """What is due when it comes is settled first."""
+def test_deadline_precedes_a_reset_at_the_same_time() -> None:
+    """Deadlines due at the time of the reset are handled first."""
     gate = Driver(HEARTBEAT).open()
     assert gate.reset(300) == (0,)
 
 
-def test_no_limit_speaks_while_a_line_is_latched() -> None:
-    """Nobody creeps on under the limit of an action that is written first."""
+def test_limit_does_not_apply_while_a_line_is_latched() -> None:
+    """The robot does not creep under the limit of an action that is written first."""
     gate = Driver(LOW, HEARTBEAT).open()
     gate.reset(1)
     gate.state(2, "low_speed", True)
@@ -95,8 +95,8 @@ def test_no_limit_speaks_while_a_line_is_latched() -> None:
     assert gate.wait(350) == [(350, "zero", 0.0)]
 
 
-def test_nor_does_the_limit_of_a_loss() -> None:
-    """A zero until the reset is one in every number, wherever its line stands."""
+def test_limit_of_a_loss_does_not_apply_while_a_line_is_latched() -> None:
+    """A latched zero applies to every field, wherever its line is."""
     gate = Driver("lost heartbeat for 0.1 sec: limit linear.x to [-0.1, 0.1];", INPUT, HEARTBEAT)
     gate.open()
     gate.reset(1)
@@ -104,8 +104,8 @@ def test_nor_does_the_limit_of_a_loss() -> None:
     assert gate.wait(300) == [(300, "zero", 0.0)]
 
 
-def test_a_refused_command_latches_a_lost_input() -> None:
-    """One NaN is a loss like any other."""
+def test_refused_command_latches_a_lost_input() -> None:
+    """A NaN is a loss like any other."""
     gate = Driver("lost input for 0.5 sec: zero until reset;").open()
     gate.reset(1)
     assert gate.drive(2, 0.5) == [(2, "pass", 0.5)]
@@ -115,8 +115,8 @@ def test_a_refused_command_latches_a_lost_input() -> None:
     assert gate.drive(6, 0.5) == [(6, "pass", 0.5)]
 
 
-def test_a_late_timer_latches_too() -> None:
-    """A loss that nobody saw begin or end, because the gate hung, is one."""
+def test_late_timer_latches_too() -> None:
+    """A loss that began and ended while the gate hung is latched."""
     gate = Driver(HEARTBEAT).open()
     gate.reset(1)
     gate.drive(10, 0.5)
@@ -125,8 +125,8 @@ def test_a_late_timer_latches_too() -> None:
     assert gate.engine.applying == (False, True)
 
 
-def test_an_action_can_be_latched_by_the_gate() -> None:
-    """Then its end at the safety node is not enough."""
+def test_gate_may_latch_an_action() -> None:
+    """The end of the action at the safety node is then not enough."""
     gate = Driver("stop: zero until reset;").open()
     gate.reset(1)
     gate.state(2, "stop", True)
@@ -136,8 +136,8 @@ def test_an_action_can_be_latched_by_the_gate() -> None:
     assert gate.drive(6, 0.5) == [(6, "pass", 0.5)]
 
 
-def test_a_step_back_of_the_clock_is_latched() -> None:
-    """Everything is lost then, as at the start."""
+def test_clock_step_is_latched() -> None:
+    """Everything is lost, as at the start."""
     gate = Driver(STOP, HEARTBEAT).open()
     gate.reset(100)
     gate.drive(100, 0.5)
@@ -148,7 +148,7 @@ def test_a_step_back_of_the_clock_is_latched() -> None:
     assert gate.reset(44) == ()
 
 
-def test_a_reset_of_nothing_is_done() -> None:
+def test_reset_without_a_latch_succeeds() -> None:
     """It changes nothing."""
     gate = Driver(HEARTBEAT).open()
     assert gate.reset(1) == gate.reset(2) == ()
@@ -159,8 +159,8 @@ def test_a_reset_of_nothing_is_done() -> None:
 
 
 @pytest.mark.parametrize("line", [STOP, PLAIN_HEARTBEAT, INPUT])
-def test_nothing_passes_after_the_start_before_a_zero_command(line: str) -> None:
-    """The zero itself passes, and so does what follows."""
+def test_zero_command_is_required_after_the_start(line: str) -> None:
+    """The zero itself passes, and so do the commands after it."""
     gate = Driver(line, RESUME).open()
     assert gate.drive(10, 0.5) == []
     assert gate.engine.applying == (False, True)
@@ -169,8 +169,8 @@ def test_nothing_passes_after_the_start_before_a_zero_command(line: str) -> None
     assert gate.drive(30, 0.5) == [(30, "pass", 0.5)]
 
 
-def test_an_action_that_ends_starts_nothing() -> None:
-    """The controller that never stopped commanding waits until it has commanded zero."""
+def test_zero_command_is_required_after_a_stop() -> None:
+    """A controller that kept commanding motion must first command zero."""
     gate = Driver(STOP, RESUME).open()
     gate.stand(1)
     gate.drive(10, 0.5)
@@ -182,8 +182,8 @@ def test_an_action_that_ends_starts_nothing() -> None:
     assert gate.drive(140, 0.5) == [(140, "pass", 0.5)]
 
 
-def test_a_zero_command_during_a_stop_is_none() -> None:
-    """It is stale when the stop ends: the controller may command anything by then."""
+def test_zero_command_during_a_stop_does_not_count() -> None:
+    """It is outdated when the stop ends: the controller may command motion by then."""
     gate = Driver(STOP, RESUME).open()
     gate.stand(1)
     gate.state(10, "stop", True)
@@ -193,8 +193,8 @@ def test_a_zero_command_during_a_stop_is_none() -> None:
     assert gate.stand(50) == [(50, "pass", 0.0)]
 
 
-def test_a_zero_command_before_the_reset_is_none() -> None:
-    """Reset first, then the controller's zero, then motion."""
+def test_zero_command_before_the_reset_does_not_count() -> None:
+    """The order is reset, zero command, motion."""
     gate = Driver(HEARTBEAT, RESUME).open()
     gate.stand(1)
     assert gate.reset(2) == ()
@@ -204,8 +204,8 @@ def test_a_zero_command_before_the_reset_is_none() -> None:
     assert gate.drive(5, 0.5) == [(5, "pass", 0.5)]
 
 
-def test_the_zero_command_that_ends_a_lost_input_counts() -> None:
-    """A controller that starts by commanding zero may go on at once."""
+def test_zero_command_that_ends_a_lost_input_counts() -> None:
+    """A controller that starts with zero may continue at once."""
     gate = Driver(INPUT, RESUME)
     gate.wait(0)
     assert gate.stand(10) == [(10, "pass", 0.0)]
@@ -218,8 +218,8 @@ def test_the_zero_command_that_ends_a_lost_input_counts() -> None:
 @pytest.mark.parametrize(
     ("speed", "turn"), [(math.nan, 0.0), (0.0, math.inf), (5e-324, 0.0), (0.0, -1e-9)]
 )
-def test_what_is_not_exactly_zero_is_no_zero_command(speed: float, turn: float) -> None:
-    """NaN and the least of speeds alike."""
+def test_nearly_zero_is_not_a_zero_command(speed: float, turn: float) -> None:
+    """NaN and the smallest speed do not count."""
     gate = Driver(STOP, RESUME).open()
     command: Any = {"linear": {"x": speed, "y": 0.0, "z": 0.0}, "angular": dict.fromkeys("xy", 0.0)}
     command["angular"]["z"] = turn
@@ -227,15 +227,15 @@ def test_what_is_not_exactly_zero_is_no_zero_command(speed: float, turn: float) 
     assert gate.drive(20, 0.5) == []
 
 
-def test_minus_zero_is_zero() -> None:
-    """A controller that multiplies by -1 commands it."""
+def test_minus_zero_is_a_zero_command() -> None:
+    """A controller that multiplies by -1 sends it."""
     gate = Driver(STOP, RESUME).open()
     command = {name: dict.fromkeys("xyz", -0.0) for name in ("linear", "angular")}
     assert shown(gate.engine.command(at(10), command)) == [(10, "pass", 0.0)]
 
 
-def test_a_limit_lets_nothing_pass_that_waits() -> None:
-    """Neither a limit that comes into force nor one that is written first."""
+def test_limit_does_not_release_a_waiting_gate() -> None:
+    """Neither a new limit nor one that is written first lets a command pass."""
     gate = Driver(LOW, STOP, RESUME).open()
     gate.stand(1)
     gate.drive(2, 0.5)
@@ -249,8 +249,8 @@ def test_a_limit_lets_nothing_pass_that_waits() -> None:
     assert gate.drive(90, 0.5) == [(90, "limited", 0.1)]
 
 
-def test_a_limit_that_ends_waits_for_nothing() -> None:
-    """A robot that was slow has not stood."""
+def test_end_of_a_limit_needs_no_zero_command() -> None:
+    """A robot under a limit was not stopped."""
     gate = Driver(LOW, RESUME).open()
     gate.stand(1)
     gate.state(2, "low_speed", True)
@@ -259,8 +259,8 @@ def test_a_limit_that_ends_waits_for_nothing() -> None:
     assert gate.drive(5, 0.5) == [(5, "pass", 0.5)]
 
 
-def test_a_gate_without_a_zero_line_waits_at_its_start() -> None:
-    """It commands zero then, and nothing else does."""
+def test_gate_without_a_zero_line_waits_at_the_start() -> None:
+    """The start is its only zero."""
     gate = Driver(LOW, RESUME)
     assert gate.wait(50) == [(0, "zero", 0.0), (50, "zero", 0.0)]
     gate.state(51, "low_speed", False)
@@ -268,8 +268,8 @@ def test_a_gate_without_a_zero_line_waits_at_its_start() -> None:
     assert gate.stand(70) == [(70, "pass", 0.0)]
 
 
-def test_a_step_back_of_the_clock_waits() -> None:
-    """As the start does."""
+def test_clock_step_requires_a_zero_command() -> None:
+    """It is handled like a start."""
     gate = Driver(LOW, RESUME).open()
     gate.stand(100)
     gate.drive(101, 0.5)
@@ -277,7 +277,7 @@ def test_a_step_back_of_the_clock_waits() -> None:
     assert gate.stand(60) == [(60, "pass", 0.0)]
 
 
-# What a zero command is ---------------------------------------------------------------------------
+# Zero commands ------------------------------------------------------------------------------------
 
 TWIST_STAMPED = {
     "header": {"stamp": {"sec": 5, "nanosec": 6}, "frame_id": "base"},
@@ -300,8 +300,8 @@ ARRAY = {"layout": {"dim": [{"label": "x", "size": 2, "stride": 2}], "data_offse
         ("geometry_msgs.Twist", twist(0.0), False),
     ],
 )
-def test_a_zero_command(kind: str, command: Any, expected: bool) -> None:
-    """All numbers are 0 and flags false; stamps, texts and layouts are no motion."""
+def test_recognition_of_zero_commands(kind: str, command: Any, expected: bool) -> None:
+    """All numbers are 0 and flags false; stamps, strings and layouts do not matter."""
     package, name = kind.split(".")
     found = InterfaceType(package, "msg", name)
     assert is_zero(embedded_store(), found, command) is expected

@@ -1,4 +1,4 @@
-"""What holds for a gate that waits, whatever happens to it, in whatever order."""
+"""Properties of a gate that waits, under any sequence of events."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ histories = st.lists(
 
 
 class Waiting(Run):
-    """A gate at work that may be reset.
+    """A running gate that may be reset.
 
     Attributes:
-        granted: whether the call that is being checked was a reset, and was done.
+        granted: whether the checked call was a successful reset.
     """
 
     def __init__(self, gate: tuple[Gate, Program]) -> None:
@@ -55,7 +55,7 @@ class Waiting(Run):
         self.granted = False
 
     def happen(self, call: str, value: Any) -> list[Output]:
-        """Let one thing happen now, and remember it."""
+        """Handle one event now, and record it."""
         self.granted = False
         if call != "reset":
             return super().happen(call, value)
@@ -66,10 +66,8 @@ class Waiting(Run):
 
 
 @given(gates(*WAITING), histories)
-def test_the_controller_stands_before_it_drives(
-    gate: tuple[Gate, Program], history: list[Happening]
-) -> None:
-    """Between a zero of the gate and motion there is a zero of the controller, which passed."""
+def test_zero_command_precedes_motion(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """Between a zero of the gate and motion, a zero of the controller has passed."""
     run = Waiting(gate)
     run.live(history)
     waits = True
@@ -84,15 +82,15 @@ def test_the_controller_stands_before_it_drives(
 
 
 @given(gates(*LATCHING, *WAITING), histories)
-def test_a_loss_lasts_until_the_reset(gate: tuple[Gate, Program], history: list[Happening]) -> None:
-    """From the loss on, and from the start on, all is zero until a reset that was granted."""
+def test_loss_lasts_until_the_reset(gate: tuple[Gate, Program], history: list[Happening]) -> None:
+    """After the start and after a loss, all is zero until a successful reset."""
     run = Waiting(gate)
     latched = [True]
     watched = [line.lost for line in gate[0].lines if line.until_reset]
 
     def check(published: list[Output]) -> None:
         for each in published:
-            # What a call publishes before it resets is of the time before.
+            # Commands published by a call before it resets belong to the time before.
             assert each.kind == "zero" or not latched[0]
         for lost in watched:
             latched[0] = latched[0] or run.is_silent(str(lost), run.now)
@@ -103,10 +101,10 @@ def test_a_loss_lasts_until_the_reset(gate: tuple[Gate, Program], history: list[
 
 
 @given(gates(*LATCHING, *WAITING), histories)
-def test_no_reset_while_something_is_lost_or_active(
+def test_reset_is_refused_while_anything_is_lost_or_active(
     gate: tuple[Gate, Program], history: list[Happening]
 ) -> None:
-    """And none makes the gate publish anything by itself."""
+    """No reset makes the gate publish motion by itself."""
     run = Waiting(gate)
 
     def check(published: list[Output]) -> None:
@@ -120,10 +118,10 @@ def test_no_reset_while_something_is_lost_or_active(
 
 
 @given(gates(*LATCHING, *WAITING), histories, st.floats(-9, 9))
-def test_the_gate_can_always_be_opened(
+def test_waiting_gate_can_always_be_opened(
     gate: tuple[Gate, Program], history: list[Happening], speed: float
 ) -> None:
-    """Everybody is there, nothing is active; a reset, a zero, and the very command passes."""
+    """With everything present and inactive: after a reset and a zero, the next command passes."""
     run = Waiting(gate)
     opening = [
         *((0, "beat", 1), (0, "beat", 1), (0, "/stop", False), (0, "/low_speed", False)),
@@ -138,8 +136,10 @@ def test_the_gate_can_always_be_opened(
 
 
 @given(gates(*WAITING), histories)
-def test_late_calls_decide_alike(gate: tuple[Gate, Program], history: list[Happening]) -> None:
-    """A gate without any timer publishes the same for what comes; only zeros fall out."""
+def test_late_calls_give_the_same_commands(
+    gate: tuple[Gate, Program], history: list[Happening]
+) -> None:
+    """A gate without a timer publishes the same for each message; only zeros are missing."""
     timely, late = Waiting(gate), Waiting(gate)
     timely.live(history)
     for wait, call, value in history:

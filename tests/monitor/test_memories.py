@@ -1,4 +1,4 @@
-"""Rates: the shortest way round, and over a span of time by the stamps of messages."""
+"""Rates: unwrapped angles, and rates over a span of time by message stamps."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MS = 1_000_000
 
 
 def unwrapped(*angles: float | None, turn: float = TURN) -> list[float | None]:
-    """Return an angle without its jumps, message by message."""
+    """Return unwrapped angles, message by message."""
     memory, found = Unwrapped(), []
     for number, angle in enumerate(angles):
         memory.follow(number, angle, turn)
@@ -35,7 +35,7 @@ def rates(*messages: tuple[int, float | None], span_ms: int = 100) -> list[float
 
 
 def stamped(*messages: tuple[int, int, float], span_ms: int = 100) -> list[float | None]:
-    """Return the same by the stamps of headers: pairs of milliseconds, of receipt and of stamp."""
+    """Return rates by header stamps: pairs of milliseconds, of receipt and of stamp."""
     memory, found = RateOver(), []
     for at, stamp, value in messages:
         header = divmod(stamp * MS, 10**9)
@@ -47,7 +47,7 @@ def stamped(*messages: tuple[int, int, float], span_ms: int = 100) -> list[float
 # Angles -----------------------------------------------------------------------------------------
 
 
-def test_an_angle_goes_on_past_half_a_turn() -> None:
+def test_angle_continues_past_half_a_turn() -> None:
     """From 3.1 rad to -3.1 rad is a small step forward, not most of a turn back."""
     found = unwrapped(3.1, -3.1, -3.0)
     assert found == pytest.approx([3.1, TURN - 3.1, TURN - 3.0])
@@ -56,7 +56,7 @@ def test_an_angle_goes_on_past_half_a_turn() -> None:
 
 
 def test_half_a_turn_keeps_its_sign() -> None:
-    """Neither way is shorter: the numbers decide."""
+    """Neither direction is shorter, so the numbers decide."""
     assert unwrapped(0.0, math.pi) == [0.0, math.pi]
     assert unwrapped(math.pi, 0.0) == [math.pi, 0.0]
     assert unwrapped(-90.0, 90.0, turn=360.0) == [-90.0, 90.0]
@@ -69,8 +69,8 @@ def test_many_turns_add_up() -> None:
     assert unwrapped(*angles)[-1] == pytest.approx(10.0 * TURN)
 
 
-def test_an_angle_begins_anew_after_what_is_none() -> None:
-    """After an unknown or an infinite angle there is nothing to go on from."""
+def test_unwrapping_restarts_after_an_invalid_angle() -> None:
+    """An unknown or infinite angle cannot be continued."""
     assert unwrapped(3.0, None, -3.0) == [3.0, None, -3.0]
     assert unwrapped(3.0, math.inf, -3.0) == [3.0, math.inf, -3.0]
 
@@ -79,39 +79,39 @@ def test_an_angle_begins_anew_after_what_is_none() -> None:
 
 
 def test_rate_over_a_span() -> None:
-    """It is unknown until messages span it, and then the change over the last ones that do."""
+    """It is unknown until messages cover the span, then the change over the last of them."""
     assert rates((0, 0.0), (50, 1.0), (100, 2.0), (150, 9.0)) == [None, None, 20.0, 80.0]
 
 
-def test_a_burst_changes_nothing() -> None:
-    """Two messages 0.2 ms apart would be a rate of 5,000 by themselves."""
+def test_burst_does_not_distort_the_rate() -> None:
+    """Two messages 0.2 ms apart alone would have a rate of 5,000."""
     memory = RateOver()
     for at_us, value in ((0, 0.0), (100_000, 1.0), (100_200, 2.0)):
         memory.follow(at_us * 1000, value, 100 * MS)
     assert memory.result == pytest.approx(2.0 / 0.1002)
 
 
-def test_samples_lie_an_eighth_apart() -> None:
-    """Of fast messages some are left out: the span may be longer by an eighth and an interval."""
+def test_samples_are_an_eighth_of_the_span_apart() -> None:
+    """Some fast messages are skipped: the span may be longer by an eighth and an interval."""
     found = rates(*((n, float(n)) for n in range(301)))
     assert all(each is None for each in found[:100])
     assert found[100:] == pytest.approx([1000.0] * 201)
 
 
-def test_equal_times_give_no_rate_and_are_ignored() -> None:
-    """The second message of one instant is as if it had not come."""
+def test_equal_times_give_no_rate() -> None:
+    """The second message of one time is ignored afterwards."""
     found = rates((0, 0.0), (100, 1.0), (100, 5.0), (200, 2.0))
     assert found == [None, 10.0, None, 10.0]
 
 
-def test_stamps_count_and_not_receipt() -> None:
-    """Messages that come late and together have the stamps of when they were measured."""
+def test_stamps_are_used_instead_of_receipt() -> None:
+    """Messages that arrive late and together have the stamps of their measurement."""
     found = stamped((0, 1000, 0.0), (500, 1100, 1.0), (500, 1200, 3.0))
     assert found == [None, 10.0, 20.0]
 
 
-def test_stamps_that_go_backward_begin_anew() -> None:
-    """Nothing is known of the change until messages span the time again."""
+def test_backward_stamps_restart_the_rate() -> None:
+    """The change is unknown until messages cover the span again."""
     found = stamped((0, 1000, 0.0), (1, 1100, 1.0), (2, 900, 5.0), (3, 1000, 6.0))
     assert found == [None, 10.0, None, 10.0]
 
@@ -123,8 +123,8 @@ def test_missing_and_equal_stamps_give_no_rate() -> None:
     assert stamped((0, 0, 0.0), (200, 0, 1.0), (400, 0, 2.0)) == [None, None, None]
 
 
-def test_unknown_values_begin_anew() -> None:
-    """As after a gap."""
+def test_unknown_values_restart_the_rate() -> None:
+    """They are treated like a gap."""
     assert rates((0, 0.0), (100, None), (200, 1.0), (300, 2.0)) == [None, None, None, 10.0]
 
 
@@ -132,8 +132,8 @@ def test_unknown_values_begin_anew() -> None:
     st.lists(st.integers(0, 60), max_size=80),
     st.integers(1, 50),
 )
-def test_the_samples_reach_back_far_enough_and_are_few(waits: list[int], span: int) -> None:
-    """A rate is known exactly if messages span the time, and is taken over not much more."""
+def test_samples_cover_the_span_and_are_few(waits: list[int], span: int) -> None:
+    """A rate is known exactly if messages cover the span, which is exceeded only slightly."""
     memory, at, longest = RateOver(), 0, 0
     times: list[int] = []
     for wait in waits:
@@ -157,8 +157,8 @@ def test_the_samples_reach_back_far_enough_and_are_few(waits: list[int], span: i
 # Rules ------------------------------------------------------------------------------------------
 
 
-def test_what_a_rate_of_an_angle_is_made_of() -> None:
-    """Yaw and roll jump, pitch and tilt do not; a full turn stands in the angle's unit."""
+def test_leaves_of_an_angle_rate() -> None:
+    """Yaw and roll are unwrapped, pitch and tilt are not; a full turn has the angle's unit."""
     declared = "input q = topic /imu.orientation"
     for name, jumps in (("yaw", True), ("roll", True), ("pitch", False), ("tilt", False)):
         found = condition(f"q.{name}().rate(0.1 sec) > 1", declared)
@@ -172,8 +172,8 @@ def test_what_a_rate_of_an_angle_is_made_of() -> None:
         assert not jumps or angle.arguments[1] == ir.Const(TURN)
 
 
-def test_a_rate_without_a_header_goes_by_receipt() -> None:
-    """A plain number has no stamp; its messages bring one value."""
+def test_rate_without_a_header_uses_receipt() -> None:
+    """A plain number has no stamp, so its message has one leaf."""
     found = program("input v = topic /speed.data entity e { r: v.rate(0.1 sec) > 1; }")
     assert [each.path for each in found.leaves] == [("data",)]
 
@@ -191,7 +191,7 @@ def test_a_rate_without_a_header_goes_by_receipt() -> None:
         ("v.unwrapped()", "DRS305"),
     ],
 )
-def test_faulty_rates(term: str, code: str) -> None:
-    """A span is a constant duration longer than nothing; helpers of the form are no functions."""
+def test_invalid_rates_are_findings(term: str, code: str) -> None:
+    """A span is a positive constant duration; internal functions are not available."""
     found = build_rules(f"input v = topic /speed.data entity e {{ r: {term} > 1; }}").diagnostics
     assert [each.code.name for each in found] == [code]

@@ -1,4 +1,4 @@
-"""A trace is played: events with their causes, resets, switches, and what gates do of it."""
+"""Playing a trace: events with their causes, resets, switches, and output of gates."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ monitors = pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
 
 
 def speed(t: str, value: float) -> dict[str, Any]:
-    """Return the line of a message that the rules read."""
+    """Return a message that the rules read, as a trace line."""
     return {"t": t, "topic": "/speed", "data": {"data": value}}
 
 
 def command(t: str, value: float | str) -> dict[str, Any]:
-    """Return the line of a command."""
+    """Return a command as a trace line."""
     return {"t": t, "topic": "/nav", "data": {"linear.x": value}}
 
 
@@ -68,7 +68,7 @@ def played(
     until: str | None = None,
     gates: GateSimulation | None = None,
 ) -> list[str]:
-    """Play faultless lines, and return what happens as people read it."""
+    """Play valid lines, and return the events as text."""
     trace = read(*lines)
     assert not trace.diagnostics, trace.diagnostics
     until_ns = None if until is None else nanoseconds(until)
@@ -85,7 +85,7 @@ def played(
 
 
 def answers(*lines: dict[str, Any], until: str, tell_all: bool = False) -> list[GateAnswer]:
-    """Play lines, and return what the gate does."""
+    """Play lines, and return the answers of the gate."""
     gates = GateSimulation(PROGRAM, embedded_store(), tell_all=tell_all)
     found = play(Engine(PROGRAM), read(*lines).lines, nanoseconds(until), gates)
     return [each for each in found if isinstance(each, GateAnswer)]
@@ -93,7 +93,7 @@ def answers(*lines: dict[str, Any], until: str, tell_all: bool = False) -> list[
 
 @monitors
 def test_each_trigger_has_its_cause(monitor: Any) -> None:
-    """As of its instant, though a message comes in the same call."""
+    """The cause is that of its own time, even if a message comes in the same call."""
     place = "(rules.deros:13)"
     assert played(monitor(PROGRAM), speed("0.1", 31.2), speed("0.8", 5), until="2") == [
         "0.1 slow, by ease (rules.deros:14): drive.warm: v 31.2 > 20",
@@ -107,8 +107,8 @@ def test_each_trigger_has_its_cause(monitor: Any) -> None:
 
 
 @monitors
-def test_a_reset_is_refused_by_causes_and_then_done(monitor: Any) -> None:
-    """By what holds, with values, and by what is unknown."""
+def test_reset_is_refused_with_causes_then_done(monitor: Any) -> None:
+    """The refusal lists holding conditions with values, and unknown ones."""
     told = played(
         monitor(PROGRAM),
         {"t": "0.0", "disable": "ease"},
@@ -125,7 +125,7 @@ def test_a_reset_is_refused_by_causes_and_then_done(monitor: Any) -> None:
 
 
 @monitors
-def test_an_optional_behaviour_is_switched(monitor: Any) -> None:
+def test_optional_behaviour_is_switched(monitor: Any) -> None:
     """Enabled while its condition is true, it acts."""
     lines = [{"t": "0.1", "disable": "ease"}, speed("0.2", 25), {"t": "0.3", "enable": "ease"}]
     told = played(monitor(PROGRAM), *lines)
@@ -133,15 +133,15 @@ def test_an_optional_behaviour_is_switched(monitor: Any) -> None:
 
 
 @monitors
-def test_the_grace_delays_what_is_missing(monitor: Any) -> None:
-    """As the parameter startup_grace of the node does."""
+def test_grace_delays_missing_inputs(monitor: Any) -> None:
+    """The effect is that of the node's parameter startup_grace."""
     told = played(monitor(PROGRAM, grace_ns=2 * 10**9), until="3.5")
     assert [each.split(" ")[0] for each in told] == ["3", "3"]
 
 
 @monitors
-def test_a_step_of_the_clock_is_explained_before_the_message_that_shows_it(monitor: Any) -> None:
-    """All is unknown then, so nothing holds."""
+def test_clock_step_is_explained_before_the_message(monitor: Any) -> None:
+    """Everything is unknown then, so nothing holds."""
     (event, *_) = play(monitor(PROGRAM), read(speed("5", 15), speed("0.1", 25)).lines[1:], None)
     assert isinstance(event, Explained)
     told = list(play(monitor(PROGRAM), read(speed("0.5", 15), speed("0.1", 25)).lines))
@@ -149,8 +149,8 @@ def test_a_step_of_the_clock_is_explained_before_the_message_that_shows_it(monit
     assert kinds == [("clock_step", {}), ("trigger", {"ease": "drive.warm: v 25.0 > 20"})]
 
 
-def test_the_record_of_an_event_holds_its_cause() -> None:
-    """Beside action and behaviour; of a refused reset by the behaviour that refuses it."""
+def test_event_record_contains_its_cause() -> None:
+    """It is listed next to action and behaviour, or next to each behaviour that refuses a reset."""
     lines = read(speed("0.1", 31.2), {"t": "0.7", "reset": True}).lines
     told = [each for each in play(Engine(PROGRAM), lines) if isinstance(each, Explained)]
     records = [event_record(each.event, each.causes) for each in told]
@@ -163,8 +163,8 @@ def test_the_record_of_an_event_holds_its_cause() -> None:
 # Gates --------------------------------------------------------------------------------------------
 
 
-def test_a_gate_tells_what_it_does_and_why() -> None:
-    """From the start, through a reset and a zero command, to limits and to the stop."""
+def test_gate_reports_output_and_reason() -> None:
+    """From the start, through a reset and a zero command, to limits and the stop."""
     gates = GateSimulation(PROGRAM, embedded_store())
     told = played(
         Engine(PROGRAM),
@@ -196,7 +196,7 @@ def test_a_gate_tells_what_it_does_and_why() -> None:
     ]
 
 
-def test_a_command_that_is_none_is_refused() -> None:
+def test_invalid_command_is_refused() -> None:
     """NaN makes the input lost at once."""
     beaten = [command("0.5", 0.0), {"t": "0.55", "reset": "/cmd_vel"}, command("0.6", 0.0)]
     *_, refused, lost = answers(speed("0.1", 15), *beaten, command("0.7", "NaN"), until="0.72")
@@ -204,8 +204,8 @@ def test_a_command_that_is_none_is_refused() -> None:
     assert (lost.event, lost.why) == ("zero", (LOST_INPUT,))
 
 
-def test_a_safety_node_that_is_not_heard_stops_the_robot() -> None:
-    """For as long as it is not, and then until the reset, which is refused before."""
+def test_silent_safety_node_stops_the_robot() -> None:
+    """The stop lasts until the reset, which is refused during the silence."""
     told = answers(
         speed("0.1", 15),
         command("0.5", 0.0),
@@ -224,8 +224,8 @@ def test_a_safety_node_that_is_not_heard_stops_the_robot() -> None:
     assert after[-1] == ("zero", (f"waits for a reset, after {LOST_BEAT}",))
 
 
-def test_every_command_can_be_told() -> None:
-    """Also zeros that only repeat what was published before, with all their fields."""
+def test_every_command_can_be_listed() -> None:
+    """The list includes repeated zeros, with all their fields."""
     every = answers(until="0.2", tell_all=True)
     changed = answers(until="0.2")
     assert len(every) > len(changed)
@@ -233,8 +233,8 @@ def test_every_command_can_be_told() -> None:
     assert every[0].message == {name: dict.fromkeys("xyz", 0.0) for name in ("linear", "angular")}
 
 
-def test_the_heartbeat_waits_for_inputs_within_the_grace() -> None:
-    """So the gate is closed until they have come."""
+def test_heartbeat_waits_for_inputs_during_the_grace() -> None:
+    """The gate stays closed until they have arrived."""
     gates = GateSimulation(PROGRAM, embedded_store(), grace_ns=10**9)
     lines = read(command("0.1", 0.0), speed("0.6", 15)).lines
     told = play(Engine(PROGRAM, grace_ns=10**9), lines, 9 * 10**8, gates)
@@ -260,10 +260,10 @@ def test_the_heartbeat_waits_for_inputs_within_the_grace() -> None:
         ({"reset": True, "enable": "ease"}, '"enable"', "one line has both 'reset' and 'enable'"),
     ],
 )
-def test_a_line_that_is_nothing_is_reported(
+def test_invalid_line_is_reported_and_skipped(
     line: dict[str, Any], place: str | None, message: str
 ) -> None:
-    """At the key or the name that is wrong, and it is left out."""
+    """The span is the wrong key or name."""
     trace = read({"t": "1", **line})
     (found,) = trace.diagnostics
     assert found.code.name == "DRS501"
@@ -272,8 +272,8 @@ def test_a_line_that_is_nothing_is_reported(
     assert trace.lines == ()
 
 
-def test_what_the_rules_do_not_have_cannot_be_reset() -> None:
-    """Neither an action nor a gate, and nobody hears the heartbeat."""
+def test_missing_latches_and_gates_cannot_be_used() -> None:
+    """Without latched actions or gates, reset and heartbeat lines are errors."""
     plain = program("action stop; entity e { r: topic /speed.data > 1; } if e.r then { stop; };")
     for line, message in (
         ('{"t": 1, "reset": true}', "no action is 'latched'"),

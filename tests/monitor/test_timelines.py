@@ -1,4 +1,4 @@
-"""Every engine gives exactly what the timelines expect."""
+"""Every engine gives exactly the expected timelines."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ DEROS = Path(sys.executable).with_name("deros")
 every_timeline = pytest.mark.parametrize("case", timelines.ALL, ids=lambda case: case.name)
 
 
-def test_all_given_are_there() -> None:
-    """No given timeline is lost, and names are unique."""
+def test_all_given_timelines_exist() -> None:
+    """No timeline is lost, and names are unique."""
     assert len(timelines.GIVEN) == 33
     assert len({case.name for case in timelines.ALL}) == len(timelines.ALL)
 
 
 @every_timeline
 @pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
-def test_timeline(case: Timeline, monitor: Callable[[Program], Monitor]) -> None:
-    """The engine does what is expected, at the exact nanosecond."""
+def test_timeline_matches(case: Timeline, monitor: Callable[[Program], Monitor]) -> None:
+    """The engine gives the expected events at the exact nanosecond."""
     program = case.program()
     events = simulate(monitor(program), case.messages(program), case.until_ns)
     assert timelines.happenings(list(events)) == case.expect
@@ -41,8 +41,10 @@ def test_timeline(case: Timeline, monitor: Callable[[Program], Monitor]) -> None
 
 @every_timeline
 @pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
-def test_timers_in_time(case: Timeline, monitor: Callable[[Program], Engine]) -> None:
-    """Timers that fire at every deadline change nothing, however the deadlines fall."""
+def test_punctual_timers_do_not_change_the_timeline(
+    case: Timeline, monitor: Callable[[Program], Engine]
+) -> None:
+    """Timers that fire at every deadline have no effect on the events."""
     program = case.program()
     runner = monitor(program)
     for message in case.messages(program):
@@ -63,8 +65,8 @@ given = pytest.mark.parametrize("case", timelines.GIVEN, ids=lambda case: case.n
 
 
 @given
-def test_command(case: Timeline, tmp_path: Path) -> None:
-    """``deros simulate`` prints exactly the expected events, one a line."""
+def test_command_prints_the_timeline(case: Timeline, tmp_path: Path) -> None:
+    """``deros simulate`` prints exactly the expected events, one per line."""
     result = subprocess.run(
         [str(DEROS), *_arguments(case, tmp_path)],
         cwd=tmp_path,
@@ -78,8 +80,8 @@ def test_command(case: Timeline, tmp_path: Path) -> None:
 
 
 @given
-def test_command_with_generated_monitor(case: Timeline, tmp_path: Path) -> None:
-    """``--monitor python`` prints what the reference engine does, character by character."""
+def test_generated_monitor_prints_the_same(case: Timeline, tmp_path: Path) -> None:
+    """``--monitor python`` prints the output of the reference engine, character by character."""
     arguments = _arguments(case, tmp_path)[1:]
     outputs = [
         CliRunner().invoke(command, [*arguments, "--monitor", monitor])
@@ -109,7 +111,7 @@ def _expected(case: Timeline) -> list[tuple[str, str, str]]:
 
 
 def test_trace_from_standard_input(tmp_path: Path) -> None:
-    """``--trace -`` reads what another program writes."""
+    """``--trace -`` reads the output of another program."""
     case = next(each for each in timelines.GIVEN if each.name == "immediate")
     arguments = [*_arguments(case, tmp_path)[:2], "--trace", "-", "--until", case.until]
     result = subprocess.run(

@@ -1,4 +1,4 @@
-"""Traces are read exactly, and what is wrong in them is found with its place."""
+"""Traces are read exactly, and faults in them are reported at their place."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def line(topic: str, data: Any, t: Any = "1.5") -> str:
 
 
 def values(topic: str, data: Any) -> dict[str, Any]:
-    """Return what the leaves of a topic read from a message, by their paths."""
+    """Return the leaves of a topic read from a message, by their paths."""
     trace = read(line(topic, data))
     assert not trace.diagnostics, trace.diagnostics
     (message,) = trace.messages
@@ -79,7 +79,7 @@ def values(topic: str, data: Any) -> dict[str, Any]:
     ],
 )
 def test_times_are_exact(text: str, expected: int | None) -> None:
-    """Seconds become nanoseconds without rounding, or are refused."""
+    """Seconds become nanoseconds without rounding, or are rejected."""
     assert nanoseconds(text) == expected
 
 
@@ -93,8 +93,8 @@ def test_times_are_exact(text: str, expected: int | None) -> None:
         ("2E1", 20 * 10**9),
     ],
 )
-def test_times_as_numbers(text: str, expected: int) -> None:
-    """A number in JSON is read as exactly as a text."""
+def test_json_numbers_as_times(text: str, expected: int) -> None:
+    """A JSON number is read as exactly as a string."""
     trace = read(f'{{"t": {text}, "topic": "/speed"}}')
     assert [each.t_ns for each in trace.messages] == [expected]
 
@@ -102,8 +102,8 @@ def test_times_as_numbers(text: str, expected: int) -> None:
 # Values -------------------------------------------------------------------------------------------
 
 
-def test_defaults() -> None:
-    """What a message does not give has the default of its definition, also below other fields."""
+def test_missing_fields_have_their_defaults() -> None:
+    """A missing field has the default of its definition, also below other fields."""
     assert values("/speed", {}) == {"data": 0.0}
     assert values("/flag", {}) == {"data": False}
     assert values("/imu", {}) == {
@@ -132,8 +132,8 @@ def test_nested_and_dotted_fields(data: dict[str, Any]) -> None:
     assert given["orientation.y"] == 0.0
 
 
-def test_elements_of_arrays() -> None:
-    """A single element lies among defaults; an array may be given as a whole."""
+def test_array_elements() -> None:
+    """A single element is set among defaults; an array may be given as a whole."""
     assert values("/scan", {"ranges[1]": 2})["ranges"] == [0.0, 2.0]
     assert values("/scan", {"ranges": [1, 2], "ranges[0]": 3})["ranges"] == [3.0, 2.0]
     assert values("/scan", {"ranges": [1]})["ranges.1"] is None
@@ -142,16 +142,16 @@ def test_elements_of_arrays() -> None:
     ] == pytest.approx(2.5)
 
 
-def test_not_finite_numbers() -> None:
-    """NaN and the infinities are written as texts, or as Python's JSON writes them."""
+def test_non_finite_numbers() -> None:
+    """NaN and the infinities are strings, or as in Python's JSON."""
     assert values("/speed", {"data": "Infinity"}) == {"data": math.inf}
     assert values("/speed", {"data": "-Infinity"}) == {"data": -math.inf}
     assert math.isnan(values("/speed", {"data": "NaN"})["data"])
     assert math.isnan(values("/speed", {"data": math.nan})["data"])
 
 
-def test_single_precision_is_rounded() -> None:
-    """A float32 holds what a message could carry."""
+def test_float32_values_are_rounded() -> None:
+    """A float32 has the precision of a message."""
     assert values("/scan", {"ranges": [0.1]})["ranges"] == [0.10000000149011612]
     assert values("/speed", {"data": 0.1}) == {"data": 0.1}
 
@@ -194,8 +194,8 @@ def test_single_precision_is_rounded() -> None:
         (line("/imu", {"angular_velocity_covariance": [1]}), "DRS504", "1 elements"),
     ],
 )
-def test_faults(text: str, code: str, message: str) -> None:
-    """A fault is reported at its line, and that line alone is left out."""
+def test_faulty_line_is_reported_and_skipped(text: str, code: str, message: str) -> None:
+    """The finding is at its line, and only that line is skipped."""
     good = line("/speed", {"data": 1})
     trace = read(good, "", text, good)
     (found,) = trace.diagnostics
@@ -217,14 +217,14 @@ def test_faults(text: str, code: str, message: str) -> None:
         ('{"t": 1 "topic": "/speed"}', '"'),
     ],
 )
-def test_places(text: str, place: str | None) -> None:
-    """The key at fault is marked, or the whole line where the key is not found as written."""
+def test_span_of_a_fault(text: str, place: str | None) -> None:
+    """The span is the faulty key, or the whole line if the key is not found as written."""
     (found,) = read(text).diagnostics
     assert found.span.text == (place or text)
 
 
-def test_definition_that_is_not_there(tmp_path: Path) -> None:
-    """A message within a message may be of a type that nobody has; it is no crash."""
+def test_missing_nested_definition_is_reported(tmp_path: Path) -> None:
+    """A field of an unknown message type does not crash."""
     folder = tmp_path / "odd_msgs" / "msg"
     folder.mkdir(parents=True)
     (folder / "Odd.msg").write_text("float64 data\nlost_msgs/Lost lost\n")
@@ -242,7 +242,7 @@ def test_definition_that_is_not_there(tmp_path: Path) -> None:
 
 
 def test_unread_topic_is_a_warning() -> None:
-    """A topic that no rule reads is named once, with the topic that was probably meant."""
+    """A topic that no rule reads is reported once, with the most similar topic."""
     trace = read(line("/sped", {"data": 1}), line("/sped", {"data": 2}))
     (found,) = trace.diagnostics
     assert (found.code.name, found.is_error, trace.messages) == ("DRS505", False, ())
@@ -266,8 +266,8 @@ json_values = st.recursive(
     json_values,
 )
 @example("/scan", {"header": {"stamp": {"sec": 10**400}}}, "1")
-def test_no_data_is_too_strange(topic: str, data: dict[str, Any], t: Any) -> None:
-    """Any JSON is read or reported; nothing else happens."""
+def test_arbitrary_json_is_read_or_reported(topic: str, data: dict[str, Any], t: Any) -> None:
+    """Any JSON is a message or one finding."""
     trace = read(line(topic, data, t))
     assert len(trace.messages) + len(trace.diagnostics) == 1
 
@@ -277,7 +277,7 @@ def test_no_data_is_too_strange(topic: str, data: dict[str, Any], t: Any) -> Non
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Return a folder with the robot and its rules."""
+    """Create a folder with the robot and its rules."""
     for name in ("robot.rnd", "robot.system"):
         (tmp_path / name).write_bytes((timelines.DIRECTORY / name).read_bytes())
     (tmp_path / "r.deros").write_text(
@@ -289,14 +289,14 @@ def folder(tmp_path: Path) -> Path:
 
 
 def run(folder: Path, *arguments: str, trace: str = "") -> Result:
-    """Run the command on the rules of ``folder``, the trace on standard input or in a file."""
+    """Run the command on the rules of ``folder``, with the trace on standard input or in a file."""
     (folder / "trace.jsonl").write_text(trace)
     given = [str(folder / "r.deros"), "--trace", str(folder / "trace.jsonl"), *arguments]
     return CliRunner().invoke(simulate, given)
 
 
 def test_events_in_json(folder: Path) -> None:
-    """An event tells time, action, behaviour, arguments and place."""
+    """An event has time, action, behaviour, arguments and place."""
     result = run(folder, "--until", "9", trace=line("/speed", {"data": 1}))
     records = [json.loads(each) for each in result.stdout.splitlines()]
     place = {"behaviour": "behaviour_1", "file": str(folder / "r.deros"), "line": 5}
@@ -310,29 +310,29 @@ def test_events_in_json(folder: Path) -> None:
     assert result.exit_code == 0
 
 
-def test_without_until_the_last_message_ends_the_run(folder: Path) -> None:
-    """No deadline after it is settled."""
+def test_run_ends_with_the_last_message(folder: Path) -> None:
+    """Later deadlines are not handled without ``--until``."""
     assert run(folder, trace=line("/speed", {"data": 1})).stdout == ""
 
 
-def test_steps_of_the_clock_are_told_apart(folder: Path) -> None:
-    """They are no events of the rules, and go to standard error."""
+def test_clock_steps_are_printed_on_stderr(folder: Path) -> None:
+    """They are not events of the rules."""
     trace = "\n".join(line("/speed", {"data": 0}, t) for t in ("2", "1"))
     result = run(folder, trace=trace)
     assert result.stdout == ""
     assert result.stderr == "the clock stepped back to 1.000000000\n"
 
 
-def test_faults_of_the_trace_fail_the_run(folder: Path) -> None:
-    """All are reported, nothing is simulated, and the exit code is 1."""
+def test_faulty_trace_fails_the_run(folder: Path) -> None:
+    """All faults are reported, nothing is simulated, and the exit code is 1."""
     result = run(folder, "--until", "9", trace="x\n" + line("/speed", {"data": 1}) + "\ny\n")
     assert (result.exit_code, result.stdout) == (1, "")
     assert "trace.jsonl:1:1: error[DRS501]" in result.stderr
     assert "trace.jsonl:3:1: error[DRS501]" in result.stderr
 
 
-def test_faults_of_the_rules_fail_the_run(folder: Path) -> None:
-    """Rules that mean nothing are not run."""
+def test_faulty_rules_fail_the_run(folder: Path) -> None:
+    """Rules with errors are not simulated."""
     rules = folder / "r.deros"
     rules.write_text(rules.read_text().replace("/speed.data", "/speed.date"))
     result = run(folder)
@@ -354,10 +354,10 @@ def test_faults_of_the_rules_fail_the_run(folder: Path) -> None:
         ["r.deros", "--trace", "trace.jsonl", "--monitor", "none"],
     ],
 )
-def test_unusable_input(
+def test_unusable_input_exits_with_2(
     arguments: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What cannot be read, and what is no use of the command, exits with 2 and words."""
+    """Unreadable files and invalid arguments are explained."""
     (folder / "trace.jsonl").write_text("")
     (folder / "binary").write_bytes(b"\xff\x00")
     monkeypatch.chdir(folder)

@@ -1,4 +1,4 @@
-"""What is unknown, and what failsafe rules make of it: at the start, with a grace, in reports."""
+"""Unknown values and failsafe rules: at the start, during the grace period, in reports."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ Monitor = Callable[..., Engine]
 
 
 def _scan(ahead: float) -> dict[int, LeafValue]:
-    """Return a scan of three beams, of which the middle one is in the sector."""
+    """Return a scan of three beams, with the middle one in the sector."""
     return {0: [2.0, ahead, 2.0], 1: -1.0, 2: 1.0, 3: 0.125, 4: 10.0}
 
 
 def _verdicts(engine: Engine) -> list[bool | None]:
-    """Return how ``near`` counts, and what the two forms of ``unknown()`` give."""
+    """Return the verdict of ``near`` and the values of both forms of ``unknown()``."""
     return [each.value for each in engine.explain().rules]
 
 
 @monitors
-def test_the_timeline_of_the_documentation(monitor: Monitor) -> None:
-    """Within the grace nothing is unknown yet; afterwards every way of being blind acts at once."""
+def test_documented_timeline(monitor: Monitor) -> None:
+    """During the grace nothing is unknown yet; afterwards every kind of blindness acts at once."""
     engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
     engine.advance(1799 * MS)
     assert engine.waiting
@@ -62,10 +62,10 @@ def test_the_timeline_of_the_documentation(monitor: Monitor) -> None:
 
 
 @monitors
-def test_a_sensor_that_never_comes_acts_when_grace_and_timeout_have_passed(
+def test_sensor_that_never_starts_acts_after_grace_and_timeout(
     monitor: Monitor,
 ) -> None:
-    """That is when the input is missing, not earlier."""
+    """This is the time at which the input is missing."""
     engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
     engine.advance(3000 * MS)
     assert [each.t_ns for each in engine.events] == [2500 * MS]
@@ -73,15 +73,15 @@ def test_a_sensor_that_never_comes_acts_when_grace_and_timeout_have_passed(
 
 @monitors
 @pytest.mark.parametrize("ahead", [0.0, 0.03, math.nan])
-def test_a_first_scan_that_is_blind_acts_within_the_grace(monitor: Monitor, ahead: float) -> None:
-    """The sensor has spoken, so nothing is awaited any more."""
+def test_blind_first_scan_acts_during_the_grace(monitor: Monitor, ahead: float) -> None:
+    """The sensor has started, so the monitor no longer waits."""
     engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
     engine.message(100 * MS, "/scan", _scan(ahead))
     assert [each.t_ns for each in engine.events] == [100 * MS]
 
 
 @monitors
-def test_no_reset_while_blind_or_awaited(monitor: Monitor) -> None:
+def test_reset_is_refused_while_blind_or_waiting(monitor: Monitor) -> None:
     """A latched stop of an earlier run stays until the sector is known to be free."""
     engine = monitor(program(RULES), 0, grace_ns=2000 * MS, latched={"stop"})
     engine.advance(10 * MS)
@@ -95,7 +95,7 @@ def test_no_reset_while_blind_or_awaited(monitor: Monitor) -> None:
 
 
 @monitors
-def test_a_backward_step_of_the_clock_is_a_start_without_grace(monitor: Monitor) -> None:
+def test_clock_step_is_a_start_without_grace(monitor: Monitor) -> None:
     """All inputs are awaited again, until the timeout passes in the new time."""
     engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
     engine.message(3000 * MS, "/scan", _scan(2.0))
@@ -106,8 +106,8 @@ def test_a_backward_step_of_the_clock_is_a_start_without_grace(monitor: Monitor)
 
 
 @monitors
-def test_the_report_says_what_was_unknown(monitor: Monitor) -> None:
-    """The state of a failsafe rule that acts shows the value that it lacks."""
+def test_explain_shows_the_unknown_term(monitor: Monitor) -> None:
+    """The state of a failsafe rule that acts shows the missing value."""
     engine = monitor(program(RULES), 0)
     engine.message(100 * MS, "/scan", _scan(0.0))
     near, silent, blind = engine.explain().rules
@@ -118,8 +118,8 @@ def test_the_report_says_what_was_unknown(monitor: Monitor) -> None:
     assert blind.reads == (("scan.nearest(-0.523599, 0.523599).unknown()", True),)
 
 
-def test_what_unknown_is_of() -> None:
-    """A field is the input; a function of one stands for itself, whatever it is a function of."""
+def test_operand_of_unknown() -> None:
+    """A field stands for its input; a function stands for itself, whatever its operand."""
     declared = "input v = topic /odom timeout 1 sec"
     assert condition("v.unknown()", declared) == ir.Unknown(0)
     assert condition("v.twist.twist.linear.x.unknown()", declared) == ir.Unknown(0)
@@ -128,8 +128,8 @@ def test_what_unknown_is_of() -> None:
     assert condition("v.twist.twist.linear.x.abs().unknown()", declared) == ir.Unknown(0, size)
 
 
-def test_a_failsafe_rule_names_the_inputs_that_can_make_it_unknown() -> None:
-    """Inputs of which it asks only whether they are missing or unknown are none of them."""
+def test_failsafe_rule_lists_inputs_that_can_make_it_unknown() -> None:
+    """Inputs that are only tested for missing or unknown are not listed."""
     built = program(
         "input v = topic /odom.twist.twist.linear.x timeout 1 sec\n"
         "input w = topic /speed.data timeout 1 sec\n"
@@ -152,8 +152,8 @@ def test_a_failsafe_rule_names_the_inputs_that_can_make_it_unknown() -> None:
         ("failsafe /* so */ : v > 1", "failsafe", False),
     ],
 )
-def test_failsafe_is_no_reserved_word(rule: str, name: str, failsafe: bool) -> None:
-    """A rule may be called so, and be one."""
+def test_failsafe_is_a_valid_rule_name(rule: str, name: str, failsafe: bool) -> None:
+    """A rule may have this name and be failsafe."""
     built = program(f"input v = topic /speed.data timeout 1 sec entity e {{ {rule}; }}").rules[0]
     assert (built.name, isinstance(built.condition, ir.Failsafe)) == (name, failsafe)
 
@@ -167,8 +167,8 @@ def test_failsafe_is_no_reserved_word(rule: str, name: str, failsafe: bool) -> N
         ("failsafe r: v.age() > 1 sec", "r"),
     ],
 )
-def test_both_need_a_timeout(rule: str, place: str) -> None:
-    """Silence would not make the value unknown otherwise, and nothing would end the waiting."""
+def test_unknown_and_failsafe_need_a_timeout(rule: str, place: str) -> None:
+    """Without one, silence does not make the value unknown, and waiting never ends."""
     found = findings(f"input v = topic /speed.data entity e {{ {rule}; }}")
     assert ("DRS319", place) in [each[:2] for each in found]
 
@@ -176,7 +176,7 @@ def test_both_need_a_timeout(rule: str, place: str) -> None:
 @pytest.mark.parametrize(
     "rule", ["scan.age().unknown()", "scan.missing().unknown()", "limit.unknown()"]
 )
-def test_unknown_is_asked_of_what_is_read(rule: str) -> None:
-    """Not of an age, a condition or a constant."""
+def test_unknown_applies_to_read_values_only(rule: str) -> None:
+    """It does not apply to ages, conditions or constants."""
     found = findings(f"const limit = 1\n{SCAN} entity e {{ r: {rule}; }}")
     assert "DRS304" in [each[0] for each in found]
