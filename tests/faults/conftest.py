@@ -1,4 +1,4 @@
-"""The robot that all tests of faults break."""
+"""The robot that all fault tests use."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RULES = Path(__file__).resolve().parent / "models" / "faulty.deros"
 
 @pytest.fixture(scope="session", params=["python", pytest.param("cpp", marks=needs_rclcpp)])
 def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Software:
-    """Give the generated safety node and gate, in one language after the other."""
+    """Return the generated safety node and gate, in each language."""
     made = PythonRobot if request.param == "python" else CppRobot
     return made(RULES, tmp_path_factory.mktemp("faulty"))
 
@@ -25,7 +25,7 @@ def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
 def robot(
     software: Software, tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
 ) -> Iterator[Robot]:
-    """Give the robot under test."""
+    """Return the robot under test."""
     robot = Robot(software, tmp_path, ros_env, ros_peer)
     yield robot
     robot.clear()

@@ -1,4 +1,4 @@
-"""Sensors that speak and say nothing: a covered lidar, an attitude of zeros."""
+"""Sensors that publish without information: a covered lidar, an attitude of zeros."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ blind = pytest.mark.parametrize(
 
 @pytest.fixture(scope="module", params=["python", pytest.param("cpp", marks=needs_rclcpp)])
 def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Software:
-    """Give the nodes of the watchful robot, in one language after the other."""
+    """Return the nodes of the robot with failsafe rules, in each language."""
     folder = tmp_path_factory.mktemp("watchful")
     models = shutil.copytree(RULES.parent, folder / "models")
     made = PythonRobot if request.param == "python" else CppRobot
@@ -52,7 +52,7 @@ def _watchful(models: Path) -> Path:
 
 
 def _drive(robot: Robot, sensors: Sensors) -> None:
-    """Let all sensors see, reset the stop that stems from their silence before, and drive."""
+    """Let all sensors see, reset the initial stop, and drive."""
     sensors.drive()
     robot.until_free()
     robot.until(lambda: robot.reset()[0])
@@ -60,8 +60,8 @@ def _drive(robot: Robot, sensors: Sensors) -> None:
 
 
 @blind
-def test_a_lidar_that_is_covered_ahead_stops_the_robot(robot: Robot, ahead: float) -> None:
-    """Its scans come, and the other beams measure; nobody may drive into what it does not see."""
+def test_lidar_covered_ahead_stops_the_robot(robot: Robot, ahead: float) -> None:
+    """Its scans arrive and other beams measure; the robot must not drive into a blind sector."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
         _drive(robot, sensors)
         sensors.play("/scan", scan(CLEAR, ahead=ahead), rate=10.0)
@@ -79,8 +79,8 @@ def test_a_lidar_that_is_covered_ahead_stops_the_robot(robot: Robot, ahead: floa
 
 
 @blind
-def test_a_lidar_that_is_covered_all_around_stops_the_robot(robot: Robot, ahead: float) -> None:
-    """A scan without a valid beam does not count, and the rule is unknown at once all the same."""
+def test_lidar_covered_all_around_stops_the_robot(robot: Robot, ahead: float) -> None:
+    """A scan without a valid beam does not count, but the rule is unknown at once."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
         _drive(robot, sensors)
         sensors.play("/scan", scan(ahead), rate=10.0)
@@ -88,8 +88,8 @@ def test_a_lidar_that_is_covered_all_around_stops_the_robot(robot: Robot, ahead:
         robot.until(lambda: stands(robot))
 
 
-def test_a_lidar_that_is_covered_from_the_start_keeps_the_robot_standing(robot: Robot) -> None:
-    """Its first scan ends the waiting, and the stop comes."""
+def test_lidar_covered_from_the_start_keeps_the_robot_stopped(robot: Robot) -> None:
+    """Its first scan ends the waiting, and the stop follows."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
         sensors.drive()
         sensors.play("/scan", scan(CLEAR, ahead=0.0), rate=10.0)
@@ -99,8 +99,8 @@ def test_a_lidar_that_is_covered_from_the_start_keeps_the_robot_standing(robot: 
         robot.until(lambda: stands(robot))
 
 
-def test_an_attitude_of_zeros_stops_the_robot(robot: Robot) -> None:
-    """A quaternion of zeros is no attitude; it comes in time, so nothing is missing."""
+def test_attitude_of_zeros_stops_the_robot(robot: Robot) -> None:
+    """A quaternion of zeros is not an attitude; it arrives in time, so the input is not missing."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
         _drive(robot, sensors)
         nowhere = imu()

@@ -1,4 +1,4 @@
-"""Faults of time: a wall clock that is set, a simulated one that stands, races or starts over."""
+"""Faults of time: a wall clock that is set, a simulated clock that pauses, races or restarts."""
 
 from __future__ import annotations
 
@@ -19,10 +19,8 @@ DAY = 86400
 
 
 @pytest.mark.parametrize("seconds", [400 * DAY, -3600])
-def test_a_step_of_the_wall_clock_changes_nothing(
-    robot: Robot, tmp_path: Path, seconds: int
-) -> None:
-    """Setting the machine's clock neither stops the robot nor keeps it from being stopped."""
+def test_wall_clock_step_has_no_effect(robot: Robot, tmp_path: Path, seconds: int) -> None:
+    """Setting the system clock neither stops the robot nor prevents a stop."""
     wall_clock = WallClock(tmp_path)
     with robot.safety_node(**wall_clock.env), robot.sensors(TOPICS, **wall_clock.env) as sensors:
         sensors.drive()
@@ -42,8 +40,8 @@ def test_a_step_of_the_wall_clock_changes_nothing(
         robot.until_stopped("/halt", limit=0.5 + 1.0)
 
 
-def test_timers_outlive_a_step_of_the_wall_clock(robot: Robot, tmp_path: Path) -> None:
-    """Set back by a year, with no message coming in, the node beats on and meets its deadlines."""
+def test_timers_survive_a_wall_clock_step(robot: Robot, tmp_path: Path) -> None:
+    """Set back by a year, without messages, the node keeps its heartbeat and its deadlines."""
     wall_clock = WallClock(tmp_path)
     with robot.safety_node(**wall_clock.env), robot.sensors(TOPICS, **wall_clock.env) as sensors:
         for seconds in (400 * DAY, 0, -400 * DAY):
@@ -60,8 +58,8 @@ SIMULATED = "use_sim_time:=true"
 WITH_CLOCK = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}
 
 
-def test_paused_simulation_lets_violations_through(robot: Robot) -> None:
-    """While simulated time stands, timeouts and heartbeat stand with it, but no immediate stop."""
+def test_paused_simulation_misses_timeouts_but_not_immediate_stops(robot: Robot) -> None:
+    """Paused time pauses timeouts and the heartbeat, but immediate rules still act."""
     with robot.sensors(WITH_CLOCK) as sensors:
         sensors.play("/clock", *ticks())
         with robot.safety_node(SIMULATED):
@@ -79,8 +77,8 @@ def test_paused_simulation_lets_violations_through(robot: Robot) -> None:
             sensors.play("/clock", *ticks(2000.0))
 
 
-def test_a_simulation_that_starts_over_is_reported_and_watched(robot: Robot) -> None:
-    """After a step back nothing is taken for known, and every rule works as from the start."""
+def test_restarted_simulation_is_reported_and_monitored(robot: Robot) -> None:
+    """After the step back everything is unknown, and every rule works as from the start."""
     with robot.sensors(WITH_CLOCK) as sensors:
         sensors.play("/clock", *ticks())
         with robot.safety_node(SIMULATED) as node:
@@ -97,8 +95,8 @@ def test_a_simulation_that_starts_over_is_reported_and_watched(robot: Robot) -> 
             robot.until_stopped("/halt", limit=0.5 + 1.0)
 
 
-def test_a_fast_simulation_is_counted_in_its_own_time(robot: Robot) -> None:
-    """At twenty times the speed, 20 s pass in one: not earlier, and not 20 s later."""
+def test_fast_simulation_counts_simulated_time(robot: Robot) -> None:
+    """At twenty times the speed, 20 s pass in one: neither earlier nor 20 s later."""
     with robot.sensors(WITH_CLOCK) as sensors:
         sensors.play("/clock", *ticks(step=0.1), rate=200.0)
         with robot.safety_node(SIMULATED):
@@ -108,5 +106,5 @@ def test_a_fast_simulation_is_counted_in_its_own_time(robot: Robot) -> None:
             begun = time.monotonic()
             sensors.send("/load", load(45.0))
             robot.until_stopped("/slow", limit=5.0)
-            # The clock's player may be ahead by the few ticks that it makes up for.
+            # The player of the clock may be a few ticks ahead, to catch up.
             assert time.monotonic() - begun >= (20.0 - 6 * 0.1) / 20

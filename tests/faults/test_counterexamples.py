@@ -1,4 +1,4 @@
-"""Rounds of the campaign that once showed a violation: each is played again, and has to hold."""
+"""Rounds of the campaign that once showed a violation: each is replayed and must pass."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SCHEDULES = sorted((Path(__file__).parent / "schedules").glob("*.json"))
 def bench(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Bench]:
-    """Give the robot, running, with safety node and gate in one language after the other."""
+    """Return the running robot, with safety node and gate in each language."""
     patch = pytest.MonkeyPatch()
     for name, value in environment(0).items():
         patch.setenv(name, value)
@@ -36,8 +36,8 @@ def bench(
 
 
 @pytest.mark.parametrize("path", SCHEDULES, ids=lambda path: path.stem)
-def test_what_once_let_the_robot_drive_on_does_not(bench: Bench, path: Path) -> None:
-    """The referee finds nothing any more."""
+def test_former_counterexample_has_no_violation(bench: Bench, path: Path) -> None:
+    """The referee no longer finds a violation."""
     verdict = play(bench, Schedule.load(path))
     assert verdict.moved
     assert verdict.violations == []

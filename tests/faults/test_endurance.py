@@ -1,4 +1,4 @@
-"""Faults that only come with time: lost triggers and growing memory."""
+"""Faults that need time: lost triggers and growing memory."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ LEAST_OBJECT = 16
 
 
 def leak(node: Process, count: Callable[[], int], stretch: int, go_on: Callable[[], None]) -> float:
-    """Return by how many bytes the node grows for each of what is counted.
+    """Return the growth of the node in bytes per counted item.
 
     It is the median over several stretches: a leak shows in each of them, a pool of the middleware
     that is enlarged once, in one.
@@ -59,15 +59,15 @@ def leak(node: Process, count: Callable[[], int], stretch: int, go_on: Callable[
 
 
 def toggler(robot: Robot, times: int) -> subprocess.Popen[str]:
-    """Break a rule and keep it again, so many times, each as soon as the answer has come."""
+    """Violate and satisfy a rule repeatedly, each time as soon as the response arrives."""
     command = [sys.executable, str(TOGGLER), "/load", "/slow", "99.0", "1.0", str(times)]
     return subprocess.Popen(
         command, env=robot.env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
 
 
-def test_ten_thousand_triggers_in_a_row_are_all_carried_out(robot: Robot) -> None:
-    """Each of 10,000 violations is answered by the action, each end of one by its reset, for good.
+def test_ten_thousand_triggers_are_all_executed(robot: Robot) -> None:
+    """Each of 10,000 violations triggers the action, and each end resets it.
 
     The node does not grow by them, either.
     """
@@ -86,8 +86,8 @@ def test_ten_thousand_triggers_in_a_row_are_all_carried_out(robot: Robot) -> Non
         assert grown < 4 * LEAST_OBJECT
 
 
-def test_output_that_nobody_reads_holds_nothing_up(robot: Robot) -> None:
-    """A launcher that hangs leaves the output in a full pipe; the node loses it, and acts."""
+def test_unread_output_blocks_nothing(robot: Robot) -> None:
+    """A hung launcher leaves a full pipe; the node drops the output, and acts."""
     command, env = robot.software.command(NODE, robot.env)
     with (
         subprocess.Popen(
@@ -115,10 +115,10 @@ def test_output_that_nobody_reads_holds_nothing_up(robot: Robot) -> None:
 
 
 def test_memory_does_not_grow(robot: Robot) -> None:
-    """Fifty thousand messages at full speed, triggers among them, leave nothing behind.
+    """Fifty thousand messages at full speed, with triggers among them, leave nothing behind.
 
-    They come in bursts, each when the node has caught up with the last: while it has not, it does
-    take memory for what waits (see docs/guarantees.md).
+    They are sent in bursts, each after the node has caught up with the last: until then it does use
+    memory for waiting messages (see docs/guarantees.md).
     """
     each = 500
     messages = [load(99.0), *(load(float(number % 40)) for number in range(each - 1))]
@@ -133,7 +133,7 @@ def test_memory_does_not_grow(robot: Robot) -> None:
 
         def send() -> None:
             sensors.send("/load", *messages, times=4 * each, rate=20_000.0)
-            robot.until_alive()  # its timers come after what waits
+            robot.until_alive()  # its timers run after the waiting messages
 
         with toggler(robot, EVENTS_KEPT) as toggling:
             output, _ = toggling.communicate(timeout=LIMIT)

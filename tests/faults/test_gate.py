@@ -1,4 +1,4 @@
-"""Faults around the gate: nobody who should watch over the robot, or command it, is there."""
+"""Faults around the gate: the safety node, the controller or the gate itself is missing."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ DAY = 86400
 
 
 def lateness(messages: list[Heard], period: float) -> float:
-    """Return how late, in s, the machine itself made periodic messages, at the worst."""
+    """Return the worst delay, in s, of periodic messages on this machine."""
     return max(after.sent - before.sent - period for before, after in pairwise(messages))
 
 
 def assert_zeros_only(robot: Robot, first: int) -> None:
-    """See that from the command of that index on, the drive gets zeros, and gets them steadily."""
+    """Assert that the drive gets only zeros from the command of that index on, at a steady rate."""
     commands = len(robot.commands)
     robot.spin(0.5)
     assert len(robot.commands) >= commands + 5, "the gate fell silent"
@@ -45,21 +45,21 @@ def assert_zeros_only(robot: Robot, first: int) -> None:
 
 
 def stands(robot: Robot) -> bool:
-    """Tell whether the drive gets zeros for good: one alone may be of a machine that is late."""
+    """Return whether the drive gets zeros permanently; a single one may be due to load."""
     return len(robot.commands) >= 5 and not any(each.value for each in robot.commands[-5:])
 
 
 def drives(robot: Robot) -> bool:
-    """Tell whether the drive gets commands that are no zero, and has for half a second."""
+    """Return whether the drive has received nonzero commands for half a second."""
     return len(robot.commands) >= 10 and all(each.value for each in robot.commands[-10:])
 
 
 @pytest.mark.parametrize("fault", [Process.kill, Process.freeze])
-def test_a_safety_node_that_dies_or_hangs_stops_the_robot(
+def test_dead_or_hung_safety_node_stops_the_robot(
     robot: Robot, tmp_path: Path, fault: Callable[[Process], None]
 ) -> None:
-    """The last command that is no zero leaves the gate 0.3 s after the last heartbeat."""
-    lease = short_lease(tmp_path)  # after which the restarted node is obeyed
+    """The last nonzero command leaves the gate 0.3 s after the last heartbeat."""
+    lease = short_lease(tmp_path)  # after which the gate accepts the restarted node
     with robot.safety_node(**lease) as node, robot.gate(), robot.sensors() as sensors:
         sensors.drive()
         robot.until(lambda: drives(robot))
@@ -74,8 +74,8 @@ def test_a_safety_node_that_dies_or_hangs_stops_the_robot(
         robot.until_driving()
 
 
-def test_a_latched_stop_holds_through_any_crash(robot: Robot, tmp_path: Path) -> None:
-    """From the stop to its reset the drive gets zeros only, whoever dies meanwhile."""
+def test_latched_stop_survives_any_crash(robot: Robot, tmp_path: Path) -> None:
+    """From the stop to its reset the drive gets only zeros, whichever process dies."""
     lease = short_lease(tmp_path)
     with robot.safety_node(**lease) as node, robot.sensors() as sensors:
         gate = robot.start(GATE)
@@ -98,8 +98,8 @@ def test_a_latched_stop_holds_through_any_crash(robot: Robot, tmp_path: Path) ->
         gate.end()
 
 
-def test_a_gate_without_a_safety_node_commands_zero(robot: Robot) -> None:
-    """Started alone it lets nothing through, for there is nobody to say that it may."""
+def test_gate_without_a_safety_node_commands_zero(robot: Robot) -> None:
+    """Started alone, it lets no command pass."""
     with robot.sensors() as sensors:
         sensors.play("/cmd_vel_nav", command(), rate=20.0)
         gate = robot.start(GATE)
@@ -110,10 +110,10 @@ def test_a_gate_without_a_safety_node_commands_zero(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("fault", [Sensors.kill, Sensors.freeze])
-def test_who_commands_and_dies_or_hangs_is_followed_by_zeros(
+def test_dead_or_hung_controller_is_followed_by_zeros(
     robot: Robot, fault: Callable[[Sensors], None]
 ) -> None:
-    """Without a command for 0.5 s, the drive is told to stand; no sensor need be missing."""
+    """Without a command for 0.5 s the drive gets zeros, even if no sensor is missing."""
     with (
         robot.safety_node(),
         robot.gate(),
@@ -129,8 +129,8 @@ def test_who_commands_and_dies_or_hangs_is_followed_by_zeros(
         assert not robot.is_active("/halt")
 
 
-def test_a_command_of_nan_is_a_lost_one(robot: Robot) -> None:
-    """Not one NaN reaches the drive; a zero does, at once."""
+def test_nan_command_counts_as_lost_input(robot: Robot) -> None:
+    """No NaN reaches the drive; a zero does, at once."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_driving()
@@ -143,8 +143,8 @@ def test_a_command_of_nan_is_a_lost_one(robot: Robot) -> None:
         robot.until_driving()
 
 
-def test_a_flood_of_commands_starves_no_stop(robot: Robot) -> None:
-    """Twenty thousand commands a second do not keep a stop from becoming a zero."""
+def test_flood_of_commands_does_not_block_a_stop(robot: Robot) -> None:
+    """At twenty thousand commands a second, a stop still becomes a zero."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_driving()
@@ -153,12 +153,12 @@ def test_a_flood_of_commands_starves_no_stop(robot: Robot) -> None:
         robot.violate()
         robot.until(lambda: robot.commands[-1].value == 0.0, limit=PROMPT)
         sensors.play("/cmd_vel_nav", command(), rate=20.0)
-        robot.spin(0.5)  # what had been sent before is through
+        robot.spin(0.5)  # earlier commands have passed
         assert_zeros_only(robot, len(robot.commands))
 
 
-def test_a_limit_gives_way_to_zero_when_the_safety_node_dies(robot: Robot) -> None:
-    """Nobody creeps on under a limit that nobody watches over any more."""
+def test_limit_becomes_zero_when_the_safety_node_dies(robot: Robot) -> None:
+    """The robot does not creep under a limit that is no longer monitored."""
     with robot.safety_node() as node, robot.gate(), robot.sensors() as sensors:
         sensors.drive()
         sensors.match("/load")
@@ -174,8 +174,8 @@ def test_a_limit_gives_way_to_zero_when_the_safety_node_dies(robot: Robot) -> No
         robot.restart()
 
 
-def test_the_zeros_outlive_a_step_of_the_wall_clock(robot: Robot, tmp_path: Path) -> None:
-    """Set back by a year, with no message coming in, the gate still notices, and still commands."""
+def test_zeros_survive_a_wall_clock_step(robot: Robot, tmp_path: Path) -> None:
+    """Set back by a year, without messages, the gate still detects the loss and still commands."""
     wall_clock = WallClock(tmp_path)
     env = wall_clock.env
     with (

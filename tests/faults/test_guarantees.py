@@ -1,4 +1,4 @@
-"""The page that tells safety engineers how each guarantee is tested."""
+"""The documentation page that lists how each guarantee is tested."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def named_in(path: Path) -> set[str]:
 
 
 def rows(heading: str, page: str = PAGE) -> list[list[str]]:
-    """Return the cells of the first table below a heading, row by row, without its rule."""
+    """Return the cells of the first table below a heading, row by row, without the separator."""
     below = page.partition(f"\n{heading}\n")[2].splitlines()
     first = next(number for number, line in enumerate(below) if line.startswith("|"))
     table = []
@@ -41,7 +41,7 @@ def rows(heading: str, page: str = PAGE) -> list[list[str]]:
 
 
 def unproved(heading: str, folder: str, page: str = PAGE) -> Iterator[str]:
-    """Yield the cells that name no test, or one that is not where they say."""
+    """Yield the cells that name no test, or a test that does not exist there."""
     header, *body = rows(heading, page)
     for row in body:
         if len(row) != len(header):
@@ -56,8 +56,8 @@ def unproved(heading: str, folder: str, page: str = PAGE) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("heading", TABLES)
-def test_every_cell_is_held_by_a_test(heading: str) -> None:
-    """Each way to fail of each thing that a node depends on is shown by a test that exists."""
+def test_every_cell_names_an_existing_test(heading: str) -> None:
+    """Each way to fail of each dependency of a node has a test."""
     assert rows(heading)[0][1:] == FAILURES
     assert len(rows(heading)) > 5
     assert list(unproved(heading, TABLES[heading])) == []
@@ -70,20 +70,20 @@ def test_every_cell_is_held_by_a_test(heading: str) -> None:
         ("", "a, c: names no test"),
         ("well: `test_of_nothing`", "a, c: test_of_nothing is not in tests/faults"),
         (
-            "well: `test_a_killed_node_falls_silent` in `tests/faults/test_gate.py`",
-            "a, c: test_a_killed_node_falls_silent is not in tests/faults/test_gate.py",
+            "well: `test_killed_node_falls_silent` in `tests/faults/test_gate.py`",
+            "a, c: test_killed_node_falls_silent is not in tests/faults/test_gate.py",
         ),
     ],
 )
-def test_a_cell_without_a_test_is_found(cell: str, why: str) -> None:
-    """An empty cell, one that only says something, and one whose test is not there."""
-    held = "well: `test_a_killed_node_falls_silent`"
+def test_cell_without_a_test_is_detected(cell: str, why: str) -> None:
+    """An empty cell, one without a test name, and one whose test does not exist are detected."""
+    held = "well: `test_killed_node_falls_silent`"
     page = f"\n## T\n\n| x | b | c |\n|---|---|---|\n| a | {held} | {cell} |\n"
     assert list(unproved("## T", "tests/faults", page)) == [why]
 
 
-def test_every_test_that_is_named_is_there() -> None:
-    """No guarantee rests on a test that has been renamed or removed."""
+def test_every_named_test_exists() -> None:
+    """No guarantee refers to a test that has been renamed or removed."""
     paths = {ROOT / path for path in re.findall(r"`(tests/[\w/.]+)`", PAGE)}
     assert paths
     assert all(path.exists() for path in paths)
@@ -91,7 +91,7 @@ def test_every_test_that_is_named_is_there() -> None:
     assert named <= set().union(*map(named_in, paths))
 
 
-def test_every_fault_is_named() -> None:
-    """A test of a fault that holds no guarantee would be one whose meaning nobody knows."""
+def test_every_fault_test_is_on_the_page() -> None:
+    """A fault test that is not on the page would belong to no guarantee."""
     faults = named_in(ROOT / "tests/faults") - named_in(Path(__file__))
     assert sorted(name for name in faults if f"`{name}`" not in PAGE) == []

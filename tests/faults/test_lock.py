@@ -1,4 +1,4 @@
-"""Faults of the lock that keeps a second node of a name from running: deleted, or not its own."""
+"""Faults of the lock against a second node of the same name: deleted, or not private."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ EARLY = 5.0
 
 
 def locks(folder: Path) -> Path:
-    """Return where the locks of this user are, below a temporary folder."""
+    """Return the folder with the locks of this user, below a temporary folder."""
     return folder / f"deros-{os.getuid()}"
 
 
 def start_second(robot: Robot, folder: Path) -> Process:
-    """Start a second node that shares the lock of the first, and nothing else."""
+    """Start a second node that shares only the lock with the first."""
     parameters = [f"state_file:={folder / 'second'}"]
     return robot.start(NODE, parameters, TMPDIR=str(folder), TEMP="", TMP="")
 
 
-def test_a_lock_that_was_deleted_lets_no_second_node_run(robot: Robot, tmp_path: Path) -> None:
-    """The second takes a lock that is nobody's, finds the first by the graph, and gives way."""
+def test_second_node_ends_even_if_the_lock_is_deleted(robot: Robot, tmp_path: Path) -> None:
+    """It gets the free lock, finds the first node in the graph, and exits."""
     with robot.safety_node(TMPDIR=str(tmp_path)):
         begun = time.monotonic()
         robot.until(lambda: time.monotonic() > begun + EARLY)
@@ -41,8 +41,8 @@ def test_a_lock_that_was_deleted_lets_no_second_node_run(robot: Robot, tmp_path:
         assert "another node publishes this heartbeat" in second.output()
 
 
-def test_a_lock_that_is_deleted_later_was_not_needed(robot: Robot, tmp_path: Path) -> None:
-    """The node runs on without it, and a restart after a kill takes a new one."""
+def test_node_survives_the_deletion_of_its_lock(robot: Robot, tmp_path: Path) -> None:
+    """It continues without the lock, and a restart after a kill creates a new one."""
     with robot.safety_node(TMPDIR=str(tmp_path)) as node:
         (lock,) = locks(tmp_path).iterdir()
         lock.unlink()
@@ -53,22 +53,22 @@ def test_a_lock_that_is_deleted_later_was_not_needed(robot: Robot, tmp_path: Pat
 
 
 def open_to_all(folder: Path) -> None:
-    """Let others write into the folder of the locks."""
+    """Make the folder of the locks writable for others."""
     locks(folder).mkdir()
     locks(folder).chmod(0o777)
 
 
 def link(folder: Path) -> None:
-    """Put a link in the place of the folder of the locks."""
+    """Replace the folder of the locks by a link."""
     (folder / "another").mkdir(mode=0o700)
     locks(folder).symlink_to(folder / "another")
 
 
 @pytest.mark.parametrize("put", [open_to_all, link])
-def test_a_folder_of_locks_that_is_not_the_users_alone_is_not_used(
+def test_shared_lock_folder_is_not_used(
     robot: Robot, tmp_path: Path, put: Callable[[Path], None]
 ) -> None:
-    """Whoever may write there could hold the lock: the node says so, and runs without one."""
+    """Other users could hold the lock: the node reports this, and runs without one."""
     folder = tmp_path / "temporary"
     folder.mkdir()
     put(folder)

@@ -1,4 +1,4 @@
-"""Faults of the traffic: floods, giants, strangers and garbage."""
+"""Faults of the traffic: floods, huge messages, other types and garbage."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.ros
 TILTED = math.radians(20.0)
 
 
-def test_a_flood_on_one_input_starves_no_other(robot: Robot) -> None:
+def test_flood_on_one_input_does_not_block_others(robot: Robot) -> None:
     """With 20,000 messages a second on one input, rules on others stop, at once and after 0.4 s."""
     with robot.safety_node(), robot.sensors() as sensors, robot.sensors() as flood:
         sensors.drive()
@@ -34,18 +34,18 @@ def test_a_flood_on_one_input_starves_no_other(robot: Robot) -> None:
         assert sent > 10_000 * running, f"{sent} messages in {running:.1f} s are no flood"
 
 
-def test_a_violation_within_a_flood_stops_the_robot(robot: Robot) -> None:
-    """The flooded input itself is still judged."""
+def test_violation_within_a_flood_stops_the_robot(robot: Robot) -> None:
+    """The flooded input itself is still evaluated."""
     with robot.safety_node(), robot.sensors() as flood:
         flood.match("/load")
         flood.play("/load", load(99.0), *[load(1.0)] * 99, rate=20_000.0)
         robot.until_stopped("/slow")
 
 
-def test_a_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
-    """A scan of a million beams or more is judged, and the others are watched meanwhile.
+def test_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
+    """A scan of at least a million beams is evaluated, and other inputs are monitored meanwhile.
 
-    The lidar is a process of its own: handling a scan must not keep the other sensors from talking.
+    The lidar is a separate process: sending a scan must not delay the other sensors.
     """
     beams = robot.software.beams
     with robot.safety_node(), robot.sensors() as sensors, robot.sensors() as lidar:
@@ -57,13 +57,14 @@ def test_a_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
         lidar.send("/scan", scan(5.0, beams=beams), times=5, rate=5.0)
         robot.until_alive()
         assert not robot.is_active("/stop")
-        lidar.send("/scan", scan(0.1, beams=beams), times=5, rate=5.0)  # one is not sure to arrive
+        # A single one might not arrive.
+        lidar.send("/scan", scan(0.1, beams=beams), times=5, rate=5.0)
         robot.until_stopped(limit=PROMPT)
         assert not robot.is_active("/halt"), "a sensor that talks was taken for silent"
 
 
-def test_another_type_on_the_topic_is_not_taken_for_the_sensor(robot: Robot) -> None:
-    """A publisher of another type is reported, harms nobody, and does not hide the silence."""
+def test_publisher_of_another_type_is_not_the_sensor(robot: Robot) -> None:
+    """It is reported, has no effect, and does not hide the silence."""
     with robot.safety_node() as node, robot.sensors({"/speed": "std_msgs/msg/Bool"}) as stranger:
         stranger.play("/speed", button(True))
         robot.until(lambda: "std_msgs/msg/Bool" in node.output())
@@ -76,7 +77,7 @@ def test_another_type_on_the_topic_is_not_taken_for_the_sensor(robot: Robot) -> 
 
 @pytest.mark.parametrize("garbage", [b"\x00\x01\x00\x00", b"\xff" * 400])
 def test_garbage_counts_as_silence(robot: Robot, garbage: bytes) -> None:
-    """What cannot be decoded is reported once, and counts for nothing, however often it comes."""
+    """Data that cannot be decoded is reported once and ignored, however often it arrives."""
     with robot.safety_node() as node, robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()

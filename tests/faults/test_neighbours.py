@@ -1,4 +1,4 @@
-"""Faults of others: two that publish one topic, a second safety node, a clock that is switched."""
+"""Faults of other nodes: duplicate publishers, a second safety node, a switched clock."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ EARLY = 5.0
 
 
 def until_fault(robot: Robot, topic: str, *texts: str) -> None:
-    """Wait until the diagnostics and an event tell of a fault of a topic in such words."""
+    """Wait until the diagnostics and an event report such a fault of a topic."""
 
     def is_told() -> bool:
-        events = robot.fault_events.get(topic, [])[-1:]  # who it is may not be known at first
+        # The publisher may not be identified at first.
+        events = robot.fault_events.get(topic, [])[-1:]
         told = [robot.faults.get(topic, ""), *events]
         return bool(events) and all(text in each for text in texts for each in told)
 
@@ -31,12 +32,12 @@ def until_fault(robot: Robot, topic: str, *texts: str) -> None:
 
 
 def until_no_fault(robot: Robot, topic: str) -> None:
-    """Wait until the diagnostics tell of no fault of a topic any more."""
+    """Wait until the diagnostics report no fault of a topic any more."""
     robot.until(lambda: topic not in robot.faults)
 
 
-def test_a_second_publisher_does_not_hide_that_a_sensor_is_dead(robot: Robot) -> None:
-    """Two that publish one input are a fault, whichever of them lives; one alone is none."""
+def test_second_publisher_does_not_hide_a_dead_sensor(robot: Robot) -> None:
+    """Two publishers of one input are a fault, whichever of them is alive; one is not."""
     with robot.safety_node(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
@@ -45,13 +46,13 @@ def test_a_second_publisher_does_not_hide_that_a_sensor_is_dead(robot: Robot) ->
             second.play("/imu", imu())
             until_fault(robot, "/imu", "2 publishers where one is expected")
             sensors.quiet("/imu")
-            robot.spin(1.0)  # longer than the timeout, in which the second one is heard
+            robot.spin(1.0)  # longer than the timeout, with messages from the second one
             assert "2 publishers" in robot.faults["/imu"]
         robot.until_stopped("/halt")
 
 
-def test_every_publisher_of_an_input_is_heard(robot: Robot) -> None:
-    """What either of two publishers says may break a rule: the one that is well hides nothing."""
+def test_every_publisher_of_an_input_is_evaluated(robot: Robot) -> None:
+    """A message of either publisher may violate a rule."""
     with robot.safety_node(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
@@ -61,16 +62,16 @@ def test_every_publisher_of_an_input_is_heard(robot: Robot) -> None:
             robot.until_stopped(limit=PROMPT)
 
 
-def test_a_second_publisher_of_a_state_is_a_fault(robot: Robot) -> None:
-    """Whoever obeys the topic cannot tell the two apart, so the safety node says who it is."""
+def test_second_publisher_of_a_state_is_a_fault(robot: Robot) -> None:
+    """Readers of the topic cannot distinguish the two, so the safety node names the other one."""
     with robot.safety_node():
         with robot.sensors({"/stop": "std_msgs/msg/Bool"}):
             until_fault(robot, "/stop", "published by /", ", too")
         until_no_fault(robot, "/stop")
 
 
-def test_a_reader_that_gets_nothing_is_a_fault(robot: Robot) -> None:
-    """Whoever asks for more than the node offers would never be stopped; the fault says who."""
+def test_incompatible_reader_is_a_fault(robot: Robot) -> None:
+    """A reader that requests more than the node offers would never stop; the fault names it."""
     from rclpy.duration import Duration
     from rclpy.qos import QoSProfile
     from std_msgs.msg import Bool, UInt64
@@ -85,8 +86,8 @@ def test_a_reader_that_gets_nothing_is_a_fault(robot: Robot) -> None:
             until_no_fault(robot, f"readers of {topic}")
 
 
-def test_the_node_alone_publishes_its_topics_and_stands_by_its_word(robot: Robot) -> None:
-    """What a stranger says on them is not taken over: the node repeats what its rules say."""
+def test_node_corrects_states_from_other_publishers(robot: Robot) -> None:
+    """The node repeats the state of its rules after a foreign message on its topic."""
     with robot.safety_node() as node:
         for topic in ("/stop", "/halt", "/slow", HEARTBEAT):
             found = robot.peer.node.get_publishers_info_by_topic(topic)
@@ -100,7 +101,7 @@ def test_the_node_alone_publishes_its_topics_and_stands_by_its_word(robot: Robot
         assert "halt is reset" not in node.output()
 
 
-def test_a_second_publisher_of_the_heartbeat_is_a_fault(robot: Robot) -> None:
+def test_second_publisher_of_the_heartbeat_is_a_fault(robot: Robot) -> None:
     """It could make a dead node look alive."""
     with robot.safety_node():
         begun = time.monotonic()
@@ -110,8 +111,8 @@ def test_a_second_publisher_of_the_heartbeat_is_a_fault(robot: Robot) -> None:
         until_no_fault(robot, HEARTBEAT)
 
 
-def test_a_second_node_is_found_without_a_common_folder(robot: Robot, tmp_path: Path) -> None:
-    """As on another machine, or in another container: the second ends, the first goes on."""
+def test_second_node_is_detected_without_a_shared_folder(robot: Robot, tmp_path: Path) -> None:
+    """As on another machine or in another container: the second exits, the first continues."""
     with robot.safety_node():
         folder = tmp_path / "elsewhere"
         folder.mkdir()
@@ -123,8 +124,8 @@ def test_a_second_node_is_found_without_a_common_folder(robot: Robot, tmp_path: 
         until_no_fault(robot, HEARTBEAT)
 
 
-def test_a_second_clock_is_a_fault(robot: Robot) -> None:
-    """Time that two set goes back and forth."""
+def test_second_clock_is_a_fault(robot: Robot) -> None:
+    """Time set by two publishers would jump back and forth."""
     with_clock = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}
     with robot.sensors(with_clock) as sensors:
         sensors.play("/clock", *ticks())
@@ -136,8 +137,8 @@ def test_a_second_clock_is_a_fault(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("chosen", [True, False])
-def test_the_clock_cannot_be_changed(robot: Robot, chosen: bool) -> None:
-    """A change of use_sim_time is refused with a reason, and the node watches on."""
+def test_clock_source_cannot_be_changed(robot: Robot, chosen: bool) -> None:
+    """A change of use_sim_time is rejected with a reason, and the node keeps monitoring."""
     with_clock = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}
     with robot.sensors(with_clock) as sensors:
         sensors.play("/clock", *ticks())

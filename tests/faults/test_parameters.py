@@ -1,4 +1,4 @@
-"""Faults of parameters: wrong ones, those of strangers, and whoever sets them and goes."""
+"""Faults of parameters: invalid values, changes by other nodes, clients that disappear."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ FIXED = {
         *("realtime_priority:=100", "state_file:=3", "lock_memory:=2"),
     ],
 )
-def test_a_wrong_parameter_ends_the_start(robot: Robot, wrong: str) -> None:
-    """The node says which, ends with 1, and has not been heard of: nobody drives by it."""
+def test_invalid_parameter_prevents_the_start(robot: Robot, wrong: str) -> None:
+    """The node names it, exits with 1, and has published no heartbeat."""
     node = robot.start(NODE, [wrong])
     robot.until(lambda: node.popen.poll() is not None)
     assert node.popen.returncode == 1
@@ -41,8 +41,8 @@ def test_a_wrong_parameter_ends_the_start(robot: Robot, wrong: str) -> None:
     assert robot.beats == []
 
 
-def test_nobody_changes_the_parameters_of_a_running_node(robot: Robot) -> None:
-    """Whoever asks is refused, and so is who would disable a behaviour that is not optional."""
+def test_parameters_of_a_running_node_cannot_be_changed(robot: Robot) -> None:
+    """Every request is rejected, also to disable a behaviour that is not optional."""
     stranger = Peer(int(robot.env["ROS_DOMAIN_ID"]), "stranger")
     with robot.safety_node():
         for name, value in {**FIXED, "behaviours.racing.enabled": False}.items():
@@ -54,10 +54,8 @@ def test_nobody_changes_the_parameters_of_a_running_node(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("service", ["set_parameters", "reset"])
-def test_whoever_asks_and_goes_holds_up_no_more_than_its_requests_do(
-    robot: Robot, service: str
-) -> None:
-    """The middleware looks for one that has gone, 0.1 s for each request; then the node goes on."""
+def test_vanished_client_delays_the_node_only_briefly(robot: Robot, service: str) -> None:
+    """The middleware waits 0.1 s per request for a vanished client; then the node continues."""
     from rcl_interfaces.srv import SetParameters
     from std_srvs.srv import Trigger
 

@@ -1,4 +1,4 @@
-"""Faults of the safety node itself: killed, hung, started again, started twice."""
+"""Faults of the safety node itself: killed, hung, restarted, started twice."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ pytestmark = pytest.mark.ros
 TILTED = math.radians(20.0)
 
 
-def test_a_killed_node_falls_silent(robot: Robot) -> None:
-    """Nothing repeats its heartbeat or its states in its place, so whoever listens can tell."""
+def test_killed_node_falls_silent(robot: Robot) -> None:
+    """Heartbeat and states are not repeated, so that readers detect the loss."""
     with robot.safety_node() as node:
         node.kill()
         robot.until_silent()
         robot.restart()
 
 
-def test_a_hung_node_falls_silent_and_goes_on_where_it_was(robot: Robot) -> None:
-    """A hang silences the heartbeat; afterwards a violation that lasts still stops the robot."""
+def test_hung_node_falls_silent_and_continues(robot: Robot) -> None:
+    """A hang stops the heartbeat; afterwards a lasting violation still stops the robot."""
     with robot.safety_node() as node, robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
@@ -36,8 +36,8 @@ def test_a_hung_node_falls_silent_and_goes_on_where_it_was(robot: Robot) -> None
         robot.until_stopped(limit=PROMPT)
 
 
-def test_a_deadline_that_passes_in_a_hang_is_met_late_not_lost(robot: Robot) -> None:
-    """The 'for' of a rule ends while the node hangs; the halt comes when it goes on."""
+def test_deadline_during_a_hang_is_late_but_not_lost(robot: Robot) -> None:
+    """The 'for' of a rule ends while the node hangs; the halt follows when it continues."""
     with robot.safety_node() as node, robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
@@ -49,17 +49,17 @@ def test_a_deadline_that_passes_in_a_hang_is_met_late_not_lost(robot: Robot) -> 
         robot.until_stopped("/halt", limit=PROMPT)
 
 
-def test_each_of_the_events_that_a_hang_delays_is_explained_by_what_was_known_then(
+def test_events_delayed_by_a_hang_have_the_causes_of_their_time(
     robot: Robot,
 ) -> None:
-    """A reset is refused because of a tilt; that nobody measures it any more comes later."""
+    """A reset is refused because of a tilt; that its sensor has fallen silent comes later."""
     with robot.safety_node() as node, robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
         sensors.play("/imu", imu(TILTED))
         robot.until_stopped("/halt", limit=PROMPT)
         sensors.quiet("/button")
-        robot.until_alive()  # what it has heard is told of by then
+        robot.until_alive()  # by then it has reported all received messages
         robot.events.clear()
         sensors.play("/speed", speed(0.43))
         robot.spin(0.1)
@@ -77,12 +77,12 @@ def test_each_of_the_events_that_a_hang_delays_is_explained_by_what_was_known_th
         assert released["value speed"] == "0.43"
 
 
-def test_a_latched_stop_survives_a_kill(robot: Robot) -> None:
-    """The node that is started again says from its first message on that the robot is stopped."""
+def test_latched_stop_survives_kill(robot: Robot) -> None:
+    """The restarted node publishes the stop from its first message on."""
     with robot.safety_node() as node, robot.sensors() as sensors:
         sensors.drive()
         robot.violate()
-        robot.until_alive()  # what it does after the stop, it has done now
+        robot.until_alive()  # by now it has finished its work after the stop
         node.kill()
         robot.until_silent()
         seen = len(robot.states["/stop"])
@@ -98,21 +98,21 @@ def test_a_latched_stop_survives_a_kill(robot: Robot) -> None:
         assert not robot.is_active("/stop"), "the reset was undone by a restart"
 
 
-def test_no_kill_at_any_moment_makes_a_node_that_does_not_start(robot: Robot) -> None:
-    """Wherever in its work it is killed, it can be started again, and watches."""
+def test_node_restarts_after_a_kill_at_any_moment(robot: Robot) -> None:
+    """Wherever it is killed, it can be started again, and monitors."""
     with robot.safety_node() as node, robot.sensors() as sensors:
         sensors.drive()
         for moment in range(3):
             robot.violate()
-            time.sleep(moment * 0.001)  # the moment is what is varied
+            time.sleep(moment * 0.001)  # the moment is the variable here
             node.kill()
             node = robot.restart()
             robot.until(lambda: robot.reset()[0])
             robot.until(lambda: not robot.is_active("/stop"))
 
 
-def test_a_second_node_refuses_to_run(robot: Robot) -> None:
-    """The second ends at once and names the first, which goes on."""
+def test_second_node_refuses_to_run(robot: Robot) -> None:
+    """The second exits at once and names the first, which continues."""
     with robot.safety_node() as node:
         second = robot.start()
         assert second.popen.wait(PROMPT + 10.0) == 1

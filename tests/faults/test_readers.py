@@ -1,4 +1,4 @@
-"""Whoever reads what the safety node says: nobody has to, anybody may, and none is heard."""
+"""Readers of the safety node: none is required, any may join, and none has an influence."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ OWN = ("/stop", "/halt", "/slow", f"/{NODE}/heartbeat", f"/{NODE}/events", "/dia
 """What the node publishes."""
 
 
-def test_what_readers_say_is_not_heard(robot: Robot) -> None:
-    """The node listens to none of its own topics, so nothing that comes on one changes it."""
+def test_node_does_not_read_its_own_topics(robot: Robot) -> None:
+    """It subscribes to none of them, so messages on them have no effect."""
     reports = {
         f"/{NODE}/events": "diagnostic_msgs/msg/DiagnosticStatus",
         "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
@@ -32,14 +32,14 @@ def test_what_readers_say_is_not_heard(robot: Robot) -> None:
         robot.until_beats()
 
 
-def test_any_number_of_late_readers_get_the_states(robot: Robot) -> None:
-    """Participants of their own, which nobody knows, are told what was said before they came."""
+def test_late_readers_get_the_states(robot: Robot) -> None:
+    """Any number of unknown participants get the states published before they joined."""
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import Bool
 
     kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     with robot.sensors() as sensors:
-        # Within the time of the test it repeats nothing: a state goes out when it changes.
+        # During the test it repeats nothing: a state is published when it changes.
         node = robot.start(NODE, ["publish_freq:=0.001"])
         sensors.match("/speed")
         sensors.play("/speed", speed(2.0))

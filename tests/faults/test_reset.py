@@ -1,4 +1,4 @@
-"""A latched stop is not reset while nobody knows whether its cause is over."""
+"""A latched stop is not reset while its cause is unknown."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CLEAR, BLOCKED = 5.0, 0.1
 
 
 def refused(robot: Robot, unknown: str) -> bool:
-    """Ask for a reset, which must be refused; tell whether it is because of what is unknown."""
+    """Request a reset, which must be refused; return whether the reason is an unknown value."""
     success, message = robot.reset()
     assert not success, message
     why = message.partition("stop stays active, not known to be false: ")[2]
@@ -27,7 +27,7 @@ def refused(robot: Robot, unknown: str) -> bool:
 
 
 def assert_refused(robot: Robot, unknown: str) -> None:
-    """See that a reset is refused because of what is unknown, and that no command passes."""
+    """Assert that a reset is refused because of an unknown value, and that no command passes."""
     robot.until(lambda: stands(robot))
     stopped = len(robot.commands)
     robot.until(lambda: refused(robot, unknown))
@@ -36,7 +36,7 @@ def assert_refused(robot: Robot, unknown: str) -> None:
 
 
 def assert_reset(robot: Robot) -> None:
-    """See that the reset is granted once all is known to be well, and that commands pass."""
+    """Assert that the reset succeeds once everything is known and safe, and that commands pass."""
     robot.until(lambda: robot.reset()[0])
     robot.until_driving()
 
@@ -44,8 +44,8 @@ def assert_reset(robot: Robot) -> None:
 NEAREST = "scan.nearest(-0.523599, 0.523599)"
 
 
-def test_no_reset_while_the_lidar_measures_nothing(robot: Robot) -> None:
-    """A scan of NaN alone says nothing of the obstacle that has stopped the robot."""
+def test_reset_is_refused_while_the_lidar_measures_nothing(robot: Robot) -> None:
+    """A scan of only NaN does not show that the obstacle is gone."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_driving()
@@ -57,8 +57,8 @@ def test_no_reset_while_the_lidar_measures_nothing(robot: Robot) -> None:
         assert_reset(robot)
 
 
-def test_no_reset_before_the_first_scan(robot: Robot, tmp_path: Path) -> None:
-    """After a restart nothing is known of the obstacle until the lidar has said something."""
+def test_reset_is_refused_before_the_first_scan(robot: Robot, tmp_path: Path) -> None:
+    """After a restart the obstacle is unknown until the lidar publishes."""
     lease = short_lease(tmp_path)
     with robot.safety_node(**lease) as node, robot.gate(), robot.sensors() as sensors:
         sensors.drive()
@@ -73,8 +73,8 @@ def test_no_reset_before_the_first_scan(robot: Robot, tmp_path: Path) -> None:
         assert_reset(robot)
 
 
-def test_no_reset_while_a_sensor_is_dead(robot: Robot) -> None:
-    """A speed that has gone missing is not known to be slow enough."""
+def test_reset_is_refused_while_a_sensor_is_dead(robot: Robot) -> None:
+    """A missing speed is not known to be slow enough."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_driving()
@@ -86,8 +86,8 @@ def test_no_reset_while_a_sensor_is_dead(robot: Robot) -> None:
         assert_reset(robot)
 
 
-def test_a_second_reset_finds_nothing_to_reset(robot: Robot) -> None:
-    """Of two that call at once, one resets the stop; the other is answered, and undoes nothing."""
+def test_second_reset_has_nothing_to_reset(robot: Robot) -> None:
+    """Of two calls at once, one resets the stop; the other is answered, and undoes nothing."""
     with robot.safety_node(), robot.sensors() as sensors:
         sensors.drive()
         robot.violate()
@@ -102,7 +102,7 @@ def test_a_second_reset_finds_nothing_to_reset(robot: Robot) -> None:
             return sorted(each.result().message for each in requests)
 
         answers = answers_of_two()
-        for _ in range(20):  # a node that has not heard yet that it is over refuses
+        for _ in range(20):  # a node that does not know yet that it is over refuses
             if not answers[-1].startswith("stop stays active"):
                 break
             robot.until(lambda: robot.reset()[0])
@@ -110,17 +110,17 @@ def test_a_second_reset_finds_nothing_to_reset(robot: Robot) -> None:
         assert answers == ["no latched action was active", "stop is reset"]
 
 
-def test_a_reset_that_comes_late_is_judged_when_it_is_served(robot: Robot) -> None:
-    """Called while the node hangs, it is not answered; then what is known by then refuses it."""
+def test_late_reset_is_decided_when_it_is_served(robot: Robot) -> None:
+    """A call during a hang is refused by the values known when it is served."""
     with robot.safety_node() as node, robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
         sensors.play("/scan", scan(BLOCKED))
         robot.until_stopped()
         sensors.play("/scan", scan(CLEAR))
-        robot.spin(0.3)  # by now a reset would be granted
+        robot.spin(0.3)  # by now a reset would succeed
         sensors.quiet("/speed")
-        robot.spin(0.2)  # what it has sent is taken
+        robot.spin(0.2)  # its messages have been received
         node.freeze()
         request = robot.call_reset()
         robot.spin(1.0)  # longer than the timeout of the speed
@@ -133,8 +133,8 @@ def test_a_reset_that_comes_late_is_judged_when_it_is_served(robot: Robot) -> No
         assert robot.is_active("/stop")
 
 
-def test_a_reset_of_a_stranger_is_judged_like_any_other(robot: Robot) -> None:
-    """Whoever may call is believed: refused while the cause lasts, and granted when it is over."""
+def test_reset_from_another_participant_is_decided_like_any_other(robot: Robot) -> None:
+    """It is refused while the cause lasts, and succeeds when it is over."""
     from std_srvs.srv import Trigger
 
     stranger = Peer(int(robot.env["ROS_DOMAIN_ID"]), "stranger")

@@ -1,6 +1,6 @@
-"""What was stopped moves again when somebody means it to, and not because a fault is over.
+"""A stopped robot moves again on request, and not because a fault is over.
 
-The controller goes on commanding throughout, as one does that knows nothing of gates.
+The controller keeps commanding throughout, like one that knows nothing of gates.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ RESET, ZERO = "waits for a reset", "waits for a zero command"
 
 
 def drive(sensors: Sensors) -> None:
-    """Command a speed, and go on doing so."""
+    """Command a speed, repeatedly."""
     sensors.play("/cmd_vel_nav", command(), rate=20.0)
 
 
@@ -34,12 +34,12 @@ def until_moving(robot: Robot) -> None:
 
 
 def until_standing(robot: Robot) -> None:
-    """Wait until the wheels get zeros for good: one alone may be of a machine that is late."""
+    """Wait until the wheels get zeros permanently: a single one may be due to a busy machine."""
     robot.until(lambda: len(robot.wheels) >= 5 and not any(w.value for w in robot.wheels[-5:]))
 
 
 def release(robot: Robot, sensors: Sensors) -> None:
-    """Command zero until that passes, and then a speed again: it passes, too."""
+    """Command zero until it passes, and then a speed again, which passes too."""
     sensors.play("/cmd_vel_nav", command(0.0), rate=20.0)
     robot.until(lambda: robot.waiting == "commands pass")
     drive(sensors)
@@ -47,12 +47,12 @@ def release(robot: Robot, sensors: Sensors) -> None:
 
 
 def assert_waits(robot: Robot, why: str, since: int | None = None) -> None:
-    """See that the gate says why it waits, and that nothing moves while it does.
+    """Assert that the gate reports why it waits, and that nothing moves while it does.
 
     Args:
         robot: the robot.
-        why: what the gate says.
-        since: how many commands had reached the wheels when they stood; else, when it says so.
+        why: the reported reason.
+        since: number of commands at the wheels when they stopped; by default, at the report.
     """
     robot.until(lambda: _reason(robot).startswith(why))
     first = len(robot.wheels) if since is None else since
@@ -64,14 +64,14 @@ def assert_waits(robot: Robot, why: str, since: int | None = None) -> None:
 
 
 def _reason(robot: Robot) -> str:
-    """Return why the gate waits; before that it says if a killed publisher is still known."""
+    """Return why the gate waits, once it no longer reports a killed publisher."""
     fault, _, rest = robot.waiting.partition("; ")
     return rest if "publishers where one is expected" in fault else robot.waiting
 
 
 @contextmanager
 def moving(robot: Robot, topics: dict[str, str] | None = None) -> Iterator[Sensors]:
-    """Let the wheels turn, as an operator does: reset the gate, release, and drive."""
+    """Start the motion as an operator does: reset the gate, release, and drive."""
     with robot.sensors({**SENSES, **COMMANDER} if topics is None else topics) as sensors:
         sensors.drive()
         drive(sensors)
@@ -84,11 +84,11 @@ def moving(robot: Robot, topics: dict[str, str] | None = None) -> Iterator[Senso
 
 
 @pytest.mark.parametrize("fault", [Process.kill, Process.freeze])
-def test_a_safety_node_that_comes_back_starts_nothing(
+def test_recovered_safety_node_starts_no_motion(
     robot: Robot, tmp_path: Path, fault: Callable[[Process], None]
 ) -> None:
-    """Whether it was dead or hung: a person resets the gate, and then the controller releases."""
-    lease = short_lease(tmp_path)  # after which the restarted node is obeyed
+    """After a crash or a hang, a person resets the gate, and then the controller releases it."""
+    lease = short_lease(tmp_path)  # after which the gate accepts the restarted node
     with robot.safety_node(**lease) as node, robot.wheels_gate(), moving(robot) as sensors:
         fault(node)
         until_standing(robot)
@@ -103,8 +103,8 @@ def test_a_safety_node_that_comes_back_starts_nothing(
         release(robot, sensors)
 
 
-def test_a_gate_that_comes_back_starts_nothing(robot: Robot) -> None:
-    """Killed while commands passed, it begins as after a loss."""
+def test_restarted_gate_starts_no_motion(robot: Robot) -> None:
+    """Killed while commands passed, it starts as after a loss."""
     with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
         gate.kill()
         killed = len(robot.wheels)
@@ -118,8 +118,8 @@ def test_a_gate_that_comes_back_starts_nothing(robot: Robot) -> None:
         gate.end()
 
 
-def test_a_gate_that_hung_starts_nothing(robot: Robot) -> None:
-    """It cannot know what it has missed: the first thing that it does is to latch."""
+def test_hung_gate_starts_no_motion(robot: Robot) -> None:
+    """It cannot know what it has missed, so it latches first."""
     with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
         gate.freeze()
         robot.spin(1.0)
@@ -131,10 +131,10 @@ def test_a_gate_that_hung_starts_nothing(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("fault", [Sensors.kill, Sensors.freeze])
-def test_a_controller_that_comes_back_starts_nothing(
+def test_recovered_controller_starts_no_motion(
     robot: Robot, fault: Callable[[Sensors], None]
 ) -> None:
-    """Another one that takes its place has to begin with zero, and so has itself."""
+    """The same controller, or one in its place, has to begin with zero."""
     with (
         robot.safety_node(),
         robot.wheels_gate(),
@@ -156,8 +156,8 @@ def test_a_controller_that_comes_back_starts_nothing(
             release(robot, controller)
 
 
-def test_an_action_that_is_reset_starts_nothing(robot: Robot) -> None:
-    """Neither one that is latched, and reset by a person, nor one that ends by itself."""
+def test_reset_of_an_action_starts_no_motion(robot: Robot) -> None:
+    """This holds for a latched action that a person resets, and for one that ends by itself."""
     with robot.safety_node(), robot.wheels_gate(), moving(robot) as sensors:
         robot.violate()
         until_standing(robot)
@@ -175,8 +175,8 @@ def test_an_action_that_is_reset_starts_nothing(robot: Robot) -> None:
         release(robot, sensors)
 
 
-def test_a_nan_between_commands_starts_nothing(robot: Robot) -> None:
-    """It is a loss that is over with the next command, which does not pass."""
+def test_nan_between_commands_starts_no_motion(robot: Robot) -> None:
+    """It is a loss that ends with the next command, which does not pass."""
     with robot.safety_node(), robot.wheels_gate(), moving(robot) as sensors:
         sensors.send("/cmd_vel_nav", command(), command(math.nan), command())
         drive(sensors)
@@ -184,8 +184,8 @@ def test_a_nan_between_commands_starts_nothing(robot: Robot) -> None:
         release(robot, sensors)
 
 
-def test_a_zero_during_the_stop_starts_nothing(robot: Robot) -> None:
-    """When the stop ends it is stale: the controller commands a speed by then."""
+def test_zero_during_the_stop_does_not_release(robot: Robot) -> None:
+    """It is outdated when the stop ends: the controller commands a speed by then."""
     with robot.safety_node(), robot.wheels_gate(), moving(robot) as sensors:
         robot.violate()
         until_standing(robot)
@@ -199,8 +199,8 @@ def test_a_zero_during_the_stop_starts_nothing(robot: Robot) -> None:
         release(robot, sensors)
 
 
-def test_a_reset_is_refused_while_its_cause_lasts(robot: Robot, tmp_path: Path) -> None:
-    """The answer names what lasts; nobody remembers that somebody asked."""
+def test_reset_is_refused_while_its_cause_lasts(robot: Robot, tmp_path: Path) -> None:
+    """The response names the cause, and the request is not remembered."""
     lease = short_lease(tmp_path)
     with robot.safety_node(**lease) as node, robot.wheels_gate(), moving(robot) as sensors:
         node.kill()
@@ -224,8 +224,8 @@ def test_a_reset_is_refused_while_its_cause_lasts(robot: Robot, tmp_path: Path) 
         release(robot, sensors)
 
 
-def test_resets_of_strangers_are_judged_like_any_other(robot: Robot) -> None:
-    """Any number may call: each is answered, and none makes anything move."""
+def test_resets_from_other_participants_are_decided_like_any_other(robot: Robot) -> None:
+    """Any number may call: each gets a response, and none starts a motion."""
     from std_srvs.srv import Trigger
 
     stranger = Peer(int(robot.env["ROS_DOMAIN_ID"]), "stranger")
@@ -245,8 +245,8 @@ def test_resets_of_strangers_are_judged_like_any_other(robot: Robot) -> None:
     stranger.close()
 
 
-def test_a_reset_that_comes_late_starts_nothing(robot: Robot) -> None:
-    """Called while the gate hangs, it is judged when it is served, by what is known then."""
+def test_late_reset_starts_no_motion(robot: Robot) -> None:
+    """A call during a hang of the gate is decided when it is served, by the state then."""
     with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
         gate.freeze()
         request = robot.call_reset(WHEELS_GATE)
@@ -260,8 +260,8 @@ def test_a_reset_that_comes_late_starts_nothing(robot: Robot) -> None:
         release(robot, sensors)
 
 
-def test_whoever_asks_for_a_reset_and_goes_holds_up_no_more_than_that(robot: Robot) -> None:
-    """The middleware looks for one that has gone, 0.1 s for each request; then the zeros go on."""
+def test_vanished_reset_client_delays_the_gate_only_briefly(robot: Robot) -> None:
+    """The middleware waits 0.1 s per request for a vanished client; then the zeros continue."""
     from std_srvs.srv import Trigger
 
     stranger = Peer(int(robot.env["ROS_DOMAIN_ID"]), "stranger")

@@ -17,10 +17,10 @@ TILTED = math.radians(20.0)
 
 
 @pytest.mark.parametrize("fault", [Sensors.kill, Sensors.freeze])
-def test_a_sensor_that_dies_or_hangs_stops_the_robot(
+def test_dead_or_hung_sensor_stops_the_robot(
     robot: Robot, fault: Callable[[Sensors], None]
 ) -> None:
-    """Silence is noticed when the timeout passes, without any message."""
+    """Silence is detected when the timeout ends, without any message."""
     with robot.safety_node(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
@@ -28,8 +28,8 @@ def test_a_sensor_that_dies_or_hangs_stops_the_robot(
         robot.until_stopped("/halt", limit=0.5 + 1.0)
 
 
-def test_a_sensor_that_comes_back_is_heard_again(robot: Robot) -> None:
-    """A sensor process that is killed and started anew needs no restart of the safety node."""
+def test_restarted_sensor_is_used_again(robot: Robot) -> None:
+    """The safety node need not be restarted."""
     with robot.safety_node():
         with robot.sensors() as sensors:
             sensors.drive()
@@ -43,8 +43,8 @@ def test_a_sensor_that_comes_back_is_heard_again(robot: Robot) -> None:
             robot.until_stopped()
 
 
-def test_a_sensor_that_thaws_is_heard_again(robot: Robot) -> None:
-    """After a hang the sensor's messages count as before."""
+def test_sensor_is_used_again_after_a_hang(robot: Robot) -> None:
+    """Its messages count as before."""
     with robot.safety_node(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
@@ -55,7 +55,7 @@ def test_a_sensor_that_thaws_is_heard_again(robot: Robot) -> None:
 
 
 def test_nan_counts_as_silence(robot: Robot) -> None:
-    """A sensor that sends NaN goes missing like a silent one, however often it sends."""
+    """A sensor that publishes NaN is missing like a silent one, at any rate."""
     with robot.safety_node(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
@@ -66,8 +66,8 @@ def test_nan_counts_as_silence(robot: Robot) -> None:
         robot.until_stopped()
 
 
-def test_nan_between_good_messages_loses_no_stop(robot: Robot) -> None:
-    """One good message among many of NaN is enough for an immediate rule."""
+def test_nan_between_valid_messages_misses_no_stop(robot: Robot) -> None:
+    """One valid message among many NaN is enough for an immediate rule."""
     with robot.safety_node(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
@@ -76,8 +76,8 @@ def test_nan_between_good_messages_loses_no_stop(robot: Robot) -> None:
         robot.until_stopped()
 
 
-def test_stamps_out_of_order_change_no_verdict(robot: Robot) -> None:
-    """Time is when a message came, not what its stamp says: a 'for' runs through all the same."""
+def test_unordered_stamps_change_no_verdict(robot: Robot) -> None:
+    """Times are those of receipt, not of the stamps: a 'for' elapses normally."""
     with robot.safety_node(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()
@@ -86,8 +86,8 @@ def test_stamps_out_of_order_change_no_verdict(robot: Robot) -> None:
         robot.until_stopped("/halt", limit=0.4 + 1.0)
 
 
-def test_a_plausible_wrong_value_is_believed(robot: Robot) -> None:
-    """A stuck sensor is alive, and what it repeats is judged: only another sensor contradicts."""
+def test_plausible_wrong_value_is_believed(robot: Robot) -> None:
+    """A stuck sensor is alive, and its value is used: only another sensor can contradict it."""
     with robot.safety_node(), robot.sensors() as sensors:
         sensors.drive()
         robot.until_free()

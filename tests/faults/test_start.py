@@ -1,4 +1,4 @@
-"""Faults of the start: who comes first, who comes late, who never comes."""
+"""Faults of the start: inputs that are early, late or missing."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ pytestmark = pytest.mark.ros
 GRACE = 3.0
 
 
-def test_inputs_that_are_there_first_are_heard_from_the_start(robot: Robot) -> None:
-    """A node that is started into a running robot sees the violation that is under way."""
+def test_existing_inputs_are_used_from_the_start(robot: Robot) -> None:
+    """A node started in a running robot detects a violation in progress."""
     with robot.sensors() as sensors:
         sensors.play("/speed", speed(2.0))
         sensors.play("/imu", imu())
@@ -21,8 +21,8 @@ def test_inputs_that_are_there_first_are_heard_from_the_start(robot: Robot) -> N
             robot.until_stopped()
 
 
-def test_inputs_that_come_late_are_heard_when_they_come(robot: Robot) -> None:
-    """Publishers that are discovered seconds after the node are heard like any other."""
+def test_late_inputs_are_used_when_they_appear(robot: Robot) -> None:
+    """Publishers discovered seconds after the node are used like any other."""
     with robot.safety_node():
         robot.spin(2.0)
         with robot.sensors() as sensors:
@@ -32,8 +32,8 @@ def test_inputs_that_come_late_are_heard_when_they_come(robot: Robot) -> None:
             robot.until_stopped()
 
 
-def test_within_the_grace_nobody_is_missing_and_nobody_may_drive(robot: Robot) -> None:
-    """While inputs are awaited there is no halt, and no heartbeat either; then it beats at once."""
+def test_grace_has_neither_halt_nor_heartbeat(robot: Robot) -> None:
+    """While inputs are awaited there is neither; the heartbeat starts with the inputs."""
     with robot.sensors() as sensors:
         node = robot.start(NODE, [f"startup_grace:={10 * GRACE}"])
         robot.until(lambda: robot.states["/halt"])
@@ -47,8 +47,8 @@ def test_within_the_grace_nobody_is_missing_and_nobody_may_drive(robot: Robot) -
         node.end()
 
 
-def test_who_never_comes_is_missing_when_the_grace_ends(robot: Robot) -> None:
-    """The grace ends by itself: the halt comes, and the heartbeat."""
+def test_absent_input_is_missing_after_the_grace(robot: Robot) -> None:
+    """The grace period ends by itself: the halt comes, and the heartbeat."""
     with robot.sensors({"/speed": TOPICS["/speed"]}) as sensors:
         sensors.play("/speed", speed(0.1))
         with robot.safety_node(f"startup_grace:={GRACE}"):

@@ -1,4 +1,4 @@
-"""Faults of what the safety node keeps on disk: damaged, unreadable, replaced, no space left."""
+"""Faults of the state file: damaged, unreadable, replaced, disk full."""
 
 from __future__ import annotations
 
@@ -17,38 +17,38 @@ pytestmark = pytest.mark.ros
 
 
 def cut(file: Path) -> None:
-    """Leave half of it, as a crash of the machine may."""
+    """Keep only half of the file, as after a crash of the machine."""
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
 
 
 def flip(file: Path) -> None:
-    """Turn one bit, as a worn disk may."""
+    """Flip one bit, as on a worn disk."""
     data = bytearray(file.read_bytes())
     data[len(data) // 2] ^= 1
     file.write_bytes(data)
 
 
 def empty(file: Path) -> None:
-    """Leave nothing, as a file system does that had not yet written it."""
+    """Empty the file, as by a file system that had not written it yet."""
     file.write_bytes(b"")
 
 
 def scribble(file: Path) -> None:
-    """Write what is no text at all."""
+    """Write bytes that are not text."""
     file.write_bytes(bytes(range(256)) * 16)
 
 
 def block(file: Path) -> None:
-    """Put something there that cannot be read as a file."""
+    """Replace the file by something unreadable."""
     file.unlink()
     file.mkdir()
 
 
 @pytest.mark.parametrize("damage", [cut, flip, empty, scribble, block])
-def test_a_damaged_state_file_means_stopped(
+def test_damaged_state_file_means_stopped(
     robot: Robot, tmp_path: Path, damage: Callable[[Path], object]
 ) -> None:
-    """Who cannot know whether the robot was stopped takes it for stopped, and says why."""
+    """A node that cannot know whether the robot was stopped assumes it, and reports why."""
     file = tmp_path / "state"
     with robot.safety_node(f"state_file:={file}") as node:
         node.end()
@@ -59,33 +59,33 @@ def test_a_damaged_state_file_means_stopped(
 
 
 def link(file: Path) -> None:
-    """Make it a link to a file that says that nothing is active."""
+    """Replace the file by a link to one without active actions."""
     other = file.with_name("other")
     file.rename(other)
     file.symlink_to(other)
 
 
 def dangle(file: Path) -> None:
-    """Make it a link to nothing."""
+    """Replace the file by a dangling link."""
     file.unlink()
     file.symlink_to(file.with_name("nowhere"))
 
 
 def pipe(file: Path) -> None:
-    """Make it a pipe that nobody writes to."""
+    """Replace the file by a pipe without a writer."""
     file.unlink()
     os.mkfifo(file)
 
 
 def bind(file: Path) -> None:
-    """Make it a socket."""
+    """Replace the file by a socket."""
     file.unlink()
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(str(file))
 
 
 def device(file: Path) -> None:
-    """Make it a device, as only root can; this one is the null device under another name."""
+    """Replace the file by a device (root only): the null device under another name."""
     file.unlink()
     try:
         os.mknod(file, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
@@ -94,7 +94,7 @@ def device(file: Path) -> None:
 
 
 def described(folder: Path) -> list[tuple[str, int, bytes]]:
-    """Return what is in a folder: names, types, and what the regular files hold."""
+    """Return the contents of a folder: names, types, and data of regular files."""
     return [
         (path.name, stat.S_IFMT(path.lstat().st_mode), path.read_bytes() if is_file else b"")
         for path in sorted(folder.iterdir())
@@ -103,10 +103,10 @@ def described(folder: Path) -> list[tuple[str, int, bytes]]:
 
 
 @pytest.mark.parametrize("put", [link, dangle, pipe, bind, device, block])
-def test_what_is_no_regular_file_means_stopped_and_is_left_alone(
+def test_irregular_state_file_means_stopped_and_is_kept(
     robot: Robot, tmp_path: Path, put: Callable[[Path], object]
 ) -> None:
-    """It is neither followed, nor waited for, nor replaced, not even by root, start after start."""
+    """It is neither followed nor waited for nor replaced, not even by root, at any start."""
     folder = tmp_path / "state"
     file = folder / "file"
     with robot.safety_node(f"state_file:={file}") as node:
@@ -124,8 +124,8 @@ def test_what_is_no_regular_file_means_stopped_and_is_left_alone(
         assert described(folder) == before
 
 
-def test_the_state_file_of_another_node_means_stopped(robot: Robot, tmp_path: Path) -> None:
-    """It says that nothing of the other one is active, which is nothing about this one."""
+def test_state_file_of_another_node_means_stopped(robot: Robot, tmp_path: Path) -> None:
+    """A file without active actions of another node does not apply to this one."""
     file = tmp_path / "state"
     another = robot.start(NODE, [f"state_file:={file}"], name="another")
     robot.until(file.exists)
@@ -137,10 +137,8 @@ def test_the_state_file_of_another_node_means_stopped(robot: Robot, tmp_path: Pa
         assert f"{file} is damaged, or not of /{NODE}" in node.output()
 
 
-def test_a_state_file_that_is_removed_while_the_node_runs_comes_back(
-    robot: Robot, tmp_path: Path
-) -> None:
-    """A hand that tidies up undoes no stop."""
+def test_state_file_removed_at_run_time_is_recreated(robot: Robot, tmp_path: Path) -> None:
+    """Removing the file does not undo a stop."""
     file = tmp_path / "state"
     with robot.safety_node(f"state_file:={file}") as node:
         robot.violate()
@@ -152,10 +150,8 @@ def test_a_state_file_that_is_removed_while_the_node_runs_comes_back(
         assert robot.is_active("/stop"), "the stop was undone by a restart"
 
 
-def test_a_link_that_is_put_there_while_the_node_runs_is_reported(
-    robot: Robot, tmp_path: Path
-) -> None:
-    """The node can keep nothing from then on, and says so."""
+def test_link_created_at_run_time_is_reported(robot: Robot, tmp_path: Path) -> None:
+    """From then on the node cannot store anything, and reports it."""
     file = tmp_path / "state"
     with robot.safety_node(f"state_file:={file}") as node:
         link(file)
@@ -163,8 +159,8 @@ def test_a_link_that_is_put_there_while_the_node_runs_is_reported(
         assert file.is_symlink()
 
 
-def test_a_folder_that_is_missing_is_made(robot: Robot, tmp_path: Path) -> None:
-    """It belongs to the user alone, and the latch is in it."""
+def test_missing_folder_is_created(robot: Robot, tmp_path: Path) -> None:
+    """It is private to the user, and the latch is in it."""
     folder = tmp_path / "made" / "for"
     with robot.safety_node(f"state_file:={folder / 'state'}") as node:
         assert stat.S_IMODE(folder.stat().st_mode) == 0o700
@@ -176,16 +172,16 @@ def test_a_folder_that_is_missing_is_made(robot: Robot, tmp_path: Path) -> None:
         assert robot.is_active("/stop")
 
 
-def test_a_folder_that_cannot_be_made_means_stopped(robot: Robot, tmp_path: Path) -> None:
-    """Where nothing can be kept, nothing may be forgotten."""
+def test_folder_that_cannot_be_created_means_stopped(robot: Robot, tmp_path: Path) -> None:
+    """If nothing can be stored, the robot stays stopped."""
     (tmp_path / "file").write_text("")
     with robot.safety_node(f"state_file:={tmp_path / 'file' / 'folder' / 'state'}") as node:
         robot.until_stopped()
         assert "cannot be" in node.output()
 
 
-def test_a_full_disk_costs_no_stop(robot: Robot, tmp_path: Path) -> None:
-    """The stop comes all the same, and a restart finds it, although it could not be written."""
+def test_full_disk_does_not_prevent_a_stop(robot: Robot, tmp_path: Path) -> None:
+    """The stop is published, and a restart finds it although it could not be written."""
     folder = tmp_path / "disk"
     folder.mkdir()
     disk = Disk(folder, tmp_path)
@@ -200,8 +196,8 @@ def test_a_full_disk_costs_no_stop(robot: Robot, tmp_path: Path) -> None:
         assert robot.is_active("/stop"), "the stop was undone by a restart"
 
 
-def test_a_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
-    """A reset that a restart would undo is not done; with space again, it is."""
+def test_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
+    """A reset that a restart would undo is refused until there is space again."""
     folder = tmp_path / "disk"
     folder.mkdir()
     disk = Disk(folder, tmp_path)
@@ -218,15 +214,15 @@ def test_a_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
             assert not success
             return "No space left on device" in message
 
-        robot.until(is_told_why)  # once it has heard that the rule is kept again
+        robot.until(is_told_why)  # once it knows that the rule is satisfied again
         assert robot.is_active("/stop")
         disk.clear()
         robot.until(lambda: robot.reset()[0])
         robot.until(lambda: not robot.is_active("/stop"))
 
 
-def test_a_disk_that_is_full_from_the_start_means_stopped(robot: Robot, tmp_path: Path) -> None:
-    """A node that could not keep a stop begins with it."""
+def test_disk_full_from_the_start_means_stopped(robot: Robot, tmp_path: Path) -> None:
+    """A node that could not store a stop starts stopped."""
     folder = tmp_path / "disk"
     folder.mkdir()
     disk = Disk(folder, tmp_path)

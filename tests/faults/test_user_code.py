@@ -1,4 +1,4 @@
-"""Faults in the code that users write into actions: the stop comes first, and stays."""
+"""Faults in user code of actions: the stop comes first, and lasts."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ FAILURES = {
 
 
 @pytest.mark.parametrize("how", FAILURES)
-def test_code_that_ends_the_node_costs_neither_stop_nor_latch(robot: Robot, how: str) -> None:
-    """The stop written after the code is out, the node ends with 1, and a restart finds it."""
+def test_user_code_that_ends_the_node_loses_neither_stop_nor_latch(robot: Robot, how: str) -> None:
+    """The stop after the code is published, the node exits with 1, and the latch is stored."""
     with robot.safety_node() as node:
         robot.interfere(how)
         robot.until_stopped(limit=PROMPT)
@@ -40,8 +40,8 @@ def test_code_that_ends_the_node_costs_neither_stop_nor_latch(robot: Robot, how:
         assert all(each.value for each in robot.states["/stop"][seen:]), "a restart undid the stop"
 
 
-def test_a_node_that_fails_leaves_the_graph_at_once(robot: Robot) -> None:
-    """Nobody takes what is left of it for a second publisher once it has been started again."""
+def test_failed_node_leaves_the_graph_at_once(robot: Robot) -> None:
+    """After a restart its remains do not count as a second publisher."""
     with robot.safety_node() as node:
         robot.until(lambda: robot.peer.node.count_publishers(HEARTBEAT) == 1)
         robot.interfere("throw")
@@ -51,8 +51,10 @@ def test_a_node_that_fails_leaves_the_graph_at_once(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("how", ["exit at once", "kill"])
-def test_code_that_ends_the_process_costs_neither_stop_nor_latch(robot: Robot, how: str) -> None:
-    """No node can survive it, but the stop was published and stored as pending before."""
+def test_user_code_that_ends_the_process_loses_neither_stop_nor_latch(
+    robot: Robot, how: str
+) -> None:
+    """The node cannot survive it, but the stop was published and stored as pending before."""
     with robot.safety_node() as node:
         robot.interfere(how)
         robot.until_stopped(limit=PROMPT)
@@ -62,8 +64,8 @@ def test_code_that_ends_the_process_costs_neither_stop_nor_latch(robot: Robot, h
         assert all(each.value for each in robot.states["/stop"][seen:]), "a restart undid the stop"
 
 
-def test_slow_code_delays_no_stop(robot: Robot) -> None:
-    """A stop that is written after code that takes for ever does not wait for it."""
+def test_slow_user_code_does_not_delay_a_stop(robot: Robot) -> None:
+    """A stop after code that never returns does not wait for it."""
     with robot.safety_node() as node:
         robot.interfere("wait")
         robot.until_stopped(limit=PROMPT)
@@ -77,15 +79,15 @@ def test_slow_code_delays_no_stop(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("how", ["wait", "exit"])
-def test_code_that_is_run_again_at_the_start_comes_after_the_states(
+def test_user_code_repeated_at_the_start_runs_after_the_states(
     robot: Robot, tmp_path: Path, how: str
 ) -> None:
-    """A latched action that is code keeps no latched stop back, nor loses it by its failure."""
+    """A latched action with user code neither delays a latched stop nor loses it by a failure."""
     file = tmp_path / "state"
     with robot.safety_node(f"state_file:={file}") as node:
         node.end()
-        robot.spin(0.3)  # in which what it has sent before is heard
-        file.write_bytes(b"")  # damaged: all that is latched is active
+        robot.spin(0.3)  # time for its earlier messages to arrive
+        file.write_bytes(b"")  # damaged: all latched actions are active
         (robot.folder / "interference").write_text(how, encoding="ascii")
         beats = len(robot.beats)
         node = robot.start(NODE, [f"state_file:={file}"])
@@ -103,8 +105,8 @@ def test_code_that_is_run_again_at_the_start_comes_after_the_states(
         assert robot.is_active("/stop")
 
 
-def test_code_that_does_not_do_its_work_is_believed(robot: Robot) -> None:
-    """A body that only says that it acted looks like one that did; bound actions do not need it."""
+def test_user_code_without_effect_is_not_detected(robot: Robot) -> None:
+    """Code that only claims to act looks like code that acts; bound actions need no such trust."""
     with robot.safety_node() as node:
         robot.interfere("claim")
         robot.until_stopped(limit=PROMPT)
@@ -113,8 +115,8 @@ def test_code_that_does_not_do_its_work_is_believed(robot: Robot) -> None:
         assert robot.faults == {}
 
 
-def test_each_order_runs_the_code_once_and_in_turn(robot: Robot) -> None:
-    """Two violations are two calls, each once, and in the order in which they came."""
+def test_each_order_runs_the_code_once_in_sequence(robot: Robot) -> None:
+    """Two violations are two calls, each once, in their order."""
     orders = ["first", "second"]
     with robot.safety_node() as node, robot.sensors() as sensors:
         sensors.drive()
@@ -128,12 +130,12 @@ def test_each_order_runs_the_code_once_and_in_turn(robot: Robot) -> None:
 
 
 def _calls(node: Process) -> list[str]:
-    """Return what the code has said that it did, in order."""
+    """Return the actions reported by the code, in order."""
     return re.findall(r"interference: (\w+)$", node.output(), re.MULTILINE)
 
 
-def test_code_runs_with_the_rights_of_the_node(robot: Robot) -> None:
-    """It is a part of the process: whoever writes it may do whatever the node may."""
+def test_user_code_has_the_privileges_of_the_node(robot: Robot) -> None:
+    """It runs in the process of the node: its author may do anything that the node may."""
     with robot.safety_node() as node:
         robot.interfere("who")
         robot.until_stopped(limit=PROMPT)

@@ -1,4 +1,4 @@
-"""A safety node or gate that is wired wrongly by hand: the robot is not started at all."""
+"""Hand-wired safety nodes and gates with errors: the robot is not started."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tests.support.hand_wired import DIFFERENCES, write_hand_wired
 
 
 @pytest.mark.parametrize("name", DIFFERENCES)
-def test_robot_wired_wrongly_is_not_started(
+def test_wrongly_wired_robot_is_not_started(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
-    """Whoever starts it from the system alone gets the error: 1 of the model, not 2 of the start.
+    """Starting from the system alone gives the error: 1 for the model, not 2 for the start.
 
-    No launch file and no script is made of such a system either.
+    Neither launch file nor script is generated from such a system.
     """
     monkeypatch.chdir(tmp_path)
     write_hand_wired()

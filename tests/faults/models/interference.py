@@ -1,4 +1,4 @@
-"""What a user may write into an action: read from a file, and done once."""
+"""User code of an action: it does what a file says, once."""
 
 import os
 import signal
@@ -14,7 +14,7 @@ FILE = Path(os.environ.get("INTERFERENCE", ""))
 
 
 def interfere(node: Node) -> None:
-    """Do what the file says, and remove it, so that the next process is left alone."""
+    """Do what the file says, and remove it, so that the next process is not affected."""
     if not FILE.is_file():
         return
     how = FILE.read_text(encoding="ascii")
