@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from deros.generators.text.logic import (
-    MAX_LINE,
     AllOf,
     AnyOf,
     Atom,
@@ -19,6 +18,7 @@ from deros.generators.text.logic import (
     lay_out,
     text,
 )
+from deros.generators.text.python import LINE_LENGTH
 
 # Names so long that a few operands fill a line, and so many lengths that each just fits sometimes.
 _NAMES = [f"{letter}{'_' * length}" for letter in "xyz" for length in (0, 5, 17, 31, 60)]
@@ -55,5 +55,5 @@ def test_lines_mean_the_formula(logic: Logic, indent: int, before: str) -> None:
     expected = ast.dump(_tree(logic))
     assert ast.dump(ast.parse(f"({expression})", mode="eval").body) == expected
     assert ast.dump(ast.parse(text(logic), mode="eval").body) == expected
-    too_long = [line for line in lines if len(line) > MAX_LINE]
+    too_long = [line for line in lines if len(line) > LINE_LENGTH]
     assert all(sum(line.count(letter) for letter in "xyz") == 1 for line in too_long)

@@ -16,6 +16,7 @@ from deros.generators.text.python import (
     Text,
     call,
     import_lines,
+    lay_out_call,
     mark_long_lines,
     wrapped,
 )
@@ -62,6 +63,21 @@ def test_a_broken_call_means_the_same(texts: list[str], depth: int) -> None:
     words = [word for t in texts for word in t.split()]
     if all(len(repr(word)) < 40 for word in words):
         assert all(len(line) <= LINE_LENGTH for line in f"{' ' * indent}{text}".splitlines())
+
+
+@given(
+    st.lists(st.text("abc", min_size=1, max_size=50), max_size=12),
+    st.integers(min_value=0, max_value=5),
+)
+def test_a_filled_call_means_the_same(names: list[str], depth: int) -> None:
+    """However many arguments, the lines fit and are the same call, with a comma at the end."""
+    indent = 4 * depth
+    lines = lay_out_call(indent, "value = function(", names)
+    assert all(len(line) <= LINE_LENGTH for line in lines)
+    assert all(line.startswith(" " * indent) for line in lines)
+    parsed = ast.dump(ast.parse("\n".join(line[indent:] for line in lines)))
+    assert parsed == ast.dump(ast.parse(f"value = function({', '.join(names)})"))
+    assert len(lines) == 1 or lines[-2].endswith(",")
 
 
 def test_only_long_lines_are_marked() -> None:

@@ -1,16 +1,27 @@
-"""Boolean expressions of the emitted Python, and how they are laid out in lines.
+"""Boolean expressions of the emitted Python, and their layout.
 
-They are two-valued: three-valued conditions are emitted as the question whether they are true, or
-whether they are false (:mod:`deros.generators.monitor.python.conditions`).
+They are two-valued. A condition of the rules, which is three-valued, is emitted as two expressions:
+whether it is true, and whether it is false (:mod:`deros.generators.monitor.python.conditions`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-MAX_LINE = 99
-"""The length that ament_flake8 allows."""
+from deros.generators.text.document import (
+    LINE,
+    SOFTLINE,
+    Document,
+    concat,
+    flatten,
+    group,
+    if_broken,
+    join,
+    nest,
+    render_lines,
+)
+from deros.generators.text.python import LINE_LENGTH
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,70 +72,40 @@ def any_of(operands: Iterable[Logic]) -> Logic:
 
 
 def text(logic: Logic) -> str:
-    """Return the expression in one line."""
-    if isinstance(logic, Atom):
-        return logic.text
-    if isinstance(logic, NoneOf):
-        return f"not ({text(logic.operand)})"
-    parts = [text(each) for each in logic.operands]
-    if isinstance(logic, AllOf):
-        inner = zip(parts, logic.operands, strict=True)
-        return " and ".join(f"({part})" if isinstance(op, AnyOf) else part for part, op in inner)
-    return " or ".join(parts)
+    """Return the expression on one line."""
+    return flatten(_document("", logic))
 
 
 def lay_out(indent: int, before: str, logic: Logic, after: str = "") -> list[str]:
     """Return ``before`` + expression + ``after`` in lines that are not too long.
 
-    ``before`` and ``after`` are what stands around the expression, as ``if `` and ``:``.
+    Args:
+        indent: the blanks in front of every line.
+        before: the text in front of the expression, ``if `` for instance.
+        logic: the expression.
+        after: the text behind it, ``:`` for instance.
     """
-    blank = " " * indent
-    line = f"{blank}{before}{text(logic)}{after}"
-    if len(line) <= MAX_LINE or isinstance(logic, Atom):
-        return [line]
-    before, inner = _unnegated(before, logic)
-    return [f"{blank}{before}(", *_operands(indent + 4, inner), f"{blank}){after}"]
+    return render_lines(concat(_document(before, logic), after), LINE_LENGTH, indent)
 
 
-def _operands(indent: int, logic: Atom | AllOf | AnyOf) -> list[str]:
-    if isinstance(logic, Atom):
-        return [f"{' ' * indent}{logic.text}"]
-    word = "and " if isinstance(logic, AllOf) else "or "
-    lines: list[str] = []
-    for number, each in enumerate(logic.operands):
-        lines += _operand(indent, word if number else "", each)
-    return lines
+def _document(before: str, logic: Logic, *, in_brackets: bool = False) -> Document:
+    """Return the layout of an expression: one operand on each line where it is too long.
 
-
-def _operand(indent: int, before: str, logic: Logic) -> list[str]:
-    blank = " " * indent
-    line = f"{blank}{before}{text(logic)}"
-    if isinstance(logic, Atom) or (not isinstance(logic, AnyOf) and len(line) <= MAX_LINE):
-        return [line]
-    before, inner = _unnegated(before, logic)
-    line = f"{blank}{before}({text(inner)})"
-    if len(line) <= MAX_LINE:
-        return [line]
-    return [f"{blank}{before}(", *_operands(indent + 4, inner), f"{blank})"]
-
-
-def _unnegated(before: str, logic: Logic) -> tuple[str, Atom | AllOf | AnyOf]:
-    """Return what stands before a pair of parentheses, which ``not`` needs, and within it."""
+    Args:
+        before: the text in front of it.
+        logic: the expression.
+        in_brackets: whether it needs brackets on one line, too.
+    """
     while isinstance(logic, NoneOf):
-        before, logic = f"{before}not ", logic.operand
-    return before, logic
+        before, logic, in_brackets = f"{before}not ", logic.operand, True
+    if isinstance(logic, Atom) and not in_brackets:
+        return before + logic.text
+    opening, closing = ("(", ")") if in_brackets else (if_broken("("), if_broken(")"))
+    return group(before, opening, nest(4, SOFTLINE, _operands(logic)), SOFTLINE, closing)
 
 
-def lay_out_call(indent: int, before: str, arguments: Sequence[str], after: str = ")") -> list[str]:
-    """Return a call in lines that are not too long; ``before`` ends with its ``(``."""
-    blank = " " * indent
-    line = f"{blank}{before}{', '.join(arguments)}{after}"
-    if len(line) <= MAX_LINE:
-        return [line]
-    lines = [f"{blank}{before}", f"{blank}    "]
-    for argument in arguments:
-        piece = f"{argument}, "
-        if len(lines[-1]) + len(piece) > MAX_LINE + 1 and lines[-1].strip():
-            lines.append(f"{blank}    ")
-        lines[-1] += piece
-    return [*(line.rstrip() for line in lines), f"{blank}{after}"]
+def _operands(logic: Atom | AllOf | AnyOf) -> Document:
+    if isinstance(logic, Atom):
+        return logic.text
+    operands = (_document("", op, in_brackets=isinstance(op, AnyOf)) for op in logic.operands)
+    return join(concat(LINE, "and " if isinstance(logic, AllOf) else "or "), operands)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from deros.generators.text.document import Document, fill, nest, render
+
 
 def sentence(text: str) -> str:
-    """Return ``text`` as a sentence for a docstring: a capital in front, a full stop, one line.
+    """Return ``text`` as a sentence for a docstring: on one line, with a capital and a full stop.
 
-    PEP 257 wants no backslashes in a docstring, and three quotes would end it.
+    Backslashes become slashes, since PEP 257 asks for raw docstrings with them, and three double
+    quotes, which would end the docstring, become single ones.
     """
     line = printable_line(text).replace("\\", "/").replace('"""', "'''")
     if not line:
@@ -17,3 +20,29 @@ def sentence(text: str) -> str:
 def printable_line(text: str) -> str:
     """Return ``text`` with every run of white space and unprintable characters as one blank."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
+def paragraph(
+    text: str, first: str = "", further: str = "", longest: int | None = None
+) -> Document:
+    """Return a text as words that fill lines.
+
+    Args:
+        text: the text, without line breaks; runs of blanks are kept within lines.
+        first: the start of the first line.
+        further: the start of all further lines.
+        longest: the length from which words are cut; by default none is.
+    """
+    words = text.split(" ")
+    if longest is not None:
+        words = [piece for word in words for piece in _cut(word, longest)]
+    return nest(further, first, fill(words))
+
+
+def _cut(word: str, longest: int) -> list[str]:
+    return [word[at : at + longest] for at in range(0, len(word), longest)] or [""]
+
+
+def wrap(text: str, width: int) -> list[str]:
+    """Return ``text`` in lines of at most ``width`` characters; longer words stay whole."""
+    return render(paragraph(text), width).split("\n") if text else []

@@ -7,7 +7,7 @@ import textwrap
 
 from deros.diagnostics import Span
 from deros.generators.text.identifiers import file_label
-from deros.generators.text.logic import MAX_LINE
+from deros.generators.text.python import LINE_LENGTH
 
 
 def origin(span: Span) -> str:
@@ -26,7 +26,7 @@ def comment(indent: int, title: str, span: Span, text: str | None = None) -> lis
 
 def _wrap(text: str, lead: str) -> list[str]:
     further = f"{lead}  "
-    return textwrap.wrap(text, MAX_LINE, initial_indent=lead, subsequent_indent=further)
+    return textwrap.wrap(text, LINE_LENGTH, initial_indent=lead, subsequent_indent=further)
 
 
 def header(text: str) -> str:

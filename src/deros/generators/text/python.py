@@ -1,21 +1,36 @@
-"""Small pieces of Python source text: imports, calls, literals; all within ament's line length."""
+"""Small pieces of Python source text: imports, calls, texts, comments; in ament's line length."""
 
 from __future__ import annotations
 
 import io
 import textwrap
 import tokenize
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from deros.generators.text.prose import printable_line
+from deros.generators.text.document import (
+    HARDLINE,
+    SOFTLINE,
+    Document,
+    breakable,
+    comma_separated,
+    concat,
+    fill,
+    group,
+    if_broken,
+    join,
+    nest,
+    render,
+    render_lines,
+)
+from deros.generators.text.prose import printable_line, wrap
 
 LINE_LENGTH = 99
-"""Longest line that ament's flake8 settings allow."""
+"""The longest line that ament's flake8 settings allow."""
 
 
 def import_lines(imports: Mapping[str, Iterable[str]]) -> list[str]:
-    """Return one group of import statements in the order that ament's flake8 settings want.
+    """Return one group of import statements in the order of ament's flake8 settings.
 
     Args:
         imports: the names to import by module; no names stand for ``import module``.
@@ -26,17 +41,22 @@ def import_lines(imports: Mapping[str, Iterable[str]]) -> list[str]:
         if not names:
             lines.append(f"import {module}")
             continue
-        line = f"from {module} import {', '.join(names)}"
-        if len(line) <= LINE_LENGTH:
-            lines.append(line)
-        else:
-            lines += [f"from {module} import (", *(f"    {name}," for name in names), ")"]
+        document = bracketed(f"from {module} import ", if_broken("("), names, if_broken(")"))
+        lines += render_lines(document, LINE_LENGTH)
     return lines
+
+
+# Calls --------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A string argument, ``head`` being its keyword with ``=`` or empty; broken where too long."""
+    """A string argument, broken into several literals where it is too long.
+
+    Attributes:
+        head: its keyword with ``=``, or nothing.
+        text: the string.
+    """
 
     head: str
     text: str
@@ -44,9 +64,12 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A call, or with an empty ``head`` a tuple; where too long, it has one argument a line.
+    """A call; where it is too long, it has one argument on each line.
 
-    ``tail`` follows the closing parenthesis: ``.value``.
+    Attributes:
+        head: what is called; of a tuple it is empty.
+        arguments: the arguments.
+        tail: the text behind the closing bracket, ``.value`` for instance.
     """
 
     head: str
@@ -54,72 +77,83 @@ class Call:
     tail: str = ""
 
 
-def layout(expression: str | Text | Call, indent: int, trailer: str = "") -> list[str]:
-    """Return the lines of an expression that starts in column ``indent``; the first has no blanks.
-
-    ``trailer`` is what follows the expression on its last line, a comma most often.
-    """
-    line = _on_one_line(expression) + trailer
-    if isinstance(expression, str) or indent + len(line) <= LINE_LENGTH:
-        return [line]
-    margin = " " * (indent + 4)
-    if isinstance(expression, Call):
-        trailer = expression.tail + trailer
-    lines = [f"{expression.head}("]
-    if isinstance(expression, Text):
-        width = LINE_LENGTH - indent - 8
-        pieces = textwrap.wrap(
-            expression.text,
-            width,
-            break_long_words=False,
-            break_on_hyphens=False,
-            drop_whitespace=False,
-        )
-        lines += [f"{margin}{piece!r}" for piece in pieces]
-    else:
-        for argument in expression.arguments:
-            inner = layout(argument, indent + 4, ",")
-            lines += [margin + inner[0], *inner[1:]]
-    return [*lines, " " * indent + ")" + trailer]
-
-
 def call(
     head: str, arguments: Iterable[str | Text | Call | None], indent: int, end: str = ""
 ) -> str:
-    """Return a call as text for a template that has written ``indent`` blanks already.
+    """Return a call, for a template that has written ``indent`` blanks already.
 
-    Arguments that are ``None`` are left out.
+    Arguments that are ``None`` are left out; ``end`` follows the closing bracket.
     """
     given = tuple(argument for argument in arguments if argument is not None)
-    return "\n".join(layout(Call(head, given), indent, end))
+    return expression(Call(head, given), indent, end)
 
 
 def expression(value: str | Text | Call, indent: int, end: str = "") -> str:
-    """Return any expression as text for a template that has written ``indent`` blanks already."""
-    return "\n".join(layout(value, indent, end))
+    """Return an expression, for a template that has written ``indent`` blanks already."""
+    return render(concat(_document(value), end), LINE_LENGTH, indent)
 
 
-def _on_one_line(expression: str | Text | Call) -> str:
-    if isinstance(expression, str):
-        return expression
-    if isinstance(expression, Text):
-        return f"{expression.head}{expression.text!r}"
-    return (
-        f"{expression.head}({', '.join(map(_on_one_line, expression.arguments))}){expression.tail}"
+def _document(value: str | Text | Call) -> Document:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Call):
+        arguments = [_document(argument) for argument in value.arguments]
+        return bracketed(value.head, "(", arguments, concat(")", value.tail))
+    return breakable(f"{value.head}{value.text!r}", lambda indent: _pieces(value, indent))
+
+
+def _pieces(text: Text, indent: int) -> Document:
+    """Return a text as several literals, which Python joins."""
+    pieces = textwrap.wrap(
+        text.text,
+        LINE_LENGTH - indent - 8,
+        break_long_words=False,
+        break_on_hyphens=False,
+        drop_whitespace=False,
     )
+    literals = join(HARDLINE, map(repr, pieces))
+    return concat(text.head, "(", nest(4, HARDLINE, literals), HARDLINE, ")")
+
+
+def bracketed(
+    head: str, opening: Document, items: Sequence[Document], closing: Document
+) -> Document:
+    """Return items in brackets; where they are too long, there is one on each line."""
+    inner = nest(4, SOFTLINE, comma_separated(items), if_broken(",")) if items else ""
+    return group(head, opening, inner, SOFTLINE, closing)
+
+
+def filled(opening: Document, items: Sequence[str], closing: Document) -> Document:
+    """Return items in brackets; where they are too long, each line has as many as fit."""
+    listed = [*(f"{item}," for item in items[:-1]), *items[-1:]]
+    inner = nest(4, SOFTLINE, fill(listed), if_broken(",")) if listed else ""
+    return group(opening, inner, SOFTLINE, closing)
+
+
+def lay_out_call(indent: int, before: str, arguments: Sequence[str], after: str = ")") -> list[str]:
+    """Return a call in lines that are not too long, each with as many arguments as fit.
+
+    Args:
+        indent: the blanks in front of every line.
+        before: the text in front of the arguments, which ends with the opening bracket.
+        arguments: the arguments.
+        after: the text behind them, which begins with the closing bracket.
+    """
+    return render_lines(filled(before, arguments, after), LINE_LENGTH, indent)
+
+
+# Prose and long lines -----------------------------------------------------------------------------
 
 
 def wrapped(text: str, indent: int) -> list[str]:
     """Return ``text`` as lines that fit behind ``indent`` columns; long words stay whole."""
-    return textwrap.wrap(
-        printable_line(text), LINE_LENGTH - indent, break_long_words=False, break_on_hyphens=False
-    )
+    return wrap(printable_line(text), LINE_LENGTH - indent)
 
 
 def mark_long_lines(text: str) -> str:
-    """Add ``# noqa: E501`` where no wrapping could keep to the line length.
+    """Add ``# noqa: E501`` to the lines that are too long.
 
-    ROS 2 names may be 255 characters long, and a name cannot be broken.
+    They cannot be broken: a name in ROS 2 may have 255 characters.
     """
     lines = text.splitlines()
     if all(len(line) <= LINE_LENGTH for line in lines):
@@ -129,7 +163,7 @@ def mark_long_lines(text: str) -> str:
         first = token.start[0] if first is None else first
         if token.type not in (tokenize.NL, tokenize.NEWLINE):
             continue
-        # Only a string of several lines makes first and last differ; its mark stands behind it.
+        # First and last differ only for a string of several lines; the mark goes behind its end.
         last = token.start[0]
         if any(len(line) > LINE_LENGTH for line in lines[first - 1 : last]):
             lines[last - 1] += "  # noqa: E501"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import textwrap
 from dataclasses import dataclass, field
 
+from deros.generators.text.document import render_lines
+from deros.generators.text.prose import paragraph
 from deros.generators.text.python import LINE_LENGTH
 
 FORMATS: dict[str, tuple[str, int]] = {
@@ -72,12 +73,5 @@ class Parts:
 
 def group_lines(name: str, letters: str, fields: list[str]) -> list[str]:
     """Return the constant that reads a group of fields at once, and what they are."""
-    comment = textwrap.wrap(
-        ", ".join(fields),
-        LINE_LENGTH,
-        initial_indent="# ",
-        subsequent_indent="#   ",
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    comment = render_lines(paragraph(", ".join(fields), "# ", "#   "), LINE_LENGTH)
     return [*comment, f"{name} = both('{letters}')"]

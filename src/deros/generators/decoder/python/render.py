@@ -11,8 +11,8 @@ from deros.generators.decoder.python.field_selection import tree
 from deros.generators.decoder.python.module import Parts
 from deros.generators.decoder.python.position import START
 from deros.generators.decoder.python.writer import Writer
-from deros.generators.text.logic import lay_out_call
-from deros.generators.text.python import LINE_LENGTH, mark_long_lines, wrapped
+from deros.generators.text.document import concat, if_broken, render_lines
+from deros.generators.text.python import LINE_LENGTH, filled, lay_out_call, mark_long_lines, wrapped
 from deros.generators.text.templates import environment
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.fields import FieldPath, ResolvedField, format_path, resolve
@@ -137,11 +137,11 @@ def _value_type(type_: FieldType) -> str:
 
 
 def _signature(function: str, result: str) -> list[str]:
-    line = f"def {function}(data: bytes) -> {result}:"
-    if len(line) <= LINE_LENGTH or not result.startswith("tuple["):
-        return [line]
+    head = f"def {function}(data: bytes) -> "
+    if not result.startswith("tuple["):
+        return [f"{head}{result}:"]
     types = result.removeprefix("tuple[").removesuffix("]").split(", ")
-    return lay_out_call(0, f"def {function}(data: bytes) -> tuple[", types, "]:")
+    return lay_out_call(0, f"{head}tuple[", types, "]:")
 
 
 def _documentation(topic: Topic, paths: Sequence[FieldPath]) -> list[str]:
@@ -172,5 +172,5 @@ def _with_return(lines: Sequence[str], variables: Sequence[str]) -> list[str]:
 
 
 def _return(variables: Sequence[str]) -> list[str]:
-    line = f"    return {', '.join(variables)}"
-    return [line] if len(line) <= LINE_LENGTH else lay_out_call(4, "return (", variables)
+    document = filled(concat("return ", if_broken("(")), variables, if_broken(")"))
+    return render_lines(document, LINE_LENGTH, 4)

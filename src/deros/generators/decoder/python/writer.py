@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from deros.generators.decoder.python.module import Parts, group_lines
-from deros.generators.text.logic import lay_out_call
-from deros.generators.text.python import LINE_LENGTH
+from deros.generators.text.document import LINE, Document, concat, group, if_broken, render_lines
+from deros.generators.text.python import LINE_LENGTH, filled
 from deros.generators.text.unique_names import UniqueNames
 
 
@@ -40,21 +40,16 @@ class Writer:
 
     def line(self, text: str, comment: str = "") -> None:
         """Add a line, with a comment behind it, or above it where the line gets too long."""
-        margin = "    " * self._depth
-        whole = f"{margin}{text}  # {comment}" if comment else f"{margin}{text}"
-        if len(whole) > LINE_LENGTH and comment:
-            self.lines.append(f"{margin}# {comment}")
-            whole = f"{margin}{text}"
-        self.lines.append(whole)
+        above = if_broken(concat("# ", comment, LINE)) if comment else ""
+        behind = if_broken("", f"  # {comment}") if comment else ""
+        self._add(group(above, text, behind))
 
     def assign(self, names: Sequence[str], value: str) -> None:
         """Add the assignment of several values at once."""
-        line = f"{', '.join(names)} = {value}"
-        indent = 4 * self._depth
-        if indent + len(line) <= LINE_LENGTH:
-            self.line(line)
-        else:
-            self.lines += lay_out_call(indent, "(", names, f") = {value}")
+        self._add(filled(if_broken("("), names, concat(if_broken(")"), f" = {value}")))
+
+    def _add(self, document: Document) -> None:
+        self.lines += render_lines(document, LINE_LENGTH, 4 * self._depth)
 
     def group(self, letters: str, fields: list[str]) -> str:
         """Return the constant that reads a group of fields."""

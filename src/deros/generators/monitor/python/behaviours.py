@@ -8,15 +8,9 @@ from __future__ import annotations
 from deros.generators.monitor.python.conditions import Conditions
 from deros.generators.monitor.python.layout import Layout
 from deros.generators.monitor.python.rules import interval_lines
-from deros.generators.text.logic import (
-    Atom,
-    Logic,
-    all_of,
-    any_of,
-    lay_out,
-    lay_out_call,
-)
+from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment, header
+from deros.generators.text.python import lay_out_call
 from deros.monitor import walk
 from deros.monitor.ir import Action, Behaviour, Program, RuleRef, Trigger
 

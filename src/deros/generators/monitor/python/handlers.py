@@ -9,16 +9,10 @@ from deros.generators.monitor.python.conditions import literal, scaled
 from deros.generators.monitor.python.layout import Layout, input_of
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.monitor.python.rules import Judge
-from deros.generators.text.logic import (
-    MAX_LINE,
-    Atom,
-    Logic,
-    all_of,
-    any_of,
-    lay_out,
-    lay_out_call,
-)
+from deros.generators.text.document import LINE, SOFTLINE, concat, group, join, nest, render_lines
+from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment
+from deros.generators.text.python import LINE_LENGTH, lay_out_call
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
 from deros.monitor import walk
@@ -336,14 +330,9 @@ def _stamp(header: Sequence[str]) -> str:
 
 def _lay_out_length(indent: int, parts: Sequence[str]) -> list[str]:
     """Return the statement that computes the length of a quaternion, as the reference does."""
-    blank = " " * indent
-    squares = [f"{part} * {part}" for part in parts]
-    line = f"{blank}length = math.sqrt({' + '.join(squares)})"
-    if len(line) <= MAX_LINE:
-        return [line]
-    first, *rest = squares
-    lines = [f"{blank}    {first}", *(f"{blank}    + {square}" for square in rest)]
-    return [f"{blank}length = math.sqrt(", *lines, f"{blank})"]
+    squares = join(concat(LINE, "+ "), (f"{part} * {part}" for part in parts))
+    document = group("length = math.sqrt(", nest(4, SOFTLINE, squares), SOFTLINE, ")")
+    return render_lines(document, LINE_LENGTH, indent)
 
 
 def _is_new(attribute: str, local: str) -> Logic:

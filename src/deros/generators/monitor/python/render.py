@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from deros.generators.monitor.python.view import monitor_view
-from deros.generators.text.logic import MAX_LINE
+from deros.generators.text.python import LINE_LENGTH
 from deros.generators.text.templates import environment
 from deros.monitor.ir import Program
 
@@ -21,4 +21,4 @@ def render_monitor(program: Program) -> str:
 
 def _exempt(line: str) -> str:
     """Excuse a line that cannot be broken, such as a long text, from the linter's limit."""
-    return line if len(line) <= MAX_LINE else f"{line}  # noqa: E501"
+    return line if len(line) <= LINE_LENGTH else f"{line}  # noqa: E501"

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.generators.monitor.python.layout import Layout
-from deros.generators.text.logic import Atom, all_of, any_of, lay_out, lay_out_call
+from deros.generators.text.logic import Atom, all_of, any_of, lay_out
+from deros.generators.text.python import lay_out_call
 from deros.monitor import walk
 from deros.monitor.ir import Age, Missing, Program, RuleRef, Unknown
 from deros.monitor.reads import Term, strip_comments, term_name, terms

@@ -10,7 +10,9 @@ from typing import TypeVar
 from deros.generators.monitor.python.conditions import Conditions
 from deros.generators.monitor.python.layout import Layout
 from deros.generators.monitor.python.rule_state import value_text
-from deros.generators.text.logic import MAX_LINE, Atom, Logic, lay_out, lay_out_call, text
+from deros.generators.text.document import SOFTLINE, group, nest, render_lines
+from deros.generators.text.logic import Atom, Logic, lay_out, text
+from deros.generators.text.python import LINE_LENGTH, lay_out_call
 from deros.monitor import walk
 from deros.monitor.causes import (
     AllOf,
@@ -214,10 +216,8 @@ def _sayings(plan: Plan) -> Iterator[Say | SayRule]:
 def _tuple_of(causes: list[str]) -> list[str]:
     if len(causes) > 1:
         return lay_out_call(8, "return (", causes)
-    line = f"        return ({causes[0]},)"
-    if len(line) <= MAX_LINE:
-        return [line]
-    return ["        return (", f"            {causes[0]},", "        )"]
+    document = group("return (", nest(4, SOFTLINE, causes[0], ","), SOFTLINE, ")")
+    return render_lines(document, LINE_LENGTH, 8)
 
 
 def _of_self(names: dict[Key, str]) -> dict[Key, str]:
