@@ -68,19 +68,6 @@ class Decision:
     limits: Mapping[FieldPath, Limit] = field(default_factory=dict)
 
 
-def applying_texts(lines: Sequence[tuple[str, bool]], resume_on_zero: bool) -> tuple[str, ...]:
-    """Return what each entry of :attr:`GateEngine.applying` stands for, for people to read.
-
-    Args:
-        lines: the text of each line of the gate, and whether it holds zero until a reset.
-        resume_on_zero: whether the gate waits for a zero command.
-    """
-    texts = tuple(text for text, _ in lines)
-    latched = tuple(f"waits for a reset, after {text}" for text, latches in lines if latches)
-    waits = ("waits for a zero command",) if resume_on_zero else ()
-    return (*texts, *latched, *waits)
-
-
 class GateEngine:
     """Runs one gate. Times are nanoseconds of one clock, given with every call.
 

@@ -9,7 +9,8 @@ from typing import Any, Literal
 from deros.interfaces.store import InterfaceStore
 from deros.monitor.commands import Message, is_finite
 from deros.monitor.engine import Event
-from deros.monitor.gate_engine import GateEngine, Output, applying_texts
+from deros.monitor.gate_engine import GateEngine, Output
+from deros.monitor.gate_program import applying_texts
 from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
 from deros.monitor.reads import strip_comments
 from deros.monitor.trace_values import MessageReader

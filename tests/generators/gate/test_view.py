@@ -1,81 +1,34 @@
-"""The lines of a gate, as the templates of all languages see them."""
+"""The parts of a gate that the templates of all languages name."""
 
 from __future__ import annotations
 
-from deros.generators.gate.view import (
-    ActionView,
-    LineView,
-    deciding_lines,
-    heeded_actions,
-    line_views,
-)
+from deros.generators.gate.view import ActionWords, named_parts
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FieldType
 from deros.monitor.ir import Gate, GateLine, Limit, Program
-from tests.support.gates import ACTIONS, message_type, span
+from tests.support.gates import ACTIONS, STORE, message_type, span
 
 SLOW = Limit(("linear", "x"), FieldType("float64"), -0.5, 0.5)
-STRAIGHT = Limit(("angular", "z"), FieldType("float64"), 0.0, 0.0)
+WORDS = ActionWords("message.", "not ", lambda _, value: f"<{value}>")
 
 
-def made(*lines: GateLine) -> tuple[Gate, Program]:
-    """Return a gate of some lines, and its program."""
-    kind = message_type("geometry_msgs.Twist")
-    gate = Gate(0, "/wish", "/command", kind, 10, lines, span(1))
-    return gate, Program("robot", (), (), (), (), ACTIONS, (gate,))
-
-
-def views(*lines: GateLine) -> tuple[LineView, ...]:
-    """Return the views of some lines."""
-    actions = (ActionView(action.name, f"{action.name}_active", "") for action in ACTIONS)
-    return line_views(*made(*lines), actions, UniqueNames(frozenset({"stop"})))
-
-
-def test_a_line_tells_what_it_is_about() -> None:
-    """An action has a state, a loss a time; no variable has a name that is taken."""
-    stop, loss = views(
-        GateLine(0, None, None, (), span(2)), GateLine(None, "input", 500, (SLOW,), span(3))
+def test_lines_and_actions_get_names() -> None:
+    """An action has a state and a test, a line a title; no variable has a name that is taken."""
+    lines = (
+        GateLine(0, None, None, (), span(2), until_reset=True),
+        GateLine(None, "input", 500, (SLOW,), span(3)),
+        GateLine(1, None, None, (), span(4)),
+        GateLine(2, None, None, (), span(5)),
     )
-    assert (stop.name, stop.title, stop.state, stop.zero) == (
-        "stop_2",
-        "Action stop",
-        "stop_active",
-        True,
-    )
-    assert (loss.name, loss.title, loss.lost_ns, loss.zero) == (
-        "lost_input",
-        "Lost input",
-        500,
-        False,
-    )
+    gate = Gate(0, "/wish", "/command", message_type("geometry_msgs.Twist"), 10, lines, span(1))
+    program = Program("robot", (), (), (), (), ACTIONS, (gate,))
+    names = UniqueNames(frozenset({"stop"}))
+    _, actions, (stop, loss, *_) = named_parts(gate, program, STORE, WORDS, names)
+    assert (stop.name, stop.title, stop.latch) == ("stop_2", "Action stop", "stop_2_latched")
+    assert (loss.name, loss.title, loss.latch) == ("lost_input", "Lost input", "")
     assert loss.shown == "line 3 (random.deros:3)"
-
-
-def test_actions_come_by_the_topics_of_their_states() -> None:
-    """Each once, topics and actions as first named; those that no line names stay out."""
-    gate, program = made(*(GateLine(index, None, None, (), span(2)) for index in (3, 0, 2, 3)))
-    heeded = heeded_actions(gate, program)
-    assert {topic: [action.name for action, _ in bound] for topic, bound in heeded.items()} == {
-        "/mode": ["slower", "slow"],
-        "/stop": ["stop"],
+    assert {index: (view.state, view.test) for index, view in actions.items()} == {
+        0: ("stop_active", "message.data"),
+        1: ("go_active", "not message.data"),
+        2: ("slow_active", "message.data == <1>"),
     }
-    assert list(heeded) == ["/mode", "/stop"]
-
-
-def test_zero_decides_only_before_a_limit() -> None:
-    """What follows the last limit of a field changes nothing for it."""
-    lines = views(
-        GateLine(0, None, None, (), span(2)),
-        GateLine(1, None, None, (SLOW, STRAIGHT), span(3)),
-        GateLine(2, None, None, (), span(4)),
-        GateLine(3, None, None, (SLOW,), span(5)),
-        GateLine(None, "heartbeat", 5, (), span(6)),
-    )
-    zero, first, second_zero, last, _ = lines
-    assert deciding_lines(lines, "linear.x") == [
-        (zero, None),
-        (first, SLOW),
-        (second_zero, None),
-        (last, SLOW),
-    ]
-    assert deciding_lines(lines, "angular.z") == [(zero, None), (first, STRAIGHT)]

@@ -1,23 +1,51 @@
-"""What the templates of a gate see in every language: its lines, and the actions they heed."""
+"""What the templates of a gate see in every language: its program, and names for its parts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from deros.diagnostics import Span
-from deros.generators.gate.command import TypeBase
 from deros.generators.text.prose import printable_line
 from deros.generators.text.provenance import origin
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.fields import format_path
-from deros.monitor.gate_engine import applying_texts
-from deros.monitor.ir import Action, Binding, Gate, GateLine, Limit, Program
+from deros.interfaces.message_fields import field_type
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.monitor import gate_program as form
+from deros.monitor.gate_lowering import gate_program
+from deros.monitor.ir import Binding, Gate, GateLine, Program, Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class TypeBase:
+    """The parts that the views of the functions for one message type have in common.
+
+    Attributes:
+        type: its name in ROS 2.
+        finite: the operands whose conjunction is that each float in it is finite.
+        zeros: the statements that set it to zero.
+        zero_tests: the operands whose conjunction is that it commands nothing.
+        stamped: whether it, or a message in it, has a header that takes the time.
+    """
+
+    type: InterfaceType
+    finite: tuple[str, ...]
+    zeros: tuple[str, ...]
+    zero_tests: tuple[str, ...]
+    stamped: bool
 
 
 @dataclass(frozen=True, slots=True)
 class ActionView:
-    """An action that the gate heeds: the name of its state, and when a message says active."""
+    """An action that lines name.
+
+    Attributes:
+        name: its name in the rules.
+        state: the name of the variable that holds whether it is active.
+        test: the condition that a message says it is.
+    """
 
     name: str
     state: str
@@ -29,53 +57,60 @@ class LineView:
     """One line of the gate.
 
     Attributes:
-        name: the local variable that tells whether the line applies.
+        name: the local variable that holds whether the line applies.
         title: what it is about, and ``span`` where it stands.
-        shown: what it says, in one line, for the diagnostics.
-        lost: ``heartbeat`` or ``input``, of a line about a loss; ``lost_ns`` is how long it may be
-            silent; 0 of any other line.
-        state: the name of the action's state, of a line about an action.
-        limits: what it keeps fields within; none: it commands zero.
-        latch: the name of what tells that it has applied since the last reset, if it commands zero
-            until a reset; else empty.
+        shown: its text, on one line, for the diagnostics.
+        latch: the variable that holds whether it has applied since the last reset, if it commands
+            zero until a reset; else empty.
     """
 
     name: str
     title: str
     span: Span
     shown: str
-    lost: str | None
-    lost_ns: int
-    state: str
-    limits: tuple[Limit, ...]
     latch: str
-
-    @property
-    def zero(self) -> bool:
-        """Whether it commands zero; else it limits."""
-        return not self.limits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GateBase:
-    """What the views of a gate have in common.
+    """The parts that the views of a gate have in common.
 
     Attributes:
-        origin: its place in the rules.
-        type: the command's type in ROS 2.
-        period_ns: between two zeros.
-        types: what is done to messages of each type in the command, which is the last.
-        actions: those that it heeds.
-        waits: whether commands pass again only after one that is zero.
+        program: what the gate does.
+        types: the functions for messages of each type in the command, which is the last.
+        actions: those that lines name, by index.
+        lines: its lines, by index.
     """
 
-    origin: str
-    type: str
-    period_ns: int
+    program: form.GateProgram
     types: tuple[TypeBase, ...]
-    actions: tuple[ActionView, ...]
+    actions: Mapping[int, ActionView]
     lines: tuple[LineView, ...]
-    waits: bool
+
+    @property
+    def span(self) -> Span:
+        """Its place in the rules."""
+        return self.program.gate.span
+
+    @property
+    def origin(self) -> str:
+        """Its place in the rules, as text."""
+        return origin(self.span)
+
+    @property
+    def type(self) -> str:
+        """The command's type in ROS 2."""
+        return str(self.program.gate.type)
+
+    @property
+    def period_ns(self) -> int:
+        """The time between two zeros."""
+        return self.program.gate.period_ns
+
+    @property
+    def waits(self) -> bool:
+        """Whether commands pass again only after one that is zero."""
+        return self.program.gate.resume_on_zero
 
     @property
     def has_floats(self) -> bool:
@@ -90,127 +125,95 @@ class GateBase:
     @property
     def heeds_safety_node(self) -> bool:
         """Whether a line is about an action, or about the heartbeat."""
-        return bool(self.actions) or "heartbeat" in self.lost
+        return bool(self.program.on_no_safety_node)
 
     @property
-    def losses(self) -> tuple[LineView, ...]:
-        """The lines about a loss."""
-        return tuple(line for line in self.lines if line.lost)
+    def latching(self) -> bool:
+        """Whether a line commands zero until a reset."""
+        return self.program.gate.is_latching
 
     @property
-    def latching(self) -> tuple[LineView, ...]:
-        """The lines that command zero until a reset."""
-        return tuple(line for line in self.lines if line.latch)
-
-    @property
-    def releasing(self) -> tuple[LineView, ...]:
-        """The lines that command zero for as long as they apply, and let go by themselves."""
-        return tuple(line for line in self.lines if line.zero and not line.latch)
-
-    @property
-    def has_gaps(self) -> bool:
-        """Whether a zero can have numbers in it that a limit leaves to the controller."""
-        limiting = any(line.limits for line in self.lines)
-        return limiting and bool(self.releasing) and not self.waits
-
-    @property
-    def minds_input(self) -> bool:
-        """Whether what a zero holds depends on a lost input."""
-        return self.has_gaps and "input" in self.lost
-
-    @property
-    def asks_for_input(self) -> bool:
-        """Whether anything but a line of its own depends on a lost input."""
-        limits_of_actions = any(line.limits and not line.lost for line in self.lines)
-        return self.minds_input or (limits_of_actions and "input" in self.lost)
+    def has_losses(self) -> bool:
+        """Whether a line is about a loss."""
+        return any(line.lost for line in self.program.gate.lines)
 
     @property
     def refusing(self) -> tuple[int, ...]:
-        """The numbers of the lines that refuse a reset while they apply."""
-        return tuple(n for n, line in enumerate(self.lines) if line.lost or line.zero)
+        """The indices of the lines that refuse a reset while they apply."""
+        resets = (step for step in self.program.on_reset if isinstance(step, form.Reset))
+        return next((step.refusing for step in resets), ())
 
     @property
     def shown(self) -> tuple[str, ...]:
-        """What can hold commands back, one text each: lines, latches, and the wait for a zero."""
-        return applying_texts([(line.shown, bool(line.latch)) for line in self.lines], self.waits)
+        """One text for each condition that can hold commands back."""
+        return form.applying_texts(
+            [(line.shown, bool(line.latch)) for line in self.lines], self.waits
+        )
 
-    @property
-    def lost(self) -> tuple[str, ...]:
-        """What the lines about a loss are about."""
-        return tuple(dict.fromkeys(line.lost for line in self.losses if line.lost))
-
-
-def heeded_actions(gate: Gate, program: Program) -> dict[str, list[tuple[Action, Binding]]]:
-    """Return the actions that the lines of a gate speak of, by the topics of their states."""
-    heeded = dict.fromkeys(line.action for line in gate.lines if line.action is not None)
-    by_topic: dict[str, list[tuple[Action, Binding]]] = {}
-    for index in heeded:
-        action = program.actions[index]
-        assert action.binding is not None, action.name
-        by_topic.setdefault(action.binding.topic, []).append((action, action.binding))
-    return by_topic
+    def state(self, action: int) -> str:
+        """Return the name of the state of an action."""
+        return self.actions[action].state
 
 
-def line_views(
-    gate: Gate, program: Program, actions: Iterable[ActionView], names: UniqueNames
-) -> tuple[LineView, ...]:
-    """Return the views of a gate's lines.
+@dataclass(frozen=True, slots=True)
+class ActionWords:
+    """How a language tests a message for the state of an action.
+
+    Attributes:
+        message: what stands before a field of the message.
+        negation: what stands before a condition to negate it.
+        literal: returns a constant that a field of a type is compared with.
+    """
+
+    message: str
+    negation: str
+    literal: Callable[[FieldType, Scalar], str]
+
+
+def named_parts(
+    gate: Gate, program: Program, store: InterfaceStore, words: ActionWords, names: UniqueNames
+) -> tuple[form.GateProgram, dict[int, ActionView], tuple[LineView, ...]]:
+    """Return what a gate does, its actions and its lines.
 
     Args:
         gate: the gate.
-        program: the rules that it is of.
-        actions: those that its lines speak of.
-        names: hands out the names of the local variables.
+        program: the rules that it belongs to.
+        store: the message definitions.
+        words: how messages are tested.
+        names: hands out the names of variables.
     """
-    states = {action.name: action.state for action in actions}
-    return tuple(_line(line, program, states, names) for line in gate.lines)
+    steps = gate_program(gate, program.actions, store)
+    actions = {
+        index: _action(program.actions[index].name, binding, store, words, names)
+        for state in steps.states
+        for index, binding in state.bindings
+    }
+    return steps, actions, tuple(_line(line, actions, names) for line in gate.lines)
 
 
-def _line(
-    line: GateLine, program: Program, states: Mapping[str, str], names: UniqueNames
-) -> LineView:
+def _action(
+    name: str, binding: Binding, store: InterfaceStore, words: ActionWords, names: UniqueNames
+) -> ActionView:
+    test = f"{words.message}{format_path(binding.path)}"
+    if not isinstance(binding.value, bool):
+        field = field_type(store, binding.type, binding.path)
+        test += f" == {words.literal(field, binding.value)}"
+    elif not binding.value:
+        test = f"{words.negation}{test}"
+    return ActionView(name, names.new(name, "active"), test)
+
+
+def _line(line: GateLine, actions: Mapping[int, ActionView], names: UniqueNames) -> LineView:
     if line.action is not None:
-        action = program.actions[line.action].name
-        name, title, state = names.new(action), f"Action {action}", states[action]
+        action = actions[line.action].name
+        name, title = names.new(action), f"Action {action}"
     else:
         assert line.lost is not None
-        name, title, state = names.new("lost", line.lost), f"Lost {line.lost}", ""
+        name, title = names.new("lost", line.lost), f"Lost {line.lost}"
     return LineView(
         name=name,
         title=title,
         span=line.span,
         shown=f"{printable_line(line.span.text).rstrip('; ')} ({origin(line.span)})",
-        lost=line.lost,
-        lost_ns=line.lost_ns or 0,
-        state=state,
-        limits=line.limits,
         latch=names.new(name, "latched") if line.until_reset else "",
     )
-
-
-def limiting_lines(gate: Gate, lines: Sequence[LineView]) -> tuple[LineView, ...]:
-    """Return the lines among which the first that applies and speaks of a field decides on it.
-
-    What holds all fields at zero whenever it applies is left out: it is decided before.
-    """
-    return tuple(line for line in lines if not (line.zero and (line.latch or gate.resume_on_zero)))
-
-
-def deciding_lines(lines: Sequence[LineView], path: str) -> list[tuple[LineView, Limit | None]]:
-    """Return the lines that speak of a field, of which the first that applies decides on it.
-
-    Each comes with its limit, or without one where it commands zero. Those that command zero after
-    the last limit are left out: there is no limit where they apply, and none where they do not.
-
-    Args:
-        lines: the lines of a gate, one of which limits the field.
-        path: the field's spelling in the rules.
-    """
-    found: list[tuple[LineView, Limit | None]] = []
-    for line in lines:
-        found += [(line, limit) for limit in line.limits if format_path(limit.path) == path]
-        if line.zero:
-            found.append((line, None))
-    while found[-1][1] is None:
-        found.pop()
-    return found

@@ -14,6 +14,7 @@ from deros.generators.api.protocol import GenerationError
 from deros.interfaces.keywords import PYTHON
 
 _NOT_IN_IDENTIFIERS = re.compile(r"\W+", re.ASCII)
+_WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _PLAIN_IN_FILE_NAMES = " _.+-@"
 PYTHON_WORDS = PYTHON | {name for name in dir(builtins) if name.islower()}
 """What no name in emitted Python may be: keywords, and builtins that code calls."""
@@ -52,6 +53,11 @@ def camel_case(name: str) -> str:
     words = [word for word in python_identifier(name).split("_") if word]
     text = "".join(word[0].upper() + word[1:] for word in words) or "_"
     return _legal(text)
+
+
+def snake_case(name: str) -> str:
+    """Return a name in camel case in lower case: ``JointState`` is ``joint_state``."""
+    return _WORD.sub("_", name).lower()
 
 
 def _legal(text: str) -> str:

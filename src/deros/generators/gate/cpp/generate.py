@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 from deros.generators.api.protocol import File
 from deros.generators.gate.cpp.node import base_node
-from deros.generators.gate.cpp.source import condition, origin_comment, string_lines
-from deros.generators.gate.cpp.view import GateView, gate_view, nanoseconds
+from deros.generators.gate.cpp.source import if_head, origin_comment, string_lines
+from deros.generators.gate.cpp.view import Conditions, GateView, gate_view, nanoseconds
+from deros.generators.gate.printing import Printer, step_printer
 from deros.generators.node.cpp.interface import Provided
 from deros.generators.node.interface import node_description
 from deros.generators.runtime.interface import cpp_runtime, cpp_sources
@@ -109,7 +110,7 @@ def _provided(view: GateView, node: NodeType) -> Provided:
 
 def render(template: str, view: GateView) -> str:
     """Return the text of one file of a gate: ``node``, ``logic`` or ``main``, with its ending."""
-    loaded = environment("deros.generators.gate.cpp").get_template(f"{template}.j2")
+    templates = environment("deros.generators.gate.cpp")
     own = [f"{view.name}_base", f"{view.name}_logic", "runtime/gate_runner"]
     if view.heeds_safety_node:
         own.append("runtime/safety_source")
@@ -117,15 +118,27 @@ def render(template: str, view: GateView) -> str:
     heard = [view.heartbeat_port.header] if view.heartbeat_port else []
     if view.latching:
         heard.append(cpp_header(TRIGGER))
-    text = loaded.render(
-        gate=view,
+    names = {
+        "gate": view,
+        "call": call,
+        "condition": Conditions(view),
+        "origin_comment": origin_comment,
+    }
+
+    def rules(name: str) -> Printer:
+        return step_printer(templates.get_template(name), view.span, Conditions.language, **names)
+
+    text = templates.get_template(f"{template}.j2").render(
+        **names,
+        steps=rules("_steps.j2"),
+        begin=rules("_begin.j2"),
+        members=rules("_members.j2"),
+        publication=view.program.publication,
         includes=include_lines([*headers, *heard, "rclcpp/rclcpp.hpp"]),
         arguments=arguments,
-        call=call,
         comment=comment,
-        condition=condition,
+        if_head=if_head,
         nanoseconds=nanoseconds,
-        origin_comment=origin_comment,
         reset=cpp_string(RESET),
         trigger=cpp_type(TRIGGER),
         string_lines=string_lines,

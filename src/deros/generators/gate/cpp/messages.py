@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from deros.generators.gate.command import CommandType, TypeBase, command_types
+from deros.generators.gate.view import TypeBase
 from deros.generators.text.cpp import cpp_header, cpp_type
 from deros.generators.text.cpp_fields import NUMBERS
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
+from deros.monitor.command_types import CommandType, command_types
 from deros.monitor.commands import HEADER
 
 

@@ -44,7 +44,7 @@ def string_lines(text: str, indent: int) -> str:
     return f"({lines})" if "\n" in lines else lines  # else a comma might seem to be forgotten
 
 
-def condition(operands: Sequence[str], indent: int) -> str:
+def if_head(operands: Sequence[str], indent: int) -> str:
     """Return the head of an ``if`` whose operands all have to hold."""
     line = f"if ({' && '.join(operands)}) {{"
     if indent + len(line) <= LINE_LENGTH:

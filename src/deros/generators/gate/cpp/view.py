@@ -1,11 +1,10 @@
-"""What the templates of a gate see: its lines as conditions, its fields in terms of C++."""
+"""What the templates of a gate see: its program, named, and its ports in terms of C++."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from deros.generators.gate.command import limited_paths
 from deros.generators.gate.cpp.messages import (
     LimitedField,
     TypeView,
@@ -13,15 +12,8 @@ from deros.generators.gate.cpp.messages import (
     type_views,
 )
 from deros.generators.gate.cpp.source import CppNames
-from deros.generators.gate.view import (
-    ActionView,
-    GateBase,
-    LineView,
-    deciding_lines,
-    heeded_actions,
-    limiting_lines,
-    line_views,
-)
+from deros.generators.gate.printing import ConditionPrinter
+from deros.generators.gate.view import ActionView, ActionWords, GateBase, named_parts
 from deros.generators.node.cpp.interface import qos_expression
 from deros.generators.text.cpp import (
     Expression,
@@ -33,17 +25,16 @@ from deros.generators.text.cpp import (
 from deros.generators.text.cpp_fields import number, scalar
 from deros.generators.text.identifiers import camel_case
 from deros.generators.text.prose import sentence
-from deros.generators.text.provenance import origin
-from deros.generators.text.unique_names import UniqueNames
-from deros.interfaces.fields import format_path
-from deros.interfaces.message_fields import field_type
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.safety_nodes import CPP_SUFFIX, heartbeat_port
-from deros.monitor.ir import Action, Binding, Gate, Limit, Program
+from deros.monitor import gate_program as form
+from deros.monitor.ir import Gate, Limit, Program
 
 LATEST = 2**62 - 1
 """The greatest time, and the greatest duration, in nanoseconds: sums of two stay in 64 bits."""
+
+_MESSAGE_TESTS = ActionWords("message->", "!", lambda field, value: scalar(str(field.base), value))
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +55,7 @@ class StateView:
     port: PortView
     topic: str
     actions: tuple[ActionView, ...]
+    steps: tuple[form.Step, ...]
 
     @property
     def identifier(self) -> str:
@@ -74,14 +66,6 @@ class StateView:
     def type(self) -> str:
         """The struct of its messages."""
         return self.port.type
-
-
-@dataclass(frozen=True, slots=True)
-class FieldView:
-    """A field that limits speak of; ``limit`` chooses the interval that it is to be kept in."""
-
-    field: LimitedField
-    limit: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,7 +94,7 @@ class GateView(GateBase):
     target_port: PortView
     heartbeat_port: PortView | None
     types: tuple[TypeView, ...]
-    fields: tuple[FieldView, ...]
+    fields: tuple[LimitedField, ...]
     states: tuple[StateView, ...]
 
     @property
@@ -131,37 +115,11 @@ class GateView(GateBase):
         """The class of its node."""
         return camel_case(self.node)
 
-    def is_lost(self, what: str) -> str:
-        """Return the condition that something, which a line is about, is lost."""
-        return " || ".join(line.name for line in self.losses if line.lost == what)
-
     @property
     def silence_ns(self) -> int:
-        """After what silence of the heartbeat every line about it applies; 0 without any."""
-        return max((line.lost_ns for line in self.losses if line.lost == "heartbeat"), default=0)
-
-    @property
-    def unless_lost(self) -> str:
-        """What the limits of an action also depend on."""
-        return "".join(f" && !is_{what}_lost" for what in self.lost)
-
-    @property
-    def zero(self) -> str:
-        """The condition that some line commands zero, or is latched."""
-        releasing = (line.name for line in self.releasing)
-        return " || ".join((*releasing, *(["is_latched"] if self.latching else []))) or "false"
-
-    @property
-    def latched(self) -> str:
-        """The condition that some line is latched."""
-        return " || ".join(f"{line.latch}_" for line in self.latching)
-
-    @property
-    def all_lines(self) -> tuple[str, ...]:
-        """Of all that can hold commands back, whether it does."""
-        names = [line.name for line in self.lines]
-        names += [f"{line.latch}_ && !{line.name}" for line in self.latching]
-        return (*names, *(["waits_ && !zero"] if self.waits else []))
+        """The silence of the heartbeat after which every line about it applies; 0 without any."""
+        lines = (line for line in self.program.gate.lines if line.lost == "heartbeat")
+        return max((line.lost_ns or 0 for line in lines), default=0)
 
     @property
     def settled(self) -> str:
@@ -180,6 +138,45 @@ class GateView(GateBase):
         return tuple(sorted({view.header for view in self.types} - set(self.headers)))
 
 
+class Conditions(ConditionPrinter):
+    """Prints conditions, and what depends on them, as expressions."""
+
+    language = "C++"
+    all_of = " && "
+    any_of = " || "
+    never = "false"
+
+    def __init__(self, gate: GateView) -> None:
+        """Print conditions of ``gate``."""
+        super().__init__(gate)
+        self._fields = gate.fields
+
+    def variable(self, name: str) -> str:
+        """Return the member of the gate."""
+        return f"{name}_"
+
+    def nanoseconds(self, count: int) -> str:
+        """Return the literal of a duration."""
+        return nanoseconds(count)
+
+    def losses(self, sources: Sequence[form.Source]) -> list[str]:
+        """Return the variables that hold whether each of ``sources`` is lost."""
+        return [f"is_{source}_lost" for source in sources]
+
+    def none_of(self, operands: list[str]) -> str:
+        """Return the conjunction of the negations."""
+        return self.all_of.join(f"!{operand}" for operand in operands)
+
+    def limit_choices(self, field: form.FieldChoice, index: int) -> tuple[str, ...]:
+        """Return the parts of the conditional expression that chooses a field's limit."""
+        view = self._fields[index]
+        choices = (
+            f"{self(choice.condition)} ? {_interval(view, choice.limit)} :"
+            for choice in field.choices
+        )
+        return (*choices, _interval(view, None))
+
+
 def gate_view(
     gate: Gate, node: NodeType, program: Program, store: InterfaceStore, safety_node: NodeType
 ) -> GateView:
@@ -196,34 +193,35 @@ def gate_view(
     name = node.name.removesuffix(CPP_SUFFIX)
     topics = (port for port in node.ports if port.kind is not PortKind.SERVICE)
     ports = {port.name: _port(port) for port in topics}
-    states = tuple(
-        _state(ports[topic], topic, bound, store, names)
-        for topic, bound in heeded_actions(gate, program).items()
-    )
-    actions = tuple(action for state in states for action in state.actions)
-    lines = line_views(gate, program, actions, names)
+    steps, actions, lines = named_parts(gate, program, store, _MESSAGE_TESTS, names)
+    fields = (limited_field(store, gate.type, path, names.new(*path)) for path in steps.fields)
     return GateView(
+        program=steps,
+        types=type_views(store, gate.type),
+        actions=actions,
+        lines=lines,
         node=name,
         package=node.package,
         name=cpp_identifier(name),
         description=sentence(node.description),
-        origin=origin(gate.span),
         source=gate.source,
         target=gate.target,
-        type=str(gate.type),
         command=cpp_type(gate.type),
         header=cpp_header(gate.type),
-        period_ns=gate.period_ns,
         source_port=ports[gate.source],
         target_port=ports[gate.target],
         heartbeat_port=ports.get(heartbeat_port(safety_node)),
-        types=type_views(store, gate.type),
-        fields=tuple(_fields(gate, lines, store, names)),
-        lines=lines,
-        actions=actions,
-        states=states,
-        waits=gate.resume_on_zero,
+        fields=tuple(fields),
+        states=tuple(_states(steps, ports, actions)),
     )
+
+
+def _states(
+    steps: form.GateProgram, ports: Mapping[str, PortView], actions: Mapping[int, ActionView]
+) -> Iterator[StateView]:
+    for state in steps.states:
+        named = tuple(actions[action] for action in state.actions)
+        yield StateView(ports[state.topic], state.topic, named, state.steps)
 
 
 def nanoseconds(count: int) -> str:
@@ -241,55 +239,6 @@ def _port(port: Port) -> PortView:
         cpp_header(port.type),
         qos,
     )
-
-
-# Actions ------------------------------------------------------------------------------------------
-
-
-def _state(
-    port: PortView,
-    topic: str,
-    bound: Iterable[tuple[Action, Binding]],
-    store: InterfaceStore,
-    names: UniqueNames,
-) -> StateView:
-    actions = tuple(_action(action, binding, store, names) for action, binding in bound)
-    return StateView(port, topic, actions)
-
-
-def _action(
-    action: Action, binding: Binding, store: InterfaceStore, names: UniqueNames
-) -> ActionView:
-    base = field_type(store, binding.type, binding.path).base
-    assert isinstance(base, str), binding.path
-    test = f"message->{format_path(binding.path)}"
-    if not isinstance(binding.value, bool):
-        test += f" == {scalar(base, binding.value)}"
-    elif not binding.value:
-        test = f"!{test}"
-    return ActionView(action.name, names.new(action.name, "active"), test)
-
-
-# Limits -------------------------------------------------------------------------------------------
-
-
-def _fields(
-    gate: Gate, lines: Sequence[LineView], store: InterfaceStore, names: UniqueNames
-) -> Iterator[FieldView]:
-    limiting = limiting_lines(gate, lines)
-    for path in limited_paths(gate):
-        field = limited_field(store, gate.type, path, names.new(*path))
-        decided = (
-            f"{line.name} ? {_interval(field, limit)} :"
-            for line, limit in deciding_lines(limiting, field.path)
-        )
-        held = [f"{_held(gate)} ? {_interval(field, None)} :"] if gate.is_holding else []
-        yield FieldView(field, (*held, *decided, _interval(field, None)))
-
-
-def _held(gate: Gate) -> str:
-    """Return the condition that all numbers are zero, whatever the lines say."""
-    return "waits_" if gate.resume_on_zero else "is_latched"
 
 
 def _interval(field: LimitedField, limit: Limit | None) -> str:

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from deros.generators.gate.command import CommandType, TypeBase, command_types
+from deros.generators.gate.view import TypeBase
+from deros.generators.text.identifiers import snake_case
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
+from deros.monitor.command_types import CommandType, command_types
 from deros.monitor.commands import HEADER
-
-_WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +58,7 @@ def type_views(store: InterfaceStore, kind: InterfaceType) -> tuple[TypeView, ..
 
 def _prefix(kind: InterfaceType, views: Mapping[InterfaceType, TypeView]) -> str:
     """Return the type's name in lower case; with that of its package where it is taken."""
-    name = _WORD.sub("_", kind.name).lower()
+    name = snake_case(kind.name)
     taken = {view.prefix for view in views.values()}
     return f"{kind.package}_{name}_" if f"{name}_" in taken else f"{name}_"
 

@@ -1,22 +1,14 @@
-"""What the templates of a gate see: its lines as conditions, its fields in terms of rclpy."""
+"""What the templates of a gate see: its program, named, and its ports in terms of rclpy."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from deros.generators.gate.command import limited_paths
+from deros.generators.gate.printing import ConditionPrinter
 from deros.generators.gate.python.messages import LimitedField, limited_field, type_views
-from deros.generators.gate.view import (
-    ActionView,
-    GateBase,
-    LineView,
-    deciding_lines,
-    heeded_actions,
-    limiting_lines,
-    line_views,
-)
+from deros.generators.gate.view import ActionView, ActionWords, GateBase, named_parts
 from deros.generators.node.python.interface import (
     NodeView,
     PortView,
@@ -28,13 +20,12 @@ from deros.generators.text.provenance import origin
 from deros.generators.text.python import Call, import_lines
 from deros.generators.text.python_fields import literal
 from deros.generators.text.unique_names import UniqueNames
-from deros.interfaces.fields import format_path
-from deros.interfaces.message_fields import field_type
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType
 from deros.metamodels.safety_nodes import HEARTBEAT_TYPE, RESET, TRIGGER, heartbeat_port
-from deros.monitor.ir import Action, Binding, Gate, Limit, Program
+from deros.monitor import gate_program as form
+from deros.monitor.ir import Gate, Limit, Program
 
 # Names that the template of the logic uses itself.
 _TAKEN = frozenset(
@@ -64,6 +55,8 @@ _TAKEN = frozenset(
     )
 )
 
+_MESSAGE_TESTS = ActionWords("msg.", "not ", literal)
+
 
 @dataclass(frozen=True, slots=True)
 class StateView:
@@ -71,6 +64,8 @@ class StateView:
 
     Attributes:
         literal: the topic as an expression.
+        actions: the actions whose states its messages hold.
+        steps: what a message of it does.
     """
 
     identifier: str
@@ -78,6 +73,7 @@ class StateView:
     literal: str
     type: str
     actions: tuple[ActionView, ...]
+    steps: tuple[form.Step, ...]
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -96,14 +92,6 @@ class StateView:
         return tuple(f"msg is None or {action.test}" for action in self.actions)
 
 
-@dataclass(frozen=True, slots=True)
-class FieldView:
-    """A field that limits speak of; ``limit`` chooses the interval that it is to be kept in."""
-
-    field: LimitedField
-    limit: tuple[str, ...]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GateView(GateBase):
     """All that the templates print.
@@ -111,9 +99,10 @@ class GateView(GateBase):
     Attributes:
         rules: the file name of the rules.
         command: the command's type as the node's module names it.
-        source: the port that commands come in by, and ``target`` that which they go out by.
+        source: the port where commands arrive, and ``target`` the port where they leave.
         heartbeat: the port of the heartbeat, where a line needs one.
         imports: the statements that import the interfaces.
+        fields: the fields that have limits, in the order of the program.
         trigger: the service class of ``~/reset`` as the module names it; empty without latches.
     """
 
@@ -124,54 +113,19 @@ class GateView(GateBase):
     target: PortView
     heartbeat: PortView | None
     imports: tuple[str, ...]
-    fields: tuple[FieldView, ...]
+    fields: tuple[LimitedField, ...]
     states: tuple[StateView, ...]
     trigger: str
 
     @property
-    def lost_heartbeat(self) -> str:
-        """The condition that the heartbeat is lost."""
-        text = _any_of(line.name for line in self.lines if line.lost == "heartbeat")
-        return f"({text})" if " or " in text else text
-
-    @property
-    def lost_input(self) -> str:
-        """The condition that the input is lost."""
-        return _any_of(line.name for line in self.lines if line.lost == "input")
-
-    @property
-    def unless_lost(self) -> str:
-        """What the limits of an action also depend on."""
-        text = _any_of(line.name for line in self.losses)
-        return f" and not {f'({text})' if ' or ' in text else text}" if text else ""
-
-    @property
-    def zero(self) -> str:
-        """The condition that some line commands zero, or is latched."""
-        releasing = (line.name for line in self.releasing)
-        return _any_of((*releasing, *(["is_latched"] if self.latching else []))) or "False"
-
-    @property
-    def latched(self) -> str:
-        """The condition that some line is latched."""
-        return _any_of(f"self._{line.latch}" for line in self.latching)
-
-    @property
-    def all_lines(self) -> Call:
-        """Of all that can hold commands back, whether it does."""
-        names = [line.name for line in self.lines]
-        names += [f"self._{line.latch} and not {line.name}" for line in self.latching]
-        return _tuple([*names, *(["self._waits and not zero"] if self.waits else [])])
-
-    @property
     def refusing_lines(self) -> Call:
         """The numbers of the lines that refuse a reset."""
-        return _tuple(map(str, self.refusing))
+        return tuple_of(map(str, self.refusing))
 
     @property
     def values(self) -> Call:
-        """The fields that limits speak of, as local variables."""
-        return _tuple(each.field.name for each in self.fields)
+        """The fields that have limits, as local variables."""
+        return tuple_of(field.name for field in self.fields)
 
     @property
     def unpacked(self) -> Call:
@@ -181,32 +135,55 @@ class GateView(GateBase):
     @property
     def command_parameters(self) -> tuple[str, ...]:
         """The parameters of the method that takes a command."""
-        fields = (f"{each.field.name}: float | None" for each in self.fields)
+        fields = (f"{field.name}: float | None" for field in self.fields)
         return ("self", "t: int", *fields, *(["is_zero: bool"] if self.waits else []))
 
-    @property
-    def follow(self) -> str:
-        """The arguments of the method that does what follows."""
-        zero = "self._waits" if self.waits else "zero"
-        if not self.fields:
-            return f"t, {zero}, is_new"
-        return f"t, {zero}, limits, is_new{f', {self.lost_input}' if self.minds_input else ''}"
 
-    @property
-    def lost_due(self) -> Call | str:
-        """The earliest instant at which something will be lost."""
+class Conditions(ConditionPrinter):
+    """Prints conditions, and what depends on them, as expressions."""
+
+    language = "Python"
+    all_of = " and "
+    any_of = " or "
+    never = "False"
+
+    def variable(self, name: str) -> str:
+        """Return the attribute of the gate."""
+        return f"self._{name}"
+
+    def nanoseconds(self, count: int) -> str:
+        """Return the literal of a duration."""
+        return nanoseconds(count)
+
+    def losses(self, sources: Sequence[form.Source]) -> list[str]:
+        """Return the lines about the loss of one of ``sources``."""
+        lines = zip(self._gate.program.gate.lines, self._gate.lines, strict=True)
+        return [view.name for line, view in lines if line.lost in sources]
+
+    def none_of(self, operands: list[str]) -> str:
+        """Return the negation of a disjunction."""
+        return f"not ({self.any_of.join(operands)})" if len(operands) > 1 else f"not {operands[0]}"
+
+    def all_lines(self, step: form.ReportApplying) -> Call:
+        """Return the tuple of everything that can hold commands back."""
+        return tuple_of(map(self, step.conditions))
+
+    def limit_choices(self, field: form.FieldChoice) -> tuple[str, ...]:
+        """Return the parts of the conditional expression that chooses a field's limit."""
+        choices = (f"{_interval(each.limit)} if {self(each.condition)}" for each in field.choices)
+        return (*choices, "None")
+
+    def next_loss(self, step: form.ScheduleLosses) -> Call | str:
+        """Return the earliest instant at which something will be lost."""
         due = [
-            f"NEVER if {line.name} else self._{line.lost} + {nanoseconds(line.lost_ns)}"
-            for line in self.losses
+            f"NEVER if {self(form.Applies(end.line))} else {self.instant(end.source, end.ns)}"
+            for end in step.deadlines
         ]
         return Call("min", tuple(due)) if len(due) > 1 else due[0]
 
 
-def _any_of(names: Iterable[str]) -> str:
-    return " or ".join(names)
-
-
-def _tuple(names: Iterable[str]) -> Call:
+def tuple_of(names: Iterable[str]) -> Call:
+    """Return a tuple of one or more expressions."""
     listed = list(names)
     return Call("", tuple(listed if len(listed) > 1 else [f"{listed[0]},"]))
 
@@ -229,40 +206,37 @@ def gate_view(
     base = node_view(node, raw=True)
     heartbeat = heartbeat_port(safety_node)
     names = UniqueNames(PYTHON_WORDS | _TAKEN)
-    heeded = heeded_actions(gate, program)
-    states = tuple(
-        _state(_port(base.subscriptions, topic), bound, store, names)
-        for topic, bound in heeded.items()
-    )
-    actions = tuple(action for state in states for action in state.actions)
-    lines = line_views(gate, program, actions, names)
-    heard = {binding.type for bound in heeded.values() for _, binding in bound}
+    steps, actions, lines = named_parts(gate, program, store, _MESSAGE_TESTS, names)
+    fields = (limited_field(store, gate.type, path, names.new(*path)) for path in steps.fields)
+    heard = {binding.type for state in steps.states for _, binding in state.bindings}
     if node.port(heartbeat):
         heard.add(HEARTBEAT_TYPE)
     called = {TRIGGER} if node.port(RESET) else set()
     return GateView(
+        program=steps,
+        types=type_views(store, gate.type),
+        actions=actions,
+        lines=lines,
         node=base,
         rules=origin(gate.span).rpartition(":")[0],
-        origin=origin(gate.span),
-        type=str(gate.type),
         command=dict(base.interfaces)[gate.type],
         source=_port(base.subscriptions, gate.source),
         target=_port(base.publishers, gate.target),
         heartbeat=_port(base.subscriptions, heartbeat) if node.port(heartbeat) else None,
         imports=tuple(_imports(base, node, {gate.type, *heard, *called}, is_heeding=bool(heard))),
-        period_ns=gate.period_ns,
-        types=type_views(store, gate.type),
-        fields=tuple(_fields(gate, lines, store, names)),
-        lines=lines,
-        actions=actions,
-        states=states,
-        waits=gate.resume_on_zero,
-        trigger=_trigger(base) if node.port(RESET) else "",
+        fields=tuple(fields),
+        states=tuple(_states(steps, base, actions)),
+        trigger=dict(base.interfaces)[TRIGGER] if node.port(RESET) else "",
     )
 
 
-def _trigger(base: NodeView) -> str:
-    return dict(base.interfaces)[TRIGGER]
+def _states(
+    steps: form.GateProgram, base: NodeView, actions: Mapping[int, ActionView]
+) -> Iterator[StateView]:
+    for state in steps.states:
+        port = _port(base.subscriptions, state.topic)
+        named = tuple(actions[action] for action in state.actions)
+        yield StateView(port.identifier, port.name, port.topic, port.type, named, state.steps)
 
 
 def nanoseconds(count: int) -> str:
@@ -291,52 +265,6 @@ def _imports(
     if is_heeding:
         imports[f"{node.package}.safety_source"] = {"SafetySource"}
     return import_lines(imports)
-
-
-# Actions ------------------------------------------------------------------------------------------
-
-
-def _state(
-    port: PortView,
-    bound: Iterable[tuple[Action, Binding]],
-    store: InterfaceStore,
-    names: UniqueNames,
-) -> StateView:
-    actions = tuple(_action(action, binding, store, names) for action, binding in bound)
-    return StateView(port.identifier, port.name, port.topic, port.type, actions)
-
-
-def _action(
-    action: Action, binding: Binding, store: InterfaceStore, names: UniqueNames
-) -> ActionView:
-    test = f"msg.{format_path(binding.path)}"
-    if not isinstance(binding.value, bool):
-        test += f" == {literal(field_type(store, binding.type, binding.path), binding.value)}"
-    elif not binding.value:
-        test = f"not {test}"
-    return ActionView(action.name, names.new(action.name, "active"), test)
-
-
-# Limits -------------------------------------------------------------------------------------------
-
-
-def _fields(
-    gate: Gate, lines: Sequence[LineView], store: InterfaceStore, names: UniqueNames
-) -> Iterator[FieldView]:
-    limiting = limiting_lines(gate, lines)
-    for path in limited_paths(gate):
-        field = limited_field(store, gate.type, path, names.new(*path))
-        decided = (
-            f"{_interval(limit)} if {line.name}"
-            for line, limit in deciding_lines(limiting, field.path)
-        )
-        held = [f"None if {_held(gate)}"] if gate.is_holding else []
-        yield FieldView(field, (*held, *decided, "None"))
-
-
-def _held(gate: Gate) -> str:
-    """Return the condition that all numbers are zero, whatever the lines say."""
-    return "self._waits" if gate.resume_on_zero else "is_latched"
 
 
 def _interval(limit: Limit | None) -> str:

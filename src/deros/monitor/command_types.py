@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from deros.interfaces.fields import FieldPath
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import (
     FLOAT_TYPES,
@@ -15,7 +14,6 @@ from deros.interfaces.types import (
     MessageDefinition,
 )
 from deros.monitor.commands import HEADER, LAYOUT, QUATERNION
-from deros.monitor.ir import Gate
 
 Fields = tuple[tuple[str, FieldType], ...]
 """Fields of one message: their names and types."""
@@ -42,25 +40,6 @@ class CommandType:
     def is_one(self, field: str) -> bool:
         """Tell whether zero sets a field to 1: four zeros would be no rotation at all."""
         return self.type == QUATERNION and field == "w"
-
-
-@dataclass(frozen=True, slots=True)
-class TypeBase:
-    """What the views of the functions for one message type have in common.
-
-    Attributes:
-        type: its name in ROS 2.
-        finite: the operands whose conjunction tells whether each float in it is finite.
-        zeros: the statements that make zeros of it.
-        zero_tests: the operands whose conjunction tells whether it commands nothing.
-        stamped: whether it, or a message in it, has a header that takes the time.
-    """
-
-    type: InterfaceType
-    finite: tuple[str, ...]
-    zeros: tuple[str, ...]
-    zero_tests: tuple[str, ...]
-    stamped: bool
 
 
 def command_types(store: InterfaceStore, kind: InterfaceType) -> tuple[CommandType, ...]:
@@ -125,8 +104,3 @@ def _numbers(
             continue  # of no rotation it is 1
         if isinstance(field.base, str) or (field.base in found and found[field.base].numbers):
             yield name, field
-
-
-def limited_paths(gate: Gate) -> tuple[FieldPath, ...]:
-    """Return the paths of the fields that the limits of a gate speak of, as first named."""
-    return tuple(dict.fromkeys(limit.path for line in gate.lines for limit in line.limits))

@@ -1,0 +1,112 @@
+"""The steps that the lines of a gate mean."""
+
+from __future__ import annotations
+
+from deros.interfaces.types import FieldType
+from deros.monitor import gate_program as form
+from deros.monitor.gate_lowering import gate_program
+from deros.monitor.ir import Gate, GateLine, Limit
+from tests.support.gates import ACTIONS, STORE, message_type, span
+
+SLOW = Limit(("linear", "x"), FieldType("float64"), -0.5, 0.5)
+STRAIGHT = Limit(("angular", "z"), FieldType("float64"), 0.0, 0.0)
+
+
+def lowered(*lines: GateLine, resume_on_zero: bool = False) -> form.GateProgram:
+    """Return the program of a gate with some lines."""
+    kind = message_type("geometry_msgs.Twist")
+    gate = Gate(0, "/wish", "/command", kind, 10, lines, span(1), resume_on_zero=resume_on_zero)
+    return gate_program(gate, ACTIONS, STORE)
+
+
+def line(action: int, *limits: Limit, until_reset: bool = False) -> GateLine:
+    """Return a line about an action."""
+    return GateLine(action, None, None, limits, span(2), until_reset)
+
+
+def loss(source: form.Source, ns: int, *limits: Limit) -> GateLine:
+    """Return a line about a loss."""
+    return GateLine(None, source, ns, limits, span(3))
+
+
+def choices(program: form.GateProgram) -> dict[str, list[tuple[form.Condition, Limit | None]]]:
+    """Return the limits that each field may have, with their conditions."""
+    steps = (step for step in program.settle if isinstance(step, form.ChooseLimits))
+    return {
+        ".".join(map(str, field.path)): [(each.condition, each.limit) for each in field.choices]
+        for step in steps
+        for field in step.fields
+    }
+
+
+def test_actions_are_ordered_by_the_topics_of_their_states() -> None:
+    """Topics and actions are listed once, as first named; actions that no line names are not."""
+    program = lowered(*(line(index) for index in (3, 0, 2, 3)))
+    states = [(state.topic, state.actions) for state in program.states]
+    assert states == [("/mode", (3, 2)), ("/stop", (0,))]
+    assert program.actions == (3, 2, 0)
+
+
+def test_zero_lines_decide_only_before_a_limit() -> None:
+    """A zero line after the last limit of a field changes nothing for it."""
+    program = lowered(
+        line(0), line(1, SLOW, STRAIGHT), line(2), line(3, SLOW), loss("heartbeat", 5)
+    )
+    applies = [form.Applies(index) for index in range(5)]
+    assert choices(program) == {
+        "linear.x": [
+            (applies[0], None),
+            (applies[1], SLOW),
+            (applies[2], None),
+            (applies[3], SLOW),
+        ],
+        "angular.z": [(applies[0], None), (applies[1], STRAIGHT)],
+    }
+
+
+def test_held_zeros_have_no_limits() -> None:
+    """A latch or a wait holds every number at zero, so its lines choose no limits."""
+    latching = lowered(line(0, until_reset=True), line(1, SLOW))
+    assert choices(latching) == {"linear.x": [(form.IsAnyLatched(), None), (form.Applies(1), SLOW)]}
+    waiting = lowered(line(0), line(1, SLOW), resume_on_zero=True)
+    assert choices(waiting) == {"linear.x": [(form.IsWaiting(), None), (form.Applies(1), SLOW)]}
+
+
+def test_limits_of_actions_do_not_apply_during_a_loss() -> None:
+    """Only the losses that the gate has lines about count."""
+    program = lowered(line(0, SLOW), line(1), loss("input", 7))
+    found = {
+        step.line: step.condition for step in program.settle if isinstance(step, form.FindLine)
+    }
+    assert found == {
+        0: form.AllOf((form.IsActive(0), form.Not(form.IsLost(("input",))))),
+        1: form.IsActive(1),
+        2: form.Silent("input", 7),
+    }
+
+
+def test_events_that_change_nothing_have_no_steps() -> None:
+    """A gate with a loss of the input alone depends neither on the safety node nor on resets."""
+    program = lowered(loss("input", 7))
+    assert program.on_refused == (form.Forget("input"), form.Settle())
+    assert not program.states
+    assert not program.on_heartbeat
+    assert not program.on_no_safety_node
+    assert not program.on_reset
+
+
+def test_zeros_keep_limited_fields_unless_the_input_is_lost() -> None:
+    """Where a limit precedes a zero line, the zeros have gaps; a wait leaves none."""
+    lines = (line(2, SLOW), line(0), loss("input", 7))
+    publication = lowered(*lines).publication
+    assert publication == form.Publish(form.IsZero(), True, True, form.IsLost(("input",)))
+    assert lowered(*lines[:2]).publication == form.Publish(form.IsZero(), True, True)
+    waiting = lowered(*lines, resume_on_zero=True).publication
+    assert waiting == form.Publish(form.IsWaiting(), True)
+    assert lowered(line(0)).publication == form.Publish(form.IsZero(), False)
+
+
+def test_a_reset_is_refused_by_zero_lines_and_losses() -> None:
+    """Limits of actions do not stand against it."""
+    program = lowered(line(0, until_reset=True), line(1, SLOW), loss("heartbeat", 5, SLOW))
+    assert program.on_reset == (form.Reset((0, 2), (0,)),)
