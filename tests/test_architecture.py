@@ -1,4 +1,4 @@
-"""The rooms import downward only, and each heavy library has one home."""
+"""Packages import downward only, and each heavy library has one home."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _modules() -> list[Path]:
 
 
 def _is_text(path: Path) -> bool:
-    """Whether a module is never imported: its text goes out into generated packages."""
+    """Return whether a module is never imported because it is copied into generated packages."""
     folders = ("runtime/python/deros_runtime",)
     return path.parent in [SOURCE / "generators" / folder for folder in folders]
 
@@ -45,7 +45,7 @@ def _imported(path: Path) -> Iterator[str]:
             yield node.module
 
 
-def test_rooms_import_downward_only() -> None:
+def test_packages_import_downward_only() -> None:
     """The contract in pyproject.toml holds for every import of every module."""
     command = [str(Path(sys.executable).with_name("lint-imports")), "--no-cache"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
@@ -54,7 +54,7 @@ def test_rooms_import_downward_only() -> None:
 
 @pytest.mark.parametrize("library", HOMES)
 def test_each_library_has_one_home(library: str) -> None:
-    """No room but its home imports a library, not even lazily."""
+    """No package but its home imports a library, not even lazily."""
     strangers = {
         str(path.relative_to(SOURCE))
         for path in _modules()
@@ -66,7 +66,7 @@ def test_each_library_has_one_home(library: str) -> None:
 
 
 def test_generators_import_each_other_through_interfaces() -> None:
-    """What a part of the generators does not offer in its interface may change unseen."""
+    """Names outside the interface of a part may change at any time."""
     shared = ("api", "output", "text", "user_files")
     strangers = {
         f"{_name(path)} imports {name}"
@@ -87,7 +87,7 @@ def _name(path: Path) -> str:
 
 
 def _part(module: str) -> tuple[str, ...]:
-    """Return the part of the generators that a module is of, with its language if it has one."""
+    """Return the part of the generators that a module belongs to, with its language if any."""
     if not module.startswith("deros.generators."):
         return ()
     thing, *rest = module.split(".")[2:]
@@ -98,8 +98,8 @@ def _is_part(part: tuple[str, ...]) -> bool:
     return bool(part) and (SOURCE / "generators" / part[0]).is_dir()
 
 
-def test_importing_deros_loads_nothing_heavy() -> None:
-    """``import deros`` and the overview of commands load no third-party library but click."""
+def test_importing_deros_loads_no_heavy_modules() -> None:
+    """``import deros`` and the command overview load no third-party library but click."""
     script = (
         "import sys; import deros, deros.codes, deros.diagnostics, deros.cli.main;"
         "print(*sorted({name.split('.')[0] for name in sys.modules}))"
@@ -111,7 +111,7 @@ def test_importing_deros_loads_nothing_heavy() -> None:
     assert loaded.isdisjoint(set(HOMES) - {"click"})
 
 
-def test_modules_stay_readable() -> None:
-    """No module grows beyond what one sitting can review."""
+def test_modules_stay_short() -> None:
+    """Every module can be reviewed in one sitting."""
     lengths = {str(p.relative_to(SOURCE)): len(p.read_text().splitlines()) for p in _modules()}
     assert {name: lines for name, lines in lengths.items() if lines > 450} == {}

@@ -1,4 +1,4 @@
-"""The benchmark of the safety node's cost: its arithmetic, and that it runs."""
+"""The benchmark of the safety node's cost: its arithmetic, and a short run."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def _results(percents: dict[tuple[str, str], tuple[float, float]]) -> Results:
     return Results({"paper": 170.0, "scan": 210.0}, uses, memory, 2.0, {}, stopped=True)
 
 
-def test_the_safety_node_is_compared_with_both_receivers() -> None:
-    """What counts is the difference of means; a scan costs what the safety node alone takes."""
+def test_safety_node_is_compared_with_both_receivers() -> None:
+    """The result is the difference of means; a scan counts the cost of the safety node alone."""
     results = _results(
         {
             ("paper", SAFETY): (3.0, 5.0),
@@ -38,14 +38,14 @@ def test_the_safety_node_is_compared_with_both_receivers() -> None:
     assert [each.held for each in verdicts] == [True, False, False, True]
 
 
-def test_processor_time_is_that_of_all_threads() -> None:
-    """It agrees with what the process says of itself, and does not go on while it sleeps."""
+def test_processor_time_covers_all_threads() -> None:
+    """It agrees with the value of the process itself, and does not grow while it sleeps."""
     before = processor_time_ns(os.getpid())
     own = time.process_time_ns()
     after = processor_time_ns(os.getpid())
     assert before <= own <= after
     with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as child:
-        while memory_mib(child.pid) < 5.0:  # until the interpreter stands
+        while memory_mib(child.pid) < 5.0:  # until the interpreter has started
             assert child.poll() is None
         meter = Meter.start(lambda: processor_time_ns(os.getpid()))
         while time.process_time_ns() < own + 20_000_000:
@@ -58,8 +58,8 @@ def test_processor_time_is_that_of_all_threads() -> None:
 
 
 @pytest.mark.ros
-def test_it_runs(tmp_path: Path) -> None:
-    """A short run measures every node under every load, and the safety node still stops."""
+def test_short_run_measures_every_node_and_load(tmp_path: Path) -> None:
+    """The safety node still stops under every load."""
     output = tmp_path / "cost.json"
     short = ["--turns", "2", "--seconds", "0.1", "--settle", "0.1"]
     command = [sys.executable, str(COST), *short, "--json", str(output)]

@@ -1,4 +1,4 @@
-"""The benchmark of the safety node's reaction: its arithmetic, and that it runs."""
+"""The benchmark of the safety node's reaction: its arithmetic, and a short run."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ REACTION = Path(__file__).resolve().parents[2] / "benchmarks" / "reaction.py"
 MS = 1_000_000
 
 
-def test_nothing_is_done_near_a_due_reaction() -> None:
-    """What would come too near is put off to the end of the quiet, also where two quiets meet."""
+def test_nothing_is_scheduled_near_a_due_reaction() -> None:
+    """An event too close is moved to the end of the quiet period, also across adjacent periods."""
     schedule = Schedule(3)
     for due in (10, 14, 30):
         schedule.add(due)
@@ -37,8 +37,8 @@ def test_nothing_is_done_near_a_due_reaction() -> None:
     ]
 
 
-def test_reactions_are_not_due_at_once() -> None:
-    """Another one has to be due as far away as everything else; what is past counts no more."""
+def test_reactions_are_not_due_at_the_same_time() -> None:
+    """They keep the distance of all events from each other; past ones no longer count."""
     schedule = Schedule(3)
     schedule.add(10)
     assert [due for due in range(5, 16) if schedule.admits(due)] == [5, 6, 7, 13, 14, 15]
@@ -48,8 +48,8 @@ def test_reactions_are_not_due_at_once() -> None:
     assert schedule.admits(12)
 
 
-def test_a_summary_interpolates_between_the_times() -> None:
-    """Times come in nanoseconds, the summary is in milliseconds."""
+def test_summary_interpolates_percentiles() -> None:
+    """Times are in nanoseconds, the summary in milliseconds."""
     summary = summarize([4 * MS, 1 * MS, 3 * MS, 2 * MS])
     assert (summary.count, summary.mean, summary.least, summary.greatest) == (4, 2.5, 1.0, 4.0)
     assert summary.median == 2.5
@@ -57,8 +57,8 @@ def test_a_summary_interpolates_between_the_times() -> None:
     assert summary.deviation == pytest.approx(1.29099, abs=1e-5)
 
 
-def test_a_sample_is_joined_with_the_trigger_of_its_own_tilt() -> None:
-    """The one of the same lane between tilt and answer; without one, nothing is told of it."""
+def test_sample_is_matched_with_the_trigger_of_its_own_tilt() -> None:
+    """The trigger of the same lane between tilt and answer matches, if there is one."""
     first, second = Sample("a", 0.0, 100, 200), Sample("a", 0.0, 300, 400)
     other = Sample("b", 0.0, 100, 200)
     trigger = Trigger("a", 350, 360)
@@ -74,10 +74,10 @@ def test_a_sample_is_joined_with_the_trigger_of_its_own_tilt() -> None:
         (2_000_000_100, 2_000_000_100, 2_000_000_099, True),
     ],
 )
-def test_a_nanosecond_too_early_is_early(
+def test_one_nanosecond_too_early_is_early(
     due: int, published: int, received: int, early: bool
 ) -> None:
-    """Whether the rule is due, the state published or the answer received before its time."""
+    """This applies to the rule, the publication and the receipt."""
     sample = Sample("a", 2.0, 100, received)
     assert Told(sample, Trigger("a", due, published)).is_early is early
 
@@ -86,7 +86,7 @@ SECTIONS = {"immediate rule", "for 0.4 sec", "for 2 sec", "for 4 sec", "all of t
 
 
 def _run(file: Path, *options: str, env: Mapping[str, str], limit: float) -> dict[str, Any]:
-    """Return what a short run finds, of every series the times asked for, none lost or early."""
+    """Return the result of a short run: complete series, without lost or early samples."""
     command = [sys.executable, str(REACTION), "--repeat", "2", "--immediate", "2", *options]
     result = subprocess.run(
         [*command, "--json", str(file)], capture_output=True, text=True, timeout=limit, env=env
@@ -103,8 +103,8 @@ def _run(file: Path, *options: str, env: Mapping[str, str], limit: float) -> dic
 
 
 @pytest.mark.ros
-def test_it_measures_everything_in_one_run(tmp_path: Path) -> None:
-    """Without an rclcpp it says so, and measures rclpy alone."""
+def test_short_run_measures_rclpy(tmp_path: Path) -> None:
+    """Without rclcpp it says so, and measures only rclpy."""
     env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
     results = _run(tmp_path / "found.json", env=env, limit=120)
     assert {each["client"] for each in results["series"]} == {"rclpy"}
@@ -113,8 +113,8 @@ def test_it_measures_everything_in_one_run(tmp_path: Path) -> None:
 
 @pytest.mark.ros
 @needs_rclcpp
-def test_it_measures_the_same_on_rclcpp(tmp_path: Path) -> None:
-    """With nodes, relays and a driver that are built for it."""
+def test_short_run_measures_rclcpp(tmp_path: Path) -> None:
+    """Nodes, relays and a driver are built for it."""
     results = _run(
         tmp_path / "found.json", "--only", "rclcpp", env=os.environ, limit=BUILD_LIMIT + 120
     )

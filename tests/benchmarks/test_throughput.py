@@ -1,4 +1,4 @@
-"""The benchmark of the monitors' throughput: that all monitors agree, and that it runs."""
+"""The benchmark of the monitors' throughput: agreement of all monitors, and a short run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ THROUGHPUT = Path(__file__).resolve().parents[2] / "benchmarks" / "throughput.py
 
 
 def _run(folder: Path, **env: str) -> dict[str, Any]:
-    """Return what a short run finds; it fails if two monitors say different things."""
+    """Return the result of a short run, which fails if two monitors disagree."""
     output = folder / "throughput.json"
     short = ["--rules", "1", "14", "--repeat", "1", "--seconds", "15", "--json", str(output)]
     result = subprocess.run(
@@ -32,8 +32,8 @@ def _run(folder: Path, **env: str) -> dict[str, Any]:
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
-def test_monitors_in_c_stand_beside_each_other(tmp_path: Path) -> None:
-    """Generated and by hand have times above those of empty calls, a size, and the bar's ratio."""
+def test_c_monitors_are_compared(tmp_path: Path) -> None:
+    """Generated and hand-written have times above those of empty calls, a size, and a ratio."""
     found = _run(tmp_path)
     rows = {row["monitor"]: row for row in found["rows"] if row["rules"] == 14}
     ours, hand = rows["generated, in C"], rows["by hand, in C"]
@@ -50,8 +50,8 @@ def test_monitors_in_c_stand_beside_each_other(tmp_path: Path) -> None:
     assert bar["held"] is (bar["found"] <= 1.3)
 
 
-def test_without_a_c_compiler_the_rows_say_so(tmp_path: Path) -> None:
-    """The rest is measured all the same."""
+def test_missing_c_compiler_is_reported(tmp_path: Path) -> None:
+    """The other monitors are still measured."""
     found = _run(tmp_path, PATH=str(tmp_path), CC="")
     rows = {row["monitor"]: row for row in found["rows"] if row["rules"] == 14}
     assert rows["generated, in C"]["why"] == rows["by hand, in C"]["why"] == "no C compiler"

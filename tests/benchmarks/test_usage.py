@@ -1,4 +1,4 @@
-"""What benchmarks read of the machine."""
+"""Machine statistics read by the benchmarks."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import pytest
 from benchmarks.support import usage
 
 
-def test_what_is_stolen_is_a_share_of_all_processors(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Half a second out of ten, on two processors; it comes in ticks, of which 100 are a second."""
+def test_stolen_share_is_relative_to_all_processors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half a second out of ten on two processors, with 100 ticks per second."""
     texts = iter(
         f"cpu  1 2 3 4 5 6 7 {ticks} 9 10\ncpu0 1 2 3 4 5 6 7 99 9 10\n" for ticks in (700, 750)
     )
@@ -24,10 +24,10 @@ def test_what_is_stolen_is_a_share_of_all_processors(monkeypatch: pytest.MonkeyP
     assert usage.Meter.start(usage.stolen_ns).percent() == pytest.approx(2.5)
 
 
-def test_the_stolen_time_is_the_eighth_of_all_processors(
+def test_stolen_time_is_the_eighth_field_of_all_processors(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The first line is of all; one processor has the average to itself."""
+    """The first line is the sum; a single processor equals the average."""
     text = "cpu  1 2 3 4 5 6 7 150 9 10\ncpu0 1 2 3 4 5 6 7 99 9 10\n"
     monkeypatch.setattr(Path, "read_text", lambda *_, **__: text)
     monkeypatch.setattr(os, "sysconf", lambda name: {"SC_CLK_TCK": 100}[name])

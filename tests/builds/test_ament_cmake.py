@@ -1,4 +1,4 @@
-"""ament_cmake packages that keep only models and hand-written files, on a real rclcpp."""
+"""ament_cmake packages with only models and hand-written files, on a real rclcpp."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ publishes
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """Give a package as its author starts it."""
+    """Create a package as its author starts it."""
     package = tmp_path / "src/my_odometry"
     (package / "models").mkdir(parents=True)
     (package / "models/odometer.rnd").write_text(NODE)
@@ -41,8 +41,8 @@ def package(tmp_path: Path) -> Path:
     return package
 
 
-def test_a_package_starts_with_four_kinds_of_file(package: Path) -> None:
-    """Models, manifest, build script and the code to fill in are all that is kept."""
+def test_new_package_has_four_kinds_of_files(package: Path) -> None:
+    """Only models, manifest, build script and user code are in the source tree."""
     files = {p.relative_to(package).as_posix() for p in package.rglob("*") if p.is_file()}
     assert files == {
         *("CMakeLists.txt", "package.xml", "models/odometer.rnd"),
@@ -54,8 +54,10 @@ def test_a_package_starts_with_four_kinds_of_file(package: Path) -> None:
 
 
 @needs_rclcpp
-def test_colcon_builds_and_tests_it(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The package compiles without a warning, passes ament's linters, and installs no links."""
+def test_colcon_builds_and_tests_the_package(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It compiles without warnings, passes ament's linters, and installs no links."""
     monkeypatch.setenv("PATH", f"{os.environ['PATH']}{os.pathsep}{PROGRAM.parent}")
     monkeypatch.setenv("deros_DIR", deros("cmake-dir").out.strip())
     install = colcon_build(package.parent, testing=True)
@@ -69,7 +71,7 @@ def test_colcon_builds_and_tests_it(package: Path, monkeypatch: pytest.MonkeyPat
     assert manifest.read_bytes() == (package / "package.xml").read_bytes()
 
 
-# The same with a generator whose packages CMake alone can build ----------------------------------
+# The same with a generator whose packages need only CMake -----------------------------------------
 
 PLUGIN = '''\
 from deros.generators.api.protocol import File, Owner
@@ -105,7 +107,7 @@ int main(void) { printf("%d " WORD "\\n", ports); return 0; }
 
 @pytest.fixture
 def counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Give a package of the plug-in's target, and let deros know the plug-in."""
+    """Create a package of the plug-in's target, and register the plug-in with deros."""
     plugin = tmp_path / "plug in"
     (plugin / "counted-1.0.dist-info").mkdir(parents=True)
     (plugin / "counted.py").write_text(PLUGIN)
@@ -142,8 +144,8 @@ def _told(project: Project) -> str:
 @needs_cmake
 @needs_compiler
 @pytest.mark.parametrize("tool", GENERATORS)
-def test_a_package_is_built_of_both_kinds_of_file(counted: Path, tool: str) -> None:
-    """A change of the model, or of a file by hand, is in the next build; nothing else is done."""
+def test_generated_and_hand_written_files_are_built(counted: Path, tool: str) -> None:
+    """A changed model or user file is in the next build; nothing else is rebuilt."""
     project = configured(counted, tool, _script("odometry"))
     assert _told(project) == "2 ports\n"
     assert "Configuring" not in project.built()
@@ -164,8 +166,8 @@ def test_a_package_is_built_of_both_kinds_of_file(counted: Path, tool: str) -> N
 @needs_cmake
 @needs_compiler
 @pytest.mark.parametrize("tool", GENERATORS)
-def test_an_error_in_the_model_fails_the_build(counted: Path, tool: str) -> None:
-    """The build ends with the diagnostic and its place, until the model is mended."""
+def test_model_error_fails_the_build(counted: Path, tool: str) -> None:
+    """The build ends with the diagnostic and its place until the model is fixed."""
     project = configured(counted, tool, _script("odometry"))
     assert _told(project) == "2 ports\n"
     model = counted / "models/odometer.rnd"
@@ -192,8 +194,8 @@ def test_an_error_in_the_model_fails_the_build(counted: Path, tool: str) -> None
         (_script("odometry", "nothing"), "error[DRS404]"),
     ],
 )
-def test_what_a_package_cannot_be(counted: Path, script: str, complaint: str) -> None:
-    """A project of another name, and a target that makes no CMake package, are refused."""
+def test_invalid_package_is_rejected(counted: Path, script: str, complaint: str) -> None:
+    """The project name must match, and the target must generate a CMake package."""
     (counted / "package.xml").unlink()
     if "nothing" not in script:
         target = "python" if "python" in script else "counted"

@@ -1,4 +1,4 @@
-"""ament_python packages that keep only models and hand-written files, built by the real colcon."""
+"""ament_python packages with only models and hand-written files, built by the real colcon."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ setup(
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """Give a package as its author starts it; a space in its path would be too much for colcon."""
+    """Create a package as its author starts it; colcon does not support spaces in its path."""
     package = tmp_path / "workspace/src/safety"
     rules = models(package / "models")
     outcome = deros("generate", rules, "--target", "python", "--scaffold", package)
@@ -57,8 +57,8 @@ def _limit(workspace: Path) -> float:
     return limit
 
 
-def test_a_package_starts_with_four_kinds_of_file(package: Path) -> None:
-    """Models, manifest, build script and the code of the actions are all that is kept."""
+def test_new_package_has_four_kinds_of_files(package: Path) -> None:
+    """Only models, manifest, build script and user code are in the source tree."""
     files = {str(p.relative_to(package)) for p in package.rglob("*") if p.is_file()}
     kept = {name for name in files if not name.startswith("models/")}
     assert kept == {"package.xml", "setup.py", ACTIONS}
@@ -68,8 +68,8 @@ def test_a_package_starts_with_four_kinds_of_file(package: Path) -> None:
 
 
 @pytest.mark.parametrize("how", [(), ("--symlink-install",)], ids=["install", "symlink-install"])
-def test_colcon_builds_what_the_models_say(package: Path, how: tuple[str, ...]) -> None:
-    """Each build takes the models as they are, and leaves nothing else in the source tree."""
+def test_colcon_builds_the_current_models(package: Path, how: tuple[str, ...]) -> None:
+    """Each build uses the models as they are, and leaves no other files in the source tree."""
     workspace = _workspace(package)
     for limit in (0.5, 0.75):
         replace(package / "models/robot.deros", "0.5 m/s", f"{limit} m/s")
@@ -86,8 +86,8 @@ def test_colcon_builds_what_the_models_say(package: Path, how: tuple[str, ...]) 
     assert (package / ".deros/.gitignore").read_text() == "*\n"
 
 
-def test_an_error_fails_the_build_with_its_place(package: Path) -> None:
-    """What colcon shows is the diagnostic, not how setup.py ended; nothing is installed."""
+def test_model_error_fails_the_build_with_its_place(package: Path) -> None:
+    """The output shows the diagnostic, not a traceback of setup.py; nothing is installed."""
     rules = package / "models/robot.deros"
     replace(rules, "0.5 m/s", "0.5 kg")
     done = colcon(_workspace(package))
@@ -97,8 +97,8 @@ def test_an_error_fails_the_build_with_its_place(package: Path) -> None:
     assert not list(_workspace(package).glob("install/**/monitor.py"))
 
 
-def test_more_than_the_models_say(package: Path) -> None:
-    """Hand-written modules, programs and files join the generated ones; setup takes them all."""
+def test_additional_user_files_are_installed(package: Path) -> None:
+    """Hand-written modules, programs and data files are installed with the generated ones."""
     (package / "setup.py").write_text(MORE)
     (package / "maps").mkdir()
     (package / "maps/field.txt").write_text("green\n")
@@ -115,8 +115,8 @@ def test_more_than_the_models_say(package: Path) -> None:
     assert "Keywords: field" in metadata.read_text()
 
 
-def test_every_build_says_what_code_lacks_until_it_is_written(package: Path) -> None:
-    """An action is new in the rules: the build does not fail, and is not silent either."""
+def test_missing_user_code_is_reported_by_every_build(package: Path) -> None:
+    """A new action in the rules does not fail the build, but is reported until it is written."""
 
     def build() -> str:
         command = [sys.executable, "setup.py", "egg_info", "--egg-base", str(package.parent)]
@@ -138,8 +138,8 @@ def test_every_build_says_what_code_lacks_until_it_is_written(package: Path) -> 
         assert "DRS4" not in build()
 
 
-def test_code_to_fill_in_is_asked_for(package: Path) -> None:
-    """An action that is robot code needs its file; the build names the command that writes it."""
+def test_missing_user_file_fails_the_build(package: Path) -> None:
+    """An action with user code needs its file; the build names the command that writes it."""
     (package / ACTIONS).unlink()
     done = colcon(_workspace(package))
     assert done.returncode != 0
@@ -149,8 +149,8 @@ def test_code_to_fill_in_is_asked_for(package: Path) -> None:
     assert not (package / ".deros" / ACTIONS).exists()
 
 
-def test_setup_generates_only_what_changed(package: Path) -> None:
-    """A second run of setup.py generates nothing; a file lost from its folder is made again."""
+def test_setup_generates_only_changes(package: Path) -> None:
+    """A second run of setup.py generates nothing; a deleted file is generated again."""
     generated = package / ".deros/robot_safety/robot_safety/monitor.py"
     command = [sys.executable, "setup.py", "--name"]
 
@@ -173,8 +173,8 @@ def test_setup_generates_only_what_changed(package: Path) -> None:
     assert stamp.stat().st_mtime_ns > first
 
 
-def test_only_packages_for_setuptools(package: Path) -> None:
-    """A target that makes something else is refused in words."""
+def test_target_must_generate_a_setuptools_package(package: Path) -> None:
+    """Other targets are rejected with an explanation."""
     script = "from deros.build import setup\nsetup('models/robot.deros', target='c')\n"
     (package / "setup.py").write_text(script)
     command = [sys.executable, "setup.py", "build"]

@@ -1,4 +1,4 @@
-"""CMake projects that generate while they are built, by Ninja and Make, in folders with spaces."""
+"""CMake projects that generate during the build, with Ninja and Make, in folders with spaces."""
 
 from __future__ import annotations
 
@@ -36,20 +36,20 @@ CMAKE = Path(deros.__file__).parent / "cmake"
 
 @pytest.fixture(params=GENERATORS)
 def tool(request: pytest.FixtureRequest) -> str:
-    """Give each of CMake's generators in turn."""
+    """Return each of CMake's generators in turn."""
     return str(request.param)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Give a folder with models; its name and theirs have spaces."""
+    """Create a folder with models; its name and theirs contain spaces."""
     folder = tmp_path / "my project"
     models(folder / "my models")
     return folder
 
 
-def test_generates_when_a_model_changes_and_only_then(folder: Path, tool: str) -> None:
-    """The model, what it imports and the rules that it names are followed; another file is not."""
+def test_generates_only_when_an_input_changes(folder: Path, tool: str) -> None:
+    """Inputs are the model, its imports and the rules that it names, and no other file."""
     project = configured(folder, tool, SCRIPT)
     source = folder / "my models"
     assert project.generated() == 1
@@ -67,8 +67,8 @@ def test_generates_when_a_model_changes_and_only_then(folder: Path, tool: str) -
     assert project.generated() == 0
 
 
-def test_follows_the_folders_of_globs(folder: Path, tool: str) -> None:
-    """A description that comes into, or leaves, a folder that is imported by a glob is noticed."""
+def test_folders_of_import_globs_are_inputs(folder: Path, tool: str) -> None:
+    """A description added to or removed from such a folder is detected."""
     source = folder / "my models"
     (source / "nodes").mkdir()
     (source / "robot_robot.rnd").rename(source / "nodes/robot_robot.rnd")
@@ -86,8 +86,8 @@ def test_follows_the_folders_of_globs(folder: Path, tool: str) -> None:
     assert project.generated() == 0
 
 
-def test_follows_deros_itself(folder: Path, tool: str) -> None:
-    """Another deros generates anew, for it may generate something else."""
+def test_deros_itself_is_an_input(folder: Path, tool: str) -> None:
+    """Another version of deros may generate other files."""
     project = configured(folder, tool, SCRIPT)
     assert project.generated() == 1
     touch(frozen_program().parents[1] / "deros/generators/system/script/generate.py")
@@ -95,8 +95,8 @@ def test_follows_deros_itself(folder: Path, tool: str) -> None:
     assert project.generated() == 0
 
 
-def test_an_error_in_a_model_fails_the_build(folder: Path, tool: str) -> None:
-    """The build ends with the diagnostic and its place; the output stays; mended, it goes on."""
+def test_model_error_fails_the_build(folder: Path, tool: str) -> None:
+    """The build ends with the diagnostic; the output stays until the model is fixed."""
     project = configured(folder, tool, SCRIPT)
     project.built()
     output = project.build_folder / "started/robot_system.py"
@@ -114,15 +114,15 @@ def test_an_error_in_a_model_fails_the_build(folder: Path, tool: str) -> None:
     assert project.generated() == 1
 
 
-def test_models_may_be_wrong_when_a_project_is_configured(folder: Path, tool: str) -> None:
-    """Only the build looks into a model, so that an error in it is found where errors are found."""
+def test_project_with_a_faulty_model_can_be_configured(folder: Path, tool: str) -> None:
+    """The model is read during the build, where its errors are reported."""
     replace(folder / "my models/robot.system", "connect odom to", "connect odmo to")
     project = configured(folder, tool, SCRIPT)
     assert "error[DRS204]" in project.build().stdout
 
 
-def test_options_and_definitions_are_followed(folder: Path, tool: str) -> None:
-    """A change of the generator's options, or of a message definition, has it run again."""
+def test_options_and_message_definitions_are_inputs(folder: Path, tool: str) -> None:
+    """Changing either runs the generator again."""
     definitions = folder / "messages/nav_msgs/msg"
     definitions.mkdir(parents=True)
     (definitions / "Odometry.msg").write_text("geometry_msgs/TwistWithCovariance twist\n")
@@ -151,8 +151,8 @@ def test_options_and_definitions_are_followed(folder: Path, tool: str) -> None:
     assert project.generated() == 0
 
 
-def test_nothing_is_made_in_the_build_tree_that_is_the_users(folder: Path, tool: str) -> None:
-    """A file to be filled in by hand has its place in the source tree; the build says so."""
+def test_user_files_are_not_generated_in_the_build_tree(folder: Path, tool: str) -> None:
+    """They belong in the source tree, and the build says so."""
     script = PLAIN + 'deros_generate(node MODEL "my models/robot.deros" GENERATOR python)\n'
     project = configured(folder, tool, script)
     failed = project.build()
@@ -162,8 +162,8 @@ def test_nothing_is_made_in_the_build_tree_that_is_the_users(folder: Path, tool:
     assert not (project.build_folder / "node").exists()
 
 
-def test_what_a_call_cannot_mean_is_an_error(folder: Path) -> None:
-    """A missing model, an unknown word and a missing keyword are found by CMake itself."""
+def test_invalid_call_is_a_cmake_error(folder: Path) -> None:
+    """Missing models, unknown words and missing keywords are reported by CMake itself."""
     for call, complaint in (
         ("deros_generate(x MODEL no.deros GENERATOR c)", "there is no model"),
         ("deros_generate(x GENERATOR c)", "deros_generate: MODEL is not given"),
@@ -175,8 +175,8 @@ def test_what_a_call_cannot_mean_is_an_error(folder: Path) -> None:
         assert complaint in " ".join(done.stdout.split())
 
 
-def test_found_in_a_prefix(folder: Path, tmp_path: Path) -> None:
-    """An environment that CMake searches needs no deros_DIR; its own program is used."""
+def test_package_is_found_in_a_prefix(folder: Path, tmp_path: Path) -> None:
+    """An environment in CMake's search path needs no deros_DIR; its own program is used."""
     prefix = tmp_path / "an environment"
     (prefix / "share/deros").mkdir(parents=True)
     (prefix / "bin").mkdir()
@@ -205,8 +205,8 @@ def test_found_in_a_prefix(folder: Path, tmp_path: Path) -> None:
         ("0.0...0.0.9", False),
     ],
 )
-def test_versions(tmp_path: Path, wanted: str, fits: bool) -> None:
-    """The version of the CMake files is that of deros, and answers as CMake expects."""
+def test_cmake_version_is_that_of_deros(tmp_path: Path, wanted: str, fits: bool) -> None:
+    """Version requests are answered as CMake expects."""
     script = PLAIN.replace("deros REQ", f"deros {wanted} REQ")
     done = Project(tmp_path, GENERATORS[1], script).configure()
     assert (done.returncode == 0) == fits, done.stdout
@@ -228,8 +228,8 @@ NAMES = [
 ]
 
 
-def test_cmake_names_the_files_as_the_generator_does(tmp_path: Path) -> None:
-    """What CMake takes for the prefix of the C files is what the generator gives them."""
+def test_cmake_and_generator_agree_on_file_names(tmp_path: Path) -> None:
+    """CMake derives the prefix of the C files as the generator does."""
     calls = [f'_deros_c_prefix("{name}" got)\nmessage("got ${{got}}")' for name in NAMES]
     done = Project(tmp_path, GENERATORS[1], PLAIN + "\n".join(calls) + "\n").configure()
     got = [line.removeprefix("got ") for line in done.stdout.splitlines() if line[:4] == "got "]
@@ -268,8 +268,8 @@ int main(void)
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
-def test_a_monitor_in_firmware(folder: Path, tool: str) -> None:
-    """A program links to the monitor, and nothing is compiled anew unless its code changes."""
+def test_firmware_links_to_the_monitor(folder: Path, tool: str) -> None:
+    """Nothing is recompiled unless the code of the monitor changes."""
     (folder / "safety").mkdir(parents=True)
     call = 'deros_add_monitor(robot_monitor MODEL "../my models/robot.deros")\n'
     (folder / "safety/CMakeLists.txt").write_text(call)

@@ -1,4 +1,4 @@
-"""What build systems are told: inputs that are complete, and stamps that can be relied on."""
+"""Depfiles and stamps for build systems: complete inputs, and reliable stamps."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ def _generate(model: str, target: str, *more: str) -> Outcome:
 
 
 def _inputs() -> set[str]:
-    """Return the inputs, those below the current folder relative to it."""
+    """Return the inputs, relative to the current folder if they are below it."""
     found = prerequisites(Path("depends.d").read_text())
     return {
         os.path.relpath(each) if Path(each).is_relative_to(Path.cwd()) else each for each in found
     }
 
 
-def test_awkward_names_come_back() -> None:
-    """Spaces, dollars and hashes are escaped for Make, and read back as they were."""
+def test_special_characters_round_trip() -> None:
+    """Spaces, dollars and hashes are escaped for Make, and read back unchanged."""
     assert prerequisites(depfile(["/the stamp"], AWKWARD)) == AWKWARD
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make")
-def test_make_reads_awkward_names(tmp_path: Path) -> None:
-    """Make rebuilds when a file with an awkward name changes, and only then."""
+def test_make_reads_special_file_names(tmp_path: Path) -> None:
+    """Make rebuilds exactly when a file with a special name changes."""
     sources = [tmp_path / name for name in ("a b.rnd", "costs $5", "one#two")]
     for source in sources:
         source.write_text("")
@@ -80,8 +80,8 @@ build/robot_monitor.c: build/robot.stamp ;
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make")
-def test_a_makefile_of_ones_own(tmp_path: Path) -> None:
-    """Make generates when an imported model changes, and only then."""
+def test_makefile_with_a_depfile(tmp_path: Path) -> None:
+    """Make generates exactly when an imported model changes."""
     models(tmp_path)
     (tmp_path / "Makefile").write_text(MAKEFILE.format(deros=frozen_program()))
 
@@ -96,20 +96,20 @@ def test_a_makefile_of_ones_own(tmp_path: Path) -> None:
     assert "up to date" in made()
 
 
-def test_runs_side_by_side_do_not_disturb_each_other(tmp_path: Path) -> None:
-    """Builds that generate into one folder at the same time leave it whole."""
+def test_parallel_runs_do_not_interfere(tmp_path: Path) -> None:
+    """Builds that generate into one folder at the same time leave it complete."""
     models(tmp_path)
     command = [str(PROGRAM), "generate", "robot.deros", "--target", "python", "-o", "out"]
     command += ["--depfile", "depends.d", "--stamp", "stamp"]
     runs = [subprocess.Popen(command, stdout=subprocess.DEVNULL) for _ in range(3)]
     assert [each.wait(timeout=60) for each in runs] == [0, 0, 0]
     run("generate", "robot.deros", "--target", "python", "-o", "alone")
-    Path("alone/.deros-origins.json").unlink()  # a build system's folder needs no such record
+    Path("alone/.deros-origins.json").unlink()  # the folder of a build system needs no such record
     alone = {p.relative_to("alone"): p.read_text() for p in Path("alone").rglob("*.*")}
     assert {p.relative_to("out"): p.read_text() for p in Path("out").rglob("*.*")} == alone
 
 
-def test_inputs_are_all_that_was_read(tmp_path: Path) -> None:
+def test_depfile_lists_everything_that_was_read(tmp_path: Path) -> None:
     """Models with their imports, definitions given as files, and deros itself are inputs."""
     models(tmp_path)
     definitions = tmp_path / "msgs/nav_msgs/msg"
@@ -125,8 +125,8 @@ def test_inputs_are_all_that_was_read(tmp_path: Path) -> None:
     assert all(Path(each).exists() for each in found)
 
 
-def test_folders_of_globs_are_inputs(tmp_path: Path) -> None:
-    """Where a new file, or a new folder, might match a glob, the folder itself is an input."""
+def test_folders_of_import_globs_are_inputs(tmp_path: Path) -> None:
+    """The folder is an input if a new file or folder in it may match a glob."""
     models(tmp_path)
     for name in ("nodes/left", "nodes/right"):
         (tmp_path / name).mkdir(parents=True)
@@ -142,15 +142,15 @@ def test_folders_of_globs_are_inputs(tmp_path: Path) -> None:
     assert {each for each in _inputs() if Path(each).is_dir()} == set()
 
 
-def test_the_folder_of_a_package_is_an_input(tmp_path: Path) -> None:
-    """Nodes of one package are generated together, so that a new description asks for a new run."""
+def test_folder_of_a_package_is_an_input(tmp_path: Path) -> None:
+    """Nodes of one package are generated together, so a new description needs a new run."""
     (tmp_path / "a.rnd").write_text("node a : both\npublishes\n  topic x : std_msgs.Bool\n")
     _generate("a.rnd", "python")
     assert "." in _inputs()
 
 
-def test_the_stamp_names_the_output(tmp_path: Path) -> None:
-    """The stamp lists what deros keeps up to date; files of the user are not among it."""
+def test_stamp_lists_the_output(tmp_path: Path) -> None:
+    """It lists the files that deros maintains, without user files."""
     models(tmp_path)
     _generate("robot.deros", "python")
     listed = stamped(Path("stamp"))
@@ -162,16 +162,16 @@ def test_the_stamp_names_the_output(tmp_path: Path) -> None:
     assert listed == sorted(listed)
 
 
-def test_without_a_stamp_the_rule_is_of_the_output(tmp_path: Path) -> None:
-    """Make can be told of the generated files themselves."""
+def test_depfile_without_a_stamp_targets_the_output(tmp_path: Path) -> None:
+    """The rule may be about the generated files themselves."""
     models(tmp_path)
     run("generate", "robot.deros", "--target", "c", "-o", "out", "--depfile", "d")
     head = Path("d").read_text().partition(": \\\n")[0]
     assert head == "out/robot_contracts.h out/robot_monitor.c out/robot_monitor.h"
 
 
-def test_what_is_no_longer_made_is_removed(tmp_path: Path) -> None:
-    """A node that is gone takes its files along, but nothing that a hand has touched."""
+def test_files_no_longer_generated_are_removed(tmp_path: Path) -> None:
+    """The files of a removed node are deleted, unless they were edited."""
     for name in "ab":
         text = f"node {name} : both\nparameters\n  name x : int = 1\n"
         (tmp_path / f"{name}.rnd").write_text(text)
@@ -188,8 +188,8 @@ def test_what_is_no_longer_made_is_removed(tmp_path: Path) -> None:
     assert (package / "launch/a.launch.py").exists()
 
 
-def test_an_error_leaves_everything_as_it_was(tmp_path: Path) -> None:
-    """A model with an error touches neither output nor stamp nor depfile."""
+def test_model_error_leaves_everything_unchanged(tmp_path: Path) -> None:
+    """Output, stamp and depfile are not touched."""
     rules = models(tmp_path)
     _generate("robot.deros", "c")
     before = {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in tmp_path.rglob("*") if p.is_file()}
@@ -204,8 +204,8 @@ def test_an_error_leaves_everything_as_it_was(tmp_path: Path) -> None:
     assert {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in before} == before
 
 
-def test_a_stamp_is_as_old_as_the_beginning_of_its_run(tmp_path: Path) -> None:
-    """A model that is saved after the run began is newer than the stamp."""
+def test_stamp_has_the_start_time_of_its_run(tmp_path: Path) -> None:
+    """A model saved after the start of the run is newer than the stamp."""
     rules = models(tmp_path)
     _generate("robot.deros", "c")
     stamp, rule = Path("stamp"), Path("depends.d")
@@ -220,8 +220,8 @@ def test_a_stamp_is_as_old_as_the_beginning_of_its_run(tmp_path: Path) -> None:
     assert not is_current(stamp, tmp_path / "none")
 
 
-def test_no_other_file_is_taken_for_a_stamp(tmp_path: Path) -> None:
-    """A model that is named as the stamp by mistake is not written over."""
+def test_other_file_is_not_overwritten_as_a_stamp(tmp_path: Path) -> None:
+    """A model given as the stamp by mistake is kept."""
     rules = models(tmp_path)
     before = rules.read_bytes()
     command = ["generate", "robot.deros", "--target", "c", "-o", "out"]
@@ -234,8 +234,8 @@ def test_no_other_file_is_taken_for_a_stamp(tmp_path: Path) -> None:
     assert "--scaffold goes without" in outcome.err
 
 
-def test_a_stamp_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
-    """A folder in the place of the stamp is reported, with exit code 2."""
+def test_unwritable_stamp_is_an_error(tmp_path: Path) -> None:
+    """A folder in place of the stamp is reported, with exit code 2."""
     models(tmp_path)
     outcome = run(
         *("generate", "robot.deros", "--target", "c", "-o", "out", "--depfile", "out/x/y"),

@@ -1,4 +1,4 @@
-"""The page on build systems: each of its snippets builds, as it is printed."""
+"""The page on build systems: each of its snippets builds as printed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PAGE = (Path(__file__).resolve().parents[2] / "docs" / "build-systems.md").read_
 HEAD = "cmake_minimum_required(VERSION 3.22)\nproject(p LANGUAGES NONE)\nfind_package(deros)\n"
 needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 
-# Rules that need the mathematical library, as those of the documentation do.
+# Rules that need the mathematical library, like those of the documentation.
 ROBOT = """\
 node robot : robot_driver
 publishes
@@ -70,7 +70,7 @@ def _snippet(language: str, word: str) -> str:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Give a folder with the models that the page speaks of."""
+    """Create a folder with the models of the page."""
     (tmp_path / "models").mkdir()
     for name, text in (("robot.rnd", ROBOT), ("robot.system", SYSTEM), ("robot.deros", RULES)):
         (tmp_path / "models" / name).write_text(text, encoding="utf-8")
@@ -79,7 +79,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_every_snippet_has_a_test() -> None:
-    """A snippet that is added to the page needs a test here."""
+    """A snippet added to the page needs a test here."""
     known = [
         ("cmake", ("deros_add_monitor", "deros_generate", "deros_package")),
         ("make", ("--depfile",)),
@@ -94,8 +94,8 @@ def test_every_snippet_has_a_test() -> None:
 @needs_c
 @needs_cmake
 @pytest.mark.parametrize("kind", ["", "STATIC", "OBJECT"])
-def test_the_monitor_as_a_library(folder: Path, kind: str) -> None:
-    """The project of the page compiles, links, and runs, with each kind of library."""
+def test_monitor_library_snippet(folder: Path, kind: str) -> None:
+    """The project of the page compiles, links and runs, with each kind of library."""
     script = _snippet("cmake", "deros_add_monitor").replace(
         "MODEL models/robot.deros", f"MODEL models/robot.deros {kind}".rstrip()
     )
@@ -106,8 +106,8 @@ def test_the_monitor_as_a_library(folder: Path, kind: str) -> None:
 
 
 @needs_cmake
-def test_anything_else(folder: Path) -> None:
-    """The target of the page makes the launch file that it installs."""
+def test_generate_snippet(folder: Path) -> None:
+    """The target of the page generates the launch file that it installs."""
     script = HEAD + _snippet("cmake", "deros_generate")
     project: Project = configured(folder, GENERATORS[1], script)
     project.built()
@@ -124,7 +124,7 @@ def test_anything_else(folder: Path) -> None:
         ("python", "deros.build", "setup.py", "models/robot.deros", "python"),
     ],
 )
-def test_a_package_has_the_files_of_the_page(
+def test_scaffold_matches_the_page(
     folder: Path,
     monkeypatch: pytest.MonkeyPatch,
     language: str,
@@ -133,7 +133,7 @@ def test_a_package_has_the_files_of_the_page(
     model: str,
     target: str,
 ) -> None:
-    """What ``--scaffold`` writes is what the page prints."""
+    """``--scaffold`` writes the files that the page prints."""
     monkeypatch.chdir(folder)
     odometer = "node odometer : odometry\npublishes\n  topic odom : nav_msgs.Odometry\n"
     (folder / "models/odometer.rnd").write_text(odometer, encoding="utf-8")
@@ -143,7 +143,7 @@ def test_a_package_has_the_files_of_the_page(
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make")
-def test_other_build_systems(folder: Path) -> None:
+def test_make_snippet(folder: Path) -> None:
     """The rules for Make generate once, and again when a model changes."""
     (folder / "Makefile").write_text(_snippet("make", "--depfile"), encoding="utf-8")
     program = frozen_program().parent

@@ -1,4 +1,4 @@
-"""Generated and hand-written files as one package: who keeps what, and what is refused."""
+"""Generated and hand-written files as one package: ownership, and rejected combinations."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ CMAKE = {
 
 @pytest.fixture
 def source(tmp_path: Path) -> Path:
-    """Give a source tree that has what the Python package needs by hand."""
+    """Create a source tree with the user files of the Python package."""
     source = tmp_path / "source"
     _write(source, {"package.xml": MANIFEST, "setup.py": "build()\n", "p/node.py": "mine\n"})
     return source
@@ -57,8 +57,8 @@ def _merge(files: dict[str, File], source: Path) -> Merged:
     return merge(files, source, source / "made here/out")
 
 
-def test_hand_written_files_take_their_place(source: Path) -> None:
-    """All that stands in the source tree joins the package, but for build scripts and models."""
+def test_user_files_join_the_package(source: Path) -> None:
+    """All files of the source tree join the package, except build scripts and models."""
     more = ["p/more.py", "p/sub/x.py", "config/mine.yaml", "README.md", "p/__init__.py"]
     others = [
         ".git/x",
@@ -78,8 +78,8 @@ def test_hand_written_files_take_their_place(source: Path) -> None:
     assert {source, source / "p", source / "p/sub", source / "config"} <= set(merged.inputs)
 
 
-def test_missing_files_are_named(source: Path) -> None:
-    """What the user has to have is asked for by name, and not made."""
+def test_missing_user_files_are_named(source: Path) -> None:
+    """The user files are required by name, and not created."""
     (source / "p/node.py").unlink()
     (source / "package.xml").unlink()
     with pytest.raises(SourceTreeError, match=r"lacks p/node\.py, package\.xml") as error:
@@ -87,8 +87,8 @@ def test_missing_files_are_named(source: Path) -> None:
     assert error.value.mended_by_scaffold
 
 
-def test_a_generated_file_in_the_source_tree_must_be_as_generated(source: Path) -> None:
-    """A leftover of an earlier generation would shadow, or be shadowed: it is refused."""
+def test_outdated_generated_file_in_the_source_tree_is_rejected(source: Path) -> None:
+    """It would shadow the current file, or be shadowed by it."""
     _write(source, {"p/base.py": with_banner("base.py", "BASE = 1\n")})
     _merge(PYTHON, source)
     _write(source, {"p/base.py": with_banner("base.py", "BASE = 0\n")})
@@ -96,8 +96,8 @@ def test_a_generated_file_in_the_source_tree_must_be_as_generated(source: Path) 
         _merge(PYTHON, source)
 
 
-def test_a_generated_description_must_be_as_generated(source: Path) -> None:
-    """A node description made from the rules must be of these rules; a hand's own is not ours."""
+def test_outdated_generated_description_is_rejected(source: Path) -> None:
+    """A description generated from rules must be current; a hand-written one is not checked."""
     _write(source, {"models/node.rnd": with_banner("node.rnd", "node node : p\n")})
     _merge(PYTHON, source)
     _write(source, {"models/node.rnd": with_banner("node.rnd", "node old : p\n")})
@@ -115,15 +115,15 @@ def test_a_generated_description_must_be_as_generated(source: Path) -> None:
         ("<package>", "cannot be read"),
     ],
 )
-def test_manifests_that_do_not_fit(source: Path, manifest: str, complaint: str) -> None:
-    """The manifest is the user's, but it has to name the package and what the code needs."""
+def test_manifest_must_fit_the_package(source: Path, manifest: str, complaint: str) -> None:
+    """The manifest is a user file, but must contain the package name and its dependencies."""
     (source / "package.xml").write_text(manifest)
     with pytest.raises(SourceTreeError, match=complaint):
         _merge(PYTHON, source)
 
 
-def test_python_is_linked_and_what_cmake_installs_is_copied(source: Path, tmp_path: Path) -> None:
-    """CMake installs a link as a link, which leads nowhere on another machine."""
+def test_python_files_are_linked_and_cmake_files_copied(source: Path, tmp_path: Path) -> None:
+    """CMake installs a link as a link, which is broken on another machine."""
     _write(source, {"src/node.cpp": "mine\n", "include/p/node.hpp": "mine\n"})
     for files, linked in ((PYTHON, {"p/package.xml", "p/p/node.py"}), (CMAKE, {"p/src/node.cpp"})):
         output = tmp_path / f"out{len(linked)}"
@@ -138,8 +138,8 @@ def test_python_is_linked_and_what_cmake_installs_is_copied(source: Path, tmp_pa
     assert source / "src/node.cpp" not in _merge(CMAKE, source).inputs
 
 
-def test_what_is_in_place_is_not_touched(source: Path, tmp_path: Path) -> None:
-    """Links and copies that are right stay; a changed source, and its mode, are copied again."""
+def test_current_links_and_copies_are_not_touched(source: Path, tmp_path: Path) -> None:
+    """A changed source, or mode, is copied again."""
     header = source / "include/p/node.hpp"
     _write(source, {"src/node.cpp": "mine\n", "include/p/node.hpp": "mine\n"})
     output = tmp_path / "out"
@@ -164,16 +164,16 @@ def test_what_is_in_place_is_not_touched(source: Path, tmp_path: Path) -> None:
     assert os.access(copy, os.X_OK)
 
 
-def test_links_last_when_both_trees_move(source: Path, tmp_path: Path) -> None:
-    """A workspace that is mounted elsewhere, as in a container, still finds its files."""
+def test_links_survive_moving_both_trees(source: Path, tmp_path: Path) -> None:
+    """A workspace mounted elsewhere, as in a container, still finds its files."""
     output = source / ".deros"
     place(_merge(PYTHON, source).placed, output)
     moved = source.rename(tmp_path / "moved")
     assert (moved / ".deros/p/p/node.py").read_text() == "mine\n"
 
 
-def test_outputs_that_are_no_package(tmp_path: Path) -> None:
-    """Of other outputs, only the user's files are looked for in the source tree."""
+def test_output_that_is_not_a_package(tmp_path: Path) -> None:
+    """Of other outputs, only the user files are expected in the source tree."""
     files = {"a.py": File("x\n"), "b/mine.py": File("fill in\n", Owner.USER)}
     assert package_folder(files) == ""
     with pytest.raises(SourceTreeError, match=r"lacks b/mine\.py"):
@@ -184,8 +184,8 @@ def test_outputs_that_are_no_package(tmp_path: Path) -> None:
     assert set(merged.files) == {"a.py"}
 
 
-def test_a_scaffold_is_what_the_source_tree_keeps(source: Path) -> None:
-    """Manifest, hand-written files and descriptions; of the rest, what stands there already."""
+def test_scaffold_contains_the_user_files(source: Path) -> None:
+    """Manifest, hand-written files and descriptions are written; other files only if they exist."""
     assert set(scaffold(PYTHON, source, "models")) == {
         "package.xml",
         "p/node.py",
@@ -195,8 +195,8 @@ def test_a_scaffold_is_what_the_source_tree_keeps(source: Path) -> None:
     assert set(scaffold(PYTHON, source, "models")) == {"package.xml", "p/node.py", "p/base.py"}
 
 
-def test_stale_files_go_with_their_folders(source: Path, tmp_path: Path) -> None:
-    """Links, untouched files and empty ones go; edited ones only if they may be overwritten."""
+def test_stale_files_are_removed_with_their_folders(source: Path, tmp_path: Path) -> None:
+    """Links, unedited files and empty files are removed; edited ones only with overwrite."""
     output = tmp_path / "out"
     generated = with_banner("x.py", "x = 1\n")
     _write(output, {"a/b/x.py": generated, "a/empty": "", "edited.py": generated + "# mine\n"})

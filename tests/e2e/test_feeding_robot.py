@@ -1,4 +1,4 @@
-"""The feeding robot on the real middleware: its fifteen cases, and a clean end whatever happens."""
+"""The feeding robot on real middleware: its fifteen cases, and a clean end in all circumstances."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LONGEST = 900.0
 def start(
     arguments: list[str], environment: dict[str, str], output: Path, demo: Path = DEMO
 ) -> subprocess.Popen[str]:
-    """Start the demo, or the given one, as a shell starts what it runs in the background."""
+    """Start the demo, or the given one, as a background job of a shell."""
     command = [sys.executable, str(demo), "--output", str(output), *arguments]
     return subprocess.Popen(
         ["sh", "-c", 'trap "" INT; exec "$@"', "sh", *command],
@@ -35,7 +35,7 @@ def start(
 
 
 def logs(folder: Path) -> list[str]:
-    """Return the last lines of what the robot's nodes have said."""
+    """Return the last lines of the output of the robot's nodes."""
     return [
         f"{log.name}: {line}"
         for log in sorted(folder.glob("*.log"))
@@ -45,8 +45,8 @@ def logs(folder: Path) -> list[str]:
 
 @pytest.mark.ros
 @pytest.mark.parametrize("language", ["python", pytest.param("cpp", marks=needs_rclcpp)])
-def test_the_fifteen_cases_pass(language: str, ros_env: dict[str, str], tmp_path: Path) -> None:
-    """Every case reacts as it must, the picture tells so, and nothing is left running."""
+def test_fifteen_cases_pass(language: str, ros_env: dict[str, str], tmp_path: Path) -> None:
+    """Every case reacts as expected, the picture shows it, and no process is left."""
     arguments: list[str] = []
     limit = LONGEST
     if language == "cpp":
@@ -62,15 +62,15 @@ def test_the_fifteen_cases_pass(language: str, ros_env: dict[str, str], tmp_path
 
 @pytest.mark.ros
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_demo_leaves_nothing_running(
+def test_interrupted_demo_leaves_no_process(
     number: signal.Signals, ros_env: dict[str, str], tmp_path: Path
 ) -> None:
-    """A signal in the middle of a case ends player and robot, and the exit code tells."""
+    """A signal during a case ends player and robot, with the matching exit code."""
     with start(["--cases", "7,8"], ros_env, tmp_path) as demo:
         assert demo.stdout is not None
         for line in demo.stdout:
             if line.startswith(" 7 "):
-                break  # the first case has been played, the second has begun
+                break  # the first case is over, the second has started
         assert processes_with(str(tmp_path)) != []
         demo.send_signal(number)
         demo.stdout.read()
@@ -79,7 +79,7 @@ def test_an_interrupted_demo_leaves_nothing_running(
 
 
 def changed(tmp_path: Path, file: str, before: str, after: str) -> Path:
-    """Return the demo of a copy of the example in which one text is replaced by another."""
+    """Return the demo of a copy of the example with one text replaced."""
     example = tmp_path / "feeding_robot"
     shutil.copytree(DEMO.parent, example)
     text = (example / file).read_text()
@@ -89,10 +89,8 @@ def changed(tmp_path: Path, file: str, before: str, after: str) -> Path:
 
 
 @pytest.mark.ros
-def test_a_robot_that_reacts_wrongly_fails_the_demo(
-    ros_env: dict[str, str], tmp_path: Path
-) -> None:
-    """With a rule too lax, the case that needs it fails, and so does the whole run."""
+def test_wrong_reaction_fails_the_demo(ros_env: dict[str, str], tmp_path: Path) -> None:
+    """With a rule too lax, the case that needs it fails, and so does the run."""
     rule = "const forward_limit = "
     demo = changed(tmp_path, "feeding_robot.deros", f"{rule}1.0 m/s", f"{rule}1.4 m/s")
     with start(["--cases", "10"], ros_env, tmp_path / "out", demo) as run:
@@ -102,8 +100,8 @@ def test_a_robot_that_reacts_wrongly_fails_the_demo(
 
 
 @pytest.mark.ros
-def test_a_node_that_fails_ends_the_demo_at_once(ros_env: dict[str, str], tmp_path: Path) -> None:
-    """Nobody waits for a robot that is not there, and the message names the culprit."""
+def test_failed_node_ends_the_demo_at_once(ros_env: dict[str, str], tmp_path: Path) -> None:
+    """The demo does not wait for a missing robot, and the message names the failed node."""
     body = "src/feeding_robot_plc/feeding_robot_plc/plc.py"
     demo = changed(tmp_path, body, "self._reports = 0", "raise RuntimeError('broken')")
     with start(["--cases", "1,4"], ros_env, tmp_path / "out", demo) as run:
@@ -114,10 +112,8 @@ def test_a_node_that_fails_ends_the_demo_at_once(ros_env: dict[str, str], tmp_pa
 
 
 @pytest.mark.ros
-def test_a_model_with_an_error_is_reported_and_nothing_is_started(
-    ros_env: dict[str, str], tmp_path: Path
-) -> None:
-    """The demo names the line; there is no traceback."""
+def test_model_error_prevents_the_demo(ros_env: dict[str, str], tmp_path: Path) -> None:
+    """The demo reports the line without a traceback, and starts nothing."""
     demo = changed(tmp_path, "feeding_robot.deros", "speed > forward_limit", "sped > forward_limit")
     with start([], ros_env, tmp_path / "out", demo) as run:
         text, _ = run.communicate(timeout=LONGEST)

@@ -1,4 +1,4 @@
-"""The smallest robot on the real middleware: as its README says, and without its safety node."""
+"""The smallest robot on real middleware: as in its README, and without its safety node."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ def commands(folder: Path) -> tuple[list[str], list[str]]:
 def packages(
     request: pytest.FixtureRequest, tmp_path: Path, ros_env: dict[str, str]
 ) -> tuple[list[str], dict[str, str]]:
-    """Generate the packages as the README says; return the command that runs them.
+    """Generate the packages as in the README; return the command that runs them.
 
-    In C++ the safety node and the gate are built, and named by one more word in the system each.
+    For C++ the safety node and the gate are built, and one more word in the system selects each.
     """
     environment = dict(ros_env)
     environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
@@ -62,7 +62,7 @@ def packages(
 
 
 def in_cpp(system: Path, folder: Path) -> Path:
-    """Copy the model, with the safety node and the gate in C++; return the system's path."""
+    """Copy the model with safety node and gate in C++; return the path of the system."""
     for model in (*system.parent.glob("*.rnd"), *system.parent.glob("*.deros")):
         shutil.copy(model, folder)
     text = system.read_text(encoding="utf-8")
@@ -75,7 +75,7 @@ def in_cpp(system: Path, folder: Path) -> Path:
 
 @dataclass(frozen=True)
 class Report:
-    """A message of the robot's odometry: speed in m/s, and when it was sent and received, in ns."""
+    """A message of the robot's odometry: speed in m/s, and times of sending and receipt in ns."""
 
     speed: float
     sent: int
@@ -83,7 +83,7 @@ class Report:
 
 
 def watch(peer: Peer) -> list[Report]:
-    """Collect what the robot reports."""
+    """Collect the odometry of the robot."""
     from nav_msgs.msg import Odometry
 
     reports: list[Report] = []
@@ -97,17 +97,17 @@ def watch(peer: Peer) -> list[Report]:
 
 
 def lateness(reports: list[Report]) -> int:
-    """Return by how many ns the machine itself was late: in running a cycle and in delivering."""
+    """Return by how many ns the machine itself was late: in a cycle and in the delivery."""
     cycles = [after.sent - before.sent - CYCLE for before, after in pairwise(reports)]
     deliveries = [report.received - report.sent for report in reports]
     return max(max(cycles), 0) + max(deliveries)
 
 
 @pytest.mark.ros
-def test_the_robot_is_stopped_after_two_seconds_of_excess_speed(
+def test_robot_stops_after_two_seconds_of_overspeed(
     packages: tuple[list[str], dict[str, str]], ros_peer: Peer
 ) -> None:
-    """The stop comes 2 s after the first message with the excess speed, and the robot halts."""
+    """The stop comes 2 s after the first message with excess speed, and the robot halts."""
     from std_msgs.msg import Bool
 
     stops: list[int] = []
@@ -128,10 +128,10 @@ def test_the_robot_is_stopped_after_two_seconds_of_excess_speed(
 
 
 @pytest.mark.ros
-def test_the_robot_halts_when_the_safety_node_is_killed(
+def test_robot_halts_when_the_safety_node_is_killed(
     packages: tuple[list[str], dict[str, str]], ros_peer: Peer
 ) -> None:
-    """No heartbeat, no drive: nobody has to say so."""
+    """The missing heartbeat is enough."""
     command, environment = packages
     reports = watch(ros_peer)
     with running([*command, "--keep-going"], environment) as robot:

@@ -54,21 +54,21 @@ def feed(judge: Any, *events: Any) -> Any:
 # The referee --------------------------------------------------------------------------------------
 
 
-def test_the_reaction_time_runs_from_sensor_sent_to_action_received() -> None:
-    """Not from when the player saw the sensor's message, nor to when the action was sent."""
+def test_reaction_time_is_from_sensor_sent_to_action_received() -> None:
+    """The receipt of the sensor message and the sending of the action do not matter."""
     judge = feed(referee(), event(100, "speed", 0.6, 9), event(102, "stop", True, 1))
     assert judge.reaction_time == pytest.approx(0.003)
 
 
-def test_the_rules_own_time_is_no_reaction_time() -> None:
-    """What a rule waits for is taken off."""
+def test_reaction_time_excludes_the_duration_of_the_rule() -> None:
+    """The time for which the rule waits is subtracted."""
     judge = feed(referee(hold=4.0), event(100, "speed", 0.6), event(4101, "stop", True, 1))
     assert judge.reaction_time == pytest.approx(0.002)
     assert judge.verdict == ""
 
 
-def test_a_break_starts_the_condition_anew() -> None:
-    """Only the last unbroken stretch counts."""
+def test_interruption_restarts_the_condition() -> None:
+    """Only the last uninterrupted period counts."""
     judge = feed(
         referee(hold=1.0),
         event(100, "speed", 0.6),
@@ -80,49 +80,47 @@ def test_a_break_starts_the_condition_anew() -> None:
     assert judge.reaction_time == pytest.approx(0.0005)
 
 
-def test_a_condition_that_ends_when_the_reaction_is_due_has_been_its_cause() -> None:
-    """The engine may be off before the player hears of the stop."""
+def test_condition_that_ends_when_due_is_the_cause() -> None:
+    """The engine may be off before the player receives the stop."""
     judge = feed(referee(), event(100, "speed", 0.6), event(125, "speed", 0.3))
     assert feed(judge, event(126, "stop", True)).reaction_time == pytest.approx(0.0265)
 
 
 @pytest.mark.parametrize(("resolution", "passes"), [(0.03, False), (0.2, True)])
-def test_a_reaction_may_seem_too_early_by_what_the_player_cannot_tell(
-    resolution: float, passes: bool
-) -> None:
-    """By a cycle of the sensors in real time, by a step in simulated time, and no more."""
+def test_early_reaction_is_tolerated_within_the_resolution(resolution: float, passes: bool) -> None:
+    """The tolerance is a sensor cycle in real time, and a step in simulated time."""
     judge = referee(hold=1.0, resolution=resolution)
     feed(judge, event(100, "speed", 0.6), event(1000, "stop", True))
     assert (judge.verdict == "") is passes
 
 
-def test_a_reaction_before_its_time_fails_the_case() -> None:
-    """Too early is as wrong as not at all."""
+def test_early_reaction_fails_the_case() -> None:
+    """A reaction before its time is as wrong as none."""
     judge = feed(referee(hold=4.0), event(100, "speed", 0.6), event(3000, "stop", True))
     assert "too early" in judge.verdict
 
 
-def test_a_reaction_that_takes_too_long_fails_the_case() -> None:
-    """Half a second after it was due some other rule may have brought it."""
+def test_late_reaction_fails_the_case() -> None:
+    """Half a second after it was due, another rule may have caused it."""
     judge = feed(referee(), event(100, "speed", 0.6), event(601, "stop", True))
     assert judge.verdict == "the reaction took 0.501 s"
 
 
-def test_an_action_that_overtakes_its_cause_is_timed_all_the_same() -> None:
-    """Messages of two nodes come in any order; their time stamps tell."""
+def test_action_received_before_its_cause_is_timed() -> None:
+    """Messages of two nodes arrive in any order; their stamps decide."""
     judge = feed(referee(), event(102, "stop", True, 0.5), event(100, "speed", 0.6, 9))
     assert judge.reaction_time == pytest.approx(0.0025)
 
 
-def test_a_cause_that_comes_after_the_action_is_none() -> None:
-    """An action without a cause is a failure, whatever happens later."""
+def test_cause_after_the_action_does_not_count() -> None:
+    """An action without a cause fails the case, whatever happens later."""
     judge = feed(referee(), event(102, "stop", True), event(200, "speed", 0.6))
     assert judge.reaction_time is None
     assert judge.verdict == "the reaction came without its cause"
 
 
-def test_the_slowest_of_the_messages_ends_the_reaction_time() -> None:
-    """Where stop and motor stop are due, both must have come."""
+def test_reaction_time_ends_with_the_slowest_action() -> None:
+    """If stop and motor stop are due, both must have arrived."""
     judge = referee(acts=frozenset({"stop", "motor_stop"}))
     feed(judge, event(100, "speed", 0.6), event(101, "stop", True))
     assert judge.reaction_time is None
@@ -130,8 +128,8 @@ def test_the_slowest_of_the_messages_ends_the_reaction_time() -> None:
     assert judge.reaction_time == pytest.approx(0.0045)
 
 
-def test_only_the_edge_of_an_action_counts() -> None:
-    """An action that is published again and again has reacted once."""
+def test_only_the_rising_edge_of_an_action_counts() -> None:
+    """A repeated action has reacted once."""
     judge = feed(referee(), event(100, "speed", 0.6), event(101, "stop", True))
     first = judge.reaction_time
     assert feed(judge, event(201, "stop", True)).reaction_time == first
@@ -140,36 +138,36 @@ def test_only_the_edge_of_an_action_counts() -> None:
 @pytest.mark.parametrize(
     ("name", "value"), [("stop", True), ("low_speed", True), ("engine_running", False)]
 )
-def test_a_case_that_expects_nothing_fails_at_any_reaction(name: str, value: bool) -> None:
-    """A needless stop is a failure, too."""
+def test_unexpected_reaction_fails_the_case(name: str, value: bool) -> None:
+    """An unnecessary stop is a failure too."""
     judge = feed(referee(frozenset()), event(100, "speed", 0.6))
     assert judge.verdict == ""
     assert feed(judge, event(101, name, value)).verdict.startswith("expected none, observed")
 
 
-def test_a_case_that_expects_nothing_fails_when_nothing_was_provoked() -> None:
+def test_case_without_provocation_fails() -> None:
     """No reaction to no violation proves nothing."""
     judge = feed(referee(frozenset()), event(100, "speed", 0.4))
     assert judge.verdict == "what must bring no reaction has not come about"
 
 
-def test_a_case_is_complete_only_when_the_robot_stands() -> None:
-    """An order to stop is not a stop."""
+def test_case_is_complete_when_the_robot_stands() -> None:
+    """A stop command is not yet a stop."""
     judge = feed(referee(), event(100, "speed", 0.6), event(101, "stop", True))
     assert not judge.complete
     assert feed(judge, event(500, "speed", 0.01)).complete
 
 
-def test_low_speed_is_complete_when_the_robot_crawls() -> None:
-    """The order is followed when the speed is below a crawl."""
+def test_low_speed_is_complete_at_crawling_speed() -> None:
+    """The command is obeyed when the speed is below a crawl."""
     judge = referee(frozenset({Reaction.LOW_SPEED}), acts=frozenset({"low_speed"}))
     feed(judge, event(100, "speed", 0.6), event(101, "low_speed", True), event(150, "speed", 0.4))
     assert not judge.complete
     assert feed(judge, event(500, "speed", 0.2)).complete
 
 
-def test_a_silence_begins_with_the_last_message() -> None:
-    """A dead node is timed from its last heartbeat to the PLC's reaction."""
+def test_silence_starts_with_the_last_message() -> None:
+    """For a dead node the time is from its last heartbeat to the reaction of the PLC."""
     judge = referee(
         STOP_AND_OFF, hold=0.5, silence_of="heartbeat", acts=frozenset({"engine_enabled"})
     )
@@ -178,8 +176,8 @@ def test_a_silence_begins_with_the_last_message() -> None:
     assert judge.reaction_time == pytest.approx(0.02)
 
 
-def test_a_robot_that_stands_with_its_engine_off_has_stopped() -> None:
-    """Even when the node that demands stops is dead."""
+def test_robot_at_rest_with_engine_off_has_stopped() -> None:
+    """This holds even if the node that commands stops is dead."""
     judge = referee(STOP_AND_OFF, silence_of="heartbeat", acts=frozenset({"engine_running"}))
     feed(judge, event(1, "heartbeat", 1), event(2, "engine_running", False))
     assert judge.observed == {Reaction.ENGINE_OFF}
@@ -187,8 +185,8 @@ def test_a_robot_that_stands_with_its_engine_off_has_stopped() -> None:
     assert judge.complete
 
 
-def test_the_nearest_range_is_taken_ahead_only_and_never_from_invalid_beams() -> None:
-    """What stands beside the robot, or reads as NaN, is not ahead."""
+def test_nearest_range_is_ahead_and_from_valid_beams() -> None:
+    """Objects beside the robot and NaN beams do not count."""
     ranges = [1.0, math.nan, 4.0, 3.0, math.inf, 0.5]
     assert referee_module.nearest_ahead(ranges, -1.0, 0.4, 0.45) == 3.0
     assert referee_module.nearest_ahead([math.inf] * 3, -0.1, 0.1, 0.5) == math.inf
@@ -198,10 +196,10 @@ def test_the_nearest_range_is_taken_ahead_only_and_never_from_invalid_beams() ->
 
 
 class Lockstep:
-    """A pace with what it asked for, and with a simulator that has begun."""
+    """A pace that records its requests, with a simulator that has started."""
 
     def __init__(self) -> None:
-        """Log the steps, and count the questions to the safety node."""
+        """Record the steps, and count the requests to the safety node."""
         self.steps: list[float] = []
         self.questions = 0
         self.pace = pace_module.Pace(self.steps.append, self._ask)
@@ -211,17 +209,17 @@ class Lockstep:
         self.questions += 1
 
     def step(self) -> None:
-        """Bring the first step to its end: the next one has been asked for."""
+        """Complete the current step: the next one has been requested."""
         self.see_all()
         self.pace.answered()
 
     def see_all(self, but: str = "") -> None:
-        """Show every witness, except one."""
+        """Report all witnesses, except one."""
         for name in sorted(pace_module.WITNESSES - {but}):
             self.pace.seen(name)
 
 
-def test_time_passes_when_all_have_shown_the_step_and_the_safety_node_answers() -> None:
+def test_time_advances_when_all_witnesses_and_the_safety_node_have_answered() -> None:
     """Neither alone is enough."""
     lockstep = Lockstep()
     lockstep.see_all()
@@ -231,8 +229,8 @@ def test_time_passes_when_all_have_shown_the_step_and_the_safety_node_answers() 
 
 
 @pytest.mark.parametrize("late", sorted(pace_module.WITNESSES))
-def test_time_stands_while_one_is_late(late: str) -> None:
-    """Nobody is left behind: the safety node is not even asked."""
+def test_time_waits_for_a_late_witness(late: str) -> None:
+    """The safety node is not asked before."""
     lockstep = Lockstep()
     lockstep.see_all(but=late)
     assert lockstep.questions == 0
@@ -240,8 +238,8 @@ def test_time_stands_while_one_is_late(late: str) -> None:
     assert lockstep.questions == 1
 
 
-def test_a_reminder_repeats_the_step_without_letting_time_pass() -> None:
-    """A lost message is asked for again; an answer that is on its way is not hurried."""
+def test_reminder_repeats_the_step_without_advancing_time() -> None:
+    """A lost message is requested again; a pending answer is not."""
     lockstep = Lockstep()
     lockstep.pace.remind()
     assert (lockstep.steps, lockstep.pace.now) == ([0.0], 0)
@@ -250,8 +248,8 @@ def test_a_reminder_repeats_the_step_without_letting_time_pass() -> None:
     assert lockstep.steps == [0.0, pace_module.STEP]
 
 
-def test_a_lost_answer_is_asked_for_again_and_counts_once() -> None:
-    """Two answers to one question are one step."""
+def test_lost_answer_is_requested_again_and_counts_once() -> None:
+    """Two answers to one request are one step."""
     lockstep = Lockstep()
     lockstep.see_all()
     lockstep.pace.remind()
@@ -261,8 +259,8 @@ def test_a_lost_answer_is_asked_for_again_and_counts_once() -> None:
     assert lockstep.steps == [pace_module.STEP]
 
 
-def test_what_comes_before_the_clock_shows_the_step_belongs_to_the_last_one() -> None:
-    """A node that was reminded in vain repeats itself; that is no answer to the next step."""
+def test_messages_before_the_clock_tick_belong_to_the_last_step() -> None:
+    """A node reminded unnecessarily repeats itself; that does not answer the next step."""
     lockstep = Lockstep()
     lockstep.step()
     lockstep.see_all()
@@ -273,8 +271,8 @@ def test_what_comes_before_the_clock_shows_the_step_belongs_to_the_last_one() ->
     assert lockstep.questions == 2
 
 
-def test_a_clock_that_is_repeated_begins_no_step() -> None:
-    """The simulator shows the time again when it is reminded."""
+def test_repeated_clock_tick_starts_no_step() -> None:
+    """The simulator repeats the time when it is reminded."""
     lockstep = Lockstep()
     lockstep.step()
     lockstep.pace.ticked(0)
@@ -282,7 +280,7 @@ def test_a_clock_that_is_repeated_begins_no_step() -> None:
     assert lockstep.questions == 1
 
 
-def test_four_steps_fit_into_the_shortest_timeout_of_the_rules() -> None:
+def test_four_steps_fit_into_the_shortest_timeout() -> None:
     """Clock and message may each be a step late, and one message may be lost."""
     rules = (EXAMPLES / "feeding_robot/feeding_robot.deros").read_text(encoding="utf-8")
     timeouts = re.findall(r"timeout ([\d.]+) sec", rules)
@@ -290,7 +288,7 @@ def test_four_steps_fit_into_the_shortest_timeout_of_the_rules() -> None:
     assert min(map(float, timeouts)) > 4 * pace_module.STEP
 
 
-# The recording and its picture --------------------------------------------------------------------
+# Recording and picture ----------------------------------------------------------------------------
 
 
 def recording() -> Any:
@@ -308,16 +306,16 @@ def recording() -> Any:
     return made
 
 
-def test_a_recording_keeps_curves_thinned_and_states_by_their_edges() -> None:
-    """A quarter of the samples of a curve, two of a state, none of a counter."""
+def test_recording_thins_curves_and_keeps_edges_of_states() -> None:
+    """It keeps a quarter of the samples of a curve, two of a state, none of a counter."""
     tracks = recording().tracks
     assert 75 <= len(tracks["speed"]) <= 100
     assert [value for _, value in tracks["stop"]] == [0.0, 1.0]
     assert "heartbeat" not in tracks
 
 
-def test_times_in_a_recording_count_from_its_first_event() -> None:
-    """Whatever the clock says."""
+def test_recorded_times_are_relative_to_the_first_event() -> None:
+    """The absolute clock does not matter."""
     made = recording_module.Recording()
     made.feed(Event("speed", 0.1, 7 * 10**18, 7 * 10**18))
     made.feed(Event("speed", 0.2, 7 * 10**18 + 10**9, 7 * 10**18 + 10**9))
@@ -328,13 +326,13 @@ def test_times_in_a_recording_count_from_its_first_event() -> None:
 @pytest.mark.parametrize(
     ("share", "value"), [(0.0, 1.0), (0.5, 2.0), (0.51, 3.0), (0.99, 4.0), (1.0, 4.0)]
 )
-def test_percentiles_are_values_that_were_measured(share: float, value: float) -> None:
-    """The nearest rank, nothing in between."""
+def test_percentiles_are_measured_values(share: float, value: float) -> None:
+    """The nearest rank is used, without interpolation."""
     assert recording_module.percentile([4.0, 1.0, 3.0, 2.0], share) == value
 
 
-def test_stretches_are_cut_at_the_edges_and_end_with_the_recording() -> None:
-    """An action that is active at the end is active until the end."""
+def test_intervals_end_at_edges_or_with_the_recording() -> None:
+    """An action active at the end is active until the end."""
     samples = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 1.0)]
     assert chart.stretches(samples, 5.0) == [(1.0, 2.0), (3.0, 5.0)]
 
@@ -347,8 +345,8 @@ def result(number: int, time: float | None, failure: str = "") -> Any:
     return recording_module.Result(number, "case", STOP, STOP, time, failure, 0.0, 1.0)
 
 
-def test_the_scoreboard_fits_into_eighty_columns_and_fifteen_lines() -> None:
-    """No row wraps, so that the live table stands still on any terminal."""
+def test_scoreboard_fits_eighty_columns_and_fifteen_lines() -> None:
+    """No row wraps, so that the live table does not move on any terminal."""
     board = scoreboard.Scoreboard(Console(width=80), cases.CASES, 1)
     for case in cases.CASES:
         board.report(result(case.number, 0.0123))
@@ -358,8 +356,8 @@ def test_the_scoreboard_fits_into_eighty_columns_and_fifteen_lines() -> None:
     assert len(capture.get().rstrip().splitlines()) == 1 + len(cases.CASES)
 
 
-def test_the_scoreboard_is_complete_when_every_round_of_every_case_has_passed() -> None:
-    """A round that was not played is no better than one that failed."""
+def test_scoreboard_is_complete_when_every_round_has_passed() -> None:
+    """A round that was not played counts like a failed one."""
     console = Console(quiet=True)
     board = scoreboard.Scoreboard(console, cases.CASES[1:3], 2)
     for number in (2, 2, 3):
@@ -371,16 +369,16 @@ def test_the_scoreboard_is_complete_when_every_round_of_every_case_has_passed() 
     assert not board.complete
 
 
-def test_the_summary_counts_the_safety_nodes_reactions_only() -> None:
-    """Median and 99 % over the cases that are its own, in ms."""
+def test_summary_counts_only_reactions_of_the_safety_node() -> None:
+    """Median and 99 % are over its own cases, in ms."""
     results = [result(2, 0.001), result(3, 0.002), result(4, 0.009), result(14, 5.0)]
     text = scoreboard.summary([*results, result(8, None)], frozenset({2, 3, 4, 8}))
     assert "over 3 reactions: median 2.0 ms, 99 % 9.0 ms" in text
     assert "No reaction" in scoreboard.summary([], frozenset({2}))
 
 
-def test_the_cases_are_those_of_the_safety_test() -> None:
-    """Two bring no reaction, one slows the robot down, two stop it, ten shut its engine off."""
+def test_cases_are_those_of_the_safety_test() -> None:
+    """Two cause no reaction, one slows the robot down, two stop it, ten shut off its engine."""
     assert [case.number for case in cases.CASES] == list(range(1, 16))
     expected = {case.number: case.expected for case in cases.CASES}
     assert [n for n in expected if not expected[n]] == [8, 11]
@@ -391,7 +389,7 @@ def test_the_cases_are_those_of_the_safety_test() -> None:
 
 
 class Page(HTMLParser):
-    """Counts a page's elements and collects what it would load."""
+    """Count the elements of a page and collect its references."""
 
     VOID = frozenset({"meta", "link", "br"})
 
@@ -421,8 +419,8 @@ class Page(HTMLParser):
         assert self.open.pop() == tag
 
 
-def test_the_picture_is_one_well_formed_page_that_loads_nothing() -> None:
-    """Every element is closed, and there is no reference to anything outside."""
+def test_picture_is_one_well_formed_page_without_references() -> None:
+    """Every element is closed, and nothing outside is referenced."""
     text = picture.page([recording(), recording_module.Recording()], "Fast enough.")
     page = Page(text)
     assert page.open == []
@@ -432,8 +430,8 @@ def test_the_picture_is_one_well_formed_page_that_loads_nothing() -> None:
     assert page.count["tr"] == 3
 
 
-def test_the_picture_shows_bands_verdicts_and_both_colour_schemes() -> None:
-    """One band per case in the colour of its verdict, texts escaped, dark mode provided for."""
+def test_picture_shows_bands_verdicts_and_both_colour_schemes() -> None:
+    """One band per case in the colour of its verdict, escaped text, and a dark mode."""
     text = picture.page([recording()], "Fast enough.")
     assert "1 of 2 cases passed" in text
     assert text.count('<g class="band good">') == text.count('<g class="band bad">') == 1
@@ -446,8 +444,8 @@ def test_the_picture_shows_bands_verdicts_and_both_colour_schemes() -> None:
 # The robot in C++ -----------------------------------------------------------------------------
 
 
-def test_the_system_in_cpp_differs_by_two_words(tmp_path: Path) -> None:
-    """They choose the language of the safety node and the gate; and it checks clean."""
+def test_cpp_system_differs_by_two_words(tmp_path: Path) -> None:
+    """They select the language of the safety node and the gate; the system checks clean."""
     system = EXAMPLES / "feeding_robot/feeding_robot.system"
     path = build.in_cpp(system, tmp_path)
     before = system.read_text(encoding="utf-8").splitlines()

@@ -1,4 +1,4 @@
-"""What the feeding robot's nodes decide, without ROS."""
+"""Decisions of the feeding robot's nodes, without ROS."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Contact, Light, Mode = logic.Contact, logic.Light, logic.Mode
 
 
 def plc(**state: Any) -> Any:
-    """Return a PLC whose watchdogs were fed at time 0 and bark after half a second."""
+    """Return a PLC with watchdogs fed at time 0 and a timeout of half a second."""
     return logic.PlcLogic(logic.Watchdog(0.5, 0.0), logic.Watchdog(0.5, 0.0), **state)
 
 
@@ -31,8 +31,8 @@ def driving() -> Any:
 # The PLC ------------------------------------------------------------------------------------------
 
 
-def test_the_key_starts_the_engine_in_manual_mode_only() -> None:
-    """Nobody can start the engine from the driver's seat of a robot that drives itself."""
+def test_key_starts_the_engine_only_in_manual_mode() -> None:
+    """The engine of a robot in automatic mode cannot be started with the key."""
     for mode in Mode:
         each = plc(mode=mode, key_turned=True)
         each.supervise(0.1)
@@ -41,15 +41,15 @@ def test_the_key_starts_the_engine_in_manual_mode_only() -> None:
 
 @pytest.mark.parametrize("contact", list(Contact))
 @pytest.mark.parametrize("mode", list(Mode))
-def test_every_contact_shuts_the_engine_off_in_every_mode(contact: Any, mode: Any) -> None:
-    """The contacts are wired to the fuel valve, whoever drives; and it says which one."""
+def test_every_contact_shuts_off_the_engine_in_every_mode(contact: Any, mode: Any) -> None:
+    """The contacts are wired to the fuel valve; the PLC reports which one opened."""
     each = plc(mode=mode, engine_enabled=True, pressed={contact})
     assert each.supervise(0.1) == [contact.value]
     assert not each.engine_enabled
 
 
-def test_the_motor_stop_shuts_the_engine_off_and_keeps_it_off() -> None:
-    """While the safety node's motor stop is active, the key does nothing."""
+def test_motor_stop_shuts_off_the_engine_and_keeps_it_off() -> None:
+    """While the motor stop of the safety node is active, the key has no effect."""
     each = plc(engine_enabled=True, motor_stop=True, key_turned=True)
     assert each.supervise(0.1) == ["motor stop of the safety node"]
     assert each.supervise(0.2) == []
@@ -57,8 +57,8 @@ def test_the_motor_stop_shuts_the_engine_off_and_keeps_it_off() -> None:
 
 
 @pytest.mark.parametrize("name", ["controller", "safety_node"])
-def test_a_silent_keep_alive_shuts_the_engine_off_after_its_timeout(name: str) -> None:
-    """Up to the timeout the engine runs on; just beyond it, it does not."""
+def test_silent_keep_alive_shuts_off_the_engine_after_its_timeout(name: str) -> None:
+    """The engine runs until the timeout, and is off just after it."""
     each = driving()
     other = "safety_node" if name == "controller" else "controller"
     getattr(each, other).last = 0.5
@@ -67,15 +67,15 @@ def test_a_silent_keep_alive_shuts_the_engine_off_after_its_timeout(name: str) -
     assert not each.engine_enabled
 
 
-def test_in_manual_mode_nobody_waits_for_keep_alives() -> None:
+def test_manual_mode_needs_no_keep_alives() -> None:
     """An operator can drive the machine home with its computer dead."""
     each = plc(engine_enabled=True)
     assert each.supervise(100.0) == []
     assert each.engine_enabled
 
 
-def test_what_was_shut_off_stays_off_when_the_reason_goes() -> None:
-    """A released bumper does not start an engine."""
+def test_engine_stays_off_when_the_reason_disappears() -> None:
+    """Releasing a bumper does not start the engine."""
     each = driving()
     each.pressed = {Contact.FRONT_BUMPER}
     each.supervise(0.1)
@@ -95,8 +95,8 @@ def test_what_was_shut_off_stays_off_when_the_reason_goes() -> None:
         ({"slow": True, "stopped": True}, Light.RED),
     ],
 )
-def test_the_stack_light_tells_the_state(changes: dict[str, Any], light: Any) -> None:
-    """Green drives, amber drives slowly or under an operator's eyes, red does not drive."""
+def test_stack_light_shows_the_state(changes: dict[str, Any], light: Any) -> None:
+    """Green is driving, amber is slow or supervised driving, red is standing."""
     each = driving()
     for name, value in changes.items():
         setattr(each, name, value)
@@ -107,7 +107,7 @@ def test_the_stack_light_tells_the_state(changes: dict[str, Any], light: Any) ->
 
 
 def arbiter(**state: Any) -> Any:
-    """Return an arbiter in automatic mode that was just told to drive at 0.6 m/s."""
+    """Return an arbiter in automatic mode with a recent command of 0.6 m/s."""
     limits = arbitration.Limits(top_speed=1.5, command_timeout=0.3)
     made = arbitration.Arbiter(limits, command_at=0.0, mode=2)
     made.command(0.6, 0.1, 0.0)
@@ -116,34 +116,34 @@ def arbiter(**state: Any) -> Any:
     return made
 
 
-def test_the_pedal_follows_the_command_when_nothing_is_wrong() -> None:
-    """The pedal is the wanted share of the top speed, the steering the wanted angle."""
+def test_pedal_follows_the_command() -> None:
+    """The pedal is the commanded share of the top speed, the steering the commanded angle."""
     assert arbiter().decide(0.1) == (pytest.approx(0.4), 0.1)
 
 
 @pytest.mark.parametrize("mode", [0, 1])
-def test_the_pedal_is_neutral_outside_automatic_mode(mode: int) -> None:
-    """The operator stands above all software."""
+def test_pedal_is_neutral_outside_automatic_mode(mode: int) -> None:
+    """The operator has precedence over all software."""
     assert arbiter(mode=mode).decide(0.1)[0] == 0.0
 
 
 @pytest.mark.parametrize(("wanted", "pedal"), [(9.0, 1.0), (-9.0, -1.0), (0.0, 0.0)])
-def test_the_pedal_has_two_ends(wanted: float, pedal: float) -> None:
+def test_pedal_is_limited_to_its_range(wanted: float, pedal: float) -> None:
     """No command moves it further than it goes."""
     made = arbiter()
     made.command(wanted, 0.0, 0.0)
     assert made.decide(0.1)[0] == pedal
 
 
-def test_an_old_command_is_void() -> None:
-    """A gate that has died does not drive on."""
+def test_old_command_expires() -> None:
+    """After the death of a gate the robot does not drive on."""
     made = arbiter()
     assert made.decide(0.3)[0] > 0
     assert made.decide(0.31)[0] == 0.0
 
 
 def test_nothing_moves_before_a_command_and_a_mode() -> None:
-    """A fresh arbiter holds the robot."""
+    """A new arbiter keeps the robot stopped."""
     made = arbitration.Arbiter(arbitration.Limits(1.5, 0.3), command_at=0.0)
     assert made.decide(0.0)[0] == 0.0
     made.mode = 2
@@ -153,22 +153,22 @@ def test_nothing_moves_before_a_command_and_a_mode() -> None:
 # The mission --------------------------------------------------------------------------------------
 
 
-def test_the_mission_ramps_up_to_cruising_speed_and_no_further() -> None:
-    """The speed grows by the acceleration and ends at the cruising speed."""
+def test_mission_accelerates_to_cruising_speed() -> None:
+    """The speed grows with the acceleration up to the cruising speed."""
     made = mission.Mission(cruise_speed=0.4, acceleration=0.5)
     speeds = [made.plan(True, 0.0, 0.0, 0.2).speed for _ in range(8)]
     assert speeds == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.4, 0.4, 0.4, 0.4])
 
 
-def test_after_a_stop_the_mission_begins_from_standstill() -> None:
+def test_mission_restarts_from_standstill_after_a_stop() -> None:
     """It does not try to catch up."""
     made = mission.Mission(0.4, 0.5, speed=0.4)
     assert made.plan(False, 0.0, 0.0, 0.2) == mission.Command()
     assert made.plan(True, 0.0, 0.0, 0.2).speed == pytest.approx(0.1)
 
 
-def test_the_mission_steers_back_into_the_lane_within_its_limits() -> None:
-    """Left of the lane it steers right, and never further than the wheels turn."""
+def test_mission_steers_back_into_the_lane() -> None:
+    """Left of the lane it steers right, within the steering range."""
     made = mission.Mission(0.4, 0.5)
     assert made.plan(True, 0.3, 0.0, 0.1).steering < 0 < made.plan(True, 0.0, -0.2, 0.1).steering
     assert made.plan(True, 50.0, 0.0, 0.1).steering == -mission.LARGEST_STEERING
@@ -177,8 +177,8 @@ def test_the_mission_steers_back_into_the_lane_within_its_limits() -> None:
 # The sensors --------------------------------------------------------------------------------------
 
 
-def test_the_scan_sees_an_obstacle_at_its_distance_straight_ahead() -> None:
-    """The shortest range is the clearance, in the middle beam, and the flanks look past it."""
+def test_scan_sees_an_obstacle_straight_ahead_at_its_distance() -> None:
+    """The shortest range is the clearance, in the middle beam, and the outer beams miss it."""
     ranges = sweep.ranges(2.0, 181, 25.0)
     assert min(ranges) == ranges[90] == pytest.approx(2.0)
     assert ranges[0] == ranges[180] == math.inf
@@ -186,13 +186,13 @@ def test_the_scan_sees_an_obstacle_at_its_distance_straight_ahead() -> None:
 
 
 @pytest.mark.parametrize("clearance", [math.inf, 30.0])
-def test_nothing_within_reach_gives_infinities(clearance: float) -> None:
-    """No obstacle, or one beyond the scanner's range: every beam is free."""
+def test_free_beams_are_infinite(clearance: float) -> None:
+    """Without an obstacle, or with one out of range, every beam is free."""
     assert set(sweep.ranges(clearance, 181, 25.0)) == {math.inf}
 
 
-def test_the_noise_of_the_imu_has_the_deviation_asked_for() -> None:
-    """Over many measurements roll scatters around the truth with the given deviation."""
+def test_imu_noise_has_the_given_deviation() -> None:
+    """Over many measurements roll varies around the truth with the given deviation."""
     noise = random.Random(5)
     rolls = [2 * attitude.disturbed((0.0, 0.0, 0.0, 1.0), 0.01, noise)[0] for _ in range(4000)]
     deviation = math.sqrt(sum(roll * roll for roll in rolls) / len(rolls))
@@ -200,8 +200,8 @@ def test_the_noise_of_the_imu_has_the_deviation_asked_for() -> None:
     assert abs(sum(rolls) / len(rolls)) < 0.001
 
 
-def test_without_noise_the_attitude_is_the_truth_and_it_stays_a_rotation_with_noise() -> None:
-    """No deviation changes nothing; any keeps the quaternion's length."""
+def test_noisy_attitude_is_still_a_rotation() -> None:
+    """Without noise the attitude is the truth; with noise the quaternion keeps its length."""
     truth = (0.1, -0.2, 0.3, math.sqrt(1 - 0.14))
     noise = random.Random(6)
     assert attitude.disturbed(truth, 0.0, noise) == pytest.approx(truth)

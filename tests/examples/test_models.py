@@ -1,4 +1,4 @@
-"""The examples' models check clean, in either language."""
+"""The models of the examples check clean in both languages."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ MODELS = sorted(p for s in (".rnd", ".system", ".deros") for p in EXAMPLES.rglob
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda path: path.name)
-def test_every_model_checks_without_a_finding(model: Path) -> None:
-    """Not even a warning: what we show is what we ask for."""
+def test_every_model_checks_without_findings(model: Path) -> None:
+    """There are not even warnings."""
     repository = Repository()
     loaded = repository.load(str(model))
     assert check([loaded], repository, InterfaceStore()) == []
 
 
 @pytest.mark.parametrize("example", ["feeding_robot", "intelligent_one"])
-def test_two_words_in_the_system_choose_the_language(example: str, tmp_path: Path) -> None:
-    """The safety node and the gate in C++ stand where those in Python stood."""
+def test_two_words_in_the_system_select_the_language(example: str, tmp_path: Path) -> None:
+    """Safety node and gate in C++ replace those in Python."""
     folder = tmp_path / example
     shutil.copytree(EXAMPLES / example, folder)
     system = folder / f"{example}.system"
@@ -39,14 +39,14 @@ def test_two_words_in_the_system_choose_the_language(example: str, tmp_path: Pat
     assert (outcome.code, outcome.err) == (0, "")
 
 
-def test_the_rules_of_the_feeding_robot_cite_every_requirement() -> None:
-    """Each of the seven requirements of the risk list stands beside a rule that meets it."""
+def test_feeding_robot_rules_cite_every_requirement() -> None:
+    """Each of the seven requirements of the risk list is next to a rule that meets it."""
     text = (EXAMPLES / "feeding_robot/feeding_robot.deros").read_text()
     entities = text[text.index("entity ") : text.index("behaviour ")]
     assert all(f"[R{number}]" in entities for number in range(1, 8))
 
 
-def test_the_feeding_robot_has_the_entities_and_actions_of_its_risk_assessment() -> None:
+def test_feeding_robot_has_the_entities_and_actions_of_its_risk_assessment() -> None:
     """Four entities, four actions, and at least fourteen rules and behaviours."""
     rules = Repository().load(str(EXAMPLES / "feeding_robot/feeding_robot.deros")).model
     assert isinstance(rules, Rules)

@@ -1,4 +1,4 @@
-"""What was written by hand in the examples' packages is fit for ROS packages."""
+"""Hand-written code in the packages of the examples passes the ROS linters."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ from tests.support.lint import assert_lint_clean
 
 
 @pytest.mark.parametrize("example", ["feeding_robot", "intelligent_one"])
-def test_the_bodies_of_the_nodes_pass_the_linters_of_ament(example: str) -> None:
-    """The tests that come with every generated package hold for the filled-in ones, too."""
+def test_node_bodies_pass_the_ament_linters(example: str) -> None:
+    """The linter tests of every generated package pass with filled-in code too."""
     assert_lint_clean(EXAMPLES / example / "src")

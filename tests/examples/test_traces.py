@@ -1,4 +1,4 @@
-"""The examples' rules over traces, through the reference engine: what must happen, and when."""
+"""Rules of the examples on traces, through the reference engine: expected events and times."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ STOP, MOTOR_STOP, LOW_SPEED = "stop", "motor_stop", "low_speed"
 
 @functools.cache
 def program(path: str) -> Program:
-    """Return the program of an example's rules."""
+    """Return the program of the rules of an example."""
     rules = Repository().load(str(EXAMPLES / path)).model
     assert isinstance(rules, Rules)
     built = build(rules, STORE)
@@ -39,7 +39,7 @@ def program(path: str) -> Program:
 
 @dataclass
 class Scene:
-    """A robot whose sensors all speak ten times a second, and what they say from when on.
+    """A robot with sensors that publish ten times a second, and changes of their messages.
 
     ``changes`` are times, topics and the fields from then on; ``None`` silences the topic.
     """
@@ -50,7 +50,7 @@ class Scene:
     period_ms: int = 100
 
     def at(self, time: float, topic: str, fields: Mapping[str, Any] | None) -> Scene:
-        """Return the scene with another change; a change comes with a message of its own."""
+        """Return the scene with another change, which has its own message."""
         return Scene(
             self.rules, self.normal, [*self.changes, (time, topic, fields)], self.period_ms
         )
@@ -67,7 +67,7 @@ class Scene:
                     yield ms, topic, current
 
     def play(self, until: float) -> list[tuple[float, str, str]]:
-        """Return what happens: time in s, ``trigger``, ``reset`` or ``refused``, action."""
+        """Return the events: time in s, ``trigger``, ``reset`` or ``refused``, action."""
         lines = [
             json.dumps({"t": f"{ms / 1000:.3f}", "topic": topic, "data": dict(fields)})
             for ms, topic, fields in sorted(self._messages(until), key=lambda m: m[0])
@@ -92,7 +92,7 @@ def speed(value: float) -> dict[str, Any]:
 
 
 def tilt(roll: float = 0.0, pitch: float = 0.0) -> dict[str, Any]:
-    """Return the fields of an IMU message for angles in degrees; one of them is zero."""
+    """Return the fields of an IMU message for angles in degrees, of which one is zero."""
     half_roll, half_pitch = math.radians(roll) / 2, math.radians(pitch) / 2
     return {
         "orientation.x": math.sin(half_roll),
@@ -140,8 +140,8 @@ def actions_at(scene: Scene, until: float) -> dict[float, list[str]]:
     return found
 
 
-def test_a_feeding_robot_in_order_is_left_alone() -> None:
-    """Ten seconds of cruising: nothing happens."""
+def test_normal_operation_triggers_nothing() -> None:
+    """Ten seconds of cruising have no events."""
     assert FEEDING.play(10.0) == []
 
 
@@ -163,15 +163,15 @@ def test_a_feeding_robot_in_order_is_left_alone() -> None:
         (13, FEEDING.at(2.0, SPEED, speed(-0.401)), 3.0, {2.0: ENGINE_STOP}),
     ],
 )
-def test_the_cases_of_the_demo(
+def test_demo_cases_trigger_exactly_the_expected_actions(
     case: int, scene: Scene, until: float, expected: dict[float, list[str]]
 ) -> None:
-    """Each case acts at the very instant at which it is due, and nothing else happens."""
+    """Each case acts exactly when it is due, and nothing else happens."""
     assert actions_at(scene, until) == expected, f"case {case}"
 
 
-def test_ten_minutes_of_standing_still_stop_the_engine_to_the_nanosecond() -> None:
-    """Case 15: not a moment before, and counted anew once the robot has moved."""
+def test_ten_minutes_at_rest_stop_the_engine_to_the_nanosecond() -> None:
+    """Case 15: not earlier, and counted again after any motion."""
     standing = Scene(FEEDING.rules, FEEDING.normal, period_ms=450).at(0.0, SPEED, speed(0.0))
     moved = standing.at(10.0, SPEED, speed(0.4)).at(11.0, SPEED, speed(0.0))
     assert actions_at(moved, 611.5) == {611.0: ENGINE_STOP}
@@ -179,9 +179,7 @@ def test_ten_minutes_of_standing_still_stop_the_engine_to_the_nanosecond() -> No
 
 @pytest.mark.parametrize("angle", ["roll", "pitch"])
 @pytest.mark.parametrize("sign", [-1, 1])
-def test_a_tilt_beyond_its_limit_is_borne_for_four_seconds_a_greater_one_not_at_all(
-    angle: str, sign: int
-) -> None:
+def test_small_excess_tilt_is_tolerated_for_four_seconds(angle: str, sign: int) -> None:
     """8 degrees may be exceeded for 4 s, 10 degrees never."""
     leaning = FEEDING.at(2.0, IMU, tilt(**{angle: sign * 8.5}))
     assert actions_at(leaning, 7.0) == {6.0: ENGINE_STOP}
@@ -191,30 +189,30 @@ def test_a_tilt_beyond_its_limit_is_borne_for_four_seconds_a_greater_one_not_at_
     assert actions_at(falling, 3.0) == {2.0: ENGINE_STOP}
 
 
-def test_what_stands_beside_the_way_is_no_obstacle() -> None:
-    """The zones lie ahead: a wall half a metre to the side is passed."""
+def test_objects_beside_the_path_are_not_obstacles() -> None:
+    """The zones are ahead: a wall half a metre to the side is passed."""
     assert FEEDING.at(2.0, SCAN, scan("Infinity", beside=0.5)).play(4.0) == []
 
 
-def test_speeding_up_slightly_slows_the_robot_down_after_six_seconds() -> None:
-    """A creeping speed below the limit is answered by low speed alone."""
+def test_slight_overspeed_slows_the_robot_down_after_six_seconds() -> None:
+    """A speed slightly above nominal causes low speed only."""
     assert actions_at(FEEDING.at(2.0, SPEED, speed(0.49)), 9.0) == {8.0: [LOW_SPEED]}
 
 
 @pytest.mark.parametrize("topic", sorted(FEEDING.normal))
-def test_no_input_falls_silent_unnoticed(topic: str) -> None:
+def test_silence_of_any_input_is_detected(topic: str) -> None:
     """Half a second after the last message of any sensor the robot is stopped."""
     silent = FEEDING.at(2.05, topic, None)
     assert STOP in actions_at(silent, 4.0)[2.5]
 
 
-def test_a_sensor_that_sends_nan_counts_as_silent() -> None:
-    """An odometry of NaN stops the robot like none at all."""
+def test_nan_counts_as_silence() -> None:
+    """NaN odometry stops the robot like missing odometry."""
     assert actions_at(FEEDING.at(2.05, SPEED, speed(math.nan)), 4.0)[2.5] == [STOP]
 
 
-def test_manual_mode_lets_the_operator_do_what_automatic_mode_must_not() -> None:
-    """In manual mode neither bumpers nor speed act; the fall of the robot does."""
+def test_manual_mode_suspends_automatic_limits() -> None:
+    """In manual mode neither bumpers nor speed act, but a fall of the robot does."""
     manual = FEEDING.at(0.0, "/plc/mode", {"data": 0})
     assert manual.triggers(1.0) == [(0.0, "controllerOk")]
     busy = manual.at(1.0, "/plc/front_bumper", {"data": True}).at(1.0, SPEED, speed(1.4))
@@ -224,7 +222,7 @@ def test_manual_mode_lets_the_operator_do_what_automatic_mode_must_not() -> None
 
 
 def test_manual_mode_resets_stop_and_low_speed_but_not_the_motor_stop() -> None:
-    """The latched motor stop waits for its own reset."""
+    """The latched motor stop needs its own reset."""
     scene = (
         FEEDING.at(1.0, SCAN, scan(3.0))
         .at(1.5, "/plc/front_bumper", {"data": True})
@@ -238,7 +236,7 @@ def test_manual_mode_resets_stop_and_low_speed_but_not_the_motor_stop() -> None:
 INTELLIGENT = Scene("intelligent_one/intelligent_one.deros", {SPEED: speed(0.4), IMU: tilt()})
 
 
-def test_the_intelligent_one_bears_its_speed_for_two_seconds() -> None:
+def test_intelligent_one_tolerates_overspeed_for_two_seconds() -> None:
     """Then it stops; a nanosecond less and it does not."""
     fast = INTELLIGENT.at(1.0, SPEED, speed(0.51))
     assert fast.triggers(5.0) == [(3.0, STOP)]
@@ -246,14 +244,14 @@ def test_the_intelligent_one_bears_its_speed_for_two_seconds() -> None:
 
 
 @pytest.mark.parametrize("angle", ["roll", "pitch"])
-def test_the_intelligent_one_bears_a_tilt_for_0_4_seconds(angle: str) -> None:
-    """Long enough to tell noise from a fall."""
+def test_intelligent_one_tolerates_a_tilt_for_0_4_seconds(angle: str) -> None:
+    """This is long enough to distinguish noise from a fall."""
     tilted = INTELLIGENT.at(1.0, IMU, tilt(**{angle: 10.5}))
     assert tilted.triggers(3.0) == [(1.4, STOP)]
     assert tilted.at(1.399, IMU, tilt()).triggers(3.0) == []
 
 
 @pytest.mark.parametrize("topic", [SPEED, IMU])
-def test_the_intelligent_one_stops_when_a_sensor_falls_silent(topic: str) -> None:
-    """Half a second after its last message."""
+def test_intelligent_one_stops_when_a_sensor_is_silent(topic: str) -> None:
+    """The stop comes half a second after the last message."""
     assert INTELLIGENT.at(1.05, topic, None).triggers(3.0) == [(1.5, STOP)]

@@ -1,4 +1,4 @@
-"""The top README quotes the smallest example as it stands."""
+"""The top README quotes the smallest example exactly."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ def _quotes() -> list[str]:
 
 
 @pytest.mark.parametrize("beginning", QUOTED)
-def test_quotes_stand_in_the_example(beginning: str) -> None:
-    """What a reader sees first is what the example says, word for word and in its order."""
+def test_readme_quotes_are_in_the_example(beginning: str) -> None:
+    """The quotes are verbatim and in the order of the example."""
     quote = next(each for each in _quotes() if each.startswith(beginning))
     text = " ".join((EXAMPLE / QUOTED[beginning]).read_text().split())
     for piece in quote.split("…"):

@@ -1,4 +1,4 @@
-"""A generator of another distribution plugs into both commands, seen from outside."""
+"""A generator of another distribution is available in both commands, tested from outside."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ GRAPH = """digraph Chat {
 
 @pytest.fixture(scope="module")
 def plugged_in(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """Give an environment in which the plug-in is installed, by its own build backend."""
+    """Create an environment with the plug-in installed by its own build backend."""
     site = tmp_path_factory.mktemp("site")
     shutil.copytree(PLUGIN, site, dirs_exist_ok=True)
     build = [sys.executable, "-c", "import setuptools; setuptools.setup()", "-q", "egg_info"]
@@ -43,14 +43,14 @@ def plugged_in(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
-    """Give a folder with a small system."""
+    """Create a folder with a small system."""
     (tmp_path / "talker.rnd").write_text(NODE)
     (tmp_path / "chat.system").write_text(SYSTEM)
     return tmp_path
 
 
 def run(program: str, *arguments: str, env: dict[str, str], cwd: Path) -> str:
-    """Run a program of this environment and return its output, which must be a success."""
+    """Run a program of this environment, which must succeed, and return its output."""
     command = [str(Path(sys.executable).with_name(program)), *arguments]
     done = subprocess.run(command, env=env, cwd=cwd, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -58,14 +58,14 @@ def run(program: str, *arguments: str, env: dict[str, str], cwd: Path) -> str:
 
 
 def test_textx_lists_the_plugin(plugged_in: dict[str, str], tmp_path: Path) -> None:
-    """``textx list-generators`` names target, distribution and description."""
+    """``textx list-generators`` shows target, distribution and description."""
     listed = run("textx", "list-generators", env=plugged_in, cwd=tmp_path)
     (line,) = (line for line in listed.splitlines() if "rossystem -> dot" in line)
     assert "dot-generator[0.1.0]" in line.replace("dot_generator", "dot-generator")
 
 
 def test_textx_runs_the_plugin(plugged_in: dict[str, str], model: Path) -> None:
-    """``textx generate`` hands options over and writes the file."""
+    """``textx generate`` passes options on and writes the file."""
     arguments = ["chat.system", "--target", "dot", "-o", "out", "--rank-dir", "TB"]
     run("textx", "generate", *arguments, env=plugged_in, cwd=model)
     assert (model / "out/Chat.dot").read_text().endswith(GRAPH)

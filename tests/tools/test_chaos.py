@@ -1,4 +1,4 @@
-"""The campaign's command: what it prints, and its exit code."""
+"""The campaign's command: output and exit code."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FAILED = Verdict([], [Violation("gate", 1.5, "it passes 0.40 m/s")], moved=True)
 def play(
     monkeypatch: pytest.MonkeyPatch, folder: Path, verdicts: Sequence[Verdict | None]
 ) -> tuple[int, list[Schedule]]:
-    """Run a campaign whose rounds come to these verdicts; return the code and the rounds."""
+    """Run a campaign with the given verdicts; return the code and the rounds."""
     rounds = [draw(3, number) for number in range(len(verdicts))]
 
     def played(
@@ -35,10 +35,10 @@ def play(
     return campaign.run(rounds, folder, 2, 10.0), rounds
 
 
-def test_rounds_that_hold_end_with_0(
+def test_passing_rounds_exit_with_0(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A round that could not be played is said, and is no violation."""
+    """A round that could not be played is reported, and is not a violation."""
     code, _ = play(monkeypatch, tmp_path, [*[HELD] * 10, None])
     printed = capsys.readouterr().out
     assert code == 0
@@ -47,10 +47,10 @@ def test_rounds_that_hold_end_with_0(
     assert "10 of 11 rounds played" in printed
 
 
-def test_a_violation_ends_with_1_and_is_kept(
+def test_violation_exits_with_1_and_is_kept(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Seed, round, reason and the folder are printed; the schedule lies there, to be replayed."""
+    """Seed, round, reason and folder are printed; the folder has the schedule for a replay."""
     code, rounds = play(monkeypatch, tmp_path, [HELD, HELD, FAILED])
     printed = capsys.readouterr().out
     assert code == 1
@@ -62,8 +62,8 @@ def test_a_violation_ends_with_1_and_is_kept(
 
 
 @pytest.mark.parametrize("verdict", [None, Verdict([], [], moved=False)])
-def test_a_campaign_that_has_shown_nothing_does_not_pass(
+def test_campaign_without_evidence_fails(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, verdict: Verdict | None
 ) -> None:
-    """Rounds that were not played, or without a robot that drives, are no evidence."""
+    """Rounds that were not played, or in which the robot did not drive, are not evidence."""
     assert play(monkeypatch, tmp_path, [HELD, verdict])[0] == 1

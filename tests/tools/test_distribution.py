@@ -1,4 +1,4 @@
-"""What ``make distribution`` reads: promises of a wheel, gaps in archives, interpreters."""
+"""Parsing in ``make distribution``: requirements of a wheel, missing files, interpreters."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ Requires-Dist: pytest>=8; extra == 'dev'
 """
 
 
-def test_floors_are_those_of_the_required_packages() -> None:
-    """Upper bounds and extras do not matter, and 3.9 comes before 3.13."""
+def test_floors_of_required_packages() -> None:
+    """Upper bounds and extras are ignored, and 3.9 comes before 3.13."""
     promises = distribution.read_promises(METADATA)
     assert promises.floors == {"click": "8.2.0", "textx": "4.3.0"}
     assert promises.pythons == ("3.9", "3.13")
 
 
-def test_requirement_without_floor_is_refused() -> None:
-    """What has no floor cannot be tried with its lowest version."""
+def test_requirement_without_floor_is_rejected() -> None:
+    """Without a floor there is no lowest version to test."""
     with pytest.raises(distribution.Failure, match="rich"):
         distribution.read_promises(METADATA.replace("click>=8.2.0", "rich<16"))
 
 
 def test_missing_source_files_are_named() -> None:
-    """Folders that other folders link to were once left out of the source distribution."""
+    """Folders that other folders link to were once missing from the source distribution."""
     tracked = ["src/deros/__init__.py", "src/deros/generators/output/writer.py", "README.md"]
     packed = ["src/deros/__init__.py", "generators/output/writer.py"]
     assert distribution.missing_files(tracked, packed) == ["src/deros/generators/output/writer.py"]
 
 
-def test_interpreters_that_do_not_start_are_left_out(
+def test_interpreters_that_do_not_start_are_skipped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Version managers put programs on the PATH for versions that are not active."""
+    """Version managers put programs on the PATH for inactive versions."""
     version = "{}.{}".format(*sys.version_info)
     stand_in = tmp_path / "python3.99"
     stand_in.write_text("#!/bin/sh\nexit 127\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What the tests of faults do to processes: it is done when they go on."""
+"""Process control in the fault tests: each effect is complete when the call returns."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ sys.stdin.read()
 
 @contextlib.contextmanager
 def killed(process: Process) -> Iterator[Process]:
-    """Give a process that is killed in the end, frozen or not."""
+    """Return a process that is killed at the end, frozen or not."""
     try:
         yield process
     finally:
         process.kill()
 
 
-def test_a_frozen_process_does_nothing_more(tmp_path: Path) -> None:
-    """When the call returns, none of its threads runs, and none finishes what it had begun."""
+def test_frozen_process_is_completely_stopped(tmp_path: Path) -> None:
+    """When the call returns, no thread runs, and none completes a pending operation."""
     file = tmp_path / "counters"
     file.write_bytes(bytes(mmap.PAGESIZE))
     command = [sys.executable, "-c", WRITER, str(file)]
@@ -65,8 +65,8 @@ def test_a_frozen_process_does_nothing_more(tmp_path: Path) -> None:
             process.thaw()
 
 
-def test_a_process_that_has_ended_cannot_be_frozen() -> None:
-    """The test that tries has lost what it wanted to break."""
+def test_ended_process_cannot_be_frozen() -> None:
+    """The calling test has lost its subject."""
     with subprocess.Popen(["true"]) as process:
         os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
         with pytest.raises(AssertionError, match="has ended"):

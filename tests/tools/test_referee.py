@@ -1,4 +1,4 @@
-"""The parts of the campaign: rounds can be replayed, and the referee sees what it must."""
+"""Parts of the campaign: rounds can be replayed, and the referee detects every violation."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ END = 5.0
 
 
 def say(topic: str, value: Any) -> bytes:
-    """Return a serialized message that says this."""
+    """Return a serialized message with this value."""
     from rclpy.serialization import serialize_message
 
     message = BY_NAME[topic].message_type()()
@@ -44,7 +44,7 @@ Value = Callable[[float], Any]
 def stream(
     place: Any, domain: str, topic: str, value: Value, *, begin: float = -1.0, end: float = END
 ) -> Iterator[Message]:
-    """Give a topic's messages, ten a second; where the value is ``None`` there is none."""
+    """Yield the messages of a topic, ten per second; there is none where the value is ``None``."""
     for number in range(round((end - begin) * 10)):
         now = begin + number / 10
         if (said := value(now)) is not None:
@@ -55,7 +55,7 @@ CONTACTS = ("stop_button", "front_bumper", "rear_bumper", "feeding_arm")
 
 
 def robot(**replaced: Value) -> list[Message]:
-    """Return a round of a robot that drives and obeys, with some of its streams replaced."""
+    """Return a round of a compliant robot, with some of its streams replaced."""
     streams: dict[str, tuple[Any, str, str, Value]] = {
         "imu": ("arrived", SAFETY, "/imu", lambda _: 0.0),
         "speed": ("arrived", SAFETY, "/odometry", lambda _: 0.4),
@@ -85,22 +85,22 @@ def robot(**replaced: Value) -> list[Message]:
 
 
 def judge(messages: Sequence[Message], whole: bool = True) -> Verdict:
-    """Judge a round that nobody was held up in."""
+    """Judge a round without delays of the observer."""
     return Referee(messages, [], 0.0, END, whole).judge()
 
 
 def after(moment: float, then: Any, before: Any) -> Value:
-    """Return a value that changes at a time."""
+    """Return a value that changes at a given time."""
     return lambda now: then if now >= moment else before
 
 
 def duties(verdict: Verdict) -> set[str]:
-    """Return which parts have failed."""
+    """Return the parts that have failed."""
     return {violation.duty for violation in verdict.violations}
 
 
 def stopped_at(moment: float) -> dict[str, Value]:
-    """Return how the parts answer a stop that is due at a time."""
+    """Return the responses of the parts to a stop that is due at a given time."""
     return {
         "says_stop": after(moment, True, False),
         "says_off": after(moment, True, False),
@@ -114,14 +114,14 @@ def stopped_at(moment: float) -> dict[str, Value]:
 # The referee --------------------------------------------------------------------------------------
 
 
-def test_a_robot_that_drives_by_the_rules_is_let_drive() -> None:
-    """Nothing is broken, nothing is found, and it moves."""
+def test_compliant_robot_has_no_violations() -> None:
+    """No rule is broken, and the robot moves."""
     verdict = judge(robot())
     assert (verdict.broken, verdict.violations, verdict.moved) == ([], [], True)
 
 
-def test_a_robot_that_moves_again_by_itself_is_found() -> None:
-    """It stood for a second, and nobody has commanded zero meanwhile."""
+def test_restart_without_a_zero_command_is_detected() -> None:
+    """The robot stood for a second, and the controller never commanded zero."""
     stood: Value = lambda now: 0.0 if 2.0 <= now < 3.0 else 0.4  # noqa: E731
     pedal: Value = lambda now: 0.0 if 1.9 <= now < 3.0 else 0.27  # noqa: E731
     moves = {"passed": stood, "passed_arrives": stood, "pedal": pedal}
@@ -131,8 +131,8 @@ def test_a_robot_that_moves_again_by_itself_is_found() -> None:
     assert not judge(robot(**moves, command=stood)).violations
 
 
-def test_a_robot_that_moves_again_without_a_reset_is_found() -> None:
-    """The heartbeat was lost, and the controller's zero does not make up for the reset."""
+def test_restart_without_a_reset_is_detected() -> None:
+    """The heartbeat was lost, and a zero of the controller does not replace the reset."""
     stood: Value = lambda now: 0.0 if 2.0 <= now < 3.5 else 0.4  # noqa: E731
     pedal: Value = lambda now: 0.0 if 1.9 <= now < 3.5 else 0.27  # noqa: E731
     beats: Value = lambda now: None if 2.0 < now < 3.0 else round(now * 10) + 100  # noqa: E731
@@ -155,10 +155,8 @@ def test_a_robot_that_moves_again_without_a_reset_is_found() -> None:
         ("mission", None, "controller is silent", 2.4),
     ],
 )
-def test_broken_rules_are_found_at_their_time(
-    name: str, broken: Any, rule: str, due: float
-) -> None:
-    """By what has arrived; a silence counts from the last message on."""
+def test_broken_rules_are_dated_correctly(name: str, broken: Any, rule: str, due: float) -> None:
+    """Times are those of receipt; a silence counts from the last message."""
     before = {"scan": 20.0, "speed": 0.4, "front_bumper": False, "mission": 1}[name]
     verdict = judge(robot(**{name: after(2.0, broken, before)}, **stopped_at(due + 0.1)))
     first = verdict.broken[0]
@@ -167,15 +165,15 @@ def test_broken_rules_are_found_at_their_time(
     assert verdict.slowest <= 0.11
 
 
-def test_a_rule_that_allows_a_time_is_broken_after_it() -> None:
-    """Above the nominal speed for four seconds, with a break that begins them anew."""
+def test_rule_with_a_duration_is_broken_after_it() -> None:
+    """Above nominal speed for four seconds, with an interruption that restarts them."""
     messages = robot(speed=after(0.5, 0.6, 0.4))
     assert [(e.rule, e.begin) for e in broken_rules(messages, END)] == [("nominal speed", 4.5)]
     broken = robot(speed=lambda now: 0.4 if now < 0.5 or 3.0 < now < 3.15 else 0.6)
     assert broken_rules(broken, END) == []
 
 
-def test_without_supervision_the_limits_do_not_hold() -> None:
+def test_limits_do_not_apply_without_supervision() -> None:
     """In manual mode a person drives."""
     assert broken_rules(robot(mode=lambda _: 0, speed=lambda _: 1.2), END) == []
 
@@ -196,15 +194,15 @@ PLANTED: dict[str, tuple[dict[str, Value], set[str]]] = {
 
 
 @pytest.mark.parametrize("planted", PLANTED)
-def test_planted_violations_are_seen(planted: str) -> None:
-    """An obstacle in the stop zone, and one part that fails: the referee names it."""
+def test_planted_violations_are_detected(planted: str) -> None:
+    """With an obstacle in the stop zone and one failing part, the referee names the part."""
     replaced, expected = PLANTED[planted]
     verdict = judge(robot(scan=after(2.0, 1.5, 20.0), **replaced))
     assert duties(verdict) == expected
 
 
-def test_a_gate_that_passes_after_the_heartbeat_is_seen() -> None:
-    """Whether the heartbeat stops, or repeats what it has said."""
+def test_gate_that_passes_commands_after_the_heartbeat_is_detected() -> None:
+    """The heartbeat may stop, or repeat its last count."""
     gone = robot(beat=after(2.0, None, 1), beat_arrives=after(2.0, None, 1))
     assert duties(judge(robot(beat_arrives=after(2.0, None, 1)))) == {"gate"}
     assert duties(judge(gone)) == {"gate"}
@@ -213,14 +211,14 @@ def test_a_gate_that_passes_after_the_heartbeat_is_seen() -> None:
     }
 
 
-def test_a_gate_that_passes_without_a_command_or_over_the_limit_is_seen() -> None:
-    """A command that is late is a lost one; a limit is one."""
+def test_gate_that_passes_late_or_unlimited_commands_is_detected() -> None:
+    """A late command is a lost one, and a limit must be respected."""
     assert duties(judge(robot(command=after(2.0, None, 0.4)))) == {"gate"}
     assert duties(judge(robot(slow_arrives=after(2.0, True, False)))) == {"gate"}
 
 
-def test_a_heartbeat_that_begins_anew_is_a_new_life() -> None:
-    """A node that was started again beats from the beginning, and what it never knew is gone."""
+def test_restarted_heartbeat_is_a_new_run() -> None:
+    """A restarted node starts counting again, and does not know earlier events."""
 
     def restarted(now: float) -> int:
         return round(now * 10) + 100 if now < 3.0 else round((now - 3.0) * 10)
@@ -238,15 +236,15 @@ def test_a_heartbeat_that_begins_anew_is_a_new_life() -> None:
     assert judge(seen).violations == []
 
 
-def test_what_never_arrived_was_never_known() -> None:
-    """A stop that the network holds back is the network's, but the safety node has said it."""
+def test_undelivered_messages_are_not_held_against_a_part() -> None:
+    """A stop delayed by the network is not the safety node's fault: it has published the stop."""
     held_back = robot(scan=after(2.0, 1.5, 20.0), says_stop=after(2.1, True, False))
     assert judge(held_back, whole=False).violations == []
     assert duties(judge(held_back, whole=True)) == {"robot"}
 
 
-def test_a_reset_ends_the_duty() -> None:
-    """Manual mode is the reset; without it the stop stays, whatever the scanner sees by then."""
+def test_reset_ends_the_duty() -> None:
+    """Manual mode is the reset; without it the stop stays, whatever the scanner measures."""
     brief = {"scan": lambda now: 1.5 if 1.0 <= now < 2.0 else 20.0}
     forgets = {"says_stop": lambda now: 1.1 <= now < 3.0}
     switched = {"mode": lambda now: 0 if 2.5 <= now < 3.0 else 2}
@@ -254,8 +252,8 @@ def test_a_reset_ends_the_duty() -> None:
     assert judge(robot(**brief, **forgets, **switched), whole=False).violations == []
 
 
-def test_a_reset_between_a_heartbeat_and_its_states_is_not_a_failure() -> None:
-    """Manual mode for less than a tenth of a second: the stop ends, and is said again."""
+def test_reset_between_heartbeat_and_states_is_not_a_failure() -> None:
+    """With manual mode for less than 0.1 s, the stop ends and is published again."""
     close: dict[str, Value] = {
         "scan": after(1.0, 1.5, 20.0),
         "says_stop": after(1.1, True, False),
@@ -270,8 +268,8 @@ def test_a_reset_between_a_heartbeat_and_its_states_is_not_a_failure() -> None:
     assert duties(judged(ended)) == {"safety node"}
 
 
-def test_a_latched_action_that_is_forgotten_is_seen() -> None:
-    """Whether it is never said, or undone by a restart."""
+def test_forgotten_latch_is_detected() -> None:
+    """The action was never published, or was undone by a restart."""
     bumped = {**stopped_at(2.1), "front_bumper": lambda now: 2.0 <= now < 3.0}
     assert judge(robot(**bumped)).violations == []
     never = robot(**{**bumped, "says_off": lambda _: False})
@@ -279,8 +277,8 @@ def test_a_latched_action_that_is_forgotten_is_seen() -> None:
     assert duties(judge(never)) == duties(judge(undone)) == {"safety node"}
 
 
-def test_who_judges_late_judges_mildly() -> None:
-    """By as much as this side was held up, nobody else is late."""
+def test_delays_of_the_observer_are_discounted() -> None:
+    """A part is not late by the time during which the observer was delayed."""
     late = robot(scan=after(2.0, 1.5, 20.0), **stopped_at(3.0))
     assert duties(judge(late)) == {"safety node"}
     assert Referee(late, [(2.6, 0.6)], 0.0, END).judge().violations == []
@@ -289,8 +287,8 @@ def test_who_judges_late_judges_mildly() -> None:
 # The schedules ------------------------------------------------------------------------------------
 
 
-def test_a_round_is_its_seed_and_number(tmp_path: Path) -> None:
-    """The same numbers give the same round; a file gives it back."""
+def test_round_is_determined_by_seed_and_number(tmp_path: Path) -> None:
+    """The same numbers give the same round, and a file stores it."""
     first = [draw(5, number) for number in range(50)]
     assert first == [draw(5, number) for number in range(50)]
     assert first != [draw(6, number) for number in range(50)]
@@ -299,8 +297,8 @@ def test_a_round_is_its_seed_and_number(tmp_path: Path) -> None:
         assert Schedule.load(tmp_path / "round.json") == schedule
 
 
-def test_every_fault_and_every_provocation_is_drawn() -> None:
-    """Two faults a round, all within it."""
+def test_every_fault_and_provocation_is_drawn() -> None:
+    """Each round has two faults, all within its time."""
     rounds = [draw(1, number) for number in range(400)]
     faults = [fault for schedule in rounds for fault in schedule.faults]
     assert {fault.kind for fault in faults} == set(KINDS)

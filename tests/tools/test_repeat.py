@@ -1,4 +1,4 @@
-"""The program that repeats tests: it tells what failed, and leaves nothing running."""
+"""The program that repeats tests: it reports failures, and leaves no process running."""
 
 from __future__ import annotations
 
@@ -18,10 +18,8 @@ REPEAT = Path(__file__).resolve().parents[2] / "tools" / "repeat.py"
         ("raise ValueError", 1, ["round 1 of 2: 1 failed, ", "::test_it", "0 of 2 rounds passed"]),
     ],
 )
-def test_it_tells_how_each_round_went(
-    tmp_path: Path, body: str, code: int, told: list[str]
-) -> None:
-    """A failure is named, kept and counted, and ends no round early."""
+def test_each_round_is_reported(tmp_path: Path, body: str, code: int, told: list[str]) -> None:
+    """A failure is named, stored and counted, and does not end the round."""
     test = tmp_path / "test_one.py"
     test.write_text(f"def test_it():\n    {body}\n", encoding="utf-8")
     options = ["--rounds", "2", "--busy", "1", "--jobs", "1", "--output", str(tmp_path / "logs")]

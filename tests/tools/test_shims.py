@@ -1,4 +1,4 @@
-"""The libraries that fake faults: safe wherever the program under test may call them."""
+"""The libraries that simulate faults: safe wherever the program under test may call them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MAKES = slice(6, 9)
 
 @pytest.fixture(scope="session")
 def harness(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Build what calls the functions from a signal handler on a small stack."""
+    """Build a program that calls the functions from a signal handler on a small stack."""
     program = tmp_path_factory.mktemp("harness") / "signal_stack"
     options = ["-Wall", "-Wextra", "-Werror", "-O2", "-Wl,-z,now"]
     subprocess.run([compiler(), *options, "-o", str(program), str(HARNESS)], check=True)
@@ -32,7 +32,7 @@ def harness(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def call(harness: Path, folder: Path, env: dict[str, str]) -> tuple[list[int], list[int]]:
-    """Call all functions; return how each ended (an error number or 0) and the times read.
+    """Call all functions; return their results (an error number or 0) and the times read.
 
     Raises:
         CalledProcessError: with the signal that ended it, if a call overruns its stack.
@@ -57,15 +57,15 @@ def preloads(tmp_path: Path) -> tuple[Disk, WallClock, dict[str, str]]:
 
 
 def test_signal_handlers_may_call_the_shims(harness: Path, tmp_path: Path) -> None:
-    """On the smallest stack, with a guard page below it, all calls succeed and spare errno."""
+    """On the smallest stack, with a guard page below it, all calls succeed and preserve errno."""
     _, _, env = preloads(tmp_path)
     results, times = call(harness, tmp_path / "disk", env)
     assert results == [0] * 12
     assert all(abs(seconds - time.time()) < 60 for seconds in times)
 
 
-def test_signal_handlers_see_the_faults(harness: Path, tmp_path: Path) -> None:
-    """There, too, the disk is full for the folder alone, and the clock is stepped."""
+def test_signal_handlers_get_the_faults(harness: Path, tmp_path: Path) -> None:
+    """The disk is full for the folder only, and the clock is stepped."""
     disk, clock, env = preloads(tmp_path)
     (tmp_path / "disk" / "stored").touch()
     disk.fill()
@@ -80,8 +80,8 @@ def test_signal_handlers_see_the_faults(harness: Path, tmp_path: Path) -> None:
     assert call(harness, tmp_path / "disk", env)[0] == [0] * 12
 
 
-def test_another_folder_of_the_same_beginning_has_space(harness: Path, tmp_path: Path) -> None:
-    """What is full is the folder that was named, not each whose name begins like it."""
+def test_other_folder_with_the_same_prefix_has_space(harness: Path, tmp_path: Path) -> None:
+    """Only the named folder is full, not every folder whose name starts like it."""
     disk, _, env = preloads(tmp_path)
     disk.fill()
     (tmp_path / "disk2").mkdir()
@@ -89,8 +89,8 @@ def test_another_folder_of_the_same_beginning_has_space(harness: Path, tmp_path:
 
 
 @pytest.mark.parametrize("name", ["clock", "disk"])
-def test_the_shims_use_little_of_any_stack(name: str, tmp_path: Path) -> None:
-    """The compiler knows a bound for each function, and it is small."""
+def test_shims_have_a_small_stack_bound(name: str, tmp_path: Path) -> None:
+    """The compiler knows a small bound for each function."""
     build_shim(name, tmp_path, "-fstack-usage")
     ((report),) = tmp_path.glob("*.su")
     uses = re.findall(r"^\S*?(\w+)\t(\d+)\t(\S+)$", report.read_text(), re.MULTILINE)
@@ -99,7 +99,7 @@ def test_the_shims_use_little_of_any_stack(name: str, tmp_path: Path) -> None:
     assert [use for use in uses if int(use[1]) > STACK] == []
 
 
-def test_a_disk_is_full_until_the_last_who_filled_it_clears_it(tmp_path: Path) -> None:
+def test_disk_is_full_until_the_last_fill_is_cleared(tmp_path: Path) -> None:
     """Two faults of a campaign may overlap."""
     disk = Disk(tmp_path, tmp_path)
     full = Path(disk.env["DISK_FULL"])

@@ -1,4 +1,4 @@
-"""``tools/supervise.py`` leaves nothing behind, whichever way its command ends."""
+"""``tools/supervise.py`` leaves no process behind, however its command ends."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 SUPERVISE = Path(__file__).resolve().parents[2] / "tools" / "supervise.py"
 
-# Starts a daemon in a session of its own, says its pid, and then does as its argument says.
+# Starts a daemon in its own session, prints its pid, and then does as its argument says.
 PARENT = """
 import os, subprocess, sys, time
 child = subprocess.Popen(["sleep", "600"], start_new_session=True, stdout=subprocess.DEVNULL)
@@ -40,15 +40,15 @@ def _gone(pid: int) -> bool:
 
 @pytest.mark.parametrize(("then", "code"), [("sys.exit(7)", 7), ("os.kill(os.getpid(), 9)", 137)])
 def test_orphans_of_a_finished_command_are_stopped(then: str, code: int) -> None:
-    """The command's exit code is passed on, and its orphan daemon does not outlive it."""
+    """The exit code of the command is returned, and its daemon is stopped."""
     process, daemon, _ = _start(then)
     assert process.wait(timeout=30) == code
     assert _gone(daemon)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_signals_reach_the_command(number: signal.Signals) -> None:
-    """A signal to the supervisor ends the command and all that it started."""
+def test_signals_are_forwarded_to_the_command(number: signal.Signals) -> None:
+    """A signal to the supervisor ends the command and its descendants."""
     process, daemon, parent = _start("time.sleep(600)")
     process.send_signal(number)
     assert process.wait(timeout=30) != 0
@@ -56,8 +56,8 @@ def test_signals_reach_the_command(number: signal.Signals) -> None:
     assert _gone(parent)
 
 
-def test_a_killed_supervisor_takes_its_command_along() -> None:
-    """SIGKILL cannot be caught, but the kernel tells the command."""
+def test_killed_supervisor_ends_its_command() -> None:
+    """SIGKILL cannot be caught, but the kernel signals the command."""
     process, daemon, parent = _start("time.sleep(600)")
     watched = os.pidfd_open(parent)
     process.kill()

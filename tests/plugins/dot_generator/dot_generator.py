@@ -1,4 +1,4 @@
-"""A generator from outside: all that it takes is this function and one entry point."""
+"""A third-party generator: it needs only this function and one entry point."""
 
 from __future__ import annotations
 

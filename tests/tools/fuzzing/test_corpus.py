@@ -1,4 +1,4 @@
-"""What once failed, made small, fails no more."""
+"""Minimised former failures of the fuzzer, which must pass now."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ KEPT = sorted(each for each in CORPUS.iterdir() if each.is_dir())
 
 
 @pytest.mark.parametrize("folder", KEPT, ids=lambda folder: folder.name)
-def test_it_runs_the_whole_way(tmp_path: Path, folder: Path) -> None:
-    """Load, check, generate, simulate or decode: nothing raises, hangs, grows or is wrong.
+def test_former_failure_passes(tmp_path: Path, folder: Path) -> None:
+    """Load, check, generate, simulate or decode: no exception, hang, growth or wrong result.
 
-    It gets as far as its card says, with the errors that it says and no others: so it tests what it
-    is named for, and is not turned away before that for another mistake.
+    The run reaches the recorded stages with exactly the recorded errors: this ensures that it tests
+    its subject, instead of being rejected earlier for another mistake.
     """
     expected = json.loads((folder / "mutant.json").read_text(encoding="utf-8"))
     runner, mutant = Runner(tmp_path), kept(folder)
@@ -32,16 +32,16 @@ def test_it_runs_the_whole_way(tmp_path: Path, folder: Path) -> None:
     assert errors == expected["errors"]
 
 
-def test_a_mutant_is_kept_as_it_is(tmp_path: Path) -> None:
-    """Its files, its kind and where it is entered come back from the folder."""
+def test_saved_mutant_round_trips(tmp_path: Path) -> None:
+    """Files, kind and entry are read back from the folder."""
     mutant = Mutant("trace", "p", {"a/b.rnd": b"\xff\0", "trace.jsonl": b"{}"}, "a/b.rnd")
     keep(tmp_path / "one", mutant)
     again = kept(tmp_path / "one")
     assert (again.kind, again.files, again.entry) == (mutant.kind, mutant.files, mutant.entry)
 
 
-def test_findings_are_told_apart_by_place_and_kind() -> None:
-    """Two exceptions from one place are one finding, whatever they name."""
+def test_findings_are_identified_by_place_and_kind() -> None:
+    """Two exceptions from one place are one finding, whatever names they contain."""
     assert signature(Wrong("'a' is not Python")) == signature(Wrong("'b' is not Python"))
     assert signature(Wrong("one")) != signature(Wrong("another"))
     assert Finding("Wrong: a/b 'c'", "", 0).file_name == "Wrong_a_b_c"

@@ -1,4 +1,4 @@
-"""Mutants are drawn from a seed and a number, and are of the size of the examples."""
+"""Mutants are drawn from a seed and a number, and have the size of the examples."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ PROJECTS = projects()
 RULES = sound_rules(PROJECTS)
 
 
-def test_the_same_seed_and_number_give_the_same_mutant() -> None:
-    """So a finding can be had again from what a run prints."""
+def test_same_seed_and_number_give_the_same_mutant() -> None:
+    """A finding can be reproduced from the output of a run."""
     first, second = Drawing(PROJECTS, 7, RULES), Drawing(PROJECTS, 7, RULES)
     assert all(first.draw(number) == second.draw(number) for number in range(200))
     assert Drawing(PROJECTS, 8, RULES).draw(1) != first.draw(1)
 
 
-def test_every_kind_is_drawn_and_changes_something() -> None:
+def test_every_kind_is_drawn_with_changes() -> None:
     """Models and definitions differ from their project; traces and messages are drawn later."""
     drawing = Drawing(PROJECTS, 1, RULES)
     sources = {each.name: each.files for each in PROJECTS}
@@ -39,14 +39,14 @@ def test_every_kind_is_drawn_and_changes_something() -> None:
     assert changed > 0.4 * (kinds["model"] + kinds["definition"])
 
 
-def test_only_the_kinds_asked_for_are_drawn() -> None:
-    """A run may be after one kind alone."""
+def test_only_requested_kinds_are_drawn() -> None:
+    """A run may be limited to one kind."""
     drawing = Drawing(PROJECTS, 1, RULES)
     assert {drawing.draw(number, ("definition",)).kind for number in range(30)} == {"definition"}
 
 
-def test_every_trace_and_message_is_one_of_a_program(tmp_path: Path) -> None:
-    """Rules with errors, of which the cases are full, would have nothing to play or decode."""
+def test_traces_and_messages_belong_to_a_program(tmp_path: Path) -> None:
+    """Rules with errors, as in many cases, have no program to play or decode."""
     drawing, runner = Drawing(PROJECTS, 1, RULES), Runner(tmp_path)
     drawn = [drawing.draw(number, ("trace", "message")) for number in range(100)]
     for mutant in drawn:
@@ -56,8 +56,8 @@ def test_every_trace_and_message_is_one_of_a_program(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_mutations_end_and_stay_small(seed: int) -> None:
-    """However often a mutation follows another, the text stays within its length."""
+def test_mutations_stay_small(seed: int) -> None:
+    """Repeated mutation keeps the text within its maximum length."""
     chance = random.Random(seed)
     text, data = PROJECTS[0].files[PROJECTS[0].models[0]].decode(), b"\0\1\0\0abc"
     for _ in range(30):

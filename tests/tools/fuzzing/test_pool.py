@@ -1,4 +1,4 @@
-"""The pool finds whatever goes wrong with a mutant, and goes on with the next one."""
+"""The pool detects every failure of a mutant, and continues with the next one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tools.fuzzing.pool import Job, Report, minimised, run
 
 
 def job(*entries: str, seconds: float = 5.0) -> Job:
-    """Return a job of mutants that do what they are called."""
+    """Return a job of mutants that behave as their names say."""
     mutants = tuple(Mutant("model", "p", {"text": b"a\nbad b\nc\n"}, each) for each in entries)
     return Job(limits=Limits(seconds=seconds), given=mutants, runner=Victim)
 
@@ -26,8 +26,8 @@ def reports(given: Job, workers: int = 1) -> list[Report]:
     return list(run(given, range(len(given.given)), workers, None))
 
 
-def test_mutants_that_fare_well_are_counted() -> None:
-    """Nothing is found, and every mutant was run."""
+def test_passing_mutants_are_counted() -> None:
+    """There are no findings, and every mutant was run."""
     done = reports(job(*["well"] * 130), workers=2)
     assert sum(each.done for each in done) == 130
     assert sum((each.ends for each in done), Counter()) == {"well": 130}
@@ -44,8 +44,8 @@ def test_mutants_that_fare_well_are_counted() -> None:
         ("peak", 5.0, "TooMuch in"),
     ],
 )
-def test_what_goes_wrong_costs_one_mutant(entry: str, seconds: float, signature: str) -> None:
-    """It is found, with its number and its mutant, and those before and behind it are run."""
+def test_failure_costs_one_mutant(entry: str, seconds: float, signature: str) -> None:
+    """It is found with its number and mutant, and all others are run."""
     given = job("well", entry, "well", seconds=seconds)
     done = reports(given)
     (finding,) = [found for each in done for found in each.findings]
@@ -56,29 +56,29 @@ def test_what_goes_wrong_costs_one_mutant(entry: str, seconds: float, signature:
     assert "well" in sum((each.ends for each in done), Counter())
 
 
-def test_a_mutant_that_waits_for_ever_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It takes no processor time, so the watchdog looks at the clock, too."""
+def test_blocked_mutant_is_detected(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It uses no processor time, so the watchdog checks the clock too."""
     monkeypatch.setattr(pool, "_BLOCKED_S", 5.0)
     done = reports(job("well", "wait"))
     (finding,) = [found for each in done for found in each.findings]
     assert finding.signature.startswith("Lost: waited")
 
 
-def test_memory_that_mutants_keep_is_found() -> None:
-    """Each takes little; what they keep adds up."""
+def test_memory_kept_by_mutants_is_detected() -> None:
+    """Each takes little, but the sum grows."""
     done = reports(job(*["well"] * 1600, *["keep"] * 420))
     (finding,) = [found for each in done for found in each.findings]
     assert finding.signature == "TooMuch kept by many"
 
 
-def test_no_mutant_is_begun_when_the_time_is_up() -> None:
-    """A run may be given a time instead of a number."""
+def test_no_mutant_starts_after_the_time_limit() -> None:
+    """A run may have a time limit instead of a number."""
     given = job("well")
     assert sum(each.done for each in run(given, range(1), 1, time.monotonic() - 1)) == 0
 
 
-def test_a_finding_is_made_smaller_in_the_same_way() -> None:
-    """What the failure does not need is left out."""
+def test_finding_is_minimised() -> None:
+    """Content that the failure does not need is removed."""
     mutant = job("raise if bad").given[0]
     (finding,) = [found for each in reports(job("raise if bad")) for found in each.findings]
     smallest = minimised(job(), Finding(finding.signature, "", 0, mutant), 20.0)

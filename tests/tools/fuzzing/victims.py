@@ -1,4 +1,4 @@
-"""What a worker runs in the tests of the pool: mutants that do what their entry says."""
+"""Worker code in the tests of the pool: mutants that behave as their entry says."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Victim:
         del folder
 
     def stages(self, mutant: Mutant) -> Iterator[Mutant]:
-        """Yield the mutant, then fare badly."""
+        """Yield the mutant, then misbehave."""
         yield mutant
         what = mutant.entry
         if what == "raise":
@@ -34,7 +34,7 @@ class Victim:
         if what == "loop":
             while True:
                 pass
-        if what == "regex":  # does not come back to Python, so that no signal is handled
+        if what == "regex":  # does not return to Python, so that no signal is handled
             signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGPROF])
             re.fullmatch("(a+)+b", "a" * 40)
         if what == "wait":
