@@ -207,7 +207,7 @@ def _commands(folder: Path) -> Iterator[tuple[str, ...]]:
     examples = folder / "examples"
     shutil.copytree(REPOSITORY / "examples", examples)
     yield "deros", "--version"
-    yield "deros", "explain", "no-timeout"
+    yield "deros", "explain", "input-without-timeout"
     yield "textx", "list-generators"
     for rules in sorted(examples.glob("*/*.deros")):
         yield "deros", "check", str(rules)

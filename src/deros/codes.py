@@ -2,8 +2,8 @@
 
 The hundreds name the family: 0 reading and syntax, 1 node descriptions, 2 system descriptions,
 3 safety rules, 4 generation, 5 traces. Every code has a page of its name under
-``docs/diagnostics/`` and a case under ``tests/cases/`` (generation and traces: a test); a code is
-never given a second meaning.
+``docs/diagnostics/`` and a case under ``tests/cases/`` (generation and traces: a test). The meaning
+of a code never changes.
 """
 
 from __future__ import annotations
@@ -11,195 +11,336 @@ from __future__ import annotations
 from deros.diagnostics import Code, Severity
 
 ALL_CODES: dict[str, Code] = {}
+"""The codes by name: ``DRS317``."""
+
+SLUGS: dict[str, Code] = {}
+"""The codes by slug: ``input-without-timeout``."""
 
 
 def _declare(
-    number: int, title: str, severity: Severity = Severity.ERROR, *, absence: bool = False
+    number: int,
+    slug: str,
+    title: str,
+    severity: Severity = Severity.ERROR,
+    *,
+    absence: bool = False,
 ) -> Code:
-    """Declare a code; ``absence`` says that its findings tell that something is missing."""
-    code = Code(f"DRS{number:03d}", title, severity, absence)
+    """Declare a code.
+
+    Args:
+        number: the digits of its name.
+        slug: its name in words, accepted wherever a code is.
+        title: what it reports, in a few words.
+        severity: the severity of its findings.
+        absence: whether its findings say that something is missing.
+    """
+    code = Code(f"DRS{number:03d}", slug, title, severity, absence)
     assert code.name not in ALL_CODES, f"{code.name} is declared twice"
-    ALL_CODES[code.name] = code
+    assert slug not in SLUGS, f"{slug} is declared twice"
+    ALL_CODES[code.name] = SLUGS[slug] = code
     return code
+
+
+def find(word: str) -> Code | None:
+    """Return the code with the name or the slug ``word``, exactly as declared, or ``None``."""
+    return ALL_CODES.get(word) or SLUGS.get(word)
 
 
 _W = Severity.WARNING
 _I = Severity.INFO
 
 # Reading and syntax
-UNREADABLE_FILE = _declare(1, "file cannot be read")
-NOT_UTF8 = _declare(2, "file is not UTF-8 text")
-SYNTAX_ERROR = _declare(3, "syntax error")
-NESTED_TOO_DEEPLY = _declare(4, "nested too deeply")
-UNKNOWN_LANGUAGE = _declare(5, "unknown kind of file")
-UNKNOWN_UNIT = _declare(6, "unknown unit")
-NAME_TOO_LONG = _declare(7, "name too long")
-FILE_TOO_LARGE = _declare(8, "file too large")
-FORBIDDEN_CHARACTER = _declare(9, "character that no text may hold")
-MORE_SYNTAX_ERRORS = _declare(10, "more syntax errors than are shown", _I)
+UNREADABLE_FILE = _declare(1, "unreadable-file", "file cannot be read")
+NOT_UTF8 = _declare(2, "not-utf8", "file is not UTF-8 text")
+SYNTAX_ERROR = _declare(3, "syntax-error", "syntax error")
+NESTED_TOO_DEEPLY = _declare(4, "nested-too-deeply", "nested too deeply")
+UNKNOWN_LANGUAGE = _declare(5, "unknown-language", "unknown kind of file")
+UNKNOWN_UNIT = _declare(6, "unknown-unit", "unknown unit")
+NAME_TOO_LONG = _declare(7, "name-too-long", "name too long")
+FILE_TOO_LARGE = _declare(8, "file-too-large", "file too large")
+FORBIDDEN_CHARACTER = _declare(9, "forbidden-character", "forbidden character")
+MORE_SYNTAX_ERRORS = _declare(10, "more-syntax-errors", "more syntax errors than are shown", _I)
 
 # Allowances and baselines
-BAD_ALLOWANCE = _declare(20, "allowance that cannot be read", _W)
-NOT_ALLOWABLE = _declare(21, "allowance of a finding that cannot be allowed", _W)
-UNUSED_ALLOWANCE = _declare(22, "allowance that is not needed", _W)
-ABSENT_FINDING = _declare(23, "finding of the baseline that does not occur any more", _I)
-UNUSABLE_BASELINE = _declare(24, "baseline that cannot be used")
+BAD_ALLOWANCE = _declare(20, "bad-allowance", "allowance that cannot be read", _W)
+NOT_ALLOWABLE = _declare(21, "not-allowable", "allowance of a finding that cannot be allowed", _W)
+UNUSED_ALLOWANCE = _declare(22, "unused-allowance", "allowance that is not needed", _W)
+ABSENT_FINDING = _declare(23, "absent-finding", "baseline finding that no longer occurs", _I)
+UNUSABLE_BASELINE = _declare(24, "unusable-baseline", "baseline that cannot be used")
 
 # Project files
-UNREADABLE_PROJECT = _declare(25, "project file that cannot be read")
-UNKNOWN_PROJECT_KEY = _declare(26, "unknown key in a project file", _W)
-BAD_PROJECT_VALUE = _declare(27, "value in a project file that does not fit")
+UNREADABLE_PROJECT = _declare(25, "unreadable-project", "project file that cannot be read")
+UNKNOWN_PROJECT_KEY = _declare(26, "unknown-project-key", "unknown key in a project file", _W)
+BAD_PROJECT_VALUE = _declare(27, "bad-project-value", "invalid value in a project file")
 
 # Files that models name
-NO_SUCH_FILE = _declare(28, "file named by a parameter that is not there", _W)
+NO_SUCH_FILE = _declare(28, "no-such-file", "parameter that names a file that does not exist", _W)
 
 # Node descriptions
-UNKNOWN_PACKAGE = _declare(101, "unknown interface package")
-UNKNOWN_TYPE = _declare(102, "unknown message, service or action type")
-WRONG_DEFAULT = _declare(103, "default does not fit the parameter's type")
-DUPLICATE_NAME = _declare(104, "name declared twice in a node description")
-INVALID_ROS_NAME = _declare(105, "name that ROS 2 refuses")
-DEFAULT_OUT_OF_RANGE = _declare(106, "default outside the parameter's own bounds")
-UNKNOWN_FIELD_OF_PORT = _declare(107, "unknown field in a port's units")
-UNKNOWN_VIA_PARAMETER = _declare(108, "port takes its name from an unknown parameter", absence=True)
-DUPLICATE_SECTION = _declare(109, "section given twice")
-BAD_CONSTRAINT = _declare(110, "constraint that does not fit the parameter's type")
-UNIT_CONFLICTS_WITH_REP103 = _declare(111, "unit of another dimension than REP 103 gives", _W)
-UNUSABLE_DEFINITION = _declare(112, "definition of an interface that cannot be used")
-IMPOSSIBLE_NUMBER = _declare(113, "number that the middleware cannot take")
-UNKNOWN_KEY_PARAMETER = _declare(114, "parameter for each entry of an unknown parameter")
-BAD_CUSTOM_FUNCTION = _declare(115, "custom constraint that names no function")
-NOT_A_PROGRAM_NAME = _declare(119, "executable that is not a plain file name")
-WIRED_APART = _declare(120, "ports of one name wired to different names")
-UNKNOWN_ENTRY = _declare(121, "parameter of an entry that its list lacks")
+UNKNOWN_PACKAGE = _declare(101, "unknown-package", "unknown interface package")
+UNKNOWN_TYPE = _declare(102, "unknown-type", "unknown message, service or action type")
+WRONG_DEFAULT = _declare(103, "wrong-default", "default does not fit the parameter's type")
+DUPLICATE_NAME = _declare(104, "duplicate-name", "name declared twice in a node description")
+INVALID_ROS_NAME = _declare(105, "invalid-ros-name", "name that ROS 2 rejects")
+DEFAULT_OUT_OF_RANGE = _declare(
+    106, "default-out-of-range", "default outside the parameter's own bounds"
+)
+UNKNOWN_FIELD_OF_PORT = _declare(107, "unknown-field-of-port", "unknown field in a port's units")
+UNKNOWN_VIA_PARAMETER = _declare(
+    108, "unknown-via-parameter", "port takes its name from an unknown parameter", absence=True
+)
+DUPLICATE_SECTION = _declare(109, "duplicate-section", "section given twice")
+BAD_CONSTRAINT = _declare(
+    110, "bad-constraint", "constraint that does not fit the parameter's type"
+)
+UNIT_CONFLICTS_WITH_REP103 = _declare(
+    111, "unit-conflicts-with-rep103", "unit of another dimension than in REP 103", _W
+)
+UNUSABLE_DEFINITION = _declare(
+    112, "unusable-definition", "definition of an interface that cannot be used"
+)
+IMPOSSIBLE_NUMBER = _declare(
+    113, "impossible-number", "number that the middleware cannot represent"
+)
+UNKNOWN_KEY_PARAMETER = _declare(
+    114, "unknown-key-parameter", "parameter for each entry of an unknown parameter"
+)
+BAD_CUSTOM_FUNCTION = _declare(
+    115, "bad-custom-function", "custom constraint that does not name a function"
+)
+NOT_A_PROGRAM_NAME = _declare(119, "not-a-program-name", "executable that is not a plain file name")
+WIRED_APART = _declare(120, "wired-apart", "ports of one name wired to different names")
+UNKNOWN_ENTRY = _declare(121, "unknown-entry", "parameter for an entry that is not in its list")
 
 # System descriptions
-UNKNOWN_IMPORT = _declare(201, "imported file not found")
-CYCLIC_IMPORT = _declare(202, "cyclic import")
-UNKNOWN_NODE_TYPE = _declare(203, "unknown node type", absence=True)
-UNKNOWN_PORT = _declare(204, "unknown port", absence=True)
-UNKNOWN_TOPIC = _declare(205, "unknown topic", absence=True)
-UNKNOWN_PARAMETER = _declare(206, "unknown parameter", absence=True)
-WRONG_PARAMETER_VALUE = _declare(207, "parameter value of the wrong type")
-TYPE_MISMATCH = _declare(208, "two ends of a topic with different types")
-PINNED_TYPE_VIOLATED = _declare(209, "pinned topic type violated")
-NO_PUBLISHER = _declare(210, "topic without publisher", _W, absence=True)
-NO_SUBSCRIBER = _declare(211, "topic without subscriber", _W, absence=True)
-UNUSED_TOPIC = _declare(212, "declared topic that nobody uses", _W, absence=True)
-UNWIRED_PORT = _declare(213, "port left unwired", _W, absence=True)
+UNKNOWN_IMPORT = _declare(201, "unknown-import", "imported file not found")
+CYCLIC_IMPORT = _declare(202, "cyclic-import", "cyclic import")
+UNKNOWN_NODE_TYPE = _declare(203, "unknown-node-type", "unknown node type", absence=True)
+UNKNOWN_PORT = _declare(204, "unknown-port", "unknown port", absence=True)
+UNKNOWN_TOPIC = _declare(205, "unknown-topic", "unknown topic", absence=True)
+UNKNOWN_PARAMETER = _declare(206, "unknown-parameter", "unknown parameter", absence=True)
+WRONG_PARAMETER_VALUE = _declare(207, "wrong-parameter-value", "parameter value of the wrong type")
+TYPE_MISMATCH = _declare(208, "type-mismatch", "two ends of a topic with different types")
+PINNED_TYPE_VIOLATED = _declare(209, "pinned-type-violated", "pinned topic type violated")
+NO_PUBLISHER = _declare(210, "no-publisher", "topic without a publisher", _W, absence=True)
+NO_SUBSCRIBER = _declare(211, "no-subscriber", "topic without a subscriber", _W, absence=True)
+UNUSED_TOPIC = _declare(212, "unused-topic", "declared topic that is not used", _W, absence=True)
+UNWIRED_PORT = _declare(213, "unwired-port", "port left unwired", _W, absence=True)
 LIKELY_MISSPELLING = _declare(
-    214, "topic names that probably mean the same topic", _W, absence=True
+    214, "likely-misspelling", "topic names that probably mean the same topic", _W, absence=True
 )
-DUPLICATE_NODE_NAME = _declare(215, "two nodes with one full name")
-TOPIC_PARAMETER_CONFLICT = _declare(216, "parameter contradicts the wiring made through it")
-UNTYPED_WIRING = _declare(217, "wiring through a parameter that no port claims", _I, absence=True)
-DUPLICATE_TOPIC = _declare(218, "topic declared twice")
-DUPLICATE_SETTING = _declare(219, "parameter set or port connected twice")
-UNKNOWN_SYSTEM = _declare(220, "unknown system", absence=True)
-PARAMETER_OUT_OF_RANGE = _declare(221, "parameter value outside the declared bounds")
-UNUSED_IMPORT = _declare(222, "import that nothing uses", _W, absence=True)
-INVALID_SYSTEM_NAME = _declare(223, "name in a system that ROS 2 refuses")
-AMBIGUOUS_NODE_TYPE = _declare(224, "node type name that two imported files define")
-SERVICE_WITHOUT_SERVER = _declare(225, "service or action without a server", _W, absence=True)
-DUPLICATE_SUBSYSTEM = _declare(226, "two subsystems with one name in one place")
-PARAMETER_WITHOUT_VALUE = _declare(227, "parameter without default and without value", absence=True)
-INCOMPATIBLE_QOS = _declare(228, "two ends whose QoS does not match")
-UNCERTAIN_QOS = _declare(229, "two ends whose QoS may not match", _W)
-PINNED_QOS_VIOLATED = _declare(230, "pinned QoS violated")
-EMPTY_PIN = _declare(231, "QoS of a topic that pins nothing")
-STANDARD_TOPIC_TYPE = _declare(232, "standard topic with another type than everywhere else")
-QOS_OVERRIDE_UNREAD = _declare(233, "override of a QoS that the node does not read", _W)
-RULES_DO_NOT_USE_SYSTEM = _declare(236, "safety statement for rules that use another system")
-CONNECTED_BY_RULES = _declare(237, "connection that the rules of a safety statement make")
-RULES_RUN_TWICE = _declare(238, "rules whose nodes are started twice")
+DUPLICATE_NODE_NAME = _declare(215, "duplicate-node-name", "two nodes with one full name")
+TOPIC_PARAMETER_CONFLICT = _declare(
+    216, "topic-parameter-conflict", "parameter contradicts the wiring made through it"
+)
+UNTYPED_WIRING = _declare(
+    217, "untyped-wiring", "wiring through a parameter that belongs to no port", _I, absence=True
+)
+DUPLICATE_TOPIC = _declare(218, "duplicate-topic", "topic declared twice")
+DUPLICATE_SETTING = _declare(219, "duplicate-setting", "parameter set or port connected twice")
+UNKNOWN_SYSTEM = _declare(220, "unknown-system", "unknown system", absence=True)
+PARAMETER_OUT_OF_RANGE = _declare(
+    221, "parameter-out-of-range", "parameter value outside the declared bounds"
+)
+UNUSED_IMPORT = _declare(222, "unused-import", "unused import", _W, absence=True)
+INVALID_SYSTEM_NAME = _declare(223, "invalid-system-name", "name in a system that ROS 2 rejects")
+AMBIGUOUS_NODE_TYPE = _declare(
+    224, "ambiguous-node-type", "node type name that two imported files define"
+)
+SERVICE_WITHOUT_SERVER = _declare(
+    225, "service-without-server", "service or action without a server", _W, absence=True
+)
+DUPLICATE_SUBSYSTEM = _declare(
+    226, "duplicate-subsystem", "two subsystems with one name in one place"
+)
+PARAMETER_WITHOUT_VALUE = _declare(
+    227, "parameter-without-value", "parameter without default and without value", absence=True
+)
+INCOMPATIBLE_QOS = _declare(228, "incompatible-qos", "two ends whose QoS does not match")
+UNCERTAIN_QOS = _declare(229, "uncertain-qos", "two ends whose QoS may not match", _W)
+PINNED_QOS_VIOLATED = _declare(230, "pinned-qos-violated", "pinned QoS violated")
+EMPTY_QOS_PIN = _declare(231, "empty-qos-pin", "QoS of a topic that pins nothing")
+STANDARD_TOPIC_TYPE = _declare(232, "standard-topic-type", "standard topic with an unusual type")
+QOS_OVERRIDE_UNREAD = _declare(
+    233, "qos-override-unread", "QoS override that the node does not read", _W
+)
+RULES_DO_NOT_USE_SYSTEM = _declare(
+    236, "rules-do-not-use-system", "safety statement for rules that use another system"
+)
+CONNECTED_BY_RULES = _declare(
+    237, "connected-by-rules", "connection that a safety statement already makes"
+)
+RULES_RUN_TWICE = _declare(238, "rules-run-twice", "rules whose nodes are started twice")
 RULES_NOT_LOADED = _declare(
-    239, "safety node wired by hand, and checked without its rules", _W, absence=True
+    239, "rules-not-loaded", "hand-wired safety node checked without its rules", _W, absence=True
 )
-LIKELY_CROSSED = _declare(240, "two connections that have probably been exchanged", _W)
+LIKELY_SWAPPED = _declare(240, "likely-swapped", "two connections that are probably swapped", _W)
 
 # Safety rules
-RULE_TOPIC_NOT_IN_SYSTEM = _declare(301, "topic of the rules that the system lacks", absence=True)
-UNKNOWN_FIELD = _declare(302, "unknown message field")
-NOT_A_NUMBER_FIELD = _declare(303, "field that is no number where one is needed")
-WRONG_FUNCTION_ARGUMENT = _declare(304, "function on the wrong type")
-UNKNOWN_FUNCTION = _declare(305, "unknown function", absence=True)
-INCOMPATIBLE_UNITS = _declare(306, "incompatible units")
-EMPTY_INTERVAL = _declare(307, "empty or reversed interval")
-NEVER_TRUE = _declare(308, "comparison that can never be true", _W)
-ALWAYS_TRUE = _declare(309, "comparison that is always true", _W)
-UNKNOWN_NAME = _declare(310, "unknown name", absence=True)
-DUPLICATE_RULE_NAME = _declare(311, "name declared twice in the rules")
-UNKNOWN_RESET = _declare(312, "reset_by names no action", absence=True)
-UNUSED_CONSTANT = _declare(313, "unused constant", _W, absence=True)
-UNUSED_INPUT = _declare(314, "unused input", _W, absence=True)
-UNUSED_RULE = _declare(315, "unused rule", _W, absence=True)
-UNUSED_ACTION = _declare(316, "unused action", _W, absence=True)
-NO_TIMEOUT = _declare(317, "rule on an input without a timeout", _W, absence=True)
-RULE_TOPIC_NOT_PUBLISHED = _declare(318, "topic of the rules that nobody publishes", absence=True)
-MISSING_NEEDS_TIMEOUT = _declare(319, "silence of an input without a timeout", absence=True)
-AGE_NOT_CONSTANT = _declare(320, "age() compared with something that is no constant")
-UNKNOWN_USED_SYSTEM = _declare(321, "use of a system that is not there", absence=True)
-LATCHED_AND_RESET_BY = _declare(322, "action both latched and reset_by")
-BAD_DURATION = _declare(323, "duration that is negative or finer than a nanosecond")
-WRONG_OPERAND = _declare(324, "operands that cannot be compared")
-RESET_WITHOUT_TRIGGER = _declare(325, "action that a reset can never follow", _W, absence=True)
-WRONG_ACTION_ARGUMENTS = _declare(326, "wrong number of arguments for an action")
-ACTION_TYPE_MISMATCH = _declare(327, "action publishes another type than its topic has")
-RULE_TYPE_UNKNOWN = _declare(328, "topic whose type the system does not tell", absence=True)
-ACTION_VALUE = _declare(329, "value that the action's message cannot carry")
-EXACT_FLOAT_COMPARISON = _declare(330, "exact comparison of a floating-point value", _W)
-ACTION_TOPIC_NOT_IN_SYSTEM = _declare(
-    331, "topic of an action that nobody in the system reads", _W, absence=True
+RULE_TOPIC_NOT_IN_SYSTEM = _declare(
+    301, "rule-topic-not-in-system", "topic of the rules that is not in the system", absence=True
 )
-INVALID_RULES_NAME = _declare(332, "name in the rules that a target refuses")
-ACTIVE_EQUALS_INACTIVE = _declare(333, "action whose active and inactive messages are equal", _W)
-GATE_WITHOUT_NUMBERS = _declare(334, "gate for messages without a number")
-GATE_LOOP = _declare(335, "gate that publishes what it reads")
-GATE_RATE = _declare(336, "rate that a gate does not have")
-GATE_LIMIT = _declare(337, "limit that a gate cannot keep")
-GATE_ACTION = _declare(338, "gate on an action that publishes no state")
-GATE_BYPASSED = _declare(339, "publisher wired past a gate")
-GATE_NOT_IN_SYSTEM = _declare(340, "gate that the system lacks", absence=True)
-GATE_UNREAD = _declare(341, "gate whose commands nobody in the system reads", _W, absence=True)
-GATE_LIMIT_OVERRIDES_ZERO = _declare(342, "limit that goes before the zero of an action", _W)
-GATE_WITHOUT_HEARTBEAT = _declare(343, "gate that does not watch the heartbeat", _W, absence=True)
-GATE_WITHOUT_INPUT = _declare(344, "gate that does not watch its input", _W, absence=True)
-GATE_HEARTBEAT_TOO_SHORT = _declare(345, "heartbeat given up sooner than it can be trusted", _W)
-STATE_PUBLISHED_TWICE = _declare(346, "state of an action that two nodes publish")
-HEARTBEAT_PUBLISHED_TWICE = _declare(347, "heartbeat that two nodes publish")
-UNNOTICED_UNKNOWN = _declare(348, "rule on a value whose loss nothing notices", _W, absence=True)
-UNASKED_TIMEOUT = _declare(349, "timeout that no rule asks for", _W, absence=True)
-FAILSAFE_NEGATED = _declare(350, "failsafe rule under not", _W)
-FAILSAFE_WITHOUT_EFFECT = _declare(351, "failsafe rule that is never unknown", _W)
-SAFETY_DESCRIPTION_DIFFERS = _declare(353, "description of a safety node that is not of its rules")
-SAFETY_CONNECTED_ELSEWHERE = _declare(354, "safety node connected otherwise than its rules say")
-SAFETY_NOT_GENERATED = _declare(355, "safety node that has not been generated yet")
-GATE_RESUMES_BY_ITSELF = _declare(357, "gate that lets the robot go on by itself", _I)
-GATE_LIMIT_UNTIL_RESET = _declare(358, "limit that is to last until a reset")
-GATE_LIMIT_TO_ZERO = _declare(359, "limit that leaves a gate nothing but zero", _I)
-TIMEOUT_TOO_SHORT = _declare(363, "timeout shorter than a safety node's periods", _W)
-SUSPECT_BEARING = _declare(364, "bearing that is probably not what is meant", _W)
-SUSPECT_SECTOR = _declare(365, "sector that is probably not what is meant", _W)
-WRAPPING_NOT_AN_ANGLE = _declare(366, "field annotated as wrapping that is not an angle")
-RATE_OF_ARRIVALS = _declare(367, "rate that divides by the time between two arrivals", _W)
+UNKNOWN_FIELD = _declare(302, "unknown-field", "unknown message field")
+FIELD_NOT_NUMERIC = _declare(
+    303, "field-not-numeric", "field that is not a number where one is needed"
+)
+WRONG_FUNCTION_ARGUMENT = _declare(
+    304, "wrong-function-argument", "function applied to the wrong type"
+)
+UNKNOWN_FUNCTION = _declare(305, "unknown-function", "unknown function", absence=True)
+INCOMPATIBLE_UNITS = _declare(306, "incompatible-units", "incompatible units")
+EMPTY_INTERVAL = _declare(307, "empty-interval", "empty or reversed interval")
+NEVER_TRUE = _declare(308, "never-true", "comparison that can never be true", _W)
+ALWAYS_TRUE = _declare(309, "always-true", "comparison that is always true", _W)
+UNKNOWN_NAME = _declare(310, "unknown-name", "unknown name", absence=True)
+DUPLICATE_RULE_NAME = _declare(311, "duplicate-rule-name", "name declared twice in the rules")
+UNKNOWN_RESET = _declare(
+    312, "unknown-reset", "reset_by that does not name an action", absence=True
+)
+UNUSED_CONSTANT = _declare(313, "unused-constant", "unused constant", _W, absence=True)
+UNUSED_INPUT = _declare(314, "unused-input", "unused input", _W, absence=True)
+UNUSED_RULE = _declare(315, "unused-rule", "unused rule", _W, absence=True)
+UNUSED_ACTION = _declare(316, "unused-action", "unused action", _W, absence=True)
+INPUT_WITHOUT_TIMEOUT = _declare(
+    317, "input-without-timeout", "rule on an input without a timeout", _W, absence=True
+)
+RULE_TOPIC_NOT_PUBLISHED = _declare(
+    318, "rule-topic-not-published", "topic of the rules that no node publishes", absence=True
+)
+MISSING_NEEDS_TIMEOUT = _declare(
+    319, "missing-needs-timeout", "missing() on an input without a timeout", absence=True
+)
+AGE_NOT_CONSTANT = _declare(
+    320, "age-not-constant", "age() compared with a value that is not constant"
+)
+UNKNOWN_USED_SYSTEM = _declare(
+    321, "unknown-used-system", "use of a system that the file does not define", absence=True
+)
+LATCHED_AND_RESET_BY = _declare(322, "latched-and-reset-by", "action both latched and reset_by")
+BAD_DURATION = _declare(323, "bad-duration", "duration that is negative or finer than a nanosecond")
+WRONG_OPERAND = _declare(324, "wrong-operand", "operands that cannot be compared")
+RESET_WITHOUT_TRIGGER = _declare(
+    325, "reset-without-trigger", "action whose reset is never triggered", _W, absence=True
+)
+WRONG_ACTION_ARGUMENTS = _declare(
+    326, "wrong-action-arguments", "wrong number of arguments for an action"
+)
+ACTION_TYPE_MISMATCH = _declare(
+    327, "action-type-mismatch", "action publishes another type than its topic has"
+)
+RULE_TYPE_UNKNOWN = _declare(
+    328, "rule-type-unknown", "topic of unknown type in the rules", absence=True
+)
+ACTION_VALUE = _declare(329, "action-value", "value that does not fit the message of an action")
+EXACT_FLOAT_COMPARISON = _declare(
+    330, "exact-float-comparison", "exact comparison of a floating-point value", _W
+)
+ACTION_TOPIC_NOT_IN_SYSTEM = _declare(
+    331,
+    "action-topic-not-in-system",
+    "topic of an action that no node in the system reads",
+    _W,
+    absence=True,
+)
+INVALID_RULES_NAME = _declare(332, "invalid-rules-name", "name in the rules that a target rejects")
+ACTIVE_EQUALS_INACTIVE = _declare(
+    333, "active-equals-inactive", "action whose active and inactive messages are equal", _W
+)
+GATE_WITHOUT_NUMBERS = _declare(334, "gate-without-numbers", "gate for messages without a number")
+GATE_LOOP = _declare(335, "gate-loop", "gate that publishes the topic that it reads")
+GATE_RATE = _declare(336, "gate-rate", "gate rate outside the permitted range")
+GATE_LIMIT = _declare(337, "gate-limit", "limit that a gate cannot apply")
+GATE_ACTION = _declare(338, "gate-action", "gate on an action that publishes no state")
+GATE_BYPASSED = _declare(339, "gate-bypassed", "publisher wired past a gate")
+GATE_NOT_IN_SYSTEM = _declare(
+    340, "gate-not-in-system", "gate that is not in the system", absence=True
+)
+GATE_UNREAD = _declare(
+    341, "gate-unread", "gate whose commands no node in the system reads", _W, absence=True
+)
+GATE_LIMIT_OVERRIDES_ZERO = _declare(
+    342, "gate-limit-overrides-zero", "limit that takes precedence over the zero of an action", _W
+)
+GATE_WITHOUT_HEARTBEAT = _declare(
+    343, "gate-without-heartbeat", "gate that does not monitor the heartbeat", _W, absence=True
+)
+GATE_WITHOUT_INPUT = _declare(
+    344, "gate-without-input", "gate that does not monitor its input", _W, absence=True
+)
+HEARTBEAT_TIMEOUT_TOO_SHORT = _declare(
+    345, "heartbeat-timeout-too-short", "heartbeat timeout that is too short", _W
+)
+STATE_PUBLISHED_TWICE = _declare(
+    346, "state-published-twice", "state of an action that two nodes publish"
+)
+HEARTBEAT_PUBLISHED_TWICE = _declare(
+    347, "heartbeat-published-twice", "heartbeat that two nodes publish"
+)
+UNHANDLED_UNKNOWN = _declare(
+    348, "unhandled-unknown", "rule that may become unknown without any reaction", _W, absence=True
+)
+UNUSED_TIMEOUT = _declare(349, "unused-timeout", "timeout that no rule uses", _W, absence=True)
+FAILSAFE_NEGATED = _declare(350, "failsafe-negated", "failsafe rule under not", _W)
+FAILSAFE_WITHOUT_EFFECT = _declare(
+    351, "failsafe-without-effect", "failsafe rule that is never unknown", _W
+)
+SAFETY_DESCRIPTION_DIFFERS = _declare(
+    353, "safety-description-differs", "safety node description that differs from its rules"
+)
+SAFETY_CONNECTED_DIFFERENTLY = _declare(
+    354, "safety-connected-differently", "safety node connected differently from its rules"
+)
+SAFETY_NOT_GENERATED = _declare(
+    355, "safety-not-generated", "safety node that has not been generated yet"
+)
+GATE_RESUMES_BY_ITSELF = _declare(
+    357, "gate-resumes-by-itself", "gate that lets the robot resume by itself", _I
+)
+GATE_LIMIT_UNTIL_RESET = _declare(
+    358, "gate-limit-until-reset", "limit that would last until a reset"
+)
+GATE_LIMIT_TO_ZERO = _declare(
+    359, "gate-limit-to-zero", "limit that allows a gate nothing but zero", _I
+)
+TIMEOUT_TOO_SHORT = _declare(
+    363, "timeout-too-short", "timeout shorter than a safety node's periods", _W
+)
+SUSPECT_BEARING = _declare(364, "suspect-bearing", "bearing that is probably not intended", _W)
+SUSPECT_SECTOR = _declare(365, "suspect-sector", "sector that is probably not intended", _W)
+WRAPPING_NOT_AN_ANGLE = _declare(
+    366, "wrapping-not-an-angle", "field annotated as wrapping that is not an angle"
+)
+RATE_OF_ARRIVALS = _declare(367, "rate-of-arrivals", "rate computed from arrival times", _W)
 
 # Generation
-NAME_COLLISION = _declare(401, "two generated names collide")
-UNSUPPORTED_BY_TARGET = _declare(402, "construct that the target does not support")
-HAND_EDITED = _declare(403, "hand-edited file kept", _W)
-UNKNOWN_TARGET = _declare(404, "unknown generator")
-SHADOWED_MODULE = _declare(405, "name that hides a module or package that the output needs")
-OVERWRITES_OTHER = _declare(406, "file that another target or model has written")
-MISSING_METHOD = _declare(407, "method that code written by hand lacks", _W)
-UNKNOWN_METHOD = _declare(408, "name in code written by hand that the model no longer has", _W)
-MANIFEST_LACKS = _declare(409, "package.xml that lacks what the generated code needs", _W)
+NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")
+UNSUPPORTED_BY_TARGET = _declare(
+    402, "unsupported-by-target", "construct that the target does not support"
+)
+HAND_EDITED = _declare(403, "hand-edited", "hand-edited file kept", _W)
+UNKNOWN_TARGET = _declare(404, "unknown-target", "unknown generator")
+SHADOWED_MODULE = _declare(
+    405, "shadowed-module", "name that hides a module or package that the output needs"
+)
+OVERWRITES_OTHER = _declare(406, "overwrites-other", "file written by another target or model")
+MISSING_METHOD = _declare(407, "missing-method", "method missing in hand-written code", _W)
+UNKNOWN_METHOD = _declare(
+    408, "unknown-method", "name in hand-written code that is no longer in the model", _W
+)
+INCOMPLETE_MANIFEST = _declare(
+    409, "incomplete-manifest", "package.xml without a dependency of the generated code", _W
+)
 
 # Traces
-BAD_TRACE_LINE = _declare(501, "line of a trace that means nothing")
-BAD_TRACE_TIME = _declare(502, "time that a trace cannot have")
-UNKNOWN_TRACE_FIELD = _declare(503, "unknown field in a trace's message")
-WRONG_TRACE_VALUE = _declare(504, "value that the field of a trace's message cannot hold")
-UNREAD_TRACE_TOPIC = _declare(505, "topic of a trace that the rules do not read", _W)
+BAD_TRACE_LINE = _declare(501, "bad-trace-line", "line of a trace that cannot be interpreted")
+BAD_TRACE_TIME = _declare(502, "bad-trace-time", "invalid time in a trace")
+UNKNOWN_TRACE_FIELD = _declare(503, "unknown-trace-field", "unknown field in a trace's message")
+WRONG_TRACE_VALUE = _declare(
+    504, "wrong-trace-value", "value that does not fit its field in a trace"
+)
+UNREAD_TRACE_TOPIC = _declare(
+    505, "unread-trace-topic", "topic of a trace that the rules do not read", _W
+)
 
 MENDED_AFTER_GENERATION = frozenset(
     {GATE_BYPASSED, GATE_NOT_IN_SYSTEM, SAFETY_DESCRIPTION_DIFFERS, SAFETY_NOT_GENERATED}
@@ -212,10 +353,3 @@ OF_MODELS = frozenset(
     if not code.name.startswith(("DRS4", "DRS5")) and not "DRS020" <= code.name <= "DRS027"
 )
 """Findings about what a model says, not about generated files, traces or how deros is used."""
-
-SLUGS: dict[str, Code] = {
-    name.lower().replace("_", "-"): code
-    for name, code in list(globals().items())
-    if isinstance(code, Code)
-}
-"""The codes by a name that says what they are about: ``no-timeout`` is DRS317."""

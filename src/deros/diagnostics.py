@@ -35,17 +35,23 @@ class Code:
     """A kind of finding.
 
     Attributes:
-        name: its stable name, such as ``DRS201``.
-        title: what it is about, in a few words.
-        severity: how bad it is.
+        name: its stable name, ``DRS201``.
+        slug: its name in words, ``unknown-import``.
+        title: what it reports, in a few words.
+        severity: the severity of its findings.
         tells_absence: whether it says that something is missing, which may be in a statement that
             could not be read.
     """
 
     name: str
+    slug: str
     title: str
     severity: Severity
     tells_absence: bool = False
+
+    def __str__(self) -> str:
+        """Return name and slug, as users read it."""
+        return f"{self.name} {self.slug}"
 
 
 class SourceFile:

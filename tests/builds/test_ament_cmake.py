@@ -175,7 +175,7 @@ def test_model_error_fails_the_build(counted: Path, tool: str) -> None:
     for _ in range(2):
         failed = project.build()
         assert failed.returncode != 0
-        assert f"{model}:3:17: error[DRS102]" in failed.stdout
+        assert f"{model}:3:17: error[DRS102 unknown-type]" in failed.stdout
     replace(model, "std_msgs.Int23", "std_msgs.Int32")
     assert _told(project) == "2 ports\n"
     (counted / "src/tell.c").rename(counted / "src/other.c")
@@ -191,7 +191,7 @@ def test_model_error_fails_the_build(counted: Path, tool: str) -> None:
     [
         (_script("odometer"), "the generated package is odometry"),
         (_script("odometry", "python"), "generator python makes no CMake package"),
-        (_script("odometry", "nothing"), "error[DRS404]"),
+        (_script("odometry", "nothing"), "error[DRS404 unknown-target]"),
     ],
 )
 def test_invalid_package_is_rejected(counted: Path, script: str, complaint: str) -> None:

@@ -92,7 +92,7 @@ def test_model_error_fails_the_build_with_its_place(package: Path) -> None:
     replace(rules, "0.5 m/s", "0.5 kg")
     done = colcon(_workspace(package))
     assert done.returncode != 0
-    assert "models/robot.deros:13:27: error[DRS306]" in done.stdout
+    assert "models/robot.deros:13:27: error[DRS306 incompatible-units]" in done.stdout
     assert "Traceback" not in done.stdout
     assert not list(_workspace(package).glob("install/**/monitor.py"))
 

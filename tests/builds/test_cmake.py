@@ -106,7 +106,7 @@ def test_model_error_fails_the_build(folder: Path, tool: str) -> None:
     failed = project.build()
     assert failed.returncode != 0
     line = system.read_text().splitlines().index("    connect odmo to /odom") + 1
-    assert f"{system}:{line}:13: error[DRS204]" in failed.stdout
+    assert f"{system}:{line}:13: error[DRS204 unknown-port]" in failed.stdout
     assert "did you mean 'odom'?" in failed.stdout
     assert output.read_bytes() == before
     assert project.build().returncode != 0, "it fails until it is mended"
@@ -118,7 +118,7 @@ def test_project_with_a_faulty_model_can_be_configured(folder: Path, tool: str) 
     """The model is read during the build, where its errors are reported."""
     replace(folder / "my models/robot.system", "connect odom to", "connect odmo to")
     project = configured(folder, tool, SCRIPT)
-    assert "error[DRS204]" in project.build().stdout
+    assert "error[DRS204 unknown-port]" in project.build().stdout
 
 
 def test_options_and_message_definitions_are_inputs(folder: Path, tool: str) -> None:

@@ -200,7 +200,7 @@ def test_model_error_leaves_everything_unchanged(tmp_path: Path) -> None:
         *("--depfile", "depends.d", "--stamp", "stamp"),
     )
     assert outcome.code == 1
-    assert "robot.deros:13:27: error[DRS306]" in outcome.err
+    assert "robot.deros:13:27: error[DRS306 incompatible-units]" in outcome.err
     assert {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in before} == before
 
 

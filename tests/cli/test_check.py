@@ -45,7 +45,7 @@ def test_warnings_fail_only_with_strict() -> None:
     assert deros("check", "lonely.system").code == 0
     strict = deros("check", "--strict", "lonely.system")
     assert strict.code == 1
-    assert "warning[DRS212]" in strict.out
+    assert "warning[DRS212 unused-topic]" in strict.out
 
 
 def test_notes_never_fail() -> None:
@@ -56,7 +56,7 @@ def test_notes_never_fail() -> None:
         "node old : old wirings connect topic_id to /x\n"
     )
     outcome = deros("check", "--strict", "remark.system")
-    assert "info[DRS217]" in outcome.out
+    assert "info[DRS217 untyped-wiring]" in outcome.out
     assert outcome.code == 0
 
 
@@ -75,7 +75,7 @@ def test_other_files_are_checked_despite_an_unreadable_one() -> None:
     """One unreadable file does not hide findings of the others."""
     outcome = deros("check", "nowhere.rnd", "bad.rnd")
     assert outcome.code == 2
-    assert "bad.rnd:3:21: error[DRS103]" in outcome.out
+    assert "bad.rnd:3:21: error[DRS103 wrong-default]" in outcome.out
 
 
 def test_file_given_twice_is_checked_once() -> None:

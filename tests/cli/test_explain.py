@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from deros import codes
 from deros.cli import explain
 from deros.codes import ALL_CODES, SLUGS
+from deros.diagnostics import Code
 from tests.support.cli import deros
 
 DEROS = Path(sys.executable).with_name("deros")
@@ -23,25 +26,32 @@ def test_every_code_is_explained(name: str) -> None:
     assert deros("explain", name).out.startswith(f"# {name}: {ALL_CODES[name].title}\n")
 
 
-@pytest.mark.parametrize("word", ["DRS317", "drs317", "317", "DRS-317", "no-timeout", "NO_TIMEOUT"])
+@pytest.mark.parametrize(
+    "word", ["DRS317", "drs317", "317", "DRS-317", "input-without-timeout", "INPUT_WITHOUT_TIMEOUT"]
+)
 def test_code_is_found_by_number_or_slug(word: str) -> None:
     """Numbers, codes in any case and slugs are accepted."""
     assert deros("explain", word).out.startswith("# DRS317: ")
 
 
 def test_every_code_has_one_slug() -> None:
-    """Slugs are unique and are not numbers."""
+    """A slug is the name of the constant in words; at least two words, so that it stands out."""
     assert set(SLUGS.values()) == set(ALL_CODES.values())
     assert len(SLUGS) == len(ALL_CODES)
+    constants = {name: each for name, each in vars(codes).items() if isinstance(each, Code)}
+    for name, code in constants.items():
+        assert code.slug == name.lower().replace("_", "-")
+        assert SLUGS[code.slug] is code
+        assert re.fullmatch(r"[a-z]+(-[a-z0-9]+)+", code.slug)
 
 
 @pytest.mark.parametrize(
     ("word", "hint"),
     [
         ("DRS999", "did you mean 'DRS"),
-        ("no-timeot", "did you mean 'no-timeout'"),
-        ("xyzzy", "'deros explain' lists them all"),
-        ("", "'deros explain' lists them all"),
+        ("input-without-timeot", "did you mean 'input-without-timeout'"),
+        ("xyzzy", "'deros explain' lists all diagnostics"),
+        ("", "'deros explain' lists all diagnostics"),
     ],
 )
 def test_unknown_code_gets_suggestions(word: str, hint: str) -> None:
@@ -57,7 +67,7 @@ def test_several_codes_or_none() -> None:
     assert both.index("# DRS317") < both.index("# DRS210")
     listing = deros("explain").out.splitlines()
     assert len(listing) == len(ALL_CODES)
-    assert any(line.split()[:2] == ["DRS317", "no-timeout"] for line in listing)
+    assert any(line.split()[:2] == ["DRS317", "input-without-timeout"] for line in listing)
 
 
 class _Terminal(io.StringIO):
@@ -98,7 +108,7 @@ def test_each_shell_has_a_completion_script(shell: str) -> None:
     [
         ("deros ch", "plain,check"),
         ("deros check --bas", "plain,--baseline"),
-        ("deros explain no-time", "plain,no-timeout"),
+        ("deros explain input-w", "plain,input-without-timeout"),
         ("deros explain DRS31", "plain,DRS317"),
     ],
 )

@@ -112,7 +112,7 @@ def test_findings_go_to_stderr_and_errors_fail(models: Path) -> None:
     )
     result = run(path)
     assert result.exit_code == 1
-    assert "error[DRS204]" in result.stderr
+    assert "error[DRS204 unknown-port]" in result.stderr
     assert "topic /room" in result.stdout
 
 

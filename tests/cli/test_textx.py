@@ -120,7 +120,7 @@ def test_textx_generate_writes_nothing_from_a_bad_model(
     bad = CASES / "DRS208_type_mismatch.system"
     done = installed.run("textx", "generate", bad, "--target", "launch", "-o", "out", cwd=tmp_path)
     assert done.returncode == 1
-    assert "error[DRS208]" in done.stderr
+    assert "error[DRS208 type-mismatch]" in done.stderr
     assert not (tmp_path / "out").exists()
 
 
@@ -130,12 +130,12 @@ def test_textx_generates_a_gate_missing_from_the_system(
     """The missing gate is an error for ``check`` and does not block ``generate``."""
     rules = CASES / "DRS340_gate_not_in_system.deros"
     done = installed.run("textx", "check", rules, cwd=tmp_path)
-    assert (done.returncode, "error[DRS340]" in done.stderr) == (1, True)
+    assert (done.returncode, "error[DRS340 gate-not-in-system]" in done.stderr) == (1, True)
     for program in ("textx", "deros"):
         command = ("generate", rules, "--target", "python", "-o", program)
         done = installed.run(program, *command, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
-        assert "error[DRS340]" in done.stderr
+        assert "error[DRS340 gate-not-in-system]" in done.stderr
         assert list((tmp_path / program).rglob("cmd_vel_gate.rnd"))
 
 

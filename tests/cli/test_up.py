@@ -68,7 +68,7 @@ def test_model_with_errors_is_not_started(up: Up) -> None:
     run = up("node a : short wirings connect nothing to /x")
     assert run.end() == 1
     text = "\n".join(run.lines)
-    assert "error[DRS204]" in text
+    assert "error[DRS204 unknown-port]" in text
     assert "started" not in text
 
 
@@ -77,7 +77,7 @@ def test_warnings_do_not_prevent_the_start(up: Up) -> None:
     run = up("topics topic /lonely node a : short")
     assert run.end() == 0
     text = "\n".join(run.lines)
-    assert text.index("warning[DRS212]") < text.index("[a] done")
+    assert text.index("warning[DRS212 unused-topic]") < text.index("[a] done")
 
 
 def test_unsupported_parameter_value_prevents_the_start(up: Up, tmp_path: Path) -> None:
@@ -85,7 +85,7 @@ def test_unsupported_parameter_value_prevents_the_start(up: Up, tmp_path: Path) 
     (tmp_path / "bytes.rnd").write_text("node bytes : demo parameters name b : byte[] = [1]")
     run = up("node a : bytes parameters param b = [2]")
     assert run.end() == 1
-    assert "error[DRS402]" in "\n".join(run.lines)
+    assert "error[DRS402 unsupported-by-target]" in "\n".join(run.lines)
 
 
 def test_missing_programs_are_named_and_exit_with_2(up: Up) -> None:

@@ -327,8 +327,8 @@ def test_faulty_trace_fails_the_run(folder: Path) -> None:
     """All faults are reported, nothing is simulated, and the exit code is 1."""
     result = run(folder, "--until", "9", trace="x\n" + line("/speed", {"data": 1}) + "\ny\n")
     assert (result.exit_code, result.stdout) == (1, "")
-    assert "trace.jsonl:1:1: error[DRS501]" in result.stderr
-    assert "trace.jsonl:3:1: error[DRS501]" in result.stderr
+    assert "trace.jsonl:1:1: error[DRS501 bad-trace-line]" in result.stderr
+    assert "trace.jsonl:3:1: error[DRS501 bad-trace-line]" in result.stderr
 
 
 def test_faulty_rules_fail_the_run(folder: Path) -> None:
@@ -338,7 +338,7 @@ def test_faulty_rules_fail_the_run(folder: Path) -> None:
     result = run(folder)
     assert result.exit_code == 1
     assert "r.deros:4:" in result.stderr
-    assert "error[DRS302]" in result.stderr
+    assert "error[DRS302 unknown-field]" in result.stderr
 
 
 @pytest.mark.parametrize(

@@ -136,6 +136,8 @@ def test_project_allows_by_code_and_path(shared: bool) -> None:
     log = json.loads(deros("check", "--format", "sarif", "models/deep/lone.system").out)
     (suppression,) = log["runs"][0]["results"][0]["suppressions"]
     assert (suppression["kind"], suppression["justification"]) == ("external", "known")
+    _project(_allow(code="unused-topic"))
+    assert _findings("models/deep/lone.system") == []
     _project(_allow(path="models/*"))
     assert [code for code, *_ in _findings("models/deep/lone.system")] == ["DRS212"]
 
@@ -145,6 +147,8 @@ def test_project_allows_by_code_and_path(shared: bool) -> None:
     [
         (_allow(code="DRS999"), codes.NOT_ALLOWABLE),
         (_allow(code="DRS103"), codes.NOT_ALLOWABLE),
+        (_allow(code="wrong-default"), codes.NOT_ALLOWABLE),
+        (_allow(code="unused-topik"), codes.NOT_ALLOWABLE),
         (_allow(reason=" "), codes.BAD_ALLOWANCE),
         ('[[allow]]\ncode = "DRS212"\nreason = "known"\n', codes.BAD_ALLOWANCE),
         ('allow = "DRS212"\n', codes.BAD_PROJECT_VALUE),
@@ -200,8 +204,14 @@ def test_finding_has_the_line_of_the_key_and_similar_keys() -> None:
     """The place is that of the key."""
     _project('copyright = "2020 P"\nmaintaner = "P <p@example.com>"\n')
     outcome = deros("check", "models/plain.rnd")
-    assert "deros.toml:2:1: warning[DRS026]" in outcome.out
+    assert "deros.toml:2:1: warning[DRS026 unknown-project-key]" in outcome.out
     assert "did you mean 'maintainer'?" in outcome.out
+
+
+def test_mistyped_slug_gets_suggestions() -> None:
+    """An allowance with a slug that does not exist names the nearest one."""
+    _project(_allow(code="unused-topik"))
+    assert "did you mean 'unused-topic'" in deros("check", "models/plain.rnd").out
 
 
 def test_nearest_file_with_the_table_applies() -> None:

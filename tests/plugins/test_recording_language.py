@@ -88,7 +88,7 @@ def test_a_finding_of_the_language_fails_the_command(tmp_path: Path) -> None:
     file.write_text("recording a topics /odom /odom\n")
     checked = _deros("check", file)
     assert checked.returncode == 1
-    assert f"{file}:1:26: error[DRS218]" in checked.stdout, checked.stdout
+    assert f"{file}:1:26: error[DRS218 duplicate-topic]" in checked.stdout, checked.stdout
 
 
 def test_an_undeclared_language_is_refused(tmp_path: Path) -> None:

@@ -86,9 +86,35 @@ def test_absent_finding_is_a_note() -> None:
     assert outcome.code == 0
     assert f"{FILE}:" in outcome.out
     assert codes.ABSENT_FINDING.name in outcome.out
-    assert "lone.system: DRS212 does not occur any more" in outcome.out
+    assert "lone.system: DRS212 no longer occurs" in outcome.out
     _write("lone.system")
     assert _found() == []
+
+
+def test_entry_may_have_the_slug_as_its_code() -> None:
+    """A slug in place of the code is read like the code, and both are written."""
+    _write("lone.system")
+    written = json.loads(Path(FILE).read_text())
+    assert {(each["code"], each["slug"]) for each in written["findings"]} == {
+        ("DRS212", "unused-topic")
+    }
+    Path(FILE).write_text(Path(FILE).read_text().replace("DRS212", "unused-topic"))
+    assert _found() == []
+    Path("lone.system").write_text("system Lone\ntopics\n  topic /b\n")
+    outcome = deros("check", "lone.system", "--baseline", FILE)
+    assert "lone.system: DRS212 no longer occurs" in outcome.out
+
+
+def test_absent_entry_with_an_unknown_code_gets_suggestions() -> None:
+    """A mistyped slug is named, with the nearest one."""
+    _write("lone.system")
+    text = Path(FILE).read_text()
+    Path(FILE).write_text(text.replace('"code": "DRS212"', '"code": "unused-topik"'))
+    Path("lone.system").write_text("system Lone\ntopics\n  topic /b\n")
+    outcome = deros("check", "lone.system", "--baseline", FILE)
+    assert "there is no diagnostic 'unused-topik': did you mean 'unused-topic'" in outcome.out, (
+        outcome.out
+    )
 
 
 def test_unchecked_entries_are_not_called_absent() -> None:
@@ -99,7 +125,7 @@ def test_unchecked_entries_are_not_called_absent() -> None:
     Path("lone.system").write_text('system Lone\nimports import "nowhere.rnd"\n')
     assert _found(files=("lone.system", "other.system")) == [("DRS201", 2)]
     Path("lone.system").unlink()
-    assert _found(files=("other.system",)) == [("DRS023", 12), ("DRS023", 18)]
+    assert _found(files=("other.system",)) == [("DRS023", 13), ("DRS023", 20)]
 
 
 def test_baseline_is_independent_of_the_working_directory(

@@ -33,7 +33,7 @@ WARNING = report(codes.UNUSED_TOPIC, "100% unused,\nreally: yes", _span("café")
 def test_text_shows_line_caret_hint_and_related_places() -> None:
     """The caret is under the word, after a tab as in the line itself."""
     assert render.render_text([FINDING]) == (
-        "models/a b.system:2:14: error[DRS203]: no import defines 'bäse'\n"
+        "models/a b.system:2:14: error[DRS203 unknown-node-type]: no import defines 'bäse'\n"
         "    2 | \tnode café : bäse, 100%\n"
         "      | \t            ^^^^\n"
         "    = hint: did you mean 'base'?\n"
@@ -83,7 +83,7 @@ def test_colours_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
     render.print_text([FINDING], asked)
     assert plain.getvalue() == asked.getvalue() == render.render_text([FINDING])
-    assert "\x1b[1;31merror[DRS203]" in terminal.getvalue()
+    assert "\x1b[1;31merror[DRS203 unknown-node-type]" in terminal.getvalue()
 
 
 def test_json_objects_have_exactly_the_documented_keys() -> None:
@@ -97,6 +97,7 @@ def test_json_objects_have_exactly_the_documented_keys() -> None:
         "end_column": 18,
         "severity": "error",
         "code": "DRS203",
+        "slug": "unknown-node-type",
         "message": "no import defines 'bäse'",
         "hint": "did you mean 'base'?",
         "fix": None,
@@ -111,7 +112,10 @@ def test_sarif_refers_to_rules_by_index() -> None:
     assert log["version"] == "2.1.0"
     (run,) = log["runs"]
     rules = run["tool"]["driver"]["rules"]
-    assert [rule["id"] for rule in rules] == ["DRS203", "DRS212"]
+    assert [(rule["id"], rule["name"]) for rule in rules] == [
+        ("DRS203", "unknown-node-type"),
+        ("DRS212", "unused-topic"),
+    ]
     for result in run["results"]:
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
     first, second, _ = run["results"]
@@ -128,6 +132,7 @@ def test_github_annotations_are_escaped() -> None:
     error, warning = formats.render_github([FINDING, WARNING]).splitlines()
     assert error.startswith("::error file=models/a b.system,line=2,col=14,endLine=2,endColumn=18,")
     assert error.endswith("::no import defines 'bäse'%0Adid you mean 'base'?")
+    assert "title=DRS203 unknown-node-type::" in error
     assert warning.startswith("::warning ")
     assert warning.endswith("::100%25 unused,%0Areally: yes")
 

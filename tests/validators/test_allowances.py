@@ -10,7 +10,7 @@ import pytest
 from deros import codes
 from deros.codes import ALL_CODES
 from deros.diagnostics import Code, Severity, SourceFile, Span, report
-from deros.validators.allowances import ProjectAllowance, not_allowable, read_allowances
+from deros.validators.allowances import ProjectAllowance, allowable, read_allowances
 from tests.support.cli import deros
 
 MODELS = {
@@ -52,13 +52,17 @@ def _write(name: str, before: str = "", same: str = "") -> str:
         ("//deros:allow {code}: known\n\n// and a remark", ""),
         ("/* deros: allow {code}\n   known for long\n*/", ""),
         ("// deros: allow {code}, DRS211 known", ""),
+        ("// deros: allow {slug} known", ""),
+        ("// deros: allow no-subscriber, {slug} known", ""),
+        ("", "  // deros: allow {slug}: known"),
     ],
 )
 def test_allowance_comment_suppresses_finding(name: str, before: str, same: str) -> None:
     """A comment on the same line or alone above it suppresses the finding, in each language."""
     code = _write(name)
     assert code in _codes(name)
-    _write(name, before.format(code=code), same.format(code=code))
+    slug = ALL_CODES[code].slug
+    _write(name, before.format(code=code, slug=slug), same.format(code=code, slug=slug))
     assert code not in _codes(name)
 
 
@@ -94,12 +98,35 @@ def test_errors_cannot_be_allowed() -> None:
     assert deros("check", "bad.rnd").code == 1
 
 
+@pytest.mark.parametrize(
+    ("written", "hint"),
+    [
+        ("unused-topik", "did you mean 'unused-topic'"),
+        ("no-publisher, unused-topik", "did you mean 'unused-topic'"),
+        ("unused_topic", "write 'unused-topic'"),
+        ("drs212", "write 'DRS212'"),
+    ],
+)
+def test_mistyped_code_gets_suggestions(written: str, hint: str) -> None:
+    """A word that is nearly a code or a slug is reported with what it was meant to be."""
+    _write("lone.system", f"// deros: allow {written} known")
+    found = json.loads(deros("check", "--format", "json", "lone.system").out)
+    hints = [each["hint"] for each in found if each["code"] == "DRS021"]
+    assert any(each.startswith(hint) for each in hints), found
+
+
+def test_reason_may_begin_with_a_slug() -> None:
+    """Without a comma, a slug behind a code belongs to the reason."""
+    code = _write("lone.system", "// deros: allow DRS212 unused-import is the reason")
+    assert code not in _codes("lone.system")
+
+
 @pytest.mark.parametrize("code", ALL_CODES.values(), ids=str)
 def test_only_warnings_and_notes_about_models_are_allowable(code: Code) -> None:
     """Errors and findings about allowances cannot be allowed."""
-    found = not_allowable(code.name, Span(SourceFile("x.rnd", ""), 0, 0))
-    allowable = code.severity is not Severity.ERROR and code in codes.OF_MODELS
-    assert (found is None) == allowable
+    found = allowable(code.name, Span(SourceFile("x.rnd", ""), 0, 0))
+    expected = code.severity is not Severity.ERROR and code in codes.OF_MODELS
+    assert (found is code) == expected
 
 
 def test_unneeded_allowance_is_reported_for_named_files_only() -> None:
@@ -138,7 +165,7 @@ def test_allowed_findings_are_counted_and_shown_on_request() -> None:
     assert (brief.code, brief.out) == (0, "1 file checked, no findings, 1 allowed\n")
     shown = deros("check", "--strict", "--show-allowed", "lone.system")
     assert shown.code == 0
-    assert "warning[DRS212]" in shown.out
+    assert "warning[DRS212 unused-topic]" in shown.out
     assert "    = allowed at lone.system:4:32: filled by hand\n" in shown.out
     listed = json.loads(deros("check", "--show-allowed", "--format", "json", "lone.system").out)
     assert [(each["code"], each["allowed"]) for each in listed] == [("DRS212", "filled by hand")]

@@ -56,16 +56,19 @@ def _constants() -> dict[str, str]:
 
 @pytest.mark.parametrize("code", ALL_CODES)
 def test_every_code_has_a_page(code: str) -> None:
-    """The page has the title of the code and all four sections."""
+    """The page has title and slug of the code and all four sections."""
     text = (ROOT / "docs" / "diagnostics" / f"{code}.md").read_text(encoding="utf-8")
-    assert text.startswith(f"# {code}: {ALL_CODES[code].title}\n")
+    start = f"# {code}: {ALL_CODES[code].title}\n\n`{ALL_CODES[code].slug}`, a"
+    assert text.startswith(start)
     assert re.findall(r"^## (.*)$", text, re.MULTILINE) == HEADINGS
     sections = re.split(r"^## .*$", text, flags=re.MULTILINE)[1:]
     assert all(len(section.strip()) > 20 for section in sections)
 
 
 def test_index_lists_all_codes() -> None:
-    """The index lists code, title and severity of each diagnostic once, in order."""
+    """The index lists code, slug, title and severity of each diagnostic once, in order."""
     text = (ROOT / "docs" / "diagnostics" / "index.md").read_text(encoding="utf-8")
-    listed = re.findall(r"^\| \[(DRS\d+)\]\(\1\.md\) \| (.*?) \| (\w+) \|$", text, re.MULTILINE)
-    assert listed == [(c.name, c.title, c.severity.value) for c in ALL_CODES.values()]
+    listed = re.findall(
+        r"^\| \[(DRS\d+)\]\(\1\.md\) \| `(.*?)` \| (.*?) \| (\w+) \|$", text, re.MULTILINE
+    )
+    assert listed == [(c.name, c.slug, c.title, c.severity.value) for c in ALL_CODES.values()]

@@ -20,7 +20,7 @@ _FENCE = "```"
 
 
 def _complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the codes and names that begin so, for the shell."""
+    """Complete codes and slugs for the shell."""
     del ctx, param
     from deros.codes import ALL_CODES, SLUGS
 
@@ -33,8 +33,8 @@ def _complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> li
 def explain(ctx: click.Context, codes: tuple[str, ...]) -> None:
     """Explain findings: what each code means, why it matters, an example, and what to do.
 
-    CODE is a code such as DRS317, its number, or its name, such as no-timeout. Without a code, all
-    of them are listed with their names.
+    CODE is a code such as DRS317, its number, or its slug such as input-without-timeout. Without a
+    CODE, all of them are listed.
     """
     if not codes:
         click.echo(_listing(), nl=False)
@@ -49,7 +49,7 @@ def explain(ctx: click.Context, codes: tuple[str, ...]) -> None:
 
 
 def find(word: str) -> Code | None:
-    """Return the code that a word means: ``DRS317``, ``drs317``, ``317`` or ``no-timeout``."""
+    """Return the code that a word names: ``DRS317``, ``drs317``, ``317`` or its slug."""
     from deros.codes import ALL_CODES, SLUGS
 
     plain = word.strip().lower()
@@ -83,20 +83,15 @@ def without_links(text: str) -> str:
 
 
 def _listing() -> str:
-    from deros.codes import SLUGS
+    from deros.codes import ALL_CODES, SLUGS
 
     width = max(map(len, SLUGS))
     return "".join(
-        f"{code.name}  {slug:<{width}}  {code.title}\n"
-        for slug, code in sorted(SLUGS.items(), key=lambda item: item[1].name)
+        f"{code.name}  {code.slug:<{width}}  {code.title}\n" for code in ALL_CODES.values()
     )
 
 
 def _unknown(word: str) -> str:
-    from deros.codes import ALL_CODES, SLUGS
-    from deros.validators.hints import did_you_mean
+    from deros.validators.hints import unknown_code
 
-    names = ALL_CODES if re.search(r"\d", word) else SLUGS
-    spelled = word.upper() if names is ALL_CODES else word.lower()
-    hint = did_you_mean(spelled, names, "'deros explain' lists them all")
-    return f"deros: there is no diagnostic '{word}'; {hint}"
+    return f"deros: there is no diagnostic '{word}'; {unknown_code(word)}"

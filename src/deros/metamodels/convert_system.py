@@ -147,7 +147,7 @@ class SystemConverter(Converter):
         qos = self.qos(found)
         if not pinned_policies(qos) and len(self.diagnostics) == before:
             self.report(
-                codes.EMPTY_PIN,
+                codes.EMPTY_QOS_PIN,
                 "this pins nothing: of system_default, the middleware chooses every policy",
                 self.span(found),
                 "write the policies that the ends have to meet, as 'qos reliable'",

@@ -140,7 +140,7 @@ class Comparisons:
         if isinstance(found, Part):
             message = f"a number is needed here, this is {describe(found)}"
             hint = "" if found.type.is_array else "name one of its fields, or apply a function"
-            self._scope.fault(codes.NOT_A_NUMBER_FIELD, message, span, hint)
+            self._scope.fault(codes.FIELD_NOT_NUMERIC, message, span, hint)
         else:
             message = f"{describe(found)} cannot be compared with this"
             self._scope.fault(codes.WRONG_OPERAND, message, span)
@@ -190,7 +190,7 @@ class Comparisons:
         if family(value.type) == "number":
             return True
         message = f"a number is needed, '{term.span.text}' is {describe(value)}"
-        self._scope.fault(codes.NOT_A_NUMBER_FIELD, message, term.span)
+        self._scope.fault(codes.FIELD_NOT_NUMERIC, message, term.span)
         return False
 
     def _convertible(self, found: Quantity | Value, value: Value, term: rules.Term) -> bool:

@@ -177,7 +177,7 @@ class GateResolver:
             text = str(kind).replace(str(kind.base), getattr(kind.base, "short", str(kind.base)))
             message = f"a number is needed here, '{format_path(limit.path)}' is {_article(text)}"
             hint = "name one of its elements, as in 'data[0]'" if kind.is_array else ""
-            self._scope.fault(codes.NOT_A_NUMBER_FIELD, message, span, hint)
+            self._scope.fault(codes.FIELD_NOT_NUMERIC, message, span, hint)
             return None
         whole = _INDIVISIBLE.get(found.parent.type) if found.parent else None
         if whole is not None:

@@ -235,7 +235,7 @@ class _Reader:
         return value
 
     def _allowances(self, value: Any) -> Iterator[ProjectAllowance]:
-        from deros.validators.allowances import ProjectAllowance, not_allowable
+        from deros.validators.allowances import ProjectAllowance, allowable
 
         if not isinstance(value, list) or not all(isinstance(each, dict) for each in value):
             self._wrong("allow", "is not a list of tables with code, path and reason")
@@ -249,12 +249,12 @@ class _Reader:
                 )
                 self._found.append(report(codes.BAD_ALLOWANCE, message, span))
                 continue
-            wrong = not_allowable(entry["code"], span)
-            if wrong is not None:
-                self._found.append(wrong)
+            code = allowable(entry["code"], span)
+            if isinstance(code, Diagnostic):
+                self._found.append(code)
                 continue
             root = self._root.absolute()
-            yield ProjectAllowance(entry["code"], entry["path"], entry["reason"], root, span)
+            yield ProjectAllowance(code.name, entry["path"], entry["reason"], root, span)
 
     def _unknown(
         self, table: Mapping[str, Any], known: Sequence[str], prefix: str, span: Span | None = None

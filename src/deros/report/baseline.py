@@ -20,6 +20,7 @@ from typing import Any
 from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.interfaces.files import read_regular
+from deros.validators.hints import unknown_code
 
 _VERSION = 1
 _LARGEST = 64 << 20
@@ -115,9 +116,14 @@ def read(path: Path) -> Baseline:
             raise _unusable(path, f"'{path}' is not a baseline of deros")
         if data["version"] != _VERSION:
             message = f"the baseline '{path}' is of version {data['version']}, known is {_VERSION}"
-            raise _unusable(path, message, "write it anew with --write-baseline")
+            raise _unusable(path, message, "write it again with --write-baseline")
         entries = tuple(
-            Entry(*(str(each[name]) for name in ("file", "fingerprint", "code", "message")))
+            Entry(
+                str(each["file"]),
+                str(each["fingerprint"]),
+                _code_name(str(each["code"])),
+                str(each["message"]),
+            )
             for each in data["findings"]
         )
         checked = tuple(map(str, data["checked"]))
@@ -152,8 +158,17 @@ def absent(entry: Entry, baseline: Baseline) -> Diagnostic:
     """Return the remark that a finding of the baseline does not occur any more."""
     start = max(0, baseline.source.text.find(entry.fingerprint))
     span = Span(baseline.source, start, start + len(entry.fingerprint))
-    message = f"{entry.file}: {entry.code} does not occur any more: {entry.message}"
-    return report(codes.ABSENT_FINDING, message, span, "write the baseline anew: --write-baseline")
+    message = f"{entry.file}: {entry.code} no longer occurs: {entry.message}"
+    hint = "write the baseline again with --write-baseline"
+    if codes.find(entry.code) is None:
+        hint = f"there is no diagnostic '{entry.code}': {unknown_code(entry.code)}"
+    return report(codes.ABSENT_FINDING, message, span, hint)
+
+
+def _code_name(word: str) -> str:
+    """Return the name of a code that is written as name or slug; an unknown one as it is."""
+    code = codes.find(word)
+    return word if code is None else code.name
 
 
 def write(path: Path, findings: Sequence[Diagnostic], named: Iterable[str]) -> int:
@@ -169,6 +184,7 @@ def write(path: Path, findings: Sequence[Diagnostic], named: Iterable[str]) -> i
         {
             "file": _relative(finding.span.file, root),
             "code": finding.code.name,
+            "slug": finding.code.slug,
             "fingerprint": fingerprint,
             "message": finding.message,
         }

@@ -37,6 +37,7 @@ def _json_object(diagnostic: Diagnostic) -> dict[str, Any]:
         "end_column": span.end_column,
         "severity": diagnostic.severity.value,
         "code": diagnostic.code.name,
+        "slug": diagnostic.code.slug,
         "message": diagnostic.message,
         "hint": diagnostic.hint,
         "fix": None
@@ -102,6 +103,7 @@ def _sarif_rule(name: str) -> dict[str, Any]:
     code = ALL_CODES[name]
     return {
         "id": name,
+        "name": code.slug,
         "shortDescription": {"text": code.title},
         "defaultConfiguration": {"level": _SARIF_LEVEL[code.severity]},
     }
@@ -188,7 +190,7 @@ def _github_line(diagnostic: Diagnostic) -> str:
         "col": span.column,
         "endLine": span.end_line,
         "endColumn": span.end_column,
-        "title": f"{diagnostic.code.name} {diagnostic.code.title}",
+        "title": str(diagnostic.code),
     }
     properties = ",".join(f"{name}={_property(str(value))}" for name, value in where.items())
     text = diagnostic.message

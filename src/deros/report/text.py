@@ -91,7 +91,7 @@ def _entries(
 def _pieces(diagnostic: Diagnostic) -> Iterator[Piece]:
     span, style = diagnostic.span, _STYLE[diagnostic.severity]
     yield f"{_place(span)}: ", "bold"
-    yield f"{diagnostic.severity.value}[{diagnostic.code.name}]", style
+    yield f"{diagnostic.severity.value}[{diagnostic.code}]", style
     yield f": {_printable(diagnostic.message)}\n", "bold"
     yield from _excerpt(span, style)
     if diagnostic.hint:

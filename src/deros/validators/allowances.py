@@ -15,16 +15,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Severity, SourceFile, Span, report
+from deros.diagnostics import Code, Diagnostic, Severity, SourceFile, Span, report
+from deros.interfaces.names import near
 from deros.metamodels.globbing import path_matches
 from deros.metamodels.load import LoadedFile
 from deros.metamodels.reading import comments
-from deros.validators.hints import did_you_mean
+from deros.validators.hints import did_you_mean, unknown_code
 
 _MARK = re.compile(r"(?://+|/\*+)\s*(deros\s*:)\s*")
 _WORD = re.compile(r"[^\s,:]+")
 _CODE = re.compile(r"(?i)DRS[-_]?\d+")
-_SEPARATOR = re.compile(r"\s*,\s*|\s+(?=(?i:DRS[-_]?\d))")
+_SEPARATOR = re.compile(r"\s*(,)?\s*")
 _FILLING = " \t\r\n:;,.-*/\N{EN DASH}\N{EM DASH}"
 _USAGE = "write '// deros: allow CODE reason'"
 
@@ -150,8 +151,9 @@ def _allowance_of(
 
 
 def _unneeded(allowance: Allowance) -> Diagnostic:
-    message = f"line {allowance.line} has no finding {allowance.code} to allow"
-    return report(codes.UNUSED_ALLOWANCE, message, allowance.span, f"remove {allowance.code}")
+    name = allowance.span.text
+    message = f"line {allowance.line} has no finding {name} to allow"
+    return report(codes.UNUSED_ALLOWANCE, message, allowance.span, f"remove {name}")
 
 
 # Reading comments --------------------------------------------------------------------------------
@@ -204,44 +206,49 @@ def _read(rest: Span, line: int) -> Iterator[Allowance | Diagnostic]:
         yield report(codes.BAD_ALLOWANCE, message, Span(source, named[0].start, rest.end), hint)
         return
     for span in named:
-        wrong = not_allowable(span.text, span)
-        yield wrong if wrong is not None else Allowance(span.text, line, reason, span)
+        code = allowable(span.text, span)
+        yield Allowance(code.name, line, reason, span) if isinstance(code, Code) else code
 
 
 def _named_codes(rest: Span, at: int) -> tuple[list[Span], int]:
-    """Return the places of the codes that follow, and where they end."""
+    """Return the positions of the codes that follow, and where they end.
+
+    Behind a code without a comma only another ``DRS210`` is a code: the reason may well begin with
+    a word that is a slug.
+    """
     named: list[Span] = []
     text = rest.text
     at += len(text[at:]) - len(text[at:].lstrip())
-    while (word := _WORD.match(text, at)) and _names_a_code(word[0]):
-        named.append(Span(rest.source, rest.start + at, rest.start + word.end()))
-        at = word.end()
-        following = _SEPARATOR.match(text, at)
-        if following is None:
+    is_listed = True
+    while word := _WORD.match(text, at):
+        if not (_CODE.fullmatch(word[0]) or (is_listed and _is_slug(word[0]))):
             break
-        at = following.end()
+        named.append(Span(rest.source, rest.start + at, rest.start + word.end()))
+        separator = _SEPARATOR.match(text, word.end())
+        assert separator is not None
+        at, is_listed = separator.end(), separator[1] is not None
     return named, at
 
 
-def _names_a_code(word: str) -> bool:
-    return word in codes.SLUGS or _CODE.fullmatch(word) is not None
+def _is_slug(word: str) -> bool:
+    """Tell whether a word is a slug, or probably meant to be one."""
+    spelled = word.lower().replace("_", "-")
+    return spelled in codes.SLUGS or ("-" in spelled and bool(near(spelled, codes.SLUGS)))
 
 
-def not_allowable(name: str, span: Span) -> Diagnostic | None:
-    """Return the finding about a code that cannot be allowed in a model, or ``None``."""
-    code = codes.ALL_CODES.get(name)
+def allowable(name: str, span: Span) -> Code | Diagnostic:
+    """Return the code with a name or slug, or the finding that it cannot be allowed in a model."""
+    code = codes.find(name)
     if code is None:
-        known = codes.SLUGS.get(name) or codes.ALL_CODES.get(re.sub(r"\W|_", "", name.upper()))
-        hint = f"its code is {known.name}" if known else "'deros explain' lists all codes"
-        return report(codes.NOT_ALLOWABLE, f"there is no finding {name}", span, hint)
+        message = f"there is no diagnostic '{name}'"
+        return report(codes.NOT_ALLOWABLE, message, span, unknown_code(name))
     if code.severity is Severity.ERROR:
-        hint = "correct what it reports"
         message = f"{name} ({code.title}) is an error, and errors cannot be allowed"
-        return report(codes.NOT_ALLOWABLE, message, span, hint)
+        return report(codes.NOT_ALLOWABLE, message, span, "correct what it reports")
     if code in ABOUT_ALLOWANCES or code not in codes.OF_MODELS:
-        message = f"{name} ({code.title}) is not reported for what a model says"
+        message = f"{name} ({code.title}) is not about the content of a model"
         return report(codes.NOT_ALLOWABLE, message, span, "remove the allowance")
-    return None
+    return code
 
 
 def _first(rest: Span, at: int) -> Span:

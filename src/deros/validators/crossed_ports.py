@@ -39,7 +39,7 @@ def check_crossed(flat: FlatSystem) -> Iterator[Diagnostic]:
                 continue
             reported.add(pair)
             yield report(
-                codes.LIKELY_CROSSED,
+                codes.LIKELY_SWAPPED,
                 f"'{first.port.name}' of '{node.instance.name}' is connected to '{first.topic}',"
                 f" and '{second.port.name}' to '{second.topic}': probably the other way round",
                 first.wiring.span,

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
+from deros import codes
 from deros.interfaces import names
 
 _FEW = 300
@@ -21,6 +23,15 @@ def one_of(candidates: Iterable[str], what: str) -> str:
     """Return the hint that lists what there is, if that is few enough to read."""
     listed = sorted(set(candidates))
     return f"{what}: {', '.join(listed)}" if 0 < len(listed) <= 8 else ""
+
+
+def unknown_code(word: str) -> str:
+    """Return the hint for a word that is neither the name nor the slug of a diagnostic."""
+    names = codes.ALL_CODES if re.search(r"\d", word) else codes.SLUGS
+    spelled = word.upper() if names is codes.ALL_CODES else word.lower().replace("_", "-")
+    if spelled in names:
+        return f"write '{spelled}'"
+    return did_you_mean(spelled, names, "'deros explain' lists all diagnostics")
 
 
 class NameIndex:

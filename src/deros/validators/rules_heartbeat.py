@@ -73,7 +73,7 @@ def check_heartbeats(
             if line.lost_ns < pace.shortest_ns:
                 whose = f" of '{pace.node}'" if pace.node else ""
                 yield report(
-                    codes.GATE_HEARTBEAT_TOO_SHORT,
+                    codes.HEARTBEAT_TIMEOUT_TOO_SHORT,
                     f"this is less than {float(FEWEST_PERIODS)} heartbeats{whose}, of which there"
                     f" are {pace.hz} per second: a late one would be taken for a lost one",
                     line.span,

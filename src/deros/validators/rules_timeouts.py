@@ -44,7 +44,7 @@ def check_timeouts(rules: Rules) -> Iterator[Diagnostic]:
         if len(names) > _SHOWN:
             shown += f" and {len(names) - _SHOWN} more"
         yield report(
-            codes.NO_TIMEOUT,
+            codes.INPUT_WITHOUT_TIMEOUT,
             f"'{each.name}' has no timeout: when {each.topic} falls silent,"
             f" {shown} still {'see' if len(names) > 1 else 'sees'} its last value",
             each.span,

@@ -89,7 +89,7 @@ def _unnoticed(
             reported.add(key)
             owner = program.inputs[each.expression.input]
             yield report(
-                codes.UNNOTICED_UNKNOWN,
+                codes.UNHANDLED_UNKNOWN,
                 f"'{rule.full_name}' is unknown while {_reason(each)}, and nothing acts on that",
                 each.span,
                 f"write 'failsafe {rule.name}: …', or use '{each.span.text}.unknown()' in a rule",
@@ -204,7 +204,7 @@ def _unasked(written: rules.Rules, program: ir.Program, used: _Used) -> Iterator
         # Before the first message there is no age, so age() does not tell that none comes.
         when = "never comes" if each.index in aged else "falls silent"
         yield report(
-            codes.UNASKED_TIMEOUT,
+            codes.UNUSED_TIMEOUT,
             f"no rule asks for the timeout of '{each.name}': when {each.topic} {when},"
             " nothing acts",
             names[each.name].span,

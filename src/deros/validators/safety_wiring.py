@@ -328,7 +328,7 @@ def _misconnected(each: HandWired, end: FlatPort, topic: str, says: tuple[str, S
     words, place = says
     wiring = end.wiring
     return report(
-        codes.SAFETY_CONNECTED_ELSEWHERE,
+        codes.SAFETY_CONNECTED_DIFFERENTLY,
         f"{words}, but {End(each.node, end).name} is connected to '{end.topic}'",
         wiring.target_span if wiring is not None else each.node.instance.name_span,
         f"connect {end.port.name} to {topic}, or let the nodes connect themselves:"

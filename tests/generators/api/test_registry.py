@@ -99,7 +99,7 @@ def test_textx_keeps_hand_edited_files_unless_told(
     greeting.generator(METAMODEL, textx_model, None, False, False)
     (tmp_path / "greeting.py").write_text("mine\n")
     greeting.generator(METAMODEL, textx_model, None, False, False)
-    assert "warning[DRS403]" in capsys.readouterr().err
+    assert "warning[DRS403 hand-edited]" in capsys.readouterr().err
     greeting.generator(METAMODEL, textx_model, None, True, False)
     assert (tmp_path / "greeting.py").read_text() != "mine\n"
 

@@ -249,7 +249,7 @@ def test_a_package_xml_that_does_not_fit(
     path = tmp_path / "robot/package.xml"
     path.write_text(change(path.read_text()))
     (found,) = _review(OLD, language, tmp_path)
-    assert found.code is codes.MANIFEST_LACKS
+    assert found.code is codes.INCOMPLETE_MANIFEST
     assert part in found.message
 
 

@@ -51,4 +51,4 @@ def _texts(manifest: ElementTree.Element, tag: str) -> set[str]:
 def _finding(source: SourceFile, message: str, tag: str, hint: str) -> Diagnostic:
     found = re.search(rf"<({tag})\b", source.text) if tag else None
     span = Span(source, *(found.span(1) if found else (0, 0)))
-    return report(codes.MANIFEST_LACKS, f"package.xml {message}", span, hint)
+    return report(codes.INCOMPLETE_MANIFEST, f"package.xml {message}", span, hint)
