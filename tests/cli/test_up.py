@@ -122,7 +122,7 @@ def test_nodes_can_be_selected(up: Up, arguments: list[str]) -> None:
 def test_only_systems_can_be_run(tmp_path: Path) -> None:
     """A node description is a usage error, and a missing file is reported."""
     (tmp_path / "a.rnd").write_text("node a : demo")
-    for name, words in (("a.rnd", "no system description"), ("b.system", "DRS001")):
+    for name, words in (("a.rnd", "takes system descriptions (*.system)"), ("b.system", "DRS001")):
         done = subprocess.run(
             [DEROS, "up", tmp_path / name], capture_output=True, text=True, check=False
         )
@@ -145,11 +145,11 @@ from deros.validators import check
 class Interrupted:
     def __del__(self):  # where Python prints an exception, and goes on
         os.kill(os.getpid(), signal.SIGINT)
-real = check.check
+real = check.check_all
 def interrupted(*arguments):
     Interrupted()
     return real(*arguments)
-check.check = interrupted
+check.check_all = interrupted
 main()
 """
 

@@ -23,4 +23,4 @@ def show(diagnostics: Sequence[Diagnostic]) -> None:
 
 def wrong_language(file: str, expected: Language) -> click.UsageError:
     """Return the error for a model of another language than a command works on."""
-    return click.UsageError(f"'{file}' is not one of the {expected.title} ({expected.pattern})")
+    return click.UsageError(f"it takes {expected.title} ({expected.pattern}), not '{file}'")
