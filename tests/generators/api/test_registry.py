@@ -115,7 +115,7 @@ def test_a_model_with_errors_is_refused(textx_model: Any, tmp_path: Path) -> Non
 def test_a_file_with_syntax_errors_is_refused(textx_model: Any, tmp_path: Path) -> None:
     """The loader's findings end the run, with file and line."""
     (tmp_path / "talker.rnd").write_text("node talker\n")
-    with pytest.raises(TextXError, match=r"^talker\.rnd:1:12: error\[DRS003\]"):
+    with pytest.raises(TextXError, match=r"^talker\.rnd:1:12: error\[DRS003 syntax-error\]"):
         greeting.generator(METAMODEL, textx_model, None, False, False)
 
 
@@ -126,7 +126,9 @@ def test_a_target_that_refuses_ends_the_run(textx_model: Any) -> None:
     def refusing(model: NodeType, context: Context, options: Options) -> Files:  # noqa: ARG001
         raise GenerationError([report(codes.UNSUPPORTED_BY_TARGET, "cannot", model.name_span)])
 
-    with pytest.raises(TextXError, match=r"talker\.rnd:1:6: error\[DRS402\]: cannot"):
+    with pytest.raises(
+        TextXError, match=r"talker\.rnd:1:6: error\[DRS402 unsupported-by-target\]: cannot"
+    ):
         refusing.generator(METAMODEL, textx_model, None, False, False)
 
 
