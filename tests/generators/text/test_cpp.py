@@ -22,7 +22,7 @@ from deros.generators.text.cpp import (
     cpp_identifier,
     cpp_int64,
     cpp_string,
-    layout,
+    expression,
     standard_headers,
     statement,
     tidied,
@@ -71,7 +71,7 @@ def test_literals_hold_what_they_stand_for(tmp_path: Path) -> None:
         "}",
         "int main() {",
         *(f"  put({cpp_string(text)});" for text in texts),
-        *("  put(\n    " + "\n".join(layout(Text(text), 4)) + ");" for text in broken),
+        *("  put(\n    " + expression(Text(text), 4) + ");" for text in broken),
         *(f'  std::printf("%a\\n", {cpp_double(value)});' for value in doubles),
         *(f'  std::printf("%" PRId64 "\\n", int64_t{{{cpp_int64(v)}}});' for v in integers),
         "}",
@@ -126,8 +126,8 @@ def test_a_long_type_stands_in_front_of_its_function() -> None:
 def test_chains_and_items_are_broken_at_their_parts() -> None:
     """Parts of a long chain stand one below the other, and so do those of a long list."""
     part = f".with({'x' * 40})"
-    assert layout(Chain("QoS(1)", (part,)), 4) == [f"QoS(1){part}"]
-    assert layout(Chain("QoS(1)", (part, part)), 4, ",") == [
+    assert expression(Chain("QoS(1)", (part,)), 4) == f"QoS(1){part}"
+    assert expression(Chain("QoS(1)", (part, part)), 4, ",").splitlines() == [
         "QoS(1)",
         f"    {part}",
         f"    {part},",
@@ -144,7 +144,7 @@ def test_chains_and_items_are_broken_at_their_parts() -> None:
 def test_broken_texts_fit(words: list[str]) -> None:
     """No piece of a broken text is longer than a line while its words allow that."""
     text = " ".join(words)
-    lines = layout(Text(text), 6, ";")
+    lines = expression(Text(text), 6, ";").splitlines()
     longest = max(map(len, text.split()), default=0)
     assert longest > 60 or all(len(line.strip()) + 6 <= LINE_LENGTH for line in lines)
 

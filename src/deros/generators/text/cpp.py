@@ -8,7 +8,24 @@ import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from deros.generators.text.prose import printable_line, sentence
+from deros.generators.text.document import (
+    HARDLINE,
+    LINE,
+    SOFTLINE,
+    Document,
+    Line,
+    align,
+    breakable,
+    comma_separated,
+    concat,
+    group,
+    if_broken,
+    join,
+    nest,
+    render,
+    render_lines,
+)
+from deros.generators.text.prose import printable_line, sentence, wrap
 from deros.interfaces.keywords import CPP_20
 from deros.interfaces.types import InterfaceType
 
@@ -97,7 +114,7 @@ def cpp_int64(value: int) -> str:
     return f"INT64_C({value})" if abs(value) >= 2**31 else str(value)
 
 
-# Layout -------------------------------------------------------------------------------------------
+# Expressions --------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,9 +126,12 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A call; where too long, its arguments stand on lines of their own.
+    """A call; where it is too long, its arguments are on lines of their own.
 
-    ``tail`` follows the closing parenthesis.
+    Attributes:
+        head: the text in front of the opening bracket; of a declaration type and name.
+        arguments: the arguments.
+        tail: the text behind the closing bracket.
     """
 
     head: str
@@ -121,9 +141,12 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """Parts that follow one another; where too long, each stands on a line of its own.
+    """Parts that follow each other; where they are too long, each is on a line of its own.
 
-    ``joint`` stands between two parts, on one line as it is and at a line's end without its blank.
+    Attributes:
+        head: the text in front of the parts, without a joint behind it.
+        parts: the parts.
+        joint: the text between two parts; at the end of a line, its last blank is dropped.
     """
 
     head: str
@@ -133,58 +156,107 @@ class Chain:
 
 @dataclass(frozen=True, slots=True)
 class Items:
-    """A list in braces; where too long, each item stands on a line of its own."""
+    """A list in braces; where it is too long, each item is on a line of its own."""
 
     items: tuple[str, ...]
 
 
-Expression = str | Text | Call | Chain | Items
+@dataclass(frozen=True, slots=True)
+class Table:
+    """An initializer in braces; where it is too long, each row is on a line with a comma."""
+
+    rows: tuple[Expression, ...]
 
 
-def layout(expression: Expression, indent: int, trailer: str = "") -> list[str]:
-    """Return the lines of an expression that starts in column ``indent``; the first has no blanks.
+Expression = str | Text | Call | Chain | Items | Table
 
-    ``trailer`` is what follows the expression on its last line.
+
+def expression(value: Expression, indent: int, end: str = "") -> str:
+    """Return an expression, for a template that has written ``indent`` blanks already.
+
+    Args:
+        value: the expression.
+        indent: the column in which it starts, and to which further lines are indented.
+        end: the text behind it.
     """
-    line = _on_one_line(expression) + trailer
-    if isinstance(expression, str) or indent + len(line) <= LINE_LENGTH:
-        return [line]
-    if isinstance(expression, Text):
-        return _broken(expression.text, indent, trailer)
-    if isinstance(expression, Chain):
-        return _links(expression, indent, trailer)
-    if isinstance(expression, Items):
-        margin = " " * (indent + 2)
-        items = [f"{margin}{item}," for item in expression.items]
-        return ["{", *items[:-1], items[-1].removesuffix(",") + "}" + trailer]
-    before, head = _cut(expression.head, indent)
-    margin = " " * (indent + 2)
-    trailer = ")" + expression.tail + trailer
-    together = ", ".join(map(_on_one_line, expression.arguments)) + trailer
-    if indent + 2 + len(together) <= LINE_LENGTH:
-        return [*before, f"{head}(", margin + together]
-    lines = [*before, f"{head}("]
-    ends = _ends(len(expression.arguments), trailer)
-    for argument, end in zip(expression.arguments, ends, strict=True):
-        inner = layout(argument, indent + 2, end)
-        lines += [margin + inner[0], *inner[1:]]
-    return lines
+    return render(concat(_document(value), end), LINE_LENGTH, indent)
 
 
-def _ends(count: int, last: str) -> list[str]:
-    """Return what follows each of some arguments."""
-    return [*[","] * (count - 1), last]
+def expression_lines(value: Expression, indent: int, end: str = "") -> list[str]:
+    """Return the lines of an expression with the text behind it, behind ``indent`` blanks."""
+    return render_lines(concat(_document(value), end), LINE_LENGTH, indent)
 
 
-def _cut(head: str, indent: int) -> tuple[list[str], str]:
-    """Take the type in front of a declared name to a line of its own, where both do not fit."""
+def call(head: str, arguments: Iterable[Expression | None], indent: int, end: str = ";") -> str:
+    """Return a call, for a template that has written ``indent`` blanks already.
+
+    Arguments that are ``None`` are left out.
+    """
+    return expression(Call(head, _given(arguments)), indent, end)
+
+
+def arguments(given: Iterable[Expression | None], indent: int, end: str) -> str:
+    """Return arguments, for a template that has written ``indent`` blanks already.
+
+    Those that are ``None`` are left out; ``end`` follows the last.
+    """
+    listed = comma_separated(map(_document, _given(given)))
+    return render(group(listed, end), LINE_LENGTH, indent)
+
+
+def statement(head: str, value: Expression, indent: int) -> str:
+    """Return ``head value;``, for a template that has written ``indent`` blanks already.
+
+    A value that does not fit behind its head is below it.
+    """
+    inner = _document(value)
+    if not head:
+        document = concat(inner, ";")
+    elif isinstance(value, str | Items):
+        document = concat(head, " ", inner, ";")
+    else:
+        document = group(head, nest(2, LINE, inner), ";")
+    return render(document, LINE_LENGTH, indent)
+
+
+def _given(listed: Iterable[Expression | None]) -> tuple[Expression, ...]:
+    return tuple(argument for argument in listed if argument is not None)
+
+
+def _document(value: Expression) -> Document:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Text):
+        text = value.text
+        return align(breakable(cpp_string(text), lambda indent: _pieces(text, indent)))
+    if isinstance(value, Chain):
+        joint = value.joint.rstrip()
+        line = Line(value.joint.removeprefix(joint))
+        return group(
+            align(
+                value.head, SOFTLINE if value.head else "", join(concat(joint, line), value.parts)
+            )
+        )
+    if isinstance(value, Items):
+        return group("{", nest(2, SOFTLINE, comma_separated(value.items)), "}")
+    if isinstance(value, Table):
+        rows = comma_separated(map(_document, value.rows))
+        return (
+            group("{", nest(2, SOFTLINE, rows, if_broken(",")), SOFTLINE, "}")
+            if value.rows
+            else "{}"
+        )
+    arguments = group(comma_separated(map(_document, value.arguments)))
+    return group(_head(value.head), "(", nest(2, SOFTLINE, arguments), ")", value.tail)
+
+
+def _head(head: str) -> Document:
+    """Return the head of a call; where it is too long, its type is on a line of its own."""
     type_, blank, name = head.rpartition(" ")
-    if indent + len(head) < LINE_LENGTH or not blank:
-        return [], head
-    return [type_], " " * indent + name
+    return group(type_, LINE, name) if blank else head
 
 
-def _broken(text: str, indent: int, trailer: str) -> list[str]:
+def _pieces(text: str, indent: int) -> Document:
     """Return a long text as literals one below the other, which the compiler joins."""
     pieces = textwrap.wrap(
         _escaped(text),  # no escape has a blank, so none is broken
@@ -195,76 +267,7 @@ def _broken(text: str, indent: int, trailer: str) -> list[str]:
         expand_tabs=False,
         replace_whitespace=False,
     )
-    margin = " " * indent
-    lines = [f'{margin}"{piece}"' for piece in pieces]
-    lines[0] = lines[0].removeprefix(margin)
-    lines[-1] += trailer
-    return lines
-
-
-def _links(chain: Chain, indent: int, trailer: str) -> list[str]:
-    margin = " " * indent
-    parts = [*([chain.head] if chain.head else []), *chain.parts]
-    joint = chain.joint.rstrip()
-    lines = [f"{part}{joint}" for part in parts[:-1]] + [f"{parts[-1]}{trailer}"]
-    return [lines[0], *(margin + line for line in lines[1:])]
-
-
-def _on_one_line(expression: Expression) -> str:
-    if isinstance(expression, str):
-        return expression
-    if isinstance(expression, Text):
-        return cpp_string(expression.text)
-    if isinstance(expression, Chain):
-        return expression.head + expression.joint.join(expression.parts)
-    if isinstance(expression, Items):
-        return f"{{{', '.join(expression.items)}}}"
-    arguments = ", ".join(map(_on_one_line, expression.arguments))
-    return f"{expression.head}({arguments}){expression.tail}"
-
-
-def call(head: str, arguments: Iterable[Expression | None], indent: int, end: str = ";") -> str:
-    """Return a call as text for a template that has written ``indent`` blanks already.
-
-    Arguments that are ``None`` are left out.
-    """
-    given = tuple(argument for argument in arguments if argument is not None)
-    return "\n".join(layout(Call(head, given), indent, end))
-
-
-def arguments(given: Iterable[Expression | None], indent: int, end: str) -> str:
-    """Return arguments as text for a template that has written ``indent`` blanks already.
-
-    Those that are ``None`` are left out; ``end`` follows the last.
-    """
-    listed = [argument for argument in given if argument is not None]
-    line = ", ".join(map(_on_one_line, listed)) + end
-    if indent + len(line) <= LINE_LENGTH:
-        return line
-    lines = []
-    for argument, trailer in zip(listed, _ends(len(listed), end), strict=True):
-        lines += layout(argument, indent, trailer)
-    return ("\n" + " " * indent).join(line.strip() for line in lines)
-
-
-def statement(head: str, value: Expression, indent: int) -> str:
-    """Return ``head value;`` for a template that has written ``indent`` blanks already.
-
-    A value that does not fit behind its head stands below.
-    """
-    line = f"{head} {_on_one_line(value)};".lstrip()
-    if indent + len(line) <= LINE_LENGTH or isinstance(value, str):
-        return line
-    if isinstance(value, Items):
-        return f"{head} " + "\n".join(layout(value, indent, ";"))
-    margin = " " * (indent + 2)
-    first, *others = layout(value, indent + 2, ";")
-    return "\n".join([head, margin + first, *others])
-
-
-def expression(value: Expression, indent: int, end: str = "") -> str:
-    """Return any expression as text for a template that has written ``indent`` blanks already."""
-    return "\n".join(layout(value, indent, end))
+    return join(HARDLINE, (f'"{piece}"' for piece in pieces))
 
 
 # Comments -----------------------------------------------------------------------------------------
@@ -288,9 +291,7 @@ def comment(text: str, indent: int, notes: Iterable[str] = (), mark: str = "///"
 def wrapped(text: str, indent: int) -> list[str]:
     """Return ``text`` as lines of a comment that fit behind ``indent`` columns."""
     plain = printable_line(text).replace("\\", "/").replace("??", "?").replace("TODO", "To do")
-    return textwrap.wrap(
-        plain, LINE_LENGTH - indent, break_long_words=False, break_on_hyphens=False
-    )
+    return wrap(plain, LINE_LENGTH - indent)
 
 
 def summary(text: str, otherwise: str) -> str:

@@ -12,7 +12,7 @@ from deros.generators.safety_node.view import (
     origin_file,
     refusing_behaviours,
 )
-from deros.generators.text.cpp import LINE_LENGTH, Text, cpp_string, expression
+from deros.generators.text.cpp import Expression, Table, Text, cpp_string, expression
 from deros.metamodels.rules import Rules
 from deros.monitor import walk
 from deros.monitor.actions import LOG_STATE
@@ -40,14 +40,11 @@ def rule_metadata_view(
 
 def table(item: Item, indent: int) -> str:
     """Return an initialiser as text for a template that has written ``indent`` blanks already."""
-    if not isinstance(item, list):
-        return expression(item, indent)
-    line = f"{{{', '.join(table(each, 0) for each in item)}}}"
-    if indent + len(line) < LINE_LENGTH and "\n" not in line:
-        return line
-    margin = " " * (indent + 2)
-    inner = "".join(f"{margin}{table(each, indent + 2)},\n" for each in item)
-    return f"{{\n{inner}{' ' * indent}}}"
+    return expression(_initializer(item), indent, ",").removesuffix(",")
+
+
+def _initializer(item: Item) -> Expression:
+    return Table(tuple(map(_initializer, item))) if isinstance(item, list) else item
 
 
 def _behaviours(program: Program) -> Iterator[list[Item]]:

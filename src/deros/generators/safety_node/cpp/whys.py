@@ -17,7 +17,7 @@ from deros.generators.monitor.c.interface import (
 from deros.generators.safety_node.cpp.rule_state import reading, shown_text
 from deros.generators.text import logic
 from deros.generators.text.c import flat, lay_out_if
-from deros.generators.text.cpp import Call, Chain, Expression, cpp_string, layout
+from deros.generators.text.cpp import Call, Chain, Expression, cpp_string, expression_lines
 from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of
 from deros.monitor import walk
 from deros.monitor.causes import (
@@ -212,8 +212,7 @@ class _Emitter:
 
 
 def _called(function: str, arguments: tuple[Expression, ...], indent: int) -> Iterator[str]:
-    first, *rest = layout(Call(function, arguments), indent, ";")
-    yield from (" " * indent + first, *rest)
+    yield from expression_lines(Call(function, arguments), indent, ";")
 
 
 def _if(asked: Logic, indent: int) -> list[str]:
