@@ -14,7 +14,9 @@ from deros.generators.text.cpp import (
     LINE_LENGTH,
     Call,
     Chain,
+    Expression,
     Items,
+    Table,
     Text,
     call,
     comment,
@@ -138,6 +140,30 @@ def test_chains_and_items_are_broken_at_their_parts() -> None:
         f"    {item},",
         f"    {item}}};",
     ]
+
+
+_words = st.text("ab", min_size=1, max_size=50)
+_expressions: st.SearchStrategy[Expression] = st.recursive(
+    st.one_of(
+        _words,
+        st.lists(_words, min_size=1, max_size=4).map(lambda parts: Chain("", tuple(parts), " &&")),
+        st.lists(_words, min_size=1, max_size=4).map(lambda items: Items(tuple(items))),
+        st.lists(_words, max_size=4).map(lambda rows: Table(tuple(rows))),
+    ),
+    lambda inner: st.builds(Call, _words, st.lists(inner, max_size=4).map(tuple)),
+    max_leaves=8,
+)
+
+
+@given(_expressions, st.integers(0, 30))
+def test_layout_changes_white_space_only(value: Expression, indent: int) -> None:
+    """However an expression is broken, its lines fit and hold the same tokens."""
+    text = expression(value, indent, ";")
+    assert all(len(line) <= LINE_LENGTH for line in (" " * indent + text).splitlines())
+    one_line = expression(value, -10_000, ";")  # so far to the left that everything fits
+    assert "\n" not in one_line
+    # Only a table has a comma behind its last row where it is broken.
+    assert "".join(text.split()).replace(",}", "}") == "".join(one_line.split())
 
 
 @given(st.lists(st.text("ab ", min_size=1), min_size=1, max_size=20))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from deros.generators.text.c import MAX_LINE
+from deros.generators.text.c import LINE_LENGTH
+from deros.generators.text.document import render_lines
+from deros.generators.text.prose import paragraph
 
 
 @dataclass(slots=True)
@@ -34,19 +35,11 @@ class Contract:
     def text(self, indent: int) -> str:
         """Return the annotation, as it stands above a function or a loop."""
         clauses = list(self._clauses())
-        blank = " " * indent
         lines: list[str] = []
         for number, clause in enumerate(clauses):
-            lead = f"{blank}{'/*@ ' if number == 0 else '    '}"
+            lead = "/*@ " if number == 0 else "    "
             end = "; */" if number == len(clauses) - 1 else ";"
-            lines += textwrap.wrap(
-                f"{clause}{end}",
-                MAX_LINE,
-                initial_indent=lead,
-                subsequent_indent=f"{blank}      ",
-                break_long_words=False,
-                break_on_hyphens=False,
-            )
+            lines += render_lines(paragraph(f"{clause}{end}", lead, "      "), LINE_LENGTH, indent)
         return "\n".join(lines)
 
     def _clauses(self) -> Iterator[str]:
@@ -74,14 +67,7 @@ class Contract:
 
 def wrapped(text: str, indent: int = 0) -> list[str]:
     """Return a text in lines that are not too long."""
-    return textwrap.wrap(
-        text,
-        MAX_LINE,
-        initial_indent=" " * indent,
-        subsequent_indent=" " * (indent + 2),
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    return render_lines(paragraph(text, "", "  "), LINE_LENGTH, indent)
 
 
 def iff(left: str, right: str) -> str:

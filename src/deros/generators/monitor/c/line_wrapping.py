@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 
-from deros.generators.text.c import MAX_LINE
+from deros.generators.text.c import LINE_LENGTH
 
 _TRAILING_COMMENT = re.compile(r"( *)(\S.*[;{])  (/\*.*\*/)")
 _LITERAL = re.compile(r'"((?:\\.|[^"\\])*)"')
@@ -20,7 +20,7 @@ def wrap_long_lines(text: str) -> str:
         begins = line.lstrip().startswith("/*")
         to_prove = line.lstrip().startswith("/*@") if begins else to_prove
         within = within or begins
-        if len(line) <= MAX_LINE or (within and to_prove):
+        if len(line) <= LINE_LENGTH or (within and to_prove):
             lines.append(line)
         else:
             lines += _comment(line) if within else _code(line)
@@ -35,7 +35,7 @@ def _comment(line: str) -> list[str]:
     further = first.replace("/*", " *")
     return textwrap.wrap(
         words,
-        MAX_LINE,
+        LINE_LENGTH,
         initial_indent=first,
         subsequent_indent=further,
         break_long_words=False,
@@ -68,7 +68,7 @@ def _filled(before: str, items: list[str], after: str) -> list[str]:
         *pieces, last = _pieces(item)
         ending = ("" if closing else after) if number == len(items) - 1 else ","
         for piece in (*pieces, f"{last}{ending}"):
-            if lines[-1] and len(lines[-1]) + 1 + len(piece) > MAX_LINE:
+            if lines[-1] and len(lines[-1]) + 1 + len(piece) > LINE_LENGTH:
                 lines.append("")
             lines[-1] = f"{lines[-1]} {piece}" if lines[-1] else f"{indent}{piece}"
     return [*lines, *closing]
@@ -76,7 +76,7 @@ def _filled(before: str, items: list[str], after: str) -> list[str]:
 
 def _pieces(item: str) -> list[str]:
     """Return an item, a text being cut in pieces, which C puts together."""
-    if len(item) < MAX_LINE - 10 or not item.startswith('"'):
+    if len(item) < LINE_LENGTH - 10 or not item.startswith('"'):
         return [item]
     contents = [each[1] for each in _LITERAL.finditer(item)]
     return [f'"{piece}"' for each in contents for piece in _CHARACTERS.findall(each)]

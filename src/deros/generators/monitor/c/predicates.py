@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Collection, Iterable, Iterator
 
 from deros.generators.monitor.c import quantities, scans, windows
@@ -10,7 +9,8 @@ from deros.generators.monitor.c.acsl_semantics import AcslSemantics
 from deros.generators.monitor.c.contracts import all_of, any_of, iff, wrapped
 from deros.generators.monitor.c.emissions import Emissions
 from deros.generators.monitor.c.view import MonitorView
-from deros.generators.text.c import MAX_LINE
+from deros.generators.text.c import LINE_LENGTH
+from deros.generators.text.document import Line, concat, fill, nest, render_lines
 from deros.monitor import walk
 from deros.monitor.ir import Behaviour, Condition, For, Rule
 
@@ -217,18 +217,11 @@ def predicate(
 
 def _macro(name: str, parameters: str, parts: list[str]) -> list[str]:
     """Return the lines of a macro that stands for a conjunction."""
-    joined = [f"{part} &&" for part in parts[:-1]]
-    lines = [f"#define {name}({parameters}) ("]
-    for text in [*joined, f"{parts[-1]})"]:
-        lines += textwrap.wrap(
-            text,
-            MAX_LINE - len(" \\"),
-            initial_indent="  ",
-            subsequent_indent="    ",
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
-    return [f"{line} \\" for line in lines[:-1]] + lines[-1:]
+    broken = Line(None, before=" \\")
+    words = Line(" ", before=" \\")
+    texts = [*(f"{part} &&" for part in parts[:-1]), f"{parts[-1]})"]
+    lines = [concat(broken, nest("  ", fill(text.split(" "), words))) for text in texts]
+    return render_lines(concat(f"#define {name}({parameters}) (", nest(2, *lines)), LINE_LENGTH)
 
 
 IDLE = "m->now <= time_of(t) < m->due"
