@@ -230,28 +230,40 @@ def _forget_old(store: Path) -> None:
 
 
 @functools.cache
+def ros_prefix() -> Path:
+    """Return the first ROS 2 prefix, or that of this environment's wheels."""
+    prefixes = (*_prefixes(os.environ), Path(sys.prefix))
+    return next(p for p in prefixes if (p / "include/rosidl_runtime_cpp").is_dir())
+
+
+@functools.cache
 def message_flags() -> tuple[str, ...]:
     """Return the options that let ``#include "sensor_msgs/msg/imu.hpp"`` be found.
 
     The headers are those of the first ROS 2 prefix, the wheels of this environment otherwise. They
     come as system headers: their own warnings are not ours.
     """
-    prefixes = (*_prefixes(os.environ), Path(sys.prefix))
-    include = next(p for p in prefixes if (p / "include/rosidl_runtime_cpp").is_dir()) / "include"
+    include = ros_prefix() / "include"
     folders = sorted(folder for folder in include.iterdir() if (folder / folder.name).is_dir())
     return tuple(argument for folder in folders for argument in ("-isystem", str(folder)))
 
 
 def compile_cpp(
-    sources: Iterable[Path], output: Path, *flags: str, standard: str = "c++17"
+    sources: Iterable[Path],
+    output: Path,
+    *flags: str,
+    standard: str = "c++17",
+    libraries: Iterable[str] = (),
 ) -> Path:
     """Compile sources to a program, with all warnings as errors, and return its path.
+
+    The options that name ``libraries`` come last, as linkers want it.
 
     Raises:
         AssertionError: with what the compiler printed, if it does not compile.
     """
     files = [str(path) for path in sources]
     output.parent.mkdir(parents=True, exist_ok=True)
-    command = ["c++", f"-std={standard}", *WARNINGS, *flags, *files, "-o", str(output)]
+    command = ["c++", f"-std={standard}", *WARNINGS, *flags, *files, "-o", str(output), *libraries]
     _run(command, output.parent)
     return output

@@ -9,7 +9,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
-import deros.generators.runtime.cpp as runtime
 from deros.generators.safety_node.cpp.rule_metadata import table
 from deros.generators.safety_node.cpp.rule_state import explained_rules
 from deros.generators.safety_node.cpp.whys import why_behaviour, why_rule, whys
@@ -22,24 +21,25 @@ from tests.support.c_monitors import CMonitor
 from tests.support.counterexamples import Pair
 from tests.support.monitors import START_NS, remark, timed
 from tests.support.monitors import call as call_monitor
+from tests.support.safety_cpp import RUNTIME
 
 COMPILER = ("g++", "-std=c++17", "-O0", "-fPIC", "-Wall", "-Wextra", "-Werror")
 _ROOM = 1 << 20
-_RUNTIME = Path(str(runtime.__file__)).parent
 _TOLD = """
 extern "C" std::size_t tell_{prefix}(const {prefix}_monitor * m, char * out, std::size_t room)
 {{
   const auto state = told_{prefix}::explained(*m);
   std::string text;
   for (const auto & rule : state.rules) {{
-    text += rule.name + (rule.value ? deros_runtime::shown(*rule.value) : "unknown");
+    text += rule.name + (rule.value ? deros_runtime_cpp::shown(*rule.value) : "unknown");
     for (const auto & cause : rule.causes) {{
       text += '\\t' + cause;
     }}
     text += '\\n';
   }}
   for (const std::size_t behaviour : state.holding) {{
-    text += std::to_string(behaviour) + '\\t' + deros_runtime::cause_of(behaviour, state) + '\\n';
+    text += std::to_string(behaviour) + '\\t';
+    text += deros_runtime_cpp::cause_of(behaviour, state) + '\\n';
   }}
   return text.copy(out, room);
 }}
@@ -52,13 +52,11 @@ class Told(Loaded):
     def __init__(self, units: Sequence[Unit], folder: Path) -> None:
         """Compile the monitors, and what tells of them, in a folder of their own."""
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "deros_runtime").mkdir()
-        (folder / "deros_runtime/runtime").symlink_to(_RUNTIME)
         for each in units:
             for name, text in each.texts.items():
                 (folder / name).write_text(text, encoding="utf-8")
         (folder / "told.cpp").write_text(_source(units), encoding="utf-8")
-        command = [*COMPILER, "-I", ".", "-c", "told.cpp"]
+        command = [*COMPILER, "-I", ".", f"-I{RUNTIME / 'include'}", "-c", "told.cpp"]
         done = subprocess.run(
             command, cwd=folder, capture_output=True, text=True, timeout=LIMIT, check=False
         )
@@ -112,14 +110,14 @@ def _told(engine: Engine, unit: Unit) -> str:
 
 def _source(units: Sequence[Unit]) -> str:
     parts = [
-        '#include "deros_runtime/runtime/report_types.cpp"',
-        '#include "deros_runtime/runtime/text.cpp"',
+        f'#include "{RUNTIME}/src/report_types.cpp"',
+        f'#include "{RUNTIME}/src/text.cpp"',
         "#include <cmath>",
         "#include <limits>",
     ]
     for unit in units:
         parts += [f'#include "{unit.prefix}_monitor.h"', f"namespace told_{unit.prefix} {{"]
-        parts += ["namespace runtime = deros_runtime;", _told_in_cpp(unit), "}"]
+        parts += ["namespace runtime = deros_runtime_cpp;", _told_in_cpp(unit), "}"]
         parts.append(_TOLD.format(prefix=unit.prefix))
     return "\n".join(parts)
 

@@ -18,7 +18,7 @@ import pytest
 from deros.generators.gate.cpp.generate import render
 from deros.generators.gate.cpp.view import GateView, gate_view
 from deros.generators.gate.python.interface import gate_nodes
-from deros.generators.runtime.interface import cpp_runtime_text
+from deros.generators.runtime.cpp.interface import copied_text
 from deros.generators.safety_node.node import safety_node
 from deros.interfaces.types import InterfaceType
 from deros.monitor.gate_engine import OutputKind
@@ -52,7 +52,7 @@ def write_logic(view: GateView, folder: Path) -> Path:
     """Write what the logic of a gate is made of, and return its source."""
     include = folder / view.package
     (include / "runtime").mkdir(parents=True, exist_ok=True)
-    numbers = cpp_runtime_text("gate_numbers.hpp", view.package)
+    numbers = copied_text("gate_numbers.hpp", view.package)
     (include / "runtime" / "gate_numbers.hpp").write_text(numbers, encoding="utf-8")
     header = include / f"{view.name}_logic.hpp"
     header.write_text(render("logic.hpp", view), encoding="utf-8")

@@ -13,7 +13,7 @@ from deros.generators.api.protocol import Files
 from deros.generators.gate.cpp.interface import gate_files, gate_nodes
 from deros.generators.node.cpp.generate import package_files
 from deros.generators.output.writer import write
-from deros.generators.runtime.interface import cpp_runtime
+from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.cpp.interface import RUNTIME
 from deros.generators.safety_node.node import safety_node
 from deros.generators.text.notice import notice
@@ -44,7 +44,7 @@ def gate_package(text: str, options: Mapping[str, str] | None = None, name: str 
     holder = notice(chosen)
     gates = gate_files(built.program, nodes, safety, store, holder)
     package = package_files(gates.nodes, chosen, gates.provided)
-    return {**package, **cpp_runtime(nodes[0].package, RUNTIME, holder), **gates.files}
+    return {**package, **CppRuntime(nodes[0].package).files(RUNTIME, holder), **gates.files}
 
 
 @functools.cache

@@ -5,47 +5,67 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
+import deros.generators.runtime.cpp
 from deros.generators.api.protocol import Files
-from deros.generators.runtime.interface import cpp_runtime_text
-from tests.support.cpp import compile_cpp, message_flags
+from deros.generators.runtime.cpp.interface import copied_text
+from tests.support.cpp import compile_cpp, message_flags, ros_prefix
+
+RUNTIME = Path(deros.generators.runtime.cpp.__path__[0])
+"""The folder of the package ``deros_runtime_cpp``."""
 
 HEADERS = ("descriptor", "refusal")
 PURE = (
-    *("event_loop", "instance", "latches", "monitor_runner", "realtime", "regular_file"),
-    *("report_types", "sha256", "start_order", "text", "worker"),
+    *("digest", "event_loop", "instance", "latches", "monitor_runner", "realtime"),
+    *("regular_file", "report_types", "start_order", "text", "worker"),
 )
-"""The runtime that needs nothing but the system."""
+"""The parts of the runtime that need only the system and rcutils."""
 WITH_MESSAGES = ("diagnostics", "events")
-"""The runtime that needs the headers of messages, too."""
-
-
-def runtime_in(folder: Path, package: str) -> list[Path]:
-    """Write the runtime without rclcpp below a folder, and return its sources."""
-    runtime = folder / package / "runtime"
-    runtime.mkdir(parents=True, exist_ok=True)
-    for name in (*HEADERS, *PURE, *WITH_MESSAGES):
-        (runtime / f"{name}.hpp").write_text(cpp_runtime_text(f"{name}.hpp", package))
-    for name in (*PURE, *WITH_MESSAGES):
-        (runtime / f"{name}.cpp").write_text(cpp_runtime_text(f"{name}.cpp", package))
-    return [runtime / f"{name}.cpp" for name in (*PURE, *WITH_MESSAGES)]
+"""The parts of the runtime that need the headers of messages, too."""
 
 
 def compiled(source: Path, folder: Path, files: Files | None = None) -> Path:
-    """Compile a program with the runtime, and with what of a package needs no rclcpp.
+    """Compile a program with the parts of the runtime that need no rclcpp.
 
-    The namespace of a runtime without a package is ``tested::runtime``.
+    Args:
+        source: the program.
+        folder: where to compile it.
+        files: a generated package whose messages, metadata and monitor are compiled, too; it brings
+            its copy of the runtime. Without it, the runtime is that of ``deros_runtime_cpp``.
     """
-    package = next(iter(files)).partition("/")[0] if files else "tested"
-    sources = [source, *runtime_in(folder, package)]
-    for path, file in (files or {}).items():
+    if files is None:
+        sources = [RUNTIME / f"src/{part}.cpp" for part in (*PURE, *WITH_MESSAGES)]
+        include = RUNTIME / "include"
+    else:
+        sources = [*_copied(folder, next(iter(files)).partition("/")[0]), *_written(folder, files)]
+        include = folder
+    libraries = ros_prefix() / "lib"
+    flags = ("-O1", "-pthread", f"-I{include}", *message_flags())
+    linked = (f"-L{libraries}", f"-Wl,-rpath,{libraries}", "-lrcutils")
+    return compile_cpp([source, *sources], folder / "program", *flags, libraries=linked)
+
+
+def _copied(folder: Path, package: str) -> list[Path]:
+    """Write the runtime of a package, and return its sources."""
+    runtime = folder / package / "runtime"
+    runtime.mkdir(parents=True, exist_ok=True)
+    for name in (*HEADERS, *PURE, *WITH_MESSAGES):
+        (runtime / f"{name}.hpp").write_text(copied_text(f"{name}.hpp", package))
+    for name in (*PURE, *WITH_MESSAGES):
+        (runtime / f"{name}.cpp").write_text(copied_text(f"{name}.cpp", package))
+    return [runtime / f"{name}.cpp" for name in (*PURE, *WITH_MESSAGES)]
+
+
+def _written(folder: Path, files: Files) -> list[Path]:
+    """Write the parts of a package that need no rclcpp, and return their sources."""
+    sources = []
+    for path, file in files.items():
         name = Path(path).name
         if name.endswith(("_messages.hpp", "_rule_metadata.hpp", "_monitor.h")):
             (folder / name).write_text(file.text, encoding="utf-8")
         elif name.endswith(("_messages.cpp", "_rule_metadata.cpp", "_monitor.c")):
             sources.append(folder / name)
             sources[-1].write_text(file.text, encoding="utf-8")
-    flags = ("-O1", "-pthread", f"-I{folder}", *message_flags())
-    return compile_cpp(sources, folder / "program", *flags)
+    return sources
 
 
 class Harness:

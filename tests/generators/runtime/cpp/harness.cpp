@@ -10,17 +10,17 @@
 #include <utility>
 #include <vector>
 
-#include "tested/runtime/descriptor.hpp"
-#include "tested/runtime/instance.hpp"
-#include "tested/runtime/latches.hpp"
-#include "tested/runtime/sha256.hpp"
-#include "tested/runtime/start_order.hpp"
-#include "tested/runtime/text.hpp"
+#include "deros_runtime_cpp/descriptor.hpp"
+#include "deros_runtime_cpp/instance.hpp"
+#include "deros_runtime_cpp/latches.hpp"
+#include "deros_runtime_cpp/digest.hpp"
+#include "deros_runtime_cpp/start_order.hpp"
+#include "deros_runtime_cpp/text.hpp"
 
 namespace
 {
 
-using tested::runtime::LatchFile;
+using deros_runtime_cpp::LatchFile;
 
 std::vector<std::string> words_of(const std::string & line, char separator)
 {
@@ -40,7 +40,7 @@ LatchFile::Names names_of(const std::string & text)
 
 std::string text_of(const LatchFile::Names & names)
 {
-  return tested::runtime::joined({names.begin(), names.end()}, ",");
+  return deros_runtime_cpp::joined({names.begin(), names.end()}, ",");
 }
 
 std::string number(const std::string & bits)
@@ -48,14 +48,14 @@ std::string number(const std::string & bits)
   const std::uint64_t integer = std::stoull(bits, nullptr, 16);
   double value = 0.0;
   std::memcpy(&value, &integer, sizeof(value));
-  return tested::runtime::shown(value);
+  return deros_runtime_cpp::shown(value);
 }
 
 std::string claimed(const std::string & folder, const std::string & domain, const std::string & name)
 {
-  static std::vector<tested::runtime::Descriptor> locks;
+  static std::vector<deros_runtime_cpp::Descriptor> locks;
   try {
-    locks.push_back(tested::runtime::claim(name, std::stoul(domain), folder));
+    locks.push_back(deros_runtime_cpp::claim(name, std::stoul(domain), folder));
   } catch (const std::exception & error) {
     return error.what();
   }
@@ -65,7 +65,7 @@ std::string claimed(const std::string & folder, const std::string & domain, cons
 /// Return what a node decides, started at 0: y or n at each TIME+ with another node, TIME- without.
 std::string decided(const std::string & looks)
 {
-  tested::runtime::StartOrder order(0);
+  deros_runtime_cpp::StartOrder order(0);
   std::string found;
   for (const std::string & look : words_of(looks, ',')) {
     found += order.gives_way(look.back() == '+', std::stoll(look)) ? 'y' : 'n';
@@ -80,13 +80,13 @@ std::string answer(const std::vector<std::string> & words)
     return number(words.at(1));
   }
   if (what == "digest") {
-    return tested::runtime::sha256(words.size() > 1 ? words.at(1) : "");
+    return deros_runtime_cpp::sha256(words.size() > 1 ? words.at(1) : "");
   }
   if (what == "stem") {
-    return tested::runtime::file_stem(words.at(1), std::stoul(words.at(2)));
+    return deros_runtime_cpp::file_stem(words.at(1), std::stoul(words.at(2)));
   }
   if (what == "place") {
-    return tested::runtime::default_path(words.at(1)).string();
+    return deros_runtime_cpp::default_path(words.at(1)).string();
   }
   if (what == "order") {
     return decided(words.at(1));

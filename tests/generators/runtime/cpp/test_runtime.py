@@ -17,11 +17,10 @@ from deros.generators.runtime.python.deros_runtime.instance import Refusal, clai
 from deros.generators.runtime.python.deros_runtime.latches import LatchFile, default_path
 from deros.generators.runtime.python.deros_runtime.start_order import StartOrder
 from tests.support.cpp import needs_compiler
-from tests.support.safety_cpp import Harness, compiled
+from tests.support.safety_cpp import RUNTIME, Harness, compiled
 
 pytestmark = needs_compiler
 
-HERE = Path(__file__).resolve().parent
 OWNER = "/robot_safety"
 KNOWN = ("halt", "stop")
 
@@ -33,7 +32,7 @@ def latch_file(folder: Path) -> LatchFile:
 
 def test_event_loop(tmp_path: Path) -> None:
     """Sources are served in order, timers fire when they are due, and nothing is lost."""
-    program = compiled(HERE / "event_loop.cpp", tmp_path)
+    program = compiled(RUNTIME / "test/test_event_loop.cpp", tmp_path)
     done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout) == (0, "all is so\n")
 

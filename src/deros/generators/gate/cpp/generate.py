@@ -12,7 +12,7 @@ from deros.generators.gate.cpp.view import Conditions, GateView, gate_view, nano
 from deros.generators.gate.printing import Printer, step_printer
 from deros.generators.node.cpp.interface import Provided
 from deros.generators.node.interface import node_description
-from deros.generators.runtime.interface import cpp_runtime, cpp_sources
+from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.text.cpp import (
     arguments,
     call,
@@ -31,8 +31,8 @@ from deros.metamodels.safety_nodes import RESET, TRIGGER
 from deros.monitor.ir import Program
 
 _SHARED = (
-    *("clock_choice", "event_loop", "instance", "ports", "process", "publishers", "realtime"),
-    *("regular_file", "sha256", "simulated_time", "start_order", "text", "worker"),
+    *("clock_choice", "digest", "event_loop", "instance", "ports", "process", "publishers"),
+    *("realtime", "regular_file", "simulated_time", "start_order", "text", "worker"),
 )
 """The sources that gates have in common with the safety node."""
 
@@ -81,7 +81,7 @@ def gate_files(
         for path, template in _paths(view).items():
             made.files[path] = File(licensed_cpp(render(template, view), copyright_line))
     for package in dict.fromkeys(node.package for node in nodes):
-        made.files.update(cpp_runtime(package, ("gate_numbers", *_OWN), copyright_line))
+        made.files.update(CppRuntime(package).files(("gate_numbers", *_OWN), copyright_line))
     return made
 
 
@@ -101,7 +101,7 @@ def _provided(view: GateView, node: NodeType) -> Provided:
     own = (f"src/{view.name}.cpp", f"src/{view.name}_logic.cpp")
     packages = {port.type.package for port in node.ports}
     return Provided(
-        (*own, *cpp_sources((*_SHARED, *_OWN))),
+        (*own, *CppRuntime(view.package).sources((*_SHARED, *_OWN))),
         tuple(sorted({*_NEEDS, *packages})),
         (f"src/{view.name}_main.cpp",),
         default_name=view.node,

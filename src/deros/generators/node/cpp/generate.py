@@ -17,7 +17,7 @@ from deros.generators.node.cpp.view import (
 )
 from deros.generators.node.files import shared_files
 from deros.generators.node.package import maintainer, nodes_beside, refuse_legacy, unsupported
-from deros.generators.runtime.interface import cpp_runtime
+from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.text.cpp import (
     Text,
     arguments,
@@ -101,7 +101,7 @@ def package_files(
     for model in ordered:
         files |= shared_files(model, holder)
     shared = sorted({name for node in package.nodes for name in node.runtime})
-    return files | cpp_runtime(root, shared, holder)
+    return files | CppRuntime(root).files(shared, holder)
 
 
 def _custom_files(package: PackageView) -> dict[str, File]:

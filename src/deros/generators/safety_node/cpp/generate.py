@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from deros.generators.api.protocol import File, Owner
 from deros.generators.node.cpp.interface import Provided
-from deros.generators.runtime.interface import cpp_sources
+from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.cpp.rule_metadata import table
 from deros.generators.safety_node.cpp.view import SafetyView
 from deros.generators.text.cpp import (
@@ -22,9 +22,9 @@ from deros.generators.text.notice import licensed_cpp
 from deros.generators.text.templates import environment
 
 RUNTIME = (
-    *("clock_choice", "descriptor", "diagnostics", "duplicate_instance", "event_loop"),
+    *("clock_choice", "descriptor", "diagnostics", "digest", "duplicate_instance", "event_loop"),
     *("events", "instance", "latches", "monitor_runner", "ports", "process", "publishers"),
-    *("realtime", "refusal", "regular_file", "report_types", "safety_node_core", "sha256"),
+    *("realtime", "refusal", "regular_file", "report_types", "safety_node_core"),
     *("simulated_time", "start_order", "text", "worker"),
 )
 """The parts of the runtime that every safety node has."""
@@ -42,7 +42,7 @@ _NEEDS = (
 def provided(view: SafetyView) -> Provided:
     """Return what the package has to know of the node, whose class is made here."""
     own = [f"src/{view.stem}{part}.cpp" for part in ("", "_messages", "_rule_metadata")]
-    own += [f"src/{view.prefix}_monitor.c", *cpp_sources(RUNTIME)]
+    own += [f"src/{view.prefix}_monitor.c", *CppRuntime(view.package).sources(RUNTIME)]
     if view.actions:
         own.append(f"src/{view.actions_stem}.cpp")
     return Provided(tuple(own), _NEEDS, (f"src/{view.stem}_main.cpp",), default_name=view.node_name)

@@ -9,7 +9,7 @@ from deros.generators.gate.cpp.interface import gate_files, gate_nodes
 from deros.generators.monitor.c.interface import render_monitor
 from deros.generators.node.cpp.interface import package_files
 from deros.generators.node.interface import node_description
-from deros.generators.runtime.interface import cpp_runtime
+from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.cpp.interface import (
     RUNTIME,
     node_files,
@@ -57,7 +57,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
         f"{view.package}/src/{name}": File(licensed_cpp(_as_linted(text), holder))
         for name, text in render_monitor(built.program).items()
     }
-    return files | cpp_runtime(view.package, RUNTIME, holder) | gates.files
+    return files | CppRuntime(view.package).files(RUNTIME, holder) | gates.files
 
 
 def _as_linted(text: str) -> str:

@@ -1,0 +1,109 @@
+// Copyright and licence: see package.xml.
+
+/// \file
+/// Times and numbers of a gate: what is finite, what is zero, and intervals that limit a number.
+
+#ifndef DEROS_RUNTIME_CPP__GATE_NUMBERS_HPP_
+#define DEROS_RUNTIME_CPP__GATE_NUMBERS_HPP_
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ == 1
+#error "a gate has to tell NaN from numbers: compile it without -ffast-math"
+#endif
+
+namespace deros_runtime_cpp
+{
+
+/// Later than any time, in nanoseconds.
+constexpr std::int64_t NEVER = std::numeric_limits<std::int64_t>::max();
+
+/// The latest time there is, in 2116; the sum of it and a duration is still less than NEVER.
+constexpr std::int64_t LATEST = (std::int64_t{1} << 62) - 1;
+
+/// When what has not come yet came: whatever may be silent for some time has been for longer.
+constexpr std::int64_t LONG_AGO = -LATEST;
+
+/// Return a time within the bounds between which nothing overflows.
+constexpr std::int64_t bounded(std::int64_t t)
+{
+  return std::clamp(t, std::int64_t{0}, LATEST);
+}
+
+/// Tell whether all elements of an array pass a test.
+template<typename Array, typename Test>
+bool are_all(const Array & array, Test test)
+{
+  return std::all_of(array.begin(), array.end(), test);
+}
+
+/// Tell whether no float of an array is NaN or infinite.
+template<typename Array>
+bool all_finite(const Array & array)
+{
+  return are_all(array, [](const auto & each) {return std::isfinite(each);});
+}
+
+/// Tell whether all numbers or booleans of an array are zero.
+template<typename Array>
+bool all_zero(const Array & array)
+{
+  return are_all(array, [](const auto & each) {return each == typename Array::value_type{};});
+}
+
+/// Set all numbers or booleans of an array to zero.
+template<typename Array>
+void fill_with_zeros(Array & array)
+{
+  std::fill(array.begin(), array.end(), typename Array::value_type{});
+}
+
+/// Where a limit keeps a number, ends included; or no limit.
+template<typename Number>
+struct Interval
+{
+  bool is_limit{false};
+  Number lower{};
+  Number upper{};
+
+  /// Bring a number within the limit; tell whether that changed it.
+  bool keep(Number & number) const
+  {
+    if (!is_limit || (number >= lower && number <= upper)) {
+      return false;
+    }
+    number = number < lower ? lower : upper;
+    return true;
+  }
+
+  bool operator==(const Interval & other) const
+  {
+    return is_limit == other.is_limit && lower == other.lower && upper == other.upper;
+  }
+
+  bool operator!=(const Interval & other) const
+  {
+    return !(*this == other);
+  }
+};
+
+/// Return a limit.
+template<typename Number>
+constexpr Interval<Number> limit(Number lower, Number upper)
+{
+  return {true, lower, upper};
+}
+
+/// Return no limit.
+template<typename Number>
+constexpr Interval<Number> no_limit()
+{
+  return {};
+}
+
+}  // namespace deros_runtime_cpp
+
+#endif  // DEROS_RUNTIME_CPP__GATE_NUMBERS_HPP_

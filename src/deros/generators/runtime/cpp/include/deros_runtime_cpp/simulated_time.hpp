@@ -1,0 +1,72 @@
+// Copyright and licence: see package.xml.
+
+#ifndef DEROS_RUNTIME_CPP__SIMULATED_TIME_HPP_
+#define DEROS_RUNTIME_CPP__SIMULATED_TIME_HPP_
+
+#include <functional>
+#include <memory>
+
+#include "deros_runtime_cpp/event_loop.hpp"
+#include "rclcpp/rclcpp.hpp"
+#include "rosgraph_msgs/msg/clock.hpp"
+
+namespace deros_runtime_cpp
+{
+
+/// Simulated time as the thread of an event loop sees it: in order with messages and requests.
+/**
+ * rclcpp takes /clock in a thread of its own, whose time runs ahead of messages that wait to be
+ * taken: an input would be found missing while its message is there.
+ */
+class SimulatedTime
+{
+public:
+  /**
+   * \param changed is called in the thread of the event loop whenever the time changes; its
+   *   argument is whether time has gone back
+   */
+  SimulatedTime(rclcpp::Node & node, EventLoop & event_loop, std::function<void(bool)> changed);
+
+  /// From here on nothing is noted any more.
+  ~SimulatedTime();
+  SimulatedTime(const SimulatedTime &) = delete;
+  SimulatedTime & operator=(const SimulatedTime &) = delete;
+
+  /// Return the clock that shows it; 0 before simulated time begins.
+  Clock clock() const
+  {
+    return {[this] {return now_;}, false};
+  }
+
+  /// Return the subscription to /clock.
+  const rclcpp::SubscriptionBase & subscription() const
+  {
+    return *subscription_;
+  }
+
+private:
+  using Message = rosgraph_msgs::msg::Clock;
+
+  void take();
+
+  std::function<void(bool)> changed_;
+  Time now_ = 0;
+  Message message_;
+  rclcpp::CallbackGroup::SharedPtr group_;  // that no executor spins
+  rclcpp::Subscription<Message>::SharedPtr subscription_;
+};
+
+/// Return the simulated time of a node under use_sim_time, and nothing for others.
+std::unique_ptr<SimulatedTime> simulated_time(
+  rclcpp::Node & node, EventLoop & event_loop, std::function<void(bool)> changed);
+
+/// Return the time at which a node starts: 0 under use_sim_time, as SimulatedTime has it.
+/** \param may_be_simulated whether use_sim_time decides on the time that is meant */
+Time start_time(const rclcpp::Node & node, bool may_be_simulated);
+
+/// Return the clock of simulated time, or the steady one if there is none.
+Clock clock_of(const std::unique_ptr<SimulatedTime> & simulated);
+
+}  // namespace deros_runtime_cpp
+
+#endif  // DEROS_RUNTIME_CPP__SIMULATED_TIME_HPP_

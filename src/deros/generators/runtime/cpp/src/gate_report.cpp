@@ -1,0 +1,193 @@
+// Copyright and licence: see package.xml.
+
+#include "deros_runtime_cpp/gate_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deros_runtime_cpp/text.hpp"
+#include "diagnostic_msgs/msg/key_value.hpp"
+
+namespace deros_runtime_cpp
+{
+
+namespace
+{
+
+using Status = diagnostic_msgs::msg::DiagnosticStatus;
+
+constexpr Time PERIOD = 1'000'000'000;  // ns
+constexpr Time SOON = 50'000'000;  // ns after a change, within which others are waited for
+constexpr const char * FINE = "commands pass";
+constexpr const char * LOST_HEARTBEAT = "lost heartbeat";  // how a line about that begins
+
+/// Return a time as people read it.
+std::string ago(Time time)
+{
+  std::array<char, 64> text{};
+  const double seconds = static_cast<double>(std::max(time, Time{0})) / 1e9;
+  std::snprintf(text.data(), text.size(), "%.3f s ago", seconds);
+  return text.data();
+}
+
+}  // namespace
+
+GateReport::GateReport(
+  EventLoop & event_loop, rclcpp::Node & node, const GateStatus & gate,
+  std::vector<std::string> lines, std::function<Time()> now,
+  std::function<void(const Message &)> publish, const std::string & target)
+: node_(node),
+  gate_(gate),
+  lines_(std::move(lines)),
+  now_(std::move(now)),
+  publish_(std::move(publish)),
+  publishers_(
+    node,
+    [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
+  target_(
+    event_loop, node, target,
+    [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
+  timer_(event_loop, Clock(), [this] {ring();})
+{
+}
+
+void GateReport::begin()
+{
+  timer_.schedule(0);
+  target_.begin();
+}
+
+void GateReport::look()
+{
+  if (!std::equal(told_.begin(), told_.end(), gate_.applying())) {
+    hurry();
+  }
+}
+
+void GateReport::refuse(const std::string & cause)
+{
+  ++refused_;
+  cause_ = cause;
+  hurry();
+}
+
+std::string GateReport::answer(const std::vector<std::string> & against) const
+{
+  if (!against.empty()) {
+    const std::string text = "not reset, because this applies: " + joined(against, "; ");
+    RCLCPP_WARN(node_.get_logger(), "%s", text.c_str());
+    return text;
+  }
+  const std::string left = applying();
+  const std::string text = "reset: " + (left.empty() ? FINE : left);
+  RCLCPP_INFO(node_.get_logger(), "%s", text.c_str());
+  return text;
+}
+
+void GateReport::fault(const std::string & subject, const std::string & text)
+{
+  const auto known = std::find_if(
+    faults_.begin(), faults_.end(), [&subject](const auto & each) {return each.first == subject;});
+  if (known != faults_.end()) {
+    if (known->second == text) {
+      return;
+    }
+    faults_.erase(known);
+  } else if (text.empty()) {
+    return;
+  }
+  if (!text.empty()) {
+    faults_.emplace_back(subject, text);
+    RCLCPP_ERROR(node_.get_logger(), "%s: %s", subject.c_str(), text.c_str());
+  }
+  hurry();
+}
+
+void GateReport::watch_over(SubscribedTopic topic)
+{
+  publishers_.add(std::move(topic));
+}
+
+void GateReport::hurry()
+{
+  const Time soon = steady_now() + SOON;
+  if (!timer_.is_scheduled() || timer_.due() > soon) {
+    timer_.schedule(soon);
+  }
+}
+
+void GateReport::ring()
+{
+  timer_.schedule(steady_now() + PERIOD);
+  const std::vector<bool> applying(gate_.applying(), gate_.applying() + lines_.size());
+  if (applying != told_) {
+    log();
+    told_ = applying;
+  }
+  Message message;
+  message.header.stamp = node_.now();
+  message.status.push_back(status());
+  publish_(message);
+  publishers_.look();
+  target_.look();
+}
+
+void GateReport::log() const
+{
+  const std::string text = applying();
+  if (text.empty()) {
+    RCLCPP_INFO(node_.get_logger(), "%s", FINE);
+  } else {
+    RCLCPP_WARN(node_.get_logger(), "%s", text.c_str());
+  }
+}
+
+/// Return the lines that apply.
+std::string GateReport::applying() const
+{
+  std::vector<std::string> found;
+  for (std::size_t line = 0; line < lines_.size(); ++line) {
+    if (gate_.applying()[line]) {
+      found.push_back(lines_[line]);
+    }
+  }
+  return joined(found, "; ");
+}
+
+Status GateReport::status() const
+{
+  std::vector<std::string> shown;
+  Status status;
+  status.name = node_.get_fully_qualified_name();
+  status.level = faults_.empty() ? Status::OK : Status::ERROR;
+  const auto add = [&status](const std::string & key, const std::string & value) {
+      diagnostic_msgs::msg::KeyValue pair;
+      pair.key = key;
+      pair.value = value;
+      status.values.push_back(pair);
+    };
+  add("since", ago(now_() - gate_.since()));
+  add("since_ns", std::to_string(gate_.since()));
+  add("refused", std::to_string(refused_));
+  add("refused_last", cause_);
+  for (const auto & [subject, text] : faults_) {
+    add(subject, text);
+    shown.push_back(text);
+  }
+  for (std::size_t line = 0; line < lines_.size(); ++line) {
+    if (gate_.applying()[line]) {
+      const bool is_lost = lines_[line].rfind(LOST_HEARTBEAT, 0) == 0;
+      status.level = is_lost ? Status::ERROR : std::max(status.level, Status::WARN);
+      shown.push_back(lines_[line]);
+    }
+  }
+  status.message = shown.empty() ? FINE : joined(shown, "; ");
+  return status;
+}
+
+}  // namespace deros_runtime_cpp

@@ -1,0 +1,139 @@
+// Copyright and licence: see package.xml.
+
+#include "deros_runtime_cpp/gate_runner.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "deros_runtime_cpp/gate_numbers.hpp"
+#include "deros_runtime_cpp/instance.hpp"
+#include "deros_runtime_cpp/realtime.hpp"
+
+namespace deros_runtime_cpp
+{
+
+namespace
+{
+
+constexpr Time CHECK_PERIOD = 1'000'000'000;  // ns
+
+}  // namespace
+
+GateRunner::GateRunner(
+  rclcpp::Node & node, GateLogic & gate, std::vector<std::string> lines,
+  const std::string & target, Settings settings)
+: node_(node),
+  gate_(gate),
+  refused_(prepare(settings.realtime_priority, settings.lock_memory)),
+  clock_choice_(refuse_clock_change(node)),
+  group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
+  simulated_(
+    settings.losses_in_simulated_time ?
+    simulated_time(node, event_loop_, [this](bool) {advance();}) : nullptr),
+  clock_(clock_of(simulated_)),
+  report_(
+    event_loop_, node, gate, std::move(lines), [this] {return now();},
+    [this](const GateReport::Message & message) {gate_.report(message);}, target),
+  deadline_(event_loop_, clock_, [this] {advance();}),
+  check_(event_loop_, Clock(), [this] {check_publishers();}),
+  ports_(event_loop_, [](const std::string &, const std::string &) {}),
+  worker_(
+    event_loop_,
+    [this](const char * why) {
+      if (node_.get_node_base_interface()->get_context()->is_valid()) {  // else all nodes end
+        RCLCPP_FATAL(node_.get_logger(), "%s", why);
+      }
+    })
+{
+  if (node.get_parameter("use_sim_time").as_bool()) {
+    report_.watch_over({"/clock", "rosgraph_msgs/msg/Clock", rclcpp::ClockQoS()});
+  }
+  const std::size_t domain = node.get_node_base_interface()->get_context()->get_domain_id();
+  try {
+    lock_ = claim(node.get_fully_qualified_name(), domain);
+  } catch (const std::system_error & error) {
+    refused_.push_back(
+      std::string("a second instance on this machine would not be seen: ") + error.what());
+  }
+}
+
+GateRunner::~GateRunner()
+{
+  stop();
+  for (const auto & subscription : subscriptions_) {
+    subscription->clear_on_new_message_callback();
+  }
+}
+
+void GateRunner::start()
+{
+  for (const std::string & refusal : refused_) {
+    report_.fault("process", refusal);
+  }
+  report_.begin();
+  check_.schedule(0);
+  advance();
+  worker_.start();
+}
+
+void GateRunner::settle()
+{
+  const Time due = gate_.next_deadline();
+  if (due != NEVER && !(deadline_.is_scheduled() && deadline_.due() <= due)) {
+    deadline_.schedule(due);
+  }
+  report_.look();
+}
+
+void GateRunner::stop()
+{
+  worker_.stop();
+}
+
+void GateRunner::when_ended(std::function<void()> ended)
+{
+  worker_.when_ended(std::move(ended));
+}
+
+std::exception_ptr GateRunner::failure() const
+{
+  return worker_.failure();
+}
+
+/// Have the thread take each message, into the same memory again and again.
+void GateRunner::serve(
+  const rclcpp::SubscriptionBase::SharedPtr & subscription, const std::string & type)
+{
+  const auto data = subscription->create_serialized_message();
+  const auto take = [from = subscription.get(), data] {
+      rclcpp::MessageInfo info;
+      if (from->take_serialized(*data, info)) {
+        from->handle_serialized_message(data, info);
+      }
+    };
+  const std::size_t source = event_loop_.add_source(take, subscription->get_actual_qos().depth());
+  subscription->set_on_new_message_callback(
+    [this, source](std::size_t count) {event_loop_.notify(source, count);});
+  subscriptions_.push_back(subscription);
+  report_.watch_over({subscription->get_topic_name(), type, subscription->get_actual_qos()});
+}
+
+/// Look once a second who publishes what.
+void GateRunner::check_publishers()
+{
+  check_.schedule(steady_now() + CHECK_PERIOD);
+  gate_.check_publishers();
+}
+
+/// Do what is due.
+void GateRunner::advance()
+{
+  gate_.advance(now());
+  settle();
+}
+
+}  // namespace deros_runtime_cpp

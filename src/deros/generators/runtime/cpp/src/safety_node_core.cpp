@@ -1,0 +1,503 @@
+// Copyright and licence: see package.xml.
+
+#include "deros_runtime_cpp/safety_node_core.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "deros_runtime_cpp/instance.hpp"
+#include "deros_runtime_cpp/realtime.hpp"
+#include "deros_runtime_cpp/text.hpp"
+
+namespace deros_runtime_cpp
+{
+
+namespace
+{
+
+constexpr Time SOON = 2'000'000;  // ns after an action, when it is told of
+constexpr Time HOUSEKEEPING = 100'000'000;  // ns from one look at what is not urgent to the next
+
+std::size_t domain_of(rclcpp::Node & node)
+{
+  return node.get_node_base_interface()->get_context()->get_domain_id();
+}
+
+std::string heartbeat_of(rclcpp::Node & node)
+{
+  return node.get_node_topics_interface()->resolve_topic_name("~/heartbeat");
+}
+
+}  // namespace
+
+SafetyNodeCore::SafetyNodeCore(
+  rclcpp::Node & node, SafetyNodeHooks & hooks, const RuleMetadata & metadata, Settings settings)
+: node_(node),
+  hooks_(hooks),
+  metadata_(metadata),
+  settings_(std::move(settings)),
+  name_(node.get_fully_qualified_name()),
+  grace_(std::llrint(settings_.startup_grace * 1e9)),
+  period_(std::llrint(1e9 / settings_.publish_freq)),
+  refused_(prepare(settings_.realtime_priority, settings_.lock_memory)),
+  clock_choice_(refuse_clock_change(node)),
+  group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
+  simulated_(simulated_time(node, event_loop_, [this](bool back) {runner_.clock_changed(back);})),
+  runner_(event_loop_, clock_of(simulated_), *this),
+  events_(metadata, outside_of_events()),
+  diagnostics_(event_loop_, metadata, settings_.diagnostics_freq, outside_of_diagnostics()),
+  duplicates_(
+    node, heartbeat_of(node),
+    [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);}),
+  publishers_(
+    node,
+    [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);}),
+  active_(metadata.actions.size()),
+  enabled_(metadata.behaviours.size(), true),
+  publishing_(event_loop_, clock_of(simulated_), [this] {publish();}),
+  telling_(event_loop_, Clock(), [this] {tell();}, [this] {return runner_.defer();}),
+  housekeeping_(event_loop_, Clock(), [this] {do_housekeeping();}),
+  switching_(event_loop_.add_source([this] {switch_behaviours();}, 1)),
+  ports_(
+    event_loop_,
+    [this](const std::string & topic, const std::string & why) {refuse(topic, why);}),
+  worker_(
+    event_loop_,
+    [this](const char * why) {
+      if (node_.get_node_base_interface()->get_context()->is_valid()) {  // else all nodes end
+        RCLCPP_FATAL(node_.get_logger(), "%s", why);
+      }
+    })
+{
+  untold_.reserve(2 * SLOTS);
+  slots_.reserve(2 * SLOTS);
+  try {
+    lock_ = claim(name_, domain_of(node));
+  } catch (const std::system_error & error) {
+    refused_.push_back(
+      std::string("a second instance on this machine would not be seen: ") + error.what());
+  }
+}
+
+SafetyNodeCore::~SafetyNodeCore()
+{
+  stop();
+}
+
+// Start
+
+void SafetyNodeCore::start(
+  const std::vector<Topic> & topics, const std::vector<std::string> & states)
+{
+  tell_start();
+  open_latches();
+  for (const std::string & topic : states) {
+    duplicates_.add(node_.get_node_topics_interface()->resolve_topic_name(topic));
+  }
+  if (simulated_) {
+    publishers_.add(simulated_->subscription(), "rosgraph_msgs/msg/Clock");
+  }
+  for (const Topic & topic : topics) {
+    const std::string name = node_.get_node_topics_interface()->resolve_topic_name(topic.name);
+    group_->find_subscription_ptrs_if(
+      [&](const rclcpp::SubscriptionBase::SharedPtr & each) {
+        const bool found = each->get_topic_name() == name;
+        if (found) {
+          publishers_.add(*each, topic.type, topic.is_shared);
+        }
+        return found;
+      });
+  }
+  runner_.start();
+  run_latched();
+  housekeeping_.schedule(0);
+  diagnostics_.begin();
+  ports_.serve(*group_);
+  worker_.start();
+}
+
+void SafetyNodeCore::begin(Time start)
+{
+  hooks_.start_monitor(start, grace_);
+  std::fill(active_.begin(), active_.end(), false);
+  for (std::size_t i = 0; latches_ && i < metadata_.actions.size(); ++i) {
+    const Action & action = metadata_.actions[i];
+    if (action.latch && latches_->is_active(*action.latch)) {
+      hooks_.latch(i);
+      active_[i] = true;
+    }
+  }
+  for (std::size_t i = 0; i < metadata_.behaviours.size(); ++i) {
+    if (metadata_.behaviours[i].is_optional) {
+      enabled_[i] = hooks_.is_chosen(i);
+      hooks_.enable(start, i, enabled_[i]);
+    }
+  }
+  is_starting_ = true;
+  hooks_.show_states(active_);
+  publishing_.schedule(start + period_);
+}
+
+void SafetyNodeCore::tell_start()
+{
+  const std::string count = std::to_string(metadata_.rule_count);
+  events_.tell("start", OK, "watching " + count + " rules of " + metadata_.rules);
+  for (const std::string & text : refused_) {
+    events_.tell("not_permitted", WARN, text);
+  }
+  for (std::size_t i = 0; i < metadata_.actions.size(); ++i) {
+    const Action & action = metadata_.actions[i];
+    if (action.is_code && !hooks_.is_filled_in(i)) {
+      const std::string text =
+        "action " + action.name + " does nothing: write its code in " + metadata_.actions_file;
+      events_.tell("unfilled", ERROR, text, {{"action", action.name}});
+    }
+  }
+}
+
+void SafetyNodeCore::open_latches()
+{
+  std::vector<std::string> known;
+  for (const Action & action : metadata_.actions) {
+    if (action.latch) {
+      known.push_back(action.name);
+    }
+  }
+  if (known.empty()) {
+    return;
+  }
+  std::filesystem::path path = settings_.state_file;
+  if (path.empty()) {
+    path = default_path(file_stem(name_, domain_of(node_)));
+  }
+  latches_ = std::make_unique<Latches>(
+    LatchFile(path, name_), known,
+    [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);});
+  latch_again();
+}
+
+/// Show what was active when the last process of this node ended.
+void SafetyNodeCore::latch_again()
+{
+  for (std::size_t i = 0; i < metadata_.actions.size(); ++i) {
+    const Action & action = metadata_.actions[i];
+    if (!action.latch || !latches_->is_active(*action.latch)) {
+      continue;
+    }
+    const std::string text = action.name + " is active, as it was before the start";
+    events_.tell("latched", WARN, text, {{"action", action.name}});
+    diagnostics_.latched(i);
+  }
+}
+
+/// Run the robot code of what was active then; the states are out.
+void SafetyNodeCore::run_latched()
+{
+  std::vector<Event> calls;
+  for (const Action & action : metadata_.actions) {
+    if (action.is_code && action.first_call && action.latch && latches_->is_active(*action.latch)) {
+      calls.push_back({0, EventKind::Trigger, *action.first_call});
+    }
+  }
+  runner_.run_again(calls);
+}
+
+// What the monitor orders
+
+void SafetyNodeCore::advance(Time now)
+{
+  hooks_.advance_monitor(now);
+}
+
+Time SafetyNodeCore::due() const
+{
+  return hooks_.next_deadline();
+}
+
+std::optional<std::size_t> SafetyNodeCore::action_of(const Event & event) const
+{
+  return metadata_.sites[event.site].action;
+}
+
+bool SafetyNodeCore::show(const Event & event)
+{
+  const std::optional<std::size_t> number = action_of(event);
+  if (!number || event.kind == EventKind::Refused) {
+    return true;
+  }
+  const Action & action = metadata_.actions[*number];
+  if (action.latch && event.kind == EventKind::Trigger) {
+    latches_->mark_pending(*action.latch);
+  }
+  if (action.is_bound) {
+    active_[*number] = event.kind == EventKind::Trigger;
+    hooks_.show_state(*number, active_);
+    return true;
+  }
+  return !action.is_code || event.kind != EventKind::Trigger;
+}
+
+void SafetyNodeCore::run_code(const Event & event)
+{
+  const std::size_t number = *action_of(event);
+  if (hooks_.is_filled_in(number)) {
+    hooks_.run(event.site);
+  } else {
+    const std::string call =
+      metadata_.actions[number].name + '(' + metadata_.sites[event.site].arguments + ')';
+    log(
+      ERROR, "action " + call + " should have been carried out now: write its code in " +
+      metadata_.actions_file);
+  }
+}
+
+/// Remember what explains some events; the last slot is shared if there are not enough of them.
+void SafetyNodeCore::remember(std::size_t count)
+{
+  slot_ = std::min(slot_ + 1, SLOTS);
+  hooks_.remember(slot_ - 1);
+  slots_.resize(count, slot_ - 1);
+}
+
+void SafetyNodeCore::after(const std::vector<Event> & events, const std::vector<Time> & done)
+{
+  if (latches_) {
+    for (const Event & event : events) {
+      const std::optional<std::size_t> number = action_of(event);
+      if (number && metadata_.actions[*number].latch) {
+        latches_->follow(*metadata_.actions[*number].latch, event.kind != EventKind::Reset);
+      }
+    }
+    latches_->persist();
+  }
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    untold_.push_back({events[i], done[i], slots_[i]});
+  }
+  slots_.clear();
+  if (slot_ == SLOTS) {
+    tell();
+  } else if (!telling_.is_scheduled()) {  // later, so that those who have to act find a processor
+    telling_.schedule(steady_now() + SOON);
+  }
+}
+
+void SafetyNodeCore::tell()
+{
+  std::optional<std::size_t> slot;
+  MonitorSnapshot after;
+  for (const Untold & each : untold_) {
+    if (slot != each.slot) {
+      slot = each.slot;
+      after = hooks_.explain(slot);
+    }
+    events_.ordered(each.event, each.done, after);
+    diagnostics_.ordered(each.event, after);
+  }
+  untold_.clear();
+  slot_ = 0;
+  diagnostics_.changed();
+}
+
+void SafetyNodeCore::tell_failure(const Event & event, const char * why)
+{
+  const std::optional<std::size_t> number = action_of(event);
+  const std::string name = number ? metadata_.actions[*number].name : "";
+  RCLCPP_FATAL(node_.get_logger(), "action %s failed: %s", name.c_str(), why);
+}
+
+void SafetyNodeCore::tell_fault(const std::string & subject, const std::string & text)
+{
+  if (diagnostics_.fault(subject, text) && !text.empty()) {
+    events_.tell("fault", ERROR, subject + ": " + text, {{"subject", subject}});
+  }
+}
+
+/// Tell, once per topic, of a message that cannot be read; it counts for nothing.
+void SafetyNodeCore::refuse(const std::string & topic, const std::string & why)
+{
+  const std::string text = topic + " has carried data that cannot be read";
+  if (diagnostics_.fault("data of " + topic, text)) {
+    events_.tell("undecodable", ERROR, text + ": " + why, {{"topic", topic}});
+  }
+}
+
+// States and heartbeat
+
+void SafetyNodeCore::stepped()
+{
+  publish();
+}
+
+/// Repeat the states, and beat.
+void SafetyNodeCore::publish()
+{
+  publishing_.repeat(period_);
+  hooks_.show_states(active_);
+  if (is_ready()) {
+    ++beats_;
+    hooks_.beat(beats_);
+  }
+}
+
+/// Look after what is not urgent.
+void SafetyNodeCore::do_housekeeping()
+{
+  housekeeping_.repeat(HOUSEKEEPING);
+  duplicates_.look();
+  publishers_.look();
+  if (latches_) {
+    latches_->persist();
+  }
+}
+
+/// Tell whether the start is over: within the grace, inputs are waited for.
+bool SafetyNodeCore::is_ready()
+{
+  if (is_starting_) {
+    if (hooks_.is_waiting() && runner_.now() < runner_.began_at() + grace_) {
+      return false;
+    }
+    is_starting_ = false;
+    diagnostics_.changed();
+  }
+  return true;
+}
+
+/// Return in words what the node does not do; nothing if it watches all rules.
+std::string SafetyNodeCore::not_ready_reason() const
+{
+  if (is_starting_) {
+    return "starting: no heartbeat until all inputs have come, or are missing";
+  }
+  std::vector<std::string> disabled;
+  for (std::size_t i = 0; i < enabled_.size(); ++i) {
+    if (!enabled_[i]) {
+      disabled.push_back(metadata_.behaviours[i].name);
+    }
+  }
+  return disabled.empty() ? "" : "disabled: " + joined(disabled, ", ");
+}
+
+// Requests
+
+std::string SafetyNodeCore::reset(bool & success)
+{
+  success = false;
+  const Time now = runner_.advance();
+  const MonitorSnapshot present = hooks_.explain(std::nullopt);
+  std::vector<std::pair<std::string, std::string>> active;  // and why it stays so
+  LatchFile::Names remaining;
+  for (std::size_t i = 0; i < metadata_.actions.size(); ++i) {
+    const Action & action = metadata_.actions[i];
+    if (action.latch && latches_->is_active(*action.latch)) {
+      active.emplace_back(action.name, events_.refusal(i, present));
+      if (!active.back().second.empty()) {
+        remaining.insert(action.name);
+      }
+    }
+  }
+  const std::string refusal = latches_->allow_reset(remaining);
+  if (!refusal.empty()) {
+    return refusal;
+  }
+  success = hooks_.reset_monitor(now);
+  runner_.settle();
+  std::sort(active.begin(), active.end());
+  std::vector<std::string> told;
+  for (const auto & [name, why] : active) {
+    told.push_back(why.empty() ? name + " is reset" : name + " stays active, " + why);
+  }
+  return told.empty() ? "no latched action was active" : joined(told, "; ");
+}
+
+void SafetyNodeCore::parameters_changed()
+{
+  event_loop_.notify(switching_);
+}
+
+/// Enable or disable the behaviours whose parameter has changed.
+void SafetyNodeCore::switch_behaviours()
+{
+  for (std::size_t i = 0; i < metadata_.behaviours.size(); ++i) {
+    const Behaviour & behaviour = metadata_.behaviours[i];
+    if (!behaviour.is_optional || hooks_.is_chosen(i) == enabled_[i]) {
+      continue;
+    }
+    const bool enabled = !enabled_[i];
+    enabled_[i] = enabled;
+    hooks_.enable(runner_.catch_up(), i, enabled);
+    runner_.settle();
+    const char * kind = enabled ? "enabled" : "disabled";
+    events_.tell(
+      kind, enabled ? OK : WARN, behaviour.name + " is " + kind, {{"behaviour", behaviour.name}});
+    diagnostics_.changed();
+  }
+}
+
+// Life
+
+void SafetyNodeCore::stop()
+{
+  worker_.stop();
+  if (!untold_.empty()) {
+    tell();
+  }
+}
+
+void SafetyNodeCore::when_ended(std::function<void()> ended)
+{
+  worker_.when_ended(std::move(ended));
+}
+
+std::exception_ptr SafetyNodeCore::failure() const
+{
+  return worker_.failure();
+}
+
+// The world outside
+
+void SafetyNodeCore::log(Level level, const std::string & text) const
+{
+  if (level == OK) {
+    RCLCPP_INFO(node_.get_logger(), "%s", text.c_str());
+  } else if (level == WARN) {
+    RCLCPP_WARN(node_.get_logger(), "%s", text.c_str());
+  } else {
+    RCLCPP_ERROR(node_.get_logger(), "%s", text.c_str());
+  }
+}
+
+Events::Outside SafetyNodeCore::outside_of_events()
+{
+  return {
+    name_,
+    [this] {return node_.now().nanoseconds();},
+    [this](Level level, const std::string & text) {log(level, text);},
+    [this](const Events::Status & event) {hooks_.report_event(event);},
+  };
+}
+
+Diagnostics::Outside SafetyNodeCore::outside_of_diagnostics()
+{
+  return {
+    name_,
+    [this] {return hooks_.explain(std::nullopt);},
+    [this] {return runner_.now();},
+    [this] {return not_ready_reason();},
+    [this](Diagnostics::Message & message) {
+      message.header.stamp = node_.now();
+      hooks_.report_diagnostics(message);
+    },
+    [this] {return runner_.defer();},
+  };
+}
+
+}  // namespace deros_runtime_cpp

@@ -1,0 +1,129 @@
+// Copyright and licence: see package.xml.
+
+#include "deros_runtime_cpp/text.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace deros_runtime_cpp
+{
+
+namespace
+{
+
+constexpr int LEAST_PLAIN = -4;  // decimal exponents between which a number has no 'e'
+constexpr int GREATEST_PLAIN = 16;
+
+/// Return 'd.ddd' of digits, whose first one counts 10 to the power of exponent.
+std::string plain(const std::string & digits, int exponent)
+{
+  if (exponent < 0) {
+    return "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + digits;
+  }
+  const auto whole = static_cast<std::size_t>(exponent) + 1;
+  if (digits.size() <= whole) {
+    return digits + std::string(whole - digits.size(), '0') + ".0";
+  }
+  return digits.substr(0, whole) + '.' + digits.substr(whole);
+}
+
+std::string scientific(const std::string & digits, int exponent)
+{
+  std::string text = digits.substr(0, 1);
+  if (digits.size() > 1) {
+    text += '.' + digits.substr(1);
+  }
+  const int size = std::abs(exponent);
+  return text + (exponent < 0 ? "e-" : "e+") + (size < 10 ? "0" : "") + std::to_string(size);
+}
+
+}  // namespace
+
+std::string shown(double value)
+{
+  if (std::isnan(value)) {
+    return "nan";
+  }
+  const std::string sign = std::signbit(value) ? "-" : "";
+  if (std::isinf(value)) {
+    return sign + "inf";
+  }
+  std::array<char, 64> buffer{};
+  const auto end = std::to_chars(
+    buffer.data(), buffer.data() + buffer.size(), std::fabs(value), std::chars_format::scientific);
+  const std::string text(buffer.data(), end.ptr);
+  const std::size_t mark = text.find('e');
+  std::string digits = text.substr(0, mark);
+  if (digits.size() > 1) {
+    digits.erase(1, 1);  // the point
+  }
+  const int exponent = std::stoi(text.substr(mark + 1));
+  const bool is_plain = LEAST_PLAIN <= exponent && exponent < GREATEST_PLAIN;
+  return sign + (is_plain ? plain(digits, exponent) : scientific(digits, exponent));
+}
+
+std::string shown(std::int64_t value)
+{
+  return std::to_string(value);
+}
+
+std::string shown(std::uint64_t value)
+{
+  return std::to_string(value);
+}
+
+std::string shown(bool value)
+{
+  return value ? "true" : "false";
+}
+
+std::string utf8(const std::u16string & text)
+{
+  std::string bytes;
+  const auto add = [&bytes](std::uint32_t lead, std::uint32_t code, int further) {
+      bytes += static_cast<char>(lead | (code >> static_cast<unsigned>(6 * further)));
+      while (further-- > 0) {
+        bytes += static_cast<char>(0x80U | ((code >> static_cast<unsigned>(6 * further)) & 0x3fU));
+      }
+    };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::uint32_t unit = text[i];
+    const bool is_pair = unit >= 0xd800 && unit < 0xdc00 && i + 1 < text.size() &&
+      text[i + 1] >= 0xdc00 && text[i + 1] < 0xe000;
+    if (unit < 0x80) {
+      add(0, unit, 0);
+    } else if (unit < 0x800) {
+      add(0xc0, unit, 1);
+    } else if (is_pair) {
+      ++i;
+      add(0xf0, 0x10000U + ((unit - 0xd800U) << 10U) + (text[i] - 0xdc00U), 3);
+    } else if (unit >= 0xd800 && unit < 0xe000) {
+      bytes += '?';
+    } else {
+      add(0xe0, unit, 2);
+    }
+  }
+  return bytes;
+}
+
+std::string joined(const std::vector<std::string> & texts, const std::string & separator)
+{
+  std::string all;
+  for (const std::string & text : texts) {
+    all += all.empty() ? text : separator + text;
+  }
+  return all;
+}
+
+std::string error_text(int number)
+{
+  return std::generic_category().message(number);
+}
+
+}  // namespace deros_runtime_cpp

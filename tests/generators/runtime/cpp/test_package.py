@@ -1,0 +1,68 @@
+"""The package ``deros_runtime_cpp``: built, tested and linted as it is shipped."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+from deros import __version__
+from deros.generators.runtime.cpp.interface import PACKAGE
+from tests.support.cpp import colcon_build, has_package, needs_rclcpp
+from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.safety_cpp import RUNTIME
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """Copy the package without its Python files into a folder of packages."""
+    shutil.copytree(RUNTIME, tmp_path / PACKAGE, ignore=shutil.ignore_patterns("*.py", "__py*"))
+    return tmp_path
+
+
+def test_package_has_the_version_of_deros() -> None:
+    """Packages that deros generates for another version of the runtime would not build."""
+    manifest = ET.parse(RUNTIME / "package.xml").getroot()
+    assert manifest.findtext("name") == PACKAGE
+    assert manifest.findtext("version") == __version__
+
+
+def test_build_script_names_every_source() -> None:
+    """No source is forgotten, and none is named that does not exist."""
+    script = (RUNTIME / "CMakeLists.txt").read_text(encoding="utf-8")
+    named = re.findall(r"^  src/(\w+\.cpp)$", script, re.MULTILINE)
+    assert named == sorted(path.name for path in (RUNTIME / "src").iterdir())
+
+
+def test_build_script_and_manifest_name_the_same_dependencies() -> None:
+    """The manifest is what rosdep and colcon read, the script what CMake reads."""
+    script = (RUNTIME / "CMakeLists.txt").read_text(encoding="utf-8")
+    manifest = ET.parse(RUNTIME / "package.xml").getroot()
+    depends = [each.text for each in manifest.findall("depend")]
+    found = re.findall(r"^find_package\((\w+) REQUIRED\)$", script, re.MULTILINE)
+    exported = re.search(r"ament_export_dependencies\(([^)]*)\)", script)
+    assert exported is not None
+    assert found == ["ament_cmake", *depends]
+    assert exported[1].split() == depends
+
+
+def test_sources_pass_the_linters_of_ament(workspace: Path) -> None:
+    """Copies in generated packages are held to the same rules."""
+    assert_cpp_lint_clean(workspace / PACKAGE)
+
+
+@needs_rclcpp
+def test_colcon_builds_and_tests_the_package(workspace: Path) -> None:
+    """The library, its headers and its version file are installed, and its own tests pass."""
+    install = colcon_build(workspace, testing=has_package("ament_lint_auto"))
+    assert (install / f"lib/lib{PACKAGE}.so").is_file()
+    share = install / "share" / PACKAGE / "cmake"
+    assert (share / f"{PACKAGE}Config-version.cmake").is_file()
+    headers = install / "include" / PACKAGE / PACKAGE
+    assert {path.name for path in headers.iterdir()} == {
+        "version.h",
+        *(path.name for path in (RUNTIME / "include" / PACKAGE).iterdir()),
+    }
