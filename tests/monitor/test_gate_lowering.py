@@ -86,13 +86,12 @@ def test_limits_of_actions_do_not_apply_during_a_loss() -> None:
 
 
 def test_events_that_change_nothing_have_no_steps() -> None:
-    """A gate with a loss of the input alone depends neither on the safety node nor on resets."""
+    """A gate with a loss of the input alone does not depend on the safety node."""
     program = lowered(loss("input", 7))
     assert program.on_refused == (form.Forget("input"), form.Settle())
     assert not program.states
     assert not program.on_heartbeat
     assert not program.on_no_safety_node
-    assert not program.on_reset
 
 
 def test_zeros_keep_limited_fields_unless_the_input_is_lost() -> None:

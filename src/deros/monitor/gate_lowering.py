@@ -96,7 +96,7 @@ class _Lowering:
             on_refused=(form.Forget("input"), settle) if has_input else (),
             on_heartbeat=(form.TakeHeartbeat(), settle) if has_heartbeat else (),
             on_no_safety_node=(*assume, *forget, settle) if assume or forget else (),
-            on_reset=(form.Reset(self._refusing(), self._latching),) if self._latching else (),
+            on_reset=(form.Reset(self._refusing(), self._latching),),
             settle=tuple(self._settle()),
         )
 

@@ -394,7 +394,7 @@ class GateProgram:
         on_command: the steps for a good command; ``on_refused`` for any other.
         on_heartbeat: the steps for a heartbeat of the safety node.
         on_no_safety_node: the steps when no node, or more than one, can be the safety node.
-        on_reset: the steps for a reset.
+        on_reset: the steps for a reset, which only a gate with latches is asked for.
         settle: the steps that decide, at an instant, what is published.
     """
 

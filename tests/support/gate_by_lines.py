@@ -1,0 +1,281 @@
+"""A second reading of the lines of a gate, without any steps, to compare the engine with.
+
+It evaluates the lines themselves whenever something happens, and shares only the functions for
+messages with the engine. It aims at being right at a glance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from deros.interfaces.store import InterfaceStore
+from deros.monitor.commands import Message, is_finite, is_zero, limited, put, value_at, zero
+from deros.monitor.gate_engine import Output, OutputKind
+from deros.monitor.ir import Action, Gate, GateLine, Limit
+
+FieldPath = tuple[str | int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """The result of the lines that apply: limits, and zero for all other numbers."""
+
+    zero: bool = False
+    limits: Mapping[FieldPath, Limit] = field(default_factory=dict)
+
+
+class GateByLines:
+    """Runs one gate, with the interface of :class:`deros.monitor.gate_engine.GateEngine`.
+
+    Attributes:
+        outputs: everything published since the start, in order.
+    """
+
+    def __init__(
+        self, gate: Gate, actions: Sequence[Action], store: InterfaceStore, start_ns: int = 0
+    ) -> None:
+        """Start at ``start_ns``; ``actions`` are those of the gate's rules."""
+        self.outputs: list[Output] = []
+        self._gate = gate
+        self._actions = [each for each in actions if _names(gate, each)]
+        self._store = store
+        self._now_ns = self._called_ns = start_ns
+        self._active: dict[int, bool]
+        self._counter: int | None
+        self._heartbeat_ns: int | None
+        self._command_ns: int | None
+        self._latched: set[int] = set()  # indices of lines
+        self._last_good: Message | None = None
+        self._executed: Message | None = None  # what was published last, unless that was zero
+        self._forget()
+        self._hold()
+        self._decision = self._decide()
+        self._zero_due_ns = start_ns if self._decision.zero else None
+
+    @property
+    def next_deadline(self) -> int | None:
+        """The earliest instant at which something can happen by itself, if there is one."""
+        return min(self._deadlines(), default=None)
+
+    @property
+    def applying(self) -> tuple[bool, ...]:
+        """Whether each condition that can hold commands back does, as of the last call."""
+        lines = tuple(map(self._applies, self._gate.lines))
+        latched = tuple(
+            index in self._latched and not lines[index]
+            for index, line in enumerate(self._gate.lines)
+            if line.until_reset
+        )
+        waits = (self._waits and not self._is_stopped(),) if self._gate.resume_on_zero else ()
+        return (*lines, *latched, *waits)
+
+    # Events -------------------------------------------------------------------------------
+
+    def command(self, t_ns: int, message: Message | None) -> list[Output]:
+        """Take a command (``None``: one that could not be decoded). Return what is published."""
+        before = len(self.outputs)
+        self._catch_up(t_ns)
+        if message is None or not is_finite(message):
+            self._refused = True
+            self._settle()
+        else:
+            self._refused = False
+            self._command_ns, self._last_good = t_ns, message
+            self._settle(message)
+        return self.outputs[before:]
+
+    def state(
+        self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
+    ) -> list[Output]:
+        """Take a message about the state of actions. Return what is published."""
+        before = len(self.outputs)
+        self._catch_up(t_ns)
+        for each in self._actions:
+            if each.binding is None or each.binding.topic != topic:
+                continue
+            if message is None:
+                self._active.pop(each.index, None)
+            else:
+                active = value_at(message, each.binding.path) == each.binding.value
+                if active or is_trusted:
+                    self._active[each.index] = active
+        self._settle()
+        return self.outputs[before:]
+
+    def heartbeat(self, t_ns: int, counter: int) -> list[Output]:
+        """Take a heartbeat of the safety node. Return what is published."""
+        before = len(self.outputs)
+        self._catch_up(t_ns)
+        is_alive = self._counter is not None and counter > self._counter
+        self._counter = counter
+        self._heartbeat_ns = t_ns if is_alive else None
+        self._settle()
+        return self.outputs[before:]
+
+    def no_safety_node(self, t_ns: int) -> list[Output]:
+        """Note that no node, or more than one, can be the safety node. Return what is published."""
+        before = len(self.outputs)
+        self._catch_up(t_ns)
+        self._active.clear()
+        self._counter = self._heartbeat_ns = None
+        self._settle()
+        return self.outputs[before:]
+
+    def reset(self, t_ns: int) -> tuple[int, ...]:
+        """Take a reset. Return the indices of the lines that refuse it."""
+        self._catch_up(t_ns)
+        against = tuple(
+            index
+            for index, line in enumerate(self._gate.lines)
+            if (line.lost or not line.limits) and self._applies(line)
+        )
+        if not against:
+            self._latched.clear()
+            self._settle()
+        return against
+
+    def advance(self, t_ns: int) -> list[Output]:
+        """Handle everything due up to and including ``t_ns``. Return what is published."""
+        before = len(self.outputs)
+        self._catch_up(t_ns)
+        return self.outputs[before:]
+
+    # Time ---------------------------------------------------------------------------------------
+
+    def _deadlines(self) -> Iterator[int]:
+        """Yield the future instants at which zeros are due or something becomes lost."""
+        if self._zero_due_ns is not None:
+            yield self._zero_due_ns
+        for line in self._gate.lines:
+            last_ns = self._last_ns(line)
+            if line.lost_ns is not None and last_ns is not None:
+                lost_at_ns = last_ns + line.lost_ns
+                if lost_at_ns > self._now_ns:
+                    yield lost_at_ns
+
+    def _catch_up(self, t_ns: int) -> None:
+        self._called_ns = t_ns
+        if t_ns < self._now_ns:
+            self._step_back(t_ns)
+        while (due_ns := self.next_deadline) is not None and due_ns <= t_ns:
+            self._now_ns = due_ns
+            self._settle()
+        self._now_ns = t_ns
+
+    def _step_back(self, t_ns: int) -> None:
+        self._now_ns = t_ns
+        self._forget()
+        if self._zero_due_ns is not None:
+            self._zero_due_ns = t_ns
+        self._settle()
+
+    def _forget(self) -> None:
+        """Forget the actions, the heartbeat and the input; everything that can be lost is."""
+        self._active = {}
+        self._counter = None
+        self._heartbeat_ns = None
+        self._command_ns = None
+        self._refused = False
+        self._heartbeat_was_lost = self._is_lost("heartbeat")
+        self._waits = self._gate.resume_on_zero
+
+    # Lines -------------------------------------------------------------------------------
+
+    def _last_ns(self, line: GateLine) -> int | None:
+        return self._heartbeat_ns if line.lost == "heartbeat" else self._command_ns
+
+    def _line_is_lost(self, line: GateLine) -> bool:
+        """Return whether what a ``lost`` line names has been silent for its time."""
+        last_ns = self._last_ns(line)
+        if last_ns is None or (line.lost == "input" and self._refused):
+            return True
+        return line.lost_ns is not None and self._now_ns >= last_ns + line.lost_ns
+
+    def _is_lost(self, what: Literal["heartbeat", "input"]) -> bool:
+        """Return whether the gate has a line about ``what`` that applies."""
+        return any(self._line_is_lost(each) for each in self._gate.lines if each.lost == what)
+
+    def _applies(self, line: GateLine) -> bool:
+        if line.action is None:
+            return self._line_is_lost(line)
+        if line.limits and (self._is_lost("heartbeat") or self._is_lost("input")):
+            return False
+        return self._active.get(line.action, True)
+
+    def _is_stopped(self) -> bool:
+        """Return whether a zero line applies, or one is latched."""
+        zeros = (line for line in self._gate.lines if not line.limits)
+        return bool(self._latched) or any(map(self._applies, zeros))
+
+    def _hold(self, command: Message | None = None) -> None:
+        """Latch the lines that apply until the reset, and wait for a zero command, or for none."""
+        for index, line in enumerate(self._gate.lines):
+            if line.until_reset and self._applies(line):
+                self._latched.add(index)
+        if self._is_stopped():
+            self._waits = self._gate.resume_on_zero
+        elif command is not None and is_zero(self._store, self._gate.type, command):
+            self._waits = False
+
+    def _decide(self) -> Decision:
+        if self._latched or self._waits:
+            return Decision(True)
+        limits: dict[FieldPath, Limit] = {}
+        for line in self._gate.lines:
+            if not self._applies(line):
+                continue
+            if not line.limits:
+                return Decision(True, limits)
+            for limit in line.limits:
+                limits.setdefault(limit.path, limit)
+        return Decision(False, limits)
+
+    # Publishing --------------------------------------------------------------------------
+
+    def _settle(self, command: Message | None = None) -> None:
+        """Decide anew, and publish what follows; ``command`` is one that has just come."""
+        lost = self._is_lost("heartbeat")
+        if lost and not self._heartbeat_was_lost:
+            self._active.clear()
+        self._heartbeat_was_lost = lost
+        self._hold(command)
+        before, self._decision = self._decision, self._decide()
+        if self._decision.zero:
+            due = self._zero_due_ns is not None and self._zero_due_ns <= self._now_ns
+            if due or self._decision != before:
+                self._publish_zero()
+            return
+        self._zero_due_ns = None
+        if command is not None:
+            self._publish_command(command)
+        elif self._executed is not None:
+            within = limited(self._executed, self._decision.limits.values())
+            if within is not self._executed:
+                self._executed = within
+                self.outputs.append(Output(self._now_ns, "limited", within))
+
+    def _publish_command(self, command: Message) -> None:
+        within = limited(command, self._decision.limits.values())
+        self._executed = within
+        kind: OutputKind = "pass" if within is command else "limited"
+        self.outputs.append(Output(self._now_ns, kind, within))
+
+    def _publish_zero(self) -> None:
+        """Publish zeros. Those that a late call finds overdue are made up for by one."""
+        message = zero(self._store, self._gate.type, self._last_good, self._now_ns)
+        if self._last_good is not None and not self._is_lost("input"):
+            within = limited(self._last_good, self._decision.limits.values())
+            for path in self._decision.limits:
+                value = value_at(within, path)
+                if value is not None:
+                    message = put(message, path, value)
+        self.outputs.append(Output(self._now_ns, "zero", message))
+        self._executed = None
+        late = (self._called_ns - self._now_ns) // self._gate.period_ns
+        self._zero_due_ns = self._now_ns + self._gate.period_ns * (late + 1)
+
+
+def _names(gate: Gate, action: Action) -> bool:
+    return any(line.action == action.index for line in gate.lines)
