@@ -9,6 +9,7 @@ import pytest
 
 from deros import codes
 from deros.diagnostics import Code
+from deros.pipeline import project
 from deros.pipeline.project import project_of
 from tests.support.cli import Outcome, deros
 
@@ -247,3 +248,19 @@ def test_depfile_contains_the_project_file() -> None:
     assert "deros.toml" not in _depends(deros(*command))
     _project('copyright = "2020 P"\n')
     assert str(Path("deros.toml").absolute()) in _depends(deros(*command))
+
+
+def test_each_project_file_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pyproject.toml is read and parsed once for all models of a run."""
+    Path("pyproject.toml").write_text('[tool.deros]\ninterfaces = ["msgs"]\n')
+    read: list[str] = []
+    genuine = project.read_regular
+
+    def counting(path: Path, most: int) -> bytes:
+        read.append(path.name)
+        return genuine(path, most)
+
+    monkeypatch.setattr(project, "read_regular", counting)
+    (found,) = project.projects_of(["models/plain.rnd", "models/deep/lone.system"])
+    assert [folder.name for folder in found.interfaces] == ["msgs"]
+    assert read == ["pyproject.toml"]

@@ -11,7 +11,7 @@ from deros.interfaces.names import did_you_mean, near
 from deros.metamodels.common import QosProfile
 from deros.metamodels.convert import Converter, Sections
 from deros.metamodels.convert_node import as_double
-from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM
+from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.node import KINDS_BY_WORD, NodeType
 from deros.metamodels.qos import pinned_policies
 from deros.metamodels.scoping import FileIndex, attach_index
@@ -55,7 +55,7 @@ def load_system(loading: Loading) -> System:
             if type(part).__name__ == "Imports"
             for statement in part.imports
         ]
-        imports.extend(loading.follow(each, index, (ROSNODE, ROSSYSTEM)) for each in statements)
+        imports.extend(loading.follow(each, index, IMPORTED_BY_SYSTEMS) for each in statements)
         index.complete &= not loading.source.mentions_lost("import")
         attach_index(model, index)
 

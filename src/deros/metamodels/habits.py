@@ -64,11 +64,14 @@ class _Row:
 def _row(
     pattern: str,
     text: str | _Edit | None,
-    hint: str,
+    hint: str = "",
     message: str = "",
     languages: Languages = (),
     reads_as: str | None = None,
 ) -> _Row:
+    """Return a row; without a hint, it says to write ``text``."""
+    if not hint and isinstance(text, str):
+        hint = f"write '{text.strip()}'"
     return _Row(re.compile(pattern), text, hint, message, languages, reads_as)
 
 
@@ -109,11 +112,11 @@ _ROWS = (
     ),
     _row("[\u00a0\u2002-\u200a\u202f\u3000]+", " ", "write a plain blank"),
     _row("[\u2010-\u2014\u2212]", "-", "write a plain '-'"),
-    _row("\u2264", "<=", "write '<='"),
-    _row("\u2265", ">=", "write '>='"),
-    _row("\u2260", "!=", "write '!='"),
-    _row("\u2192", "->", "write '->'", languages=_RULES),
-    _row("\u2192", "to", "write 'to'", languages=_SYSTEM),
+    _row("\u2264", "<="),
+    _row("\u2265", ">="),
+    _row("\u2260", "!="),
+    _row("\u2192", "->", languages=_RULES),
+    _row("\u2192", "to", languages=_SYSTEM),
     # Comments
     _row(
         r"#+(?P<said>[^\n]*)", r"//\g<said>", _COMMENT, "'#' does not begin a comment here", (), " "
@@ -135,35 +138,34 @@ _ROWS = (
         " ",
     ),
     # Conditions
-    _row(r"\|\|?", " or ", "write 'or'", languages=_RULES),
-    _row(r"&&?", " and ", "write 'and'", languages=_RULES),
-    _row(r"!\s*in\b", "not in", "write 'not in'", languages=_RULES),
-    _row(r"!(?!=)", "not ", "write 'not'", languages=_RULES),
-    _row(r"~(?=\w)", "not ", "write 'not'", languages=_RULES),
+    _row(r"\|\|?", " or ", languages=_RULES),
+    _row(r"&&?", " and ", languages=_RULES),
+    _row(r"!\s*in\b", "not in", languages=_RULES),
+    _row(r"!(?!=)", "not ", languages=_RULES),
+    _row(r"~(?=\w)", "not ", languages=_RULES),
     _row(r"OR\b|Or\b", "or", f"write 'or': {_UPPER}", languages=_RULES),
     _row(r"AND\b|And\b", "and", f"write 'and': {_UPPER}", languages=_RULES),
     _row(r"\b(?:AND|And)\s+(?P<at>)", "and ", f"write 'and': {_UPPER}", languages=_RULES),
     _row(r"\b(?:OR|Or)\s+(?P<at>)", "or ", f"write 'or': {_UPPER}", languages=_RULES),
     _row(r"\b(?:NOT|Not)\s+(?P<at>)", "not ", f"write 'not': {_UPPER}", languages=_RULES),
-    _row(r"===", "=", "write '='", languages=_RULES),
-    _row(r"==(?P<at>)=", "=", "write '='", languages=_RULES),
-    _row(r"<(?P<at>)>", "!=", "write '!='", languages=_RULES),
-    _row(r"~=|/=", "!=", "write '!='", languages=_RULES),
-    _row(r":=", "=", "write '='", languages=_RULES),
-    _row(r"<-", "=", "write '='", languages=_RULES),
-    _row(r"=(?P<at>)>\s*(?=\{)", "then ", "write 'then'", languages=_RULES),
-    _row(r"=(?P<at>)(?P<sign>[<>])", r"\g<sign>=", r"write '\g<sign>='", languages=_RULES),
+    _row(r"===", "=", languages=_RULES),
+    _row(r"==(?P<at>)=", "=", languages=_RULES),
+    _row(r"<(?P<at>)>", "!=", languages=_RULES),
+    _row(r"~=|/=", "!=", languages=_RULES),
+    _row(r":=", "=", languages=_RULES),
+    _row(r"<-", "=", languages=_RULES),
+    _row(r"=(?P<at>)>\s*(?=\{)", "then ", languages=_RULES),
+    _row(r"=(?P<at>)(?P<sign>[<>])", r"\g<sign>=", languages=_RULES),
     _row(
         r"[ ]+(?P<at>)is\s+(?:null|None|nan|missing)\b",
         ".missing()",
-        "write '.missing()'",
         languages=_RULES,
     ),
-    _row(r"is\s+not\b", "!=", "write '!='", languages=_RULES),
-    _row(r"is\b", "=", "write '='", languages=_RULES),
-    _row(r"(?:equals|eq)\b", "=", "write '='", languages=_RULES),
-    _row(r"in\s+(?P<at>)not\b", "not in", "write 'not in'", languages=_RULES),
-    _row(r"between\b", "in", "write 'in'", languages=_RULES),
+    _row(r"is\s+not\b", "!=", languages=_RULES),
+    _row(r"is\b", "=", languages=_RULES),
+    _row(r"(?:equals|eq)\b", "=", languages=_RULES),
+    _row(r"in\s+(?P<at>)not\b", "not in", languages=_RULES),
+    _row(r"between\b", "in", languages=_RULES),
     _row(
         rf"(?P<low>{_NUMBER}{_UNIT})\s*(?P<first><=?)\s*(?P<name>{_OPERAND})\s*"
         rf"(?P<at>)(?P<last><=?)\s*(?P<high>{_NUMBER}{_UNIT})",
@@ -175,7 +177,7 @@ _ROWS = (
     _row(r"\s*(?P<at>)\.\.+\s*", ", ", "write ',' between the ends", languages=_RULES + _NODE),
     _row(r"\s+to\s+(?P<at>)", ", ", "write ',' between the ends", languages=_RULES),
     # Behaviours
-    _row(r"(?::|->|do\b)\s*(?=\{)", " then ", "write 'then'", languages=_RULES),
+    _row(r"(?::|->|do\b)\s*(?=\{)", " then ", languages=_RULES),
     _row(
         r"(?P<call>[a-z_]\w*(?:\([^()\n]*\))?)\s*;?(?=[ \t\r]*(?:\n|\Z))",
         r"{ \g<call>; }",
@@ -183,7 +185,7 @@ _ROWS = (
         "the actions of a behaviour stand in braces",
         _RULES,
     ),
-    _row(r"when\b|whenever\b", "if", "write 'if'", languages=_RULES),
+    _row(r"when\b|whenever\b", "if", languages=_RULES),
     _row(r"(?:else\s+if|elif|elsif|elseif)\b", "if", _ELSE, _NO_ELSE, _RULES),
     _row(r"else\b", None, _ELSE, _NO_ELSE, _RULES),
     _row(
@@ -207,15 +209,15 @@ _ROWS = (
         "",
         _RULES,
     ),
-    _row(r"(?:let|var|define|val)\b", "const", "write 'const'", languages=_RULES),
+    _row(r"(?:let|var|define|val)\b", "const", languages=_RULES),
     _row(
         r"(?P<whole>\d+)\s*(?P<at>),(?P<part>\d+)\b",
         r"\g<whole>.\g<part>",
         r"write '\g<whole>.\g<part>'",
         "a decimal point is a point",
     ),
-    _row(r"to\b", "on", "write 'on'", languages=_RULES),
-    _row(r"to\b", "->", "write '->'", languages=_RULES),
+    _row(r"to\b", "on", languages=_RULES),
+    _row(r"to\b", "->", languages=_RULES),
     _row(r"import\b(?=\s*\")", None, "write 'use \"FILE.system\" import NAME'", "", _RULES),
     # Names, types, texts
     _row(
@@ -229,33 +231,30 @@ _ROWS = (
     _row(
         r"(?P<head>best|sensor|keep|transient|system|manual|read|log)-(?P<tail>\w+)",
         r"\g<head>_\g<tail>",
-        r"write '\g<head>_\g<tail>'",
     ),
     _row(
         r"(?P<word>BEST_EFFORT|RELIABLE|TRANSIENT_LOCAL|VOLATILE|KEEP_ALL|SENSOR_DATA)\b",
         _lower,
         _UPPER,
     ),
-    _row(r"(?:yes|on|True|TRUE)\b", "true", "write 'true'"),
-    _row(r"(?:no|off|False|FALSE)\b", "false", "write 'false'"),
+    _row(r"(?:yes|on|True|TRUE)\b", "true"),
+    _row(r"(?:no|off|False|FALSE)\b", "false"),
     # Node descriptions
-    _row(r"subscriptions?\b|subscribers?\b", "subscribes", "write 'subscribes'", languages=_NODE),
-    _row(r"publications?\b|publishers?\b", "publishes", "write 'publishes'", languages=_NODE),
-    _row(r"params\b", "parameters", "write 'parameters'"),
+    _row(r"subscriptions?\b|subscribers?\b", "subscribes", languages=_NODE),
+    _row(r"publications?\b|publishers?\b", "publishes", languages=_NODE),
+    _row(r"params\b", "parameters"),
     _row(
         r"(?P<type>double|integer|int|float|bool|string)\s+(?P<name>[a-z_]\w*)(?=\s*(?:=|$))",
         r"name \g<name> : \g<type>",
-        r"write 'name \g<name> : \g<type>'",
         languages=_NODE,
     ),
     _row(
         rf"(?P<low>{_NUMBER})\s*\.\.\.?\s*(?P<high>{_NUMBER})",
         r"[\g<low>, \g<high>]",
-        r"write '[\g<low>, \g<high>]'",
         languages=_NODE,
     ),
-    _row(r"range\s*(?=[\[(])", "in ", "write 'in'", languages=_NODE),
-    _row(r"one\s+of\b|oneof\b", "one_of", "write 'one_of'", languages=_NODE),
+    _row(r"range\s*(?=[\[(])", "in ", languages=_NODE),
+    _row(r"one\s+of\b|oneof\b", "one_of", languages=_NODE),
     _row(
         rf"=\s*{_NUMBER}\s*(?P<at>)[A-Za-z][A-Za-z/^0-9]*(?=\s*\[)",
         None,
@@ -292,21 +291,18 @@ _ROWS = (
     _row(
         r"remap\s+(?P<port>[\w/~]+)\s*(?::=|to|=|->)\s*(?P<to>[\w/~]+)",
         r"connect \g<port> to \g<to>",
-        r"write 'connect \g<port> to \g<to>'",
         languages=_SYSTEM,
     ),
     _row(
         r"(?P<port>[\w/~]+)\s*(?:->|=>|:=)\s*(?P<to>[\w/~]+)",
         r"connect \g<port> to \g<to>",
-        r"write 'connect \g<port> to \g<to>'",
         languages=_SYSTEM,
     ),
-    _row(r"=(?=\s*[/~])", "to", "write 'to'", languages=_SYSTEM),
-    _row(r"name\s+(?=\w+\s*=)", "param ", "write 'param'", languages=_SYSTEM),
+    _row(r"=(?=\s*[/~])", "to", languages=_SYSTEM),
+    _row(r"name\s+(?=\w+\s*=)", "param ", languages=_SYSTEM),
     _row(
         r"(?P<name>[a-z_]\w*)\s*[:=]\s*(?P<value>[^\n]+)",
         r"param \g<name> = \g<value>",
-        r"write 'param \g<name> = \g<value>'",
         languages=_SYSTEM,
     ),
     _row(
@@ -317,9 +313,9 @@ _ROWS = (
         _SYSTEM,
     ),
     _row(r"\(\)", "", "remove '()'", languages=_SYSTEM),
-    _row(r"ns\b", "namespace", "write 'namespace'", languages=_SYSTEM),
-    _row(r"include\b", "import", "write 'import'", languages=_SYSTEM),
-    _row(r"-\s*(?=/)", "topic ", "write 'topic'", languages=_SYSTEM),
+    _row(r"ns\b", "namespace", languages=_SYSTEM),
+    _row(r"include\b", "import", languages=_SYSTEM),
+    _row(r"-\s*(?=/)", "topic ", languages=_SYSTEM),
 )
 
 

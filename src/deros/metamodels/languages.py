@@ -75,6 +75,9 @@ ROSSYSTEM = Language(
     checks="deros.validators.system:check",
     scaffold="deros.cli.scaffolds:SYSTEM",
 )
+IMPORTED_BY_SYSTEMS = (ROSNODE, ROSSYSTEM)
+"""The languages of the files that a system description may import."""
+
 DEROS = Language(
     name="deros",
     suffix=".deros",

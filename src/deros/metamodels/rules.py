@@ -92,16 +92,6 @@ Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
-    """``left OP right``; ``==`` reads as ``=``."""
-
-    left: Term
-    operator: ComparisonOperator
-    right: Term
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
 class Membership:
     """``operand [not] in`` an interval, each end closed or open."""
 
@@ -113,6 +103,16 @@ class Membership:
     upper_closed: bool
     span: Span = field(compare=False, repr=False)
     interval_span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """``left OP right``; ``==`` reads as ``=``."""
+
+    left: Term
+    operator: ComparisonOperator
+    right: Term
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

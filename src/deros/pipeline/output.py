@@ -11,6 +11,8 @@ from deros.pipeline.generate import Refused
 from deros.pipeline.outcome import FINDINGS
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from deros.diagnostics import Diagnostic
     from deros.generators.output.writer import WriteReport
     from deros.pipeline.generate import Generated
@@ -60,11 +62,9 @@ def write(
     from deros.generators.output.source_tree import (
         Merged,
         merge,
-        package_folder,
         place,
         remove_stale,
     )
-    from deros.generators.user_files.review import review, users_files
     from deros.pipeline.depfile import depfile, inputs, stamp, stamped, write_if_changed
 
     merged = Merged(made.files, (), ())
@@ -82,10 +82,7 @@ def write(
             check_claims(files, where.output, origin)
     except GenerationError as error:
         raise Refused(error.diagnostics, FINDINGS) from error
-    if where.source is None:
-        users = users_files(made.files, where.output)
-    else:
-        users = users_files(made.files, where.source, package_folder(made.files))
+    present = _users_files(made, where.source, where.output)
     written = writer.write(merged.files, where.output, overwrite=where.overwrite)
     if where.stamp is None and where.source is None:  # else the build system owns the folder
         for files, origin in claims:
@@ -103,15 +100,28 @@ def write(
         stale = sorted(set(stamped(where.stamp)) - ours)
         remove_stale(stale, where.output, overwrite=where.overwrite)
         stamp(where.stamp, sorted(ours), started_ns)
-    return written, tuple(review(made.files, users))
+    return written, _review(made, present)
 
 
 def lacking_in(made: Generated, source: Path) -> tuple[Diagnostic, ...]:
-    """Return what the user's files in the source tree of a package lack now."""
-    from deros.generators.output.source_tree import package_folder
-    from deros.generators.user_files.review import review, users_files
+    """Return the findings about the user's files in the source tree of a package."""
+    return _review(made, _users_files(made, source, source))
 
-    return tuple(review(made.files, users_files(made.files, source, package_folder(made.files))))
+
+def _users_files(made: Generated, source: Path | None, output: Path) -> dict[str, Path]:
+    """Return the user's files that exist, in the source tree of the package if it has one."""
+    from deros.generators.output.source_tree import package_folder
+    from deros.generators.user_files.review import users_files
+
+    if source is None:
+        return users_files(made.files, output)
+    return users_files(made.files, source, package_folder(made.files))
+
+
+def _review(made: Generated, present: Mapping[str, Path]) -> tuple[Diagnostic, ...]:
+    from deros.generators.user_files.review import review
+
+    return tuple(review(made.files, present))
 
 
 def now_ns() -> int:

@@ -61,18 +61,15 @@ NONE = Project()
 
 def project_of(model: str | Path) -> Project:
     """Return the project that a model, or a folder of models, belongs to."""
-    path = _find(Path(model))
-    return NONE if path is None else _read(path)
+    file = _find(Path(model), {})
+    return NONE if file is None else _project(file)
 
 
 def projects_of(models: Iterable[str | Path]) -> list[Project]:
     """Return the projects that models belong to, each once."""
-    paths: dict[Path, None] = {}
-    for model in models:
-        path = _find(Path(model))
-        if path is not None:
-            paths[path] = None
-    return [_read(path) for path in paths]
+    known: dict[Path, _ProjectFile] = {}
+    found = {file.path: file for model in models if (file := _find(Path(model), known))}
+    return [_project(file) for file in found.values()]
 
 
 def interfaces_of(given: Sequence[Path], projects: Iterable[Project]) -> tuple[Path, ...]:
@@ -109,56 +106,75 @@ def unneeded(
 # Finding and reading -----------------------------------------------------------------------------
 
 
-def _find(model: Path) -> Path | None:
+@dataclass(frozen=True, slots=True)
+class _ProjectFile:
+    """A project file as it was read; without ``tables``, ``error`` says why it has none."""
+
+    path: Path
+    text: str = ""
+    tables: Mapping[str, Any] | None = None
+    error: Exception | None = None
+
+
+def _find(model: Path, known: dict[Path, _ProjectFile]) -> _ProjectFile | None:
+    """Return the project file of a model; each file is read once and then ``known``."""
     start = model.absolute()
     for folder in (start, *start.parents) if start.is_dir() else start.parents:
         own, shared = folder / "deros.toml", folder / "pyproject.toml"
         if own.is_file():
-            return own
-        if shared.is_file() and _has_table(shared):
-            return shared
+            return _parsed(own, known)
+        if shared.is_file() and _is_ours(found := _parsed(shared, known)):
+            return found
     return None
 
 
-def _has_table(path: Path) -> bool:
-    """Tell whether a pyproject.toml speaks of deros; what else is in it is not our business."""
+def _parsed(path: Path, known: dict[Path, _ProjectFile]) -> _ProjectFile:
+    if path not in known:
+        known[path] = _parse(path)
+    return known[path]
+
+
+def _parse(path: Path) -> _ProjectFile:
+    text = ""
     try:
-        text = read_regular(path, _LARGEST).decode()
-    except (OSError, ValueError):
-        return False
-    if "deros" not in text:
-        return False
-    try:
-        return "deros" in _tool(tomllib.loads(text))
-    except (ValueError, RecursionError):  # then it is ours to report if it seems to speak of deros
-        header = r"(?m)^\s*\[+\s*tool\s*\.\s*[\"']?deros[\"']?\s*[\].]"
-        return re.search(header, text) is not None
+        text = read_regular(path, _LARGEST).decode("utf-8-sig")
+        if path.name != "pyproject.toml":
+            return _ProjectFile(path, text, tomllib.loads(text))
+        return _ProjectFile(path, text, _tool(tomllib.loads(text)) if "deros" in text else {})
+    except (OSError, ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
+        return _ProjectFile(path, text, None, error)
+
+
+def _is_ours(shared: _ProjectFile) -> bool:
+    """Tell whether a pyproject.toml has a table for deros, or seems to have one."""
+    if shared.tables is not None:
+        return "deros" in shared.tables
+    header = r"(?m)^\s*\[+\s*tool\s*\.\s*[\"']?deros[\"']?\s*[\].]"
+    return re.search(header, shared.text) is not None
 
 
 def _tool(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the table of tools of a pyproject.toml; it may be written as the last of a list."""
+    """Return the tables of tools of a pyproject.toml, which may be the last ones of a list."""
     tool = data.get("tool", {})
     if isinstance(tool, list) and tool:
         tool = tool[-1]
     return tool if isinstance(tool, dict) else {}
 
 
-def _read(path: Path) -> Project:
+def _project(file: _ProjectFile) -> Project:
     from deros.metamodels.imports import shown_path
 
-    shown = shown_path(str(path))
-    try:
-        text = read_regular(path, _LARGEST).decode("utf-8-sig")
-        data = tomllib.loads(text)
-    except (OSError, ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
+    shown = shown_path(str(file.path))
+    if file.tables is None:
+        error = file.error
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         message = f"cannot read the project file '{shown}': {reason}"
         start = Span(SourceFile(shown, ""), 0, 0)
-        found = (report(codes.UNREADABLE_PROJECT, message, start),)
-        return Project(path, diagnostics=found)
-    if path.name == "pyproject.toml":
-        data = _tool(data).get("deros", {})
-    return _Reader(path, SourceFile(shown, text)).project(data)
+        finding = report(codes.UNREADABLE_PROJECT, message, start)
+        return Project(file.path, diagnostics=(finding,))
+    shared = file.path.name == "pyproject.toml"
+    table = file.tables.get("deros", {}) if shared else file.tables
+    return _Reader(file.path, SourceFile(shown, file.text)).project(table)
 
 
 class _Reader:
