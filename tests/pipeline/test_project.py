@@ -9,8 +9,8 @@ import pytest
 
 from deros import codes
 from deros.diagnostics import Code
-from deros.pipeline import project
-from deros.pipeline.project import project_of
+from deros.interfaces.files import read_regular
+from deros.pipeline.project import project_of, projects_of
 from tests.support.cli import Outcome, deros
 
 NODE = "node talker : talking\npublishes\n  topic out : own_msgs.State\n"
@@ -254,13 +254,13 @@ def test_each_project_file_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None
     """A pyproject.toml is read and parsed once for all models of a run."""
     Path("pyproject.toml").write_text('[tool.deros]\ninterfaces = ["msgs"]\n')
     read: list[str] = []
-    genuine = project.read_regular
+    genuine = read_regular
 
     def counting(path: Path, most: int) -> bytes:
         read.append(path.name)
         return genuine(path, most)
 
-    monkeypatch.setattr(project, "read_regular", counting)
-    (found,) = project.projects_of(["models/plain.rnd", "models/deep/lone.system"])
+    monkeypatch.setattr("deros.pipeline.project.read_regular", counting)
+    (found,) = projects_of(["models/plain.rnd", "models/deep/lone.system"])
     assert [folder.name for folder in found.interfaces] == ["msgs"]
     assert read == ["pyproject.toml"]
