@@ -89,7 +89,7 @@ bench: $(BENCH_READY)  ## Measure; prints ratios against a floor measured in the
 .PHONY: golden
 golden: $(READY)  ## Refresh the expectations in tests/golden and tests/cases, to be reviewed as a diff
 	$(BIN)/python tests/cases/refresh.py
-	$(BIN)/python -m pytest -q tests/generators -k as_kept --refresh-golden
+	$(BIN)/python -m pytest -q tests/generators -k 'match_golden or matches_golden' --refresh-golden
 
 .PHONY: clean
 clean:  ## Remove the environment and everything built

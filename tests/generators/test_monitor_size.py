@@ -1,4 +1,4 @@
-"""What is generated for a rule is as long as the rule, not twice as long with each level of it."""
+"""The length of generated code is linear in the length of the rules, also for nested rules."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ HEAD = 'use "robot.system" import Robot\naction stop;\ninput v = topic /speed.da
 
 
 def nested(pattern: str) -> Rule:
-    """Return rules in which a pattern is nested so many times."""
+    """Return rules with a pattern nested to a depth."""
 
     def rule(levels: int) -> str:
         text = "v > 1000"
@@ -33,7 +33,7 @@ def nested(pattern: str) -> Rule:
 
 
 def joined(word: str, pattern: str) -> Rule:
-    """Return rules of so many terms."""
+    """Return rules with a number of terms."""
     return lambda terms: f" {word} ".join(pattern.format(i) for i in range(1000, 1000 + terms))
 
 
@@ -80,8 +80,8 @@ SHAPES: dict[str, tuple[Callable[[int], Program], int]] = {
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_text_grows_as_the_rules_do(name: str) -> None:
-    """Of twice as many terms or levels, what is added is twice as long, but for indentation."""
+def test_text_grows_linearly_with_the_rules(name: str) -> None:
+    """Twice as many terms or levels add twice as much text, except for indentation."""
     make, size = SHAPES[name]
     texts = [{"python": render_python(p), **render_c(p)} for p in map(make, _sizes(size))]
     for part in texts[0]:
@@ -105,7 +105,7 @@ LARGE = {
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize("name", LARGE)
 def test_large_rules_compile(name: str, compiler: str, tmp_path: Path) -> None:
-    """Compilers nest calls to a limit, 256 in clang; Python nests parentheses to one of 200."""
+    """Compilers limit nested calls, clang to 256; Python limits nested parentheses to 200."""
     program = LARGE[name]
     Engine(program).message(1, "/speed", {0: 0.5})
     compile(render_python(program), name, "exec")

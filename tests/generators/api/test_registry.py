@@ -40,13 +40,13 @@ def greeting(model: NodeType, context: Context, options: Options) -> Files:  # n
 
 @pytest.fixture
 def context() -> Context:
-    """Give a context of its own."""
+    """Return a context with its own interfaces and repository."""
     return Context(InterfaceStore(), Repository())
 
 
 @pytest.fixture
 def textx_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Give what textX hands to a generator, of which only the file's name counts."""
+    """Return the model that textX passes to a generator; only its file name matters."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "talker.rnd").write_text(NODE)
     return SimpleNamespace(_tx_filename=str(tmp_path / "talker.rnd"))
@@ -55,8 +55,8 @@ def textx_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 # The decorated object -----------------------------------------------------------------------------
 
 
-def test_a_generator_is_a_textx_generator() -> None:
-    """TextX accepts the object by its class and finds all that it lists."""
+def test_generator_is_a_textx_generator() -> None:
+    """The class of the object is the one of textX, and has all attributes that it lists."""
     assert isinstance(greeting, GeneratorDesc)
     assert (greeting.language, greeting.target) == ("rosnode", "text")
     assert greeting.description == "Greet somebody."
@@ -64,20 +64,20 @@ def test_a_generator_is_a_textx_generator() -> None:
     assert not any(arg.mandatory for arg in greeting.custom_args)
 
 
-def test_a_generator_can_be_called(context: Context) -> None:
-    """A call with a typed model returns files, options under their declared names."""
+def test_generator_is_callable(context: Context) -> None:
+    """A call with a typed model returns files; options have their declared names."""
     model = context.repository.load_text("talker.rnd", NODE).model
     files = greeting(model, context, {"to-whom": "you"})
     assert files["greeting.py"].text == "print('talker greets you')\n"
 
 
-def test_unknown_options_are_refused(context: Context) -> None:
-    """A misspelt option is an error, not ignored."""
+def test_unknown_options_are_rejected(context: Context) -> None:
+    """A misspelt option is an error, and is not ignored."""
     with pytest.raises(ValueError, match="no option 'to-who'"):
         greeting(None, context, {"to-who": "you"})
 
 
-# Run by textX -------------------------------------------------------------------------------------
+# Called by textX ----------------------------------------------------------------------------------
 
 
 def test_textx_runs_a_generator(textx_model: Any, tmp_path: Path) -> None:
@@ -86,16 +86,16 @@ def test_textx_runs_a_generator(textx_model: Any, tmp_path: Path) -> None:
     assert "greets you" in (tmp_path / "out/greeting.py").read_text()
 
 
-def test_textx_output_goes_beside_the_model(textx_model: Any, tmp_path: Path) -> None:
-    """Without an output path the files land in the model's folder, as textX documents."""
+def test_textx_output_defaults_to_the_model_folder(textx_model: Any, tmp_path: Path) -> None:
+    """Without an output path the files are written as textX documents."""
     greeting.generator(METAMODEL, textx_model, None, False, False)
     assert (tmp_path / "greeting.py").exists()
 
 
-def test_textx_keeps_hand_edited_files_unless_told(
+def test_textx_keeps_edited_files_without_overwrite(
     textx_model: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The warning goes to the terminal, ``--overwrite`` reaches the writer."""
+    """The warning goes to the terminal, and ``--overwrite`` reaches the writer."""
     greeting.generator(METAMODEL, textx_model, None, False, False)
     (tmp_path / "greeting.py").write_text("mine\n")
     greeting.generator(METAMODEL, textx_model, None, False, False)
@@ -104,23 +104,23 @@ def test_textx_keeps_hand_edited_files_unless_told(
     assert (tmp_path / "greeting.py").read_text() != "mine\n"
 
 
-def test_a_model_with_errors_is_refused(textx_model: Any, tmp_path: Path) -> None:
-    """What the checks find ends the run with all of it, and nothing is written."""
+def test_model_with_errors_is_rejected(textx_model: Any, tmp_path: Path) -> None:
+    """All findings of the checks are reported, and nothing is written."""
     (tmp_path / "talker.rnd").write_text(NODE.replace("String", "Strong"))
     with pytest.raises(TextXError, match="Strong"):
         greeting.generator(METAMODEL, textx_model, str(tmp_path / "out"), False, False)
     assert not (tmp_path / "out").exists()
 
 
-def test_a_file_with_syntax_errors_is_refused(textx_model: Any, tmp_path: Path) -> None:
-    """The loader's findings end the run, with file and line."""
+def test_file_with_syntax_errors_is_rejected(textx_model: Any, tmp_path: Path) -> None:
+    """The findings of the loader end the run, with file and line."""
     (tmp_path / "talker.rnd").write_text("node talker\n")
     with pytest.raises(TextXError, match=r"^talker\.rnd:1:12: error\[DRS003 syntax-error\]"):
         greeting.generator(METAMODEL, textx_model, None, False, False)
 
 
-def test_a_target_that_refuses_ends_the_run(textx_model: Any) -> None:
-    """The diagnostics of a GenerationError reach the user of textX."""
+def test_generation_error_reaches_textx(textx_model: Any) -> None:
+    """The user of textX gets the diagnostics of a GenerationError."""
 
     @generator("rosnode", "nothing")
     def refusing(model: NodeType, context: Context, options: Options) -> Files:  # noqa: ARG001
@@ -132,14 +132,14 @@ def test_a_target_that_refuses_ends_the_run(textx_model: Any) -> None:
         refusing.generator(METAMODEL, textx_model, None, False, False)
 
 
-def test_textx_refuses_unknown_options(textx_model: Any) -> None:
-    """TextX hands on what it does not know; it is refused here."""
+def test_textx_rejects_unknown_options(textx_model: Any) -> None:
+    """Unknown options are passed on by textX, and the generator rejects them."""
     with pytest.raises(TextXError, match="No such option: --speed"):
         greeting.generator(METAMODEL, textx_model, None, False, False, speed="1")
 
 
-def test_a_model_from_a_string_is_refused() -> None:
-    """A textX model without a file cannot be loaded again, which is said."""
+def test_model_from_a_string_is_rejected() -> None:
+    """A textX model without a file cannot be loaded again, and the message says so."""
     with pytest.raises(TextXError, match="needs a model from a file"):
         greeting.generator(METAMODEL, SimpleNamespace(), None, False, False)
 
@@ -148,10 +148,10 @@ def test_a_model_from_a_string_is_refused() -> None:
 
 
 class FakeEntryPoint:
-    """An entry point as importlib.metadata would give it."""
+    """An entry point as importlib.metadata would return it."""
 
     def __init__(self, name: str, distribution: str, loaded: Any) -> None:
-        """Hold what :meth:`load` returns, or raises."""
+        """Store the object that :meth:`load` returns, or raises."""
         self.name = name
         self.dist = SimpleNamespace(name=distribution, version="1.0")
         self.loaded = loaded
@@ -164,18 +164,18 @@ class FakeEntryPoint:
 
 
 def found_with(monkeypatch: pytest.MonkeyPatch, *points: FakeEntryPoint) -> registry.Registry:
-    """Return what is discovered when these are the entry points of the environment."""
+    """Return the registry for these entry points."""
     monkeypatch.setattr(registry, "entry_points", lambda group: points)  # noqa: ARG005
     return discover.__wrapped__()
 
 
 def twin() -> Generator:
-    """Return one more generator of the same language and target."""
+    """Return another generator for the same language and target."""
     return Generator("rosnode", "text", greeting.function, ())
 
 
-def test_the_built_in_generators_are_found() -> None:
-    """The installed distribution names its targets."""
+def test_built_in_generators_are_found() -> None:
+    """The installed distribution registers its targets."""
     assert discover().broken == ()
     assert discover().targets("rossystem") == ("launch", "params", "script")
     assert discover().targets("rosnode") == ("cpp", "python")
@@ -186,8 +186,8 @@ def test_the_built_in_generators_are_found() -> None:
     assert discover().find("rosnode", "cobol") is None
 
 
-def test_a_broken_plugin_takes_nothing_down(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One that fails to load is named with the reason; the others are there."""
+def test_broken_plugin_does_not_affect_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plug-in that fails to load is listed with the reason; the others are available."""
     broken = FakeEntryPoint("bad", "bad-plugin", ImportError("no module named x"))
     found = found_with(monkeypatch, broken, FakeEntryPoint("good", "good-plugin", twin()))
     assert [g.target for g in found.generators] == ["text"]
@@ -195,8 +195,8 @@ def test_a_broken_plugin_takes_nothing_down(monkeypatch: pytest.MonkeyPatch) -> 
     assert (bad.distribution, bad.reason) == ("bad-plugin", "ImportError: no module named x")
 
 
-def test_our_own_target_is_not_taken_over(monkeypatch: pytest.MonkeyPatch) -> None:
-    """When two claim one target, deros wins over others, and the loser is named."""
+def test_plugin_cannot_replace_a_deros_target(monkeypatch: pytest.MonkeyPatch) -> None:
+    """If two generators claim one target, deros has priority, and the other is listed."""
     own, other = twin(), twin()
     found = found_with(
         monkeypatch, FakeEntryPoint("a", "another", other), FakeEntryPoint("z", "deros", own)
@@ -205,15 +205,15 @@ def test_our_own_target_is_not_taken_over(monkeypatch: pytest.MonkeyPatch) -> No
     assert [b.reason for b in found.broken] == ["rosnode -> text is taken by deros"]
 
 
-def test_generators_of_other_languages_are_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A plain textX generator in the group is none of ours, and no fault."""
+def test_generators_of_other_languages_are_skipped(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plain textX generator in the group is neither a deros generator nor an error."""
     plain = GeneratorDesc("entity", "java", generator=print)
     found = found_with(monkeypatch, FakeEntryPoint("java", "entities", plain))
     assert found == registry.Registry(())
 
 
-def test_listing_generators_loads_none_of_them() -> None:
-    """Discovery imports neither templates nor targets, so that lists stay quick."""
+def test_listing_generators_does_not_load_them() -> None:
+    """Discovery imports neither templates nor targets, so that lists are fast."""
     script = (
         "import sys; from deros.generators.api.registry import discover; discover();"
         "print('jinja2' in sys.modules, *{name.split('.')[2] for name in sys.modules"
@@ -225,8 +225,8 @@ def test_listing_generators_loads_none_of_them() -> None:
     assert done.stdout.strip() == "False"
 
 
-def test_the_entry_points_are_those_of_the_package() -> None:
-    """Each entry point of the distribution names a generator of its own name."""
+def test_entry_points_match_their_generators() -> None:
+    """Each entry point of the distribution has the name of its generator."""
     points = Distribution.from_name("deros").entry_points.select(group=registry.GROUP)
     for point in points:
         loaded = point.load()

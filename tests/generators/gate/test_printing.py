@@ -1,4 +1,4 @@
-"""Each language prints every step of a gate, or refuses it by name."""
+"""Each language prints every step of a gate, or rejects it by name."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ Rendered = Callable[[form.GateProgram], str]
 
 @dataclass(frozen=True)
 class Slow:
-    """A step, and a condition, that nobody has a rule for."""
+    """A step, and a condition, without a rule."""
 
 
 def in_python(program: form.GateProgram) -> str:
@@ -65,13 +65,13 @@ both = pytest.mark.parametrize(
 
 
 def program() -> form.GateProgram:
-    """Return the program of a gate with all that holds commands back."""
+    """Return the program of a gate with every reason to block commands."""
     return gates.view_of(GATE).program
 
 
 @both
-def test_a_step_without_a_rule_is_refused_by_name(language: str, render: Rendered) -> None:
-    """The message names the step and the language, and points at the gate."""
+def test_step_without_a_rule_is_rejected_by_name(language: str, render: Rendered) -> None:
+    """The message names step and language, and points at the gate."""
     assert render(program())
     unknown: Any = Slow()
     extended = replace(program(), settle=(*program().settle, unknown))
@@ -84,8 +84,8 @@ def test_a_step_without_a_rule_is_refused_by_name(language: str, render: Rendere
 
 
 @both
-def test_a_condition_without_a_rule_is_refused_by_name(language: str, render: Rendered) -> None:
-    """It may stand anywhere within a step."""
+def test_condition_without_a_rule_is_rejected_by_name(language: str, render: Rendered) -> None:
+    """It may be anywhere within a step."""
     unknown: Any = Slow()
     zero = form.FindZero(form.AllOf((form.Not(unknown), form.IsWaiting())))
     extended = replace(program(), settle=(zero, *program().settle))
@@ -105,13 +105,13 @@ def test_a_condition_without_a_rule_is_refused_by_name(language: str, render: Re
     ],
 )
 def test_every_step_and_variable_has_a_rule(package: str, template: str, names: set[str]) -> None:
-    """No rule is left over, either."""
+    """There are no unused rules either."""
     rules = environment(f"deros.generators.gate.{package}").get_template(template).module
     assert {name for name, rule in vars(rules).items() if isinstance(rule, Macro)} == names
 
 
 def printers() -> list[ConditionPrinter]:
-    """Return the printers of all languages, for one gate."""
+    """Return the printers of all languages for one gate."""
     return [
         python_view.Conditions(gates.view_of(GATE)),
         cpp_view.Conditions(gate_cpp.view_of(GATE, "robot")),
@@ -141,5 +141,5 @@ def printers() -> list[ConditionPrinter]:
     ],
 )
 def test_conditions_in_each_language(condition: form.Condition, expected: list[str]) -> None:
-    """Operands keep their order, and parentheses stand where precedence needs them."""
+    """Operands keep their order, with parentheses where precedence requires them."""
     assert [printer(condition) for printer in printers()] == expected

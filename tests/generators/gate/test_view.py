@@ -1,4 +1,4 @@
-"""The parts of a gate that the templates of all languages name."""
+"""Names of the parts of a gate, common to the templates of all languages."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ SLOW = Limit(("linear", "x"), FieldType("float64"), -0.5, 0.5)
 WORDS = ActionWords("message.", "not ", lambda _, value: f"<{value}>")
 
 
-def test_lines_and_actions_get_names() -> None:
-    """An action has a state and a test, a line a title; no variable has a name that is taken."""
+def test_lines_and_actions_get_unique_names() -> None:
+    """An action has a state and a test, a line a title; no variable has a reserved name."""
     lines = (
         GateLine(0, None, None, (), span(2), until_reset=True),
         GateLine(None, "input", 500, (SLOW,), span(3)),

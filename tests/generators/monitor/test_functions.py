@@ -1,4 +1,4 @@
-"""A function of the table reaches every target, or is refused by its name."""
+"""A function of the table reaches every target, or is rejected by name."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ static double square(double value)
 
 
 class Highest:
-    """The greatest number so far."""
+    """The largest number so far."""
 
     result: float | None = None
 
     def follow(self, t_ns: int, *arguments: float | None) -> None:
-        """Take a number."""
+        """Process a number."""
         del t_ns
         known = [each for each in (*arguments, self.result) if each is not None]
         self.result = max(known, default=None)
@@ -63,7 +63,7 @@ HIGHEST = Function("highest", Argument.NUMBER, Result.FLOAT, UnitRule.SAME, memo
 
 @pytest.fixture
 def add(monkeypatch: pytest.MonkeyPatch) -> Callable[[Function], None]:
-    """Give what adds a row to the table."""
+    """Return a function that adds a row to the table."""
 
     def add_row(row: Function) -> None:
         for table in (functions.FUNCTIONS, functions.WRITTEN):
@@ -79,8 +79,8 @@ def calls(rules: Program, name: str) -> bool:
 
 
 @needs_c
-def test_stateless_row_is_drawn_and_agrees_everywhere(add: Any, tmp_path: Path) -> None:
-    """One row gives the text of rules, the reference, both monitors and the random programs."""
+def test_stateless_row_reaches_every_target(add: Any, tmp_path: Path) -> None:
+    """One row defines rules, reference, both monitors and random programs, which agree."""
     add(SQUARE)
     assert calls(program(f"{SPEED} entity e {{ r: v.square() > 4; }}"), "square")
     cases = c_pairs.cases(("number", "integer"), 150, 1)
@@ -96,10 +96,10 @@ def test_stateless_row_is_drawn_and_agrees_everywhere(add: Any, tmp_path: Path) 
 @pytest.mark.parametrize(
     ("render", "language"), [(render_python, "Python"), (render_c, "C")], ids=["python", "c"]
 )
-def test_stateful_row_that_a_target_does_not_have_is_refused(
+def test_stateful_row_missing_in_a_target_is_rejected(
     add: Any, render: Callable[[Program], object], language: str
 ) -> None:
-    """The reference computes it; what would emit another function in its place refuses it."""
+    """The reference computes it; targets without it raise instead of emitting another function."""
     add(HIGHEST)
     rules = program(f"{SPEED} action a; {HIGH}")
     engine = Engine(rules)

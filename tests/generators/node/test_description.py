@@ -1,4 +1,4 @@
-"""Node descriptions as text."""
+"""Printing of node descriptions."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ profiles = st.builds(
 
 @st.composite
 def parameters(draw: st.DrawFn) -> Parameter:
-    """Draw a parameter, its default of its type."""
+    """Draw a parameter with a default of its type."""
     kind = draw(st.sampled_from(list(values)))
     return Parameter(
         draw(names),
@@ -82,7 +82,7 @@ def parameters(draw: st.DrawFn) -> Parameter:
 
 @st.composite
 def nodes(draw: st.DrawFn) -> NodeType:
-    """Draw a node whose ports are sorted by kind, as sections make them."""
+    """Draw a node with ports sorted by kind, as in sections."""
     ports: list[Port] = []
     for kind in draw(st.permutations(list(PortKind))):
         section = {"services": "srv", "clients": "srv", "actions": "action"}.get(kind.value, "msg")
@@ -135,16 +135,16 @@ def nodes(draw: st.DrawFn) -> NodeType:
 
 
 @given(nodes())
-def test_a_printed_description_reads_back_as_the_same_model(node: NodeType) -> None:
-    """The loader inverts the printer, for every construct of the language."""
+def test_printed_description_parses_to_the_same_model(node: NodeType) -> None:
+    """The loader is the inverse of the printer, for every construct of the language."""
     text = node_description(node)
     loaded = Repository().load_text("printed.rnd", text)
     assert loaded.diagnostics == ()
     assert loaded.model == node
 
 
-def test_a_description_is_laid_out_as_the_paper_does() -> None:
-    """Sections at the margin, their contents one to a line below them."""
+def test_description_has_the_layout_of_the_paper() -> None:
+    """Sections at the margin, one entry per line below them."""
     text = (
         'node robot_safety_node : robot_safety "Watches the robot"\n'
         "parameters\n"

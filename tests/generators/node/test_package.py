@@ -1,4 +1,4 @@
-"""What no package of nodes can be made of, and which nodes belong to it."""
+"""Packages of nodes: which cannot be generated, and which nodes belong to them."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tests.support.node_targets import files_of, in_each_language, refusal
 
 
 @in_each_language
-def test_an_existing_program_needs_no_skeleton(generate: GenerateFunction) -> None:
-    """A node with a binary of its own is refused with the way out."""
+def test_existing_program_needs_no_skeleton(generate: GenerateFunction) -> None:
+    """A node with its own executable is rejected with a hint."""
     code, message, line = refusal(generate, 'node odometry : wheels\nexecutable "odom"')
     assert (code, line) == ("DRS402", 1)
     assert "'odom'" in message
@@ -31,10 +31,10 @@ def test_an_existing_program_needs_no_skeleton(generate: GenerateFunction) -> No
         ('node listener : chat executable "there_already"', False),
     ],
 )
-def test_a_broken_node_of_the_package_is_not_dropped(
+def test_broken_node_of_the_package_is_not_dropped(
     beside: str, refused: bool, generate: GenerateFunction, tmp_path: Path
 ) -> None:
-    """A description beside the model that cannot be read stops the run if it is of the package."""
+    """An unreadable description next to the model stops the run if it is of the same package."""
     (tmp_path / "talker.rnd").write_text("node talker : chat")
     (tmp_path / "listener.rnd").write_text(beside)
     context = Context(InterfaceStore(), Repository())
@@ -53,21 +53,21 @@ def test_a_broken_node_of_the_package_is_not_dropped(
 
 @in_each_language
 @pytest.mark.parametrize("name", ["use_sim_time", "start_type_description_service"])
-def test_parameters_that_every_node_has_are_refused(name: str, generate: GenerateFunction) -> None:
-    """Declaring them again would stop the node at start."""
+def test_parameters_of_every_node_are_rejected(name: str, generate: GenerateFunction) -> None:
+    """Declaring them again would make the node fail at the start."""
     text = f"node a : b parameters\nname {name} : bool = true"
     assert refusal(generate, text)[::2] == ("DRS402", 2)
 
 
 @in_each_language
-def test_qos_of_an_action_is_refused(generate: GenerateFunction) -> None:
-    """One profile for the five ends of an action has no meaning in a client library."""
+def test_qos_of_an_action_is_rejected(generate: GenerateFunction) -> None:
+    """Client libraries have no single profile for the five ends of an action."""
     text = "node a : b actions\naction dock : test_msgs.Fibonacci qos reliable"
     assert refusal(generate, text)[::2] == ("DRS402", 2)
 
 
 @in_each_language
-def test_a_maintainer_must_have_an_address(generate: GenerateFunction) -> None:
-    """package.xml needs an address, so the option is checked."""
+def test_maintainer_must_have_an_address(generate: GenerateFunction) -> None:
+    """package.xml requires an address, so the option is checked."""
     with pytest.raises(ValueError, match="'Jane' does not read 'Name <address>'"):
         files_of(generate, "node a : b", {"maintainer": "Jane"})

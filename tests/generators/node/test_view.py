@@ -1,4 +1,4 @@
-"""Which names of a node collide, whatever its language."""
+"""Name collisions within a node, in any language."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from tests.support.node_targets import files_of, in_each_language, refusal
         ("publishes topic a : a_msgs.C\ntopic /b/c : a_msgs.C topic b_c : a_msgs.C", "publish_b_c"),
     ],
 )
-def test_two_things_of_one_name_collide(
+def test_two_ports_of_one_method_collide(
     sections: str, method: str, generate: GenerateFunction
 ) -> None:
-    """Whatever becomes one method is refused at the second place."""
+    """The second place is reported."""
     code, message, line = refusal(generate, f"node a : b {sections}")
     assert (code, line) == ("DRS401", 2)
     assert repr(method) in message
@@ -33,7 +33,7 @@ def test_two_things_of_one_name_collide(
 
 @in_each_language
 def test_ports_of_all_kinds_may_have_one_name(generate: GenerateFunction) -> None:
-    """Their methods differ; of two clients, that of the action says what it is of."""
+    """Their methods differ; of two clients, the one of the action has a longer name."""
     node = """node a : b
         publishes topic x : std_msgs.Bool
         subscribes topic x : std_msgs.Bool
@@ -57,10 +57,10 @@ def test_ports_of_all_kinds_may_have_one_name(generate: GenerateFunction) -> Non
         ("name a_b.<j>.p : int = 1\nname a.b.<j>.p : int = 1", "a_b"),
     ],
 )
-def test_maps_and_their_values_collide_as_parameters_do(
+def test_maps_and_their_values_collide_like_parameters(
     parameters: str, name: str, generate: GenerateFunction
 ) -> None:
-    """A map is a field, too, and so is each part of its values."""
+    """A map is a field too, and so is each part of its values."""
     text = f"node a : b parameters name j : string[] = [] {parameters}"
     code, message, _ = refusal(generate, text)
     assert code == "DRS401"
@@ -70,7 +70,7 @@ def test_maps_and_their_values_collide_as_parameters_do(
 @in_each_language
 @pytest.mark.parametrize(("one", "other"), [("pid.p", "pid_p"), ("class", "class_")])
 def test_parameters_of_one_field_collide(one: str, other: str, generate: GenerateFunction) -> None:
-    """Names that a language can only hold in one spelling may meet in one field."""
+    """Different names may have the same spelling in a target language."""
     code, message, line = refusal(
         generate, f"node a : b parameters\nname {one} : double = 1.0\nname {other} : double = 1.0"
     )

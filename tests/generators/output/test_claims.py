@@ -1,4 +1,4 @@
-"""Files that another target or model has made are not replaced, and nothing else is written."""
+"""Files of another target or model are not replaced, and then nothing is written."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def generate(model: str, target: str, *more: str) -> tuple[int, str]:
-    """Generate into ``out``; return the exit code and what was reported."""
+    """Generate into ``out``; return the exit code and the messages."""
     done = deros("generate", model, "--target", target, "-o", "out", *more)
     return done.code, done.err
 
@@ -31,8 +31,8 @@ def tree() -> dict[str, bytes]:
 
 @pytest.mark.parametrize(("first", "second"), [("python", "cpp"), ("cpp", "python")])
 @pytest.mark.parametrize("recorded", [True, False])
-def test_a_package_is_in_one_language(first: str, second: str, recorded: bool) -> None:
-    """The second language is refused, also beside a package without a record."""
+def test_package_has_one_language(first: str, second: str, recorded: bool) -> None:
+    """The second language is rejected, even if the package has no record."""
     Path("base.rnd").write_text(NODE)
     assert generate("base.rnd", first)[0] == 0
     if not recorded:
@@ -48,8 +48,8 @@ def test_a_package_is_in_one_language(first: str, second: str, recorded: bool) -
     assert generate("base.rnd", second)[0] == 0
 
 
-def test_nodes_of_one_package_in_two_folders_are_refused() -> None:
-    """The second run would leave the first node out of the package's setup.py."""
+def test_nodes_of_one_package_in_two_folders_are_rejected() -> None:
+    """The second run would omit the first node from the package's setup.py."""
     for folder, node in (("a", "one"), ("b", "two")):
         Path(folder).mkdir()
         Path(folder, f"{node}.rnd").write_text(NODE.replace("base", node))
@@ -60,10 +60,10 @@ def test_nodes_of_one_package_in_two_folders_are_refused() -> None:
     assert errors.count("DRS406") == 1
     assert "'python' from '../a'" in errors
     Path("a/three.rnd").write_text(NODE.replace("base", "three"))
-    assert generate("a/three.rnd", "python")[0] == 0  # the same package, made from the other file
+    assert generate("a/three.rnd", "python")[0] == 0  # the same package, from the other file
 
 
-def test_two_systems_of_one_name_are_refused() -> None:
+def test_two_systems_of_one_name_are_rejected() -> None:
     """A launch file of the same name would start another robot."""
     Path("base.rnd").write_text(NODE)
     for name in ("left", "right"):
@@ -75,16 +75,16 @@ def test_two_systems_of_one_name_are_refused() -> None:
         assert f"'{target}' from '../left.system'" in errors
 
 
-def test_what_comes_out_alike_is_fine() -> None:
-    """Two models that make the same file are no harm."""
+def test_identical_output_is_accepted() -> None:
+    """Two models may generate the same file."""
     Path("base.rnd").write_text(NODE)
     for name in ("left", "right"):
         Path(f"{name}.system").write_text(SYSTEM.replace("BASE", "base"))
         assert generate(f"{name}.system", "launch")[0] == 0
 
 
-def test_a_model_that_was_moved_takes_its_files_over() -> None:
-    """Its old place no longer has it, so nobody else makes the files."""
+def test_moved_model_takes_over_its_files() -> None:
+    """Its old path no longer exists, so no other model generates the files."""
     Path("base.rnd").write_text(NODE)
     Path("left.system").write_text(SYSTEM)
     assert generate("left.system", "launch")[0] == 0
@@ -95,8 +95,8 @@ def test_a_model_that_was_moved_takes_its_files_over() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"made by": [{"files": 1}]}', "\udcff"])
-def test_a_record_that_cannot_be_read_is_none(text: str) -> None:
-    """It is written anew; nothing is lost but the knowledge."""
+def test_unreadable_record_is_replaced(text: str) -> None:
+    """Only the information about earlier runs is lost."""
     Path("base.rnd").write_text(NODE)
     Path("out").mkdir()
     Path("out/.deros-origins.json").write_bytes(text.encode(errors="surrogateescape"))

@@ -1,4 +1,4 @@
-"""The writer puts all files in place or none, and keeps what is not its own."""
+"""The writer writes all files or none, and keeps files that are not its own."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PYTHON = "x = 1\n"
 
 
 def snapshot(folder: Path) -> dict[str, tuple[bytes, int, int]]:
-    """Return content, mode and time of every file below ``folder``, hidden ones included."""
+    """Return content, mode and time of every file below ``folder``, including hidden ones."""
     return {
         path.relative_to(folder).as_posix(): (
             path.read_bytes(),
@@ -29,8 +29,8 @@ def snapshot(folder: Path) -> dict[str, tuple[bytes, int, int]]:
     }
 
 
-def test_files_are_written_with_folders_and_bits(tmp_path: Path) -> None:
-    """Missing folders are made, text ends up as given, executables can be run."""
+def test_files_are_written_with_folders_and_modes(tmp_path: Path) -> None:
+    """Missing folders are created, text is written as given, executables can be run."""
     files = {"a/b/c.py": File(PYTHON), "run.sh": File("#!/bin/sh\n", executable=True)}
     report = write(files, tmp_path / "new" / "out")
     assert report.of(Outcome.WRITTEN) == ("a/b/c.py", "run.sh")
@@ -40,8 +40,8 @@ def test_files_are_written_with_folders_and_bits(tmp_path: Path) -> None:
     assert sorted(p.name for p in (tmp_path / "new/out").iterdir()) == ["a", "run.sh"]
 
 
-def test_a_second_run_touches_nothing(tmp_path: Path) -> None:
-    """Files that have not changed keep even their time."""
+def test_second_run_changes_nothing(tmp_path: Path) -> None:
+    """Unchanged files keep even their modification time."""
     files = {"a.py": File(PYTHON), "marker": File(""), "b.py": File(PYTHON, Owner.USER)}
     write(files, tmp_path)
     before = snapshot(tmp_path)
@@ -50,23 +50,23 @@ def test_a_second_run_touches_nothing(tmp_path: Path) -> None:
     assert report.of(Outcome.UNCHANGED) == ("a.py", "marker")
 
 
-def test_untouched_files_are_refreshed(tmp_path: Path) -> None:
-    """A file as some generator left it takes the new text."""
+def test_unedited_files_are_refreshed(tmp_path: Path) -> None:
+    """A file as generated gets the new text."""
     write({"a.py": File(PYTHON)}, tmp_path)
     report = write({"a.py": File("x = 2\n")}, tmp_path)
     assert report.of(Outcome.WRITTEN) == ("a.py",)
     assert (tmp_path / "a.py").read_text().endswith("x = 2\n")
 
 
-def test_line_ends_are_no_edit(tmp_path: Path) -> None:
-    """A checkout with other line ends does not count as a hand's work."""
+def test_line_endings_are_not_an_edit(tmp_path: Path) -> None:
+    """A checkout with other line endings does not count as edited."""
     write({"a.py": File(PYTHON)}, tmp_path)
     path = tmp_path / "a.py"
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
     assert write({"a.py": File("x = 2\n")}, tmp_path).of(Outcome.WRITTEN) == ("a.py",)
 
 
-def test_hand_edited_files_are_kept_and_reported(tmp_path: Path) -> None:
+def test_edited_files_are_kept_and_reported(tmp_path: Path) -> None:
     """An edit survives a new run, with a warning that names the file."""
     write({"a.py": File(PYTHON)}, tmp_path)
     edited = (tmp_path / "a.py").read_text() + "y = 3\n"
@@ -79,8 +79,8 @@ def test_hand_edited_files_are_kept_and_reported(tmp_path: Path) -> None:
     assert not warning.is_error
 
 
-def test_overwrite_replaces_hand_edited_files(tmp_path: Path) -> None:
-    """With overwrite the generator's text wins, but never over a file of the user."""
+def test_overwrite_replaces_edited_files(tmp_path: Path) -> None:
+    """With overwrite the generated text is written, but never over a user file."""
     (tmp_path / "a.py").write_text("mine\n")
     (tmp_path / "b.py").write_text("mine\n")
     files = {"a.py": File(PYTHON), "b.py": File(PYTHON, Owner.USER)}
@@ -90,8 +90,8 @@ def test_overwrite_replaces_hand_edited_files(tmp_path: Path) -> None:
     assert report.of(Outcome.USER) == ("b.py",)
 
 
-def test_users_files_are_written_once(tmp_path: Path) -> None:
-    """A file of the user is made without a banner, and then left alone, even empty."""
+def test_user_files_are_written_once(tmp_path: Path) -> None:
+    """A user file is created without a banner, and then left alone, even if empty."""
     write({"a.py": File(PYTHON, Owner.USER)}, tmp_path)
     assert (tmp_path / "a.py").read_text() == PYTHON
     (tmp_path / "a.py").write_text("")
@@ -102,15 +102,15 @@ def test_users_files_are_written_once(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "path", ["../a.py", "a/../../b.py", "/etc/a.py", "", ".", "a//b.py", "a/./b.py", "a\0b"]
 )
-def test_paths_stay_in_the_directory(tmp_path: Path, path: str) -> None:
-    """A path that leads out, or is not plain, is refused before anything is written."""
+def test_paths_stay_in_the_output_directory(tmp_path: Path, path: str) -> None:
+    """A path that leads outside, or is not normalised, is rejected before anything is written."""
     with pytest.raises(WriteError, match="no plain path"):
         write({"good.py": File(PYTHON), path: File(PYTHON)}, tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_links_do_not_lead_out(tmp_path: Path) -> None:
-    """A symbolic link in the output directory is not followed out of it."""
+def test_links_out_of_the_directory_are_not_followed(tmp_path: Path) -> None:
+    """A symbolic link to another folder is rejected."""
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "out").mkdir()
     (tmp_path / "out/link").symlink_to(tmp_path / "elsewhere")
@@ -119,30 +119,30 @@ def test_links_do_not_lead_out(tmp_path: Path) -> None:
     assert list((tmp_path / "elsewhere").iterdir()) == []
 
 
-def test_a_file_is_no_folder_too(tmp_path: Path) -> None:
-    """A generator that wants one path as file and as folder is refused."""
+def test_path_cannot_be_file_and_folder(tmp_path: Path) -> None:
+    """A generator that returns both is rejected."""
     with pytest.raises(WriteError, match="a is to be a file"):
         write({"a": File("x"), "a/b": File("y")}, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_folder_in_the_way_is_reported(tmp_path: Path) -> None:
-    """Where a folder stands, no file is put, and nothing else changes."""
+def test_folder_in_place_of_a_file_is_reported(tmp_path: Path) -> None:
+    """Nothing is written."""
     (tmp_path / "b.py").mkdir()
     with pytest.raises(WriteError, match="it is a directory"):
         write({"a.py": File(PYTHON), "b.py": File(PYTHON)}, tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["b.py"]
 
 
-def test_the_output_may_not_be_a_file(tmp_path: Path) -> None:
-    """An output directory that is a file gives a message, not a traceback."""
+def test_output_directory_cannot_be_a_file(tmp_path: Path) -> None:
+    """The result is a message, not a traceback."""
     (tmp_path / "out").write_text("")
     with pytest.raises(WriteError, match="cannot write"):
         write({"a.py": File(PYTHON)}, tmp_path / "out")
 
 
-def test_half_a_character_is_reported(tmp_path: Path) -> None:
-    """A lone surrogate, which UTF-8 has no bytes for, gives a message and no file."""
+def test_lone_surrogate_is_reported(tmp_path: Path) -> None:
+    """UTF-8 cannot encode it, so there is a message and no file."""
     with pytest.raises(WriteError, match=r"half a character, '\\ud800'"):
         write({"a.py": File(PYTHON), "b.txt": File("x\ud800")}, tmp_path)
     assert list(tmp_path.iterdir()) == []
@@ -177,10 +177,10 @@ SECOND = {
 
 @pytest.mark.parametrize("step", ["fsync", "replace"])
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
-def test_a_full_disk_leaves_the_directory_as_it_was(
+def test_full_disk_leaves_the_directory_unchanged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str, count: int
 ) -> None:
-    """Whichever file fails, staged or put in place, every byte, bit and folder is as before."""
+    """Whichever step fails, every byte, mode and folder is as before."""
     write(FIRST, tmp_path)
     before = snapshot(tmp_path)
     folders = sorted(path for path in tmp_path.rglob("*") if path.is_dir())
@@ -193,18 +193,16 @@ def test_a_full_disk_leaves_the_directory_as_it_was(
     assert sorted(path for path in tmp_path.rglob("*") if path.is_dir()) == folders
 
 
-def test_a_failure_removes_the_folders_it_made(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """An output directory that was not there is not there afterwards."""
+def test_failure_removes_created_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An output directory that did not exist does not exist afterwards."""
     monkeypatch.setattr(os, "fsync", failing_on(2, os.fsync))
     with pytest.raises(WriteError):
         write(SECOND, tmp_path / "deep" / "out")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_interrupt_is_a_failure_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ctrl-C between two files takes the first one back and goes on as an interrupt."""
+def test_interrupt_is_rolled_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C between two files restores the first one, and is raised again."""
     write(FIRST, tmp_path)
     before = snapshot(tmp_path)
     replace = Path.replace
@@ -221,8 +219,8 @@ def test_an_interrupt_is_a_failure_too(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
-def test_a_directory_without_permission_is_reported(tmp_path: Path) -> None:
-    """A directory that may not be written to gives a message with the reason."""
+def test_directory_without_permission_is_reported(tmp_path: Path) -> None:
+    """The message has the reason."""
     tmp_path.chmod(0o500)
     try:
         with pytest.raises(WriteError, match="Permission denied"):
@@ -231,8 +229,8 @@ def test_a_directory_without_permission_is_reported(tmp_path: Path) -> None:
         tmp_path.chmod(0o700)
 
 
-def test_file_that_differs_in_case_alone_is_not_written(tmp_path: Path) -> None:
-    """Where case does not count, it would take the other's place; so it is refused everywhere."""
+def test_file_that_differs_only_in_case_is_rejected(tmp_path: Path) -> None:
+    """On some file systems it would replace the other file."""
     write({"demo/Ab.py": File("x = 1\n")}, tmp_path)
     with pytest.raises(WriteError, match=r"differs from Ab\.py in case alone"):
         write({"demo/ab.py": File("x = 2\n")}, tmp_path)
@@ -242,8 +240,8 @@ def test_file_that_differs_in_case_alone_is_not_written(tmp_path: Path) -> None:
     assert not (tmp_path / "new").exists()
 
 
-def test_files_that_differ_in_case_and_are_both_there_are_refreshed(tmp_path: Path) -> None:
-    """Whoever has both already loses neither, unless one run is to write both."""
+def test_existing_files_that_differ_only_in_case_are_refreshed(tmp_path: Path) -> None:
+    """Neither is lost, unless one run writes both."""
     (tmp_path / "Ab.txt").write_text("by hand", encoding="utf-8")
     (tmp_path / "ab.txt").write_text("", encoding="utf-8")
     write({"ab.txt": File("x")}, tmp_path, overwrite=True)

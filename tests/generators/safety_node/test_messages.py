@@ -1,4 +1,4 @@
-"""Messages that have a time stamp."""
+"""Messages with a time stamp."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def node_of(name: str, **options: str) -> NodeType:
 
 
 def named(name: str, **options: str) -> NodeType:
-    """Return the safety node of an empty program of that name."""
+    """Return the safety node of an empty program with that name."""
     program = Program(name, (), (), (), (), ())
     return safety_node(program, SystemTopics(()), options, RULES)
 
@@ -47,27 +47,27 @@ def named(name: str, **options: str) -> NodeType:
         ("__", "rules_safety"),
     ],
 )
-def test_the_package_is_named_after_the_rules(stem: str, package: str) -> None:
-    """Whatever the file is called, package and node have names that ROS 2 accepts."""
+def test_package_is_named_after_the_rules(stem: str, package: str) -> None:
+    """For any file name, package and node have valid ROS 2 names."""
     node = named(stem)
     assert (node.package, node.name) == (package, f"{package}_node")
 
 
-def test_options_name_package_and_node() -> None:
-    """The node's name follows the package's unless it is given, too."""
+def test_options_set_package_and_node_name() -> None:
+    """The node name follows the package name unless it is given too."""
     assert named("robot", package="guard").name == "guard_node"
     node = named("robot", package="guard", node="watchdog")
     assert (node.package, node.name) == ("guard", "watchdog")
 
 
 @pytest.mark.parametrize("options", [{"package": "No-Package"}, {"node": "a/b"}])
-def test_a_bad_name_is_refused_with_the_reason(options: dict[str, str]) -> None:
-    """The error says what ROS 2 does not take."""
+def test_invalid_name_is_rejected_with_the_reason(options: dict[str, str]) -> None:
+    """The error says which character ROS 2 does not accept."""
     with pytest.raises(ValueError, match="contains"):
         named("robot", **options)
 
 
-def test_it_has_the_ports_that_the_rules_ask_for() -> None:
+def test_ports_follow_from_the_rules() -> None:
     """One publisher per bound topic, a heartbeat, one subscription per input topic, a reset."""
     node = node_of("every_thing")
     assert [(port.kind, port.name, port.type.short) for port in node.ports] == [
@@ -86,14 +86,14 @@ def test_it_has_the_ports_that_the_rules_ask_for() -> None:
     ]
 
 
-def test_the_diagnostics_are_on_their_usual_topic_unless_the_rules_need_it() -> None:
-    """A node description could not tell two ports of one name apart."""
+def test_diagnostics_topic_is_private_if_the_rules_use_the_common_one() -> None:
+    """A node description cannot distinguish two ports of one name."""
     assert node_of("two_rules").port("/diagnostics") is not None
     assert node_of("every_thing").port("~/diagnostics") is not None
 
 
-def test_its_parameters_are_fixed_but_for_optional_behaviours() -> None:
-    """What is latched has a file; what is optional can be switched while the node runs."""
+def test_parameters_are_fixed_except_for_optional_behaviours() -> None:
+    """Latches have a file; optional behaviours can be switched at run time."""
     read_only = {each.name: each.read_only for each in node_of("every_thing").parameters}
     assert read_only == {
         "publish_freq": True,
@@ -108,13 +108,13 @@ def test_its_parameters_are_fixed_but_for_optional_behaviours() -> None:
     assert node_of("two_rules").parameter("state_file") is None
 
 
-def test_without_latches_there_is_no_reset_service() -> None:
-    """Nothing to reset, nothing to call."""
+def test_node_without_latches_has_no_reset_service() -> None:
+    """There is nothing to reset."""
     assert node_of("two_rules").port("~/reset") is None
 
 
-def test_states_reach_those_who_come_late() -> None:
-    """Bound topics are reliable and transient local, and keep the last state alone."""
+def test_states_reach_late_subscribers() -> None:
+    """Bound topics are reliable and transient local, with depth 1."""
     port = node_of("every_thing").port("/stop")
     assert port is not None
     assert port.qos == QosProfile(reliability="reliable", durability="transient_local", depth=1)
@@ -130,15 +130,15 @@ def test_states_reach_those_who_come_late() -> None:
         ("/diagnostics", QosProfile(reliability="best_effort", depth=10)),
     ],
 )
-def test_a_subscription_asks_for_no_more_than_is_offered(topic: str, qos: QosProfile) -> None:
-    """It is reliable or durable only where every publisher of the system says that it is."""
+def test_subscription_requests_no_more_than_is_offered(topic: str, qos: QosProfile) -> None:
+    """It is reliable or durable only if every publisher in the system is."""
     port = node_of("every_thing").port(topic)
     assert port is not None
     assert port.qos == qos
 
 
-def test_places_of_ports_are_in_the_rules() -> None:
-    """A diagnostic about a port points at the input or action that it comes from."""
+def test_spans_of_ports_are_in_the_rules() -> None:
+    """A diagnostic about a port points at its input or action."""
     node = node_of("every_thing")
     stop, speed = node.port("/stop"), node.port("/speed")
     assert stop is not None
@@ -147,8 +147,8 @@ def test_places_of_ports_are_in_the_rules() -> None:
     assert speed.name_span.line == 11
 
 
-def test_an_empty_program_makes_a_node_all_the_same() -> None:
-    """Without rules there is a heartbeat, and nothing to act upon."""
+def test_empty_program_gives_a_node() -> None:
+    """Without rules there is a heartbeat, and no action."""
     node = named("empty")
     assert [port.name for port in node.ports] == ["~/heartbeat", "~/events", "/diagnostics"]
     assert node.ports[0].type == InterfaceType("std_msgs", "msg", "UInt64")

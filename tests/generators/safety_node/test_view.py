@@ -1,4 +1,4 @@
-"""What the templates of safety nodes in all languages are told of the rules."""
+"""The view of the rules for safety node templates in all languages."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ def named(built: Program, name: str) -> Action:
     return next(action for action in built.actions if action.name == name)
 
 
-def test_the_file_of_the_rules_comes_without_its_folder() -> None:
-    """What is generated is the same on every machine."""
+def test_file_of_the_rules_has_no_folder() -> None:
+    """The output is the same on every machine."""
     assert origin_file(load(RULES)) == "rules.deros"
 
 
-def test_actions_share_a_field_in_the_order_declared(built: Program) -> None:
-    """Each with what it publishes there."""
+def test_actions_share_a_field_in_declaration_order(built: Program) -> None:
+    """Each has the value that it publishes there."""
     shared = states_by_path(built, "/limit")
     assert {
         path: [(action.name, binding.value) for action, binding in bound]
@@ -58,13 +58,13 @@ def test_actions_share_a_field_in_the_order_declared(built: Program) -> None:
 
 
 def test_kinds_of_actions(built: Program) -> None:
-    """Bound ones have a state, the others are code; the built-in one is neither."""
+    """Bound actions have a state, others are user code; the built-in one is neither."""
     assert [each.name for each in built.actions if needs_code(each)] == ["release", "beep"]
     assert [each.name for each in built.actions if lasts(each)] == ["stop", "crawl", "creep"]
 
 
-def test_only_what_can_be_reset_can_be_refused_it(built: Program) -> None:
-    """By the behaviours that call for it."""
+def test_refusing_behaviours_of_resettable_actions(built: Program) -> None:
+    """These are the behaviours that trigger the action."""
     refusing = {each.name: refusing_behaviours(each) for each in built.actions}
     assert {name: found for name, found in refusing.items() if found} == {
         "stop": (0,),
@@ -73,21 +73,21 @@ def test_only_what_can_be_reset_can_be_refused_it(built: Program) -> None:
     }
 
 
-def test_calls_come_top_to_bottom(built: Program) -> None:
-    """Also those of behaviours within others."""
+def test_calls_are_in_source_order(built: Program) -> None:
+    """This includes those of nested behaviours."""
     names = [built.actions[call.action].name for call in calls(built)]
     assert names == ["beep", "stop", "beep", "crawl", "creep", "release", "log_state"]
 
 
-def test_an_int_beside_a_float_is_a_float(built: Program) -> None:
+def test_int_and_float_arguments_become_float(built: Program) -> None:
     """Every parameter has the types of all its arguments."""
     beep = named(built, "beep")
     assert [list(types) for types in argument_types(beep, built)] == [["float"], ["str"]]
     assert argument_types(named(built, "release"), built) == []
 
 
-def test_notes_tell_what_an_action_is_for_and_who_runs_it(built: Program) -> None:
-    """The sentence of the rules first, where there is one."""
+def test_notes_describe_an_action_and_its_callers(built: Program) -> None:
+    """The description in the rules comes first, if there is one."""
     assert action_notes(named(built, "beep"), built, "sounds the horn") == [
         "Sounds the horn.",
         "Declared in rules.deros:6, run by outer, behaviour_2.",
@@ -98,7 +98,7 @@ def test_notes_tell_what_an_action_is_for_and_who_runs_it(built: Program) -> Non
     ]
 
 
-def test_a_behaviour_depends_on_the_rules_of_those_around_it(built: Program) -> None:
+def test_nested_behaviour_depends_on_outer_rules(built: Program) -> None:
     """Its condition is shown without comments, on one line."""
     assert [(each.name, each.condition, each.rules) for each in behaviour_views(built)] == [
         ("outer", "e.fast", ("e.fast",)),
@@ -107,8 +107,8 @@ def test_a_behaviour_depends_on_the_rules_of_those_around_it(built: Program) -> 
     ]
 
 
-def test_an_action_that_only_resets_others_needs_no_code(built: Program) -> None:
-    """Without parameters and without a state, being run is all that it is for."""
+def test_action_that_only_resets_others_needs_no_code(built: Program) -> None:
+    """It has neither parameters nor a state, so running it is enough."""
     assert [a.name for a in built.actions if only_resets(a, built)] == ["release"]
     assert action_notes(named(built, "release"), built, "")[-1] == (
         "Running it resets crawl, creep; it need not do anything else."

@@ -1,4 +1,4 @@
-"""What the targets of a system are told about it."""
+"""The view of a system for its targets."""
 
 from __future__ import annotations
 
@@ -34,20 +34,20 @@ def view(folder: Path, members: str) -> SystemView:
 
 
 def refused(folder: Path, members: str) -> list[str]:
-    """Return the codes with which a system is refused."""
+    """Return the codes with which a system is rejected."""
     with pytest.raises(GenerationError) as caught:
         view(folder, members)
     return [diagnostic.code.name for diagnostic in caught.value.diagnostics]
 
 
-def test_package_and_executable_give_the_program(tmp_path: Path) -> None:
-    """A legacy node's executable counts, not the name of its type."""
+def test_program_is_package_and_executable(tmp_path: Path) -> None:
+    """The executable of a legacy node counts, not the name of its type."""
     (node,) = view(tmp_path, "node a : worker").nodes
     assert (node.package, node.executable, node.full_name) == ("tools", "old_worker", "/a")
 
 
-def test_whole_numbers_for_doubles_are_doubles(tmp_path: Path) -> None:
-    """ROS 2 refuses the integer 3 for a double; integers stay what they are."""
+def test_whole_numbers_for_doubles_become_doubles(tmp_path: Path) -> None:
+    """ROS 2 rejects the integer 3 for a double; integers are unchanged."""
     (node,) = view(
         tmp_path,
         "node a : worker parameters param gain = 3 param gains = [1, 2.5] param count = 3",
@@ -55,14 +55,14 @@ def test_whole_numbers_for_doubles_are_doubles(tmp_path: Path) -> None:
     assert repr(node.parameters) == "(('gain', 3.0), ('gains', (1.0, 2.5)), ('count', 3))"
 
 
-def test_only_what_differs_is_remapped(tmp_path: Path) -> None:
-    """A port that is connected to the name it has anyway needs no remapping."""
+def test_only_different_names_are_remapped(tmp_path: Path) -> None:
+    """A port connected to its own name needs no remapping."""
     (node,) = view(tmp_path, "node a : worker namespace /x wirings connect in to /x/in").nodes
     assert node.remappings == ()
 
 
 def test_actions_are_remapped_with_all_their_parts() -> None:
-    """Jazzy's rcl remaps the parts of an action alone, later ones the action's own name."""
+    """In Jazzy, rcl remaps only the parts of an action, later versions its name."""
     eye = next(system_view(load(EVERYTHING)).nodes)
     assert [pair for pair in eye.remappings if pair[0].startswith("look")] == [
         ("look", "/look_around"),
@@ -74,8 +74,8 @@ def test_actions_are_remapped_with_all_their_parts() -> None:
     ]
 
 
-def test_nodes_are_grouped_by_subsystem_with_what_is_said_about_it() -> None:
-    """A used system's description stands in where its subsystem has none of its own."""
+def test_nodes_are_grouped_by_subsystem_with_description() -> None:
+    """The description of an imported system is used if its subsystem has none."""
     groups = system_view(load(EVERYTHING)).groups
     assert [(group.path, group.description, len(group.nodes)) for group in groups] == [
         (("front",), "What looks ahead", 1),
@@ -86,8 +86,8 @@ def test_nodes_are_grouped_by_subsystem_with_what_is_said_about_it() -> None:
     ]
 
 
-def test_respawn_is_told_in_seconds() -> None:
-    """1500 ms is 1.5 s; without respawn there is no delay at all."""
+def test_respawn_delay_is_in_seconds() -> None:
+    """1500 ms is 1.5 s; without respawn there is no delay."""
     eye, relay, *_, alone = system_view(load(EVERYTHING)).nodes
     assert (eye.respawn_delay, eye.respawn_max) == (1.5, 3)
     assert (relay.respawn_delay, relay.respawn_max) == (0.0, None)
@@ -95,21 +95,21 @@ def test_respawn_is_told_in_seconds() -> None:
 
 
 @pytest.mark.parametrize("setting", ["gains = []", "blob = [3]"])
-def test_values_without_a_spelling_in_ros_2_are_refused(tmp_path: Path, setting: str) -> None:
-    """Rcl reads an empty array as no value and knows no bytes: silently losing them is no way."""
+def test_unsupported_parameter_values_are_rejected(tmp_path: Path, setting: str) -> None:
+    """There are no empty arrays and bytes in rcl, and they must not be dropped silently."""
     members = f"node a : worker parameters param {setting}"
     assert refused(tmp_path, members) == [codes.UNSUPPORTED_BY_TARGET.name]
 
 
 @pytest.mark.parametrize("setting", ["list = []", "blob = [1, 2]"])
-def test_a_value_without_a_spelling_may_be_the_default(tmp_path: Path, setting: str) -> None:
-    """The node has it anyway, so there is nothing to say."""
+def test_unsupported_value_may_be_the_default(tmp_path: Path, setting: str) -> None:
+    """The node has it anyway, so it is omitted."""
     (node,) = view(tmp_path, f"node a : worker parameters param {setting}").nodes
     assert node.parameters == ()
 
 
-def test_two_nodes_of_one_full_name_are_refused(tmp_path: Path) -> None:
-    """Their parameters could not be told apart."""
+def test_two_nodes_of_one_full_name_are_rejected(tmp_path: Path) -> None:
+    """Their parameters could not be distinguished."""
     assert refused(tmp_path, "node a : worker node a : worker") == [codes.NAME_COLLISION.name]
 
 
@@ -123,7 +123,7 @@ def test_two_nodes_of_one_full_name_are_refused(tmp_path: Path) -> None:
     ],
 )
 def test_file_names_are_snake_case(name: str, parted: str) -> None:
-    """The words of a system's name are parted by one underscore each."""
+    """The words of a system's name are separated by single underscores."""
     assert snake_case(name) == parted
 
 
@@ -150,8 +150,8 @@ def test_descriptions_are_one_line() -> None:
     ],
 )
 @pytest.mark.parametrize("column", [0, 30, 60])
-def test_literals_mean_the_value_and_fit_the_line(value: object, column: int) -> None:
-    """Whatever is broken over lines reads back as it was, within the width."""
+def test_literals_keep_the_value_and_fit_the_line(value: object, column: int) -> None:
+    """A literal on several lines evaluates to the value, within the width."""
     text = python_literal(value, column, 12)  # type: ignore[arg-type]
     assert _as_lists(eval(text)) == _as_lists(value)
     first, *others = f"{text},".split("\n")
@@ -161,7 +161,7 @@ def test_literals_mean_the_value_and_fit_the_line(value: object, column: int) ->
 
 @pytest.mark.parametrize("value", [float("inf"), float("-inf")])
 def test_infinities_have_a_literal(value: float) -> None:
-    """``inf`` alone is a name that Python does not know."""
+    """``inf`` alone is not defined in Python."""
     assert eval(python_literal(value)) == value
 
 

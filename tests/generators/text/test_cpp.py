@@ -1,4 +1,4 @@
-"""Pieces of C++ text: names, literals and comments that no text can break."""
+"""Elements of C++ text: names, literals and comments that no input can break."""
 
 from __future__ import annotations
 
@@ -46,20 +46,20 @@ from tests.support.cpp import compile_cpp, needs_compiler
         ("_", "x"),
     ],
 )
-def test_identifiers_are_legal(name: str, identifier: str) -> None:
-    """ROS 2 names become names that C++ neither reserves nor refuses."""
+def test_identifiers_are_valid(name: str, identifier: str) -> None:
+    """ROS 2 names become names that C++ neither reserves nor rejects."""
     assert cpp_identifier(name) == identifier
 
 
 @needs_compiler
-def test_literals_hold_what_they_stand_for(tmp_path: Path) -> None:
-    """The compiler reads the very bytes, doubles and integers back, whatever they are."""
+def test_literals_keep_their_value(tmp_path: Path) -> None:
+    """The compiler reads the same bytes, doubles and integers."""
     chosen = random.Random(1)
     alphabet = '?"\\\n\t\0ü€ %{}/=<>()a1\x7f\U0001f916'
     texts = ["".join(chosen.choices(alphabet, k=chosen.randint(0, 60))) for _ in range(200)]
     doubles = [0.1, -0.0, 1e300, 5e-324, 1e22, -2.5, float("inf"), float("-inf")]
     integers = [0, -1, 2**31, -(2**31), 2**63 - 1, -(2**63)]
-    # Broken literals cannot hold a NUL, which no text of a description does.
+    # Literals on several lines cannot contain NUL, which no description does.
     broken = ["word " * 40 + text.replace("\0", "") for text in texts[:50]]
     lines = [
         "#include <cinttypes>",
@@ -93,8 +93,8 @@ def test_literals_hold_what_they_stand_for(tmp_path: Path) -> None:
 
 
 @given(st.text(max_size=300))
-def test_no_text_leaves_its_comment(text: str) -> None:
-    """Every line of a comment is one, and none runs on into the next."""
+def test_text_cannot_leave_its_comment(text: str) -> None:
+    """Every line is a comment line, and none continues into the next."""
     written = comment(text, 4)
     for line in written.splitlines() if written else ():
         assert line.lstrip().startswith("///")
@@ -104,7 +104,7 @@ def test_no_text_leaves_its_comment(text: str) -> None:
 
 
 def test_long_calls_are_broken_at_their_arguments() -> None:
-    """Arguments stand together below the head if they fit, else one below the other."""
+    """Arguments are on one line below the head if they fit, else one per line."""
     short, long = "a" * 30, "b" * 60
     assert call("f", [short, None, short], 2) == f"f({short}, {short});"
     assert call("f", [long, short], 2) == f"f({long}, {short});"
@@ -119,14 +119,14 @@ def test_long_calls_are_broken_at_their_arguments() -> None:
     ]
 
 
-def test_a_long_type_stands_in_front_of_its_function() -> None:
-    """Where type and name do not fit on one line, each has its own."""
+def test_long_type_is_on_its_own_line() -> None:
+    """The function name follows on the next line."""
     kind = f"std::vector<{'T' * 80}>"
     assert call(f"{kind} name", ["int a"], 2, ";").splitlines() == [kind, "  name(", "    int a);"]
 
 
 def test_chains_and_items_are_broken_at_their_parts() -> None:
-    """Parts of a long chain stand one below the other, and so do those of a long list."""
+    """Long chains and long lists have one part per line."""
     part = f".with({'x' * 40})"
     assert expression(Chain("QoS(1)", (part,)), 4) == f"QoS(1){part}"
     assert expression(Chain("QoS(1)", (part, part)), 4, ",").splitlines() == [
@@ -167,22 +167,22 @@ def test_layout_changes_white_space_only(value: Expression, indent: int) -> None
 
 
 @given(st.lists(st.text("ab ", min_size=1), min_size=1, max_size=20))
-def test_broken_texts_fit(words: list[str]) -> None:
-    """No piece of a broken text is longer than a line while its words allow that."""
+def test_broken_strings_fit_the_line(words: list[str]) -> None:
+    """No piece of a broken string is longer than a line, unless a word is."""
     text = " ".join(words)
     lines = expression(Text(text), 6, ";").splitlines()
     longest = max(map(len, text.split()), default=0)
     assert longest > 60 or all(len(line.strip()) + 6 <= LINE_LENGTH for line in lines)
 
 
-def test_headers_are_those_used() -> None:
-    """A name of the standard library brings its header, once and in order."""
+def test_headers_match_the_used_names() -> None:
+    """A name of the standard library adds its header, once and in order."""
     text = "std::vector<std::string> x; std::unique_ptr<int> y = std::move(z); int64_t n;"
     assert standard_headers(text) == ["cstdint", "memory", "string", "utility", "vector"]
     assert standard_headers("int main() {}") == []
 
 
-def test_empty_sections_and_lines_go() -> None:
-    """A class without protected members has no such section, and no text two empty lines."""
+def test_empty_sections_and_lines_are_removed() -> None:
+    """An empty section is dropped, and no two empty lines are adjacent."""
     text = "class A\n{\npublic:\n  A();\n\nprotected:\n\nprivate:\n  int a_;\n\n\n  int b_;\n\n};\n"
     assert tidied(text) == "class A\n{\npublic:\n  A();\n\nprivate:\n  int a_;\n\n  int b_;\n};\n"

@@ -1,4 +1,4 @@
-"""The document printer: what fits stays on one line, and what can fit does."""
+"""The document printer: text that fits on one line stays there."""
 
 from __future__ import annotations
 
@@ -47,68 +47,68 @@ def test_group_stays_on_one_line_if_it_fits_exactly() -> None:
     assert render(document, 10) == "f(\n    one,\n    two,\n)"
 
 
-def test_text_behind_group_counts() -> None:
-    """A group that fits but for the bracket behind it is broken."""
+def test_text_after_a_group_counts_for_its_width() -> None:
+    """A group that fits except for the bracket after it is broken."""
     document = concat(call("f", "one"), ")", ":")
     assert render(document, 8) == "f(one)):"
     assert render(document, 7) == "f(\n    one,\n)):"
 
 
-def test_text_behind_next_possible_break_does_not_count() -> None:
-    """What may go to a line of its own is no reason to break what is in front of it."""
+def test_text_after_the_next_possible_break_does_not_count() -> None:
+    """Text that may move to its own line does not break the group before it."""
     document = concat(group("a", LINE, "b"), group(LINE, "long text"))
     assert render(document, 5) == "a b\nlong text"
 
 
-def test_inner_group_is_broken_after_outer_one() -> None:
-    """Only groups that do not fit are broken, outer ones first."""
+def test_outer_groups_are_broken_first() -> None:
+    """Only groups that do not fit are broken."""
     document = call("f", call("g", "a", "b"), call("h", "c" * 13))
     assert render(document, 20) == ("f(\n    g(a, b),\n    h(\n        ccccccccccccc,\n    ),\n)")
 
 
-def test_hard_line_breaks_groups_around_it() -> None:
-    """A hard line break never becomes a blank, however wide the line."""
+def test_hard_line_break_breaks_enclosing_groups() -> None:
+    """A hard line break never becomes a space, however wide the line."""
     document = group("a", LINE, group("b", HARDLINE, "c"))
     assert render(document, 80) == "a\nb\nc"
     with pytest.raises(ValueError, match="no form on one line"):
         flatten(document)
 
 
-def test_fill_puts_as_many_items_on_line_as_fit() -> None:
-    """Each line of a fill is as full as its items allow; what follows the last item counts."""
+def test_fill_puts_as_many_items_on_a_line_as_fit() -> None:
+    """Text after the last item counts."""
     words = fill(["aa", "bb", "cc", "dd"])
     assert render(words, 5) == "aa bb\ncc dd"
     assert render(concat(words, ";"), 5) == "aa bb\ncc\ndd;"
     assert fill([]) == ""
 
 
-def test_fill_breaks_item_that_does_not_fit_on_line_of_its_own() -> None:
-    """A long item of a fill begins a line and is broken, and the others are filled on."""
+def test_fill_breaks_an_item_that_is_too_long() -> None:
+    """A long item starts a new line and is broken, and the others fill the lines after it."""
     items = fill(["a", group("bbb", LINE, "ccc"), "d", "e"])
     assert render(items, 4) == "a\nbbb\nccc\nd e"
 
 
-def test_line_may_have_text_at_end_and_start() -> None:
-    """What a broken line ends with needs room, and what the next one begins with takes some."""
+def test_line_break_may_add_text_before_and_after() -> None:
+    """Both count for the width of their lines."""
     pieces = fill(["aaa", "bbb", "cccc"], Line("", before=" \\", after="+"))
     assert render(pieces, 8) == "aaabbb \\\n+cccc"
     assert render(pieces, 7) == "aaa \\\n+bbb \\\n+cccc"
 
 
 def test_nest_may_indent_by_text() -> None:
-    """Comments are paragraphs whose further lines begin with the sign of a comment."""
+    """Further lines of a comment start with the comment marker."""
     assert render(nest("# ", "# ", fill(["one", "two", "three"])), 9) == "# one two\n# three"
 
 
-def test_align_indents_to_column() -> None:
-    """Lines within an alignment begin below its start, wherever that is."""
+def test_align_indents_to_the_current_column() -> None:
+    """Lines within an alignment start below its beginning."""
     operands = align(join(concat(" +", LINE), ["aaa", "bbb"]))
     assert render(group("x = ", operands), 10) == "x = aaa +\n    bbb"
     assert render(group(operands), 8, indent=2, column=5) == "aaa +\n     bbb"
 
 
-def test_breakable_text_is_replaced_where_it_is_too_long() -> None:
-    """The replacement knows the indentation, and is a document of its own."""
+def test_long_breakable_text_is_replaced() -> None:
+    """The replacement gets the indentation, and is a document itself."""
 
     def halves(indent: int) -> Document:
         return concat(f"'{indent}", HARDLINE, "two'")
@@ -118,25 +118,25 @@ def test_breakable_text_is_replaced_where_it_is_too_long() -> None:
     assert render(document, 11) == "f(\n  '2\n  two')"
 
 
-def test_lines_have_no_blanks_at_end() -> None:
-    """A blank in front of a broken line, or the indentation of an empty one, is dropped."""
+def test_lines_have_no_trailing_spaces() -> None:
+    """A space before a line break, and the indentation of an empty line, are dropped."""
     assert render(nest(4, "a ", HARDLINE, HARDLINE, "b"), 80) == "a\n\n    b"
 
 
-def test_text_with_line_break_is_rejected() -> None:
-    """Its width would be counted wrongly."""
+def test_text_with_a_line_break_is_rejected() -> None:
+    """Its width would be wrong."""
     with pytest.raises(ValueError, match="line break"):
         group("a\nb")
 
 
-def test_empty_group_with_text_on_one_line_is_printed() -> None:
+def test_text_of_an_unbroken_group_is_printed() -> None:
     """A document that is empty only when broken is not lost."""
     assert render(group(if_broken("", "flat")), 10) == "flat"
     assert render(concat("a", if_broken("", "flat")), 10) == "a"
 
 
 def test_deep_and_long_documents_need_no_recursion() -> None:
-    """Documents may be nested far deeper than Python calls functions."""
+    """Documents may be nested deeper than Python's recursion limit."""
     depth, flat = 50_000, 20
     deep: Document = "x"
     for _ in range(depth):
@@ -153,7 +153,7 @@ def test_deep_and_long_documents_need_no_recursion() -> None:
 
 @dataclass(frozen=True)
 class Sample:
-    """A document, and all texts that some choice of broken groups makes of it.
+    """A document, and all its possible layouts.
 
     Attributes:
         document: the document.
@@ -165,7 +165,7 @@ class Sample:
 
 
 def _joined(texts: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
-    """Join texts given as lines: the last line of one goes on with the first of the next."""
+    """Join texts given as lines: the last line of each continues with the first of the next."""
     lines = [""]
     for first, *others in texts:
         lines[-1] += first
@@ -223,21 +223,21 @@ def _without_blanks(text: str) -> str:
 
 
 @given(samples, st.integers(1, 40))
-def test_rendered_text_is_one_of_the_possible_layouts(sample: Sample, width: int) -> None:
-    """Groups are broken everywhere or nowhere, and nothing is lost, added or moved."""
+def test_rendered_text_is_a_possible_layout(sample: Sample, width: int) -> None:
+    """Groups are broken completely or not at all, and nothing is lost, added or moved."""
     assert tuple(render(sample.document, width).split("\n")) in sample.layouts
 
 
 @given(samples, st.integers(1, 40))
-def test_rendered_text_fits_if_fully_broken_text_does(sample: Sample, width: int) -> None:
-    """No group that is left on one line makes a line too long that could be short enough."""
+def test_rendered_text_fits_if_possible(sample: Sample, width: int) -> None:
+    """No unbroken group makes a line too long if breaking it would help."""
     if _widest(sample.layouts[-1]) <= width:
         assert _widest(render(sample.document, width).split("\n")) <= width
 
 
 @given(samples, st.integers(1, 40))
-def test_rendered_text_has_as_few_lines_as_possible(sample: Sample, width: int) -> None:
-    """What fits on one line is on one line; wide enough, all is."""
+def test_rendered_text_has_few_lines(sample: Sample, width: int) -> None:
+    """A document that fits on one line is on one line."""
     flat = flatten(sample.document)
     assert (flat,) == sample.layouts[0]
     assert (render(sample.document, width) == flat) or len(flat) > width
@@ -245,14 +245,14 @@ def test_rendered_text_has_as_few_lines_as_possible(sample: Sample, width: int) 
 
 
 @given(samples, st.integers(1, 40), st.integers(0, 12))
-def test_indentation_moves_text(sample: Sample, width: int, indent: int) -> None:
-    """A text laid out behind an indentation is the text for so much less width, moved."""
+def test_indentation_moves_the_text(sample: Sample, width: int, indent: int) -> None:
+    """Indented text is the text for the remaining width, moved to the right."""
     moved = render_lines(sample.document, width + indent, indent)
     assert moved == [" " * indent + line for line in render(sample.document, width).split("\n")]
 
 
 @given(samples, st.integers(1, 40))
-def test_line_breaks_change_white_space_only(sample: Sample, width: int) -> None:
+def test_line_breaks_change_only_white_space(sample: Sample, width: int) -> None:
     """Without white space the text is that of one line."""
     rendered = render(sample.document, width)
     assert _without_blanks(rendered) == _without_blanks(flatten(sample.document))

@@ -1,4 +1,4 @@
-"""ROS 2 names become identifiers, and no two of them one identifier unnoticed."""
+"""ROS 2 names become identifiers, and collisions are reported."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ OTHER = Span(SPAN.source, 6, 12)
         ("2d_scan", "_2d_scan"),
     ],
 )
-def test_identifiers_read_like_the_names(name: str, identifier: str) -> None:
-    """Separators become underscores, keywords and digits are made legal."""
+def test_identifiers_resemble_the_names(name: str, identifier: str) -> None:
+    """Separators become underscores; keywords and digits are made valid."""
     assert python_identifier(name) == identifier
 
 
 @given(st.text(max_size=20))
 def test_every_name_gives_an_identifier(name: str) -> None:
-    """Whatever the name, the result can be used in Python."""
+    """The result is valid in Python for any name."""
     for result in (python_identifier(name), camel_case(name)):
         assert result.isidentifier()
         assert not keyword.iskeyword(result)
@@ -60,7 +60,7 @@ def test_class_names_are_camel_case(name: str, class_name: str) -> None:
     assert camel_case(name) == class_name
 
 
-def test_a_collision_names_both_places() -> None:
+def test_collision_has_both_places() -> None:
     """The second of two equal names is reported, with the first as the related place."""
     emitted = [Emitted("on_imu", "port 'imu'", SPAN), Emitted("on_imu", "port '/imu'", OTHER)]
     with pytest.raises(GenerationError) as raised:
@@ -71,13 +71,13 @@ def test_a_collision_names_both_places() -> None:
     assert "'on_imu'" in found.message
 
 
-def test_different_names_pass() -> None:
-    """Names that differ are no collision, in case too."""
+def test_different_names_do_not_collide() -> None:
+    """Names that differ only in case are different."""
     check_collisions([Emitted("a", "port a", SPAN), Emitted("A", "port A", OTHER)], "class A")
 
 
-def test_files_that_differ_in_case_alone_collide() -> None:
-    """They are one file on some systems; identifiers of code are told apart everywhere."""
+def test_files_that_differ_only_in_case_collide() -> None:
+    """They are one file on some systems; identifiers in code are case-sensitive."""
     emitted = [Emitted("Ab", "node 'Ab'", SPAN), Emitted("ab", "node 'ab'", OTHER)]
     check_collisions(emitted, "the code")
     with pytest.raises(GenerationError) as raised:
@@ -96,6 +96,6 @@ def test_files_that_differ_in_case_alone_collide() -> None:
         ("a\u202eb\udcff.rnd", "a%E2%80%AEb%FF.rnd"),
     ],
 )
-def test_file_label_holds_no_code(path: str, label: str) -> None:
-    """Quotes, line breaks, comment signs and invisible characters are written as numbers."""
+def test_file_label_contains_no_code(path: str, label: str) -> None:
+    """Quotes, line breaks, comment markers and invisible characters are escaped as numbers."""
     assert file_label(path) == label

@@ -1,4 +1,4 @@
-"""However a condition is laid out in lines, it means what its formula says."""
+"""A condition on several lines has the meaning of its formula."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from deros.generators.text.logic import (
 )
 from deros.generators.text.python import LINE_LENGTH
 
-# Names so long that a few operands fill a line, and so many lengths that each just fits sometimes.
+# Names so long that a few operands fill a line, with many lengths to hit the exact width.
 _NAMES = [f"{letter}{'_' * length}" for letter in "xyz" for length in (0, 5, 17, 31, 60)]
 
 _ATOMS = st.sampled_from([Atom(name) for name in _NAMES])
@@ -35,7 +35,7 @@ formulas: st.SearchStrategy[Logic] = st.recursive(_ATOMS, _nested, max_leaves=12
 
 
 def _tree(logic: Logic) -> ast.expr:
-    """Return what Python's parser makes of a formula when every operand is in parentheses."""
+    """Return the syntax tree of a formula with every operand in parentheses."""
     match logic:
         case Atom():
             return ast.Name(logic.text, ast.Load())
@@ -47,8 +47,8 @@ def _tree(logic: Logic) -> ast.expr:
 
 
 @given(formulas, st.sampled_from([0, 4, 8, 12]), st.sampled_from(["if ", "elif ", "return "]))
-def test_lines_mean_the_formula(logic: Logic, indent: int, before: str) -> None:
-    """The lines parse as the formula; what is too long is a single operand."""
+def test_lines_parse_as_the_formula(logic: Logic, indent: int, before: str) -> None:
+    """Only a single operand may be longer than a line."""
     after = "" if before == "return " else ":"
     lines = lay_out(indent, before, logic, after)
     expression = "\n".join(lines).strip().removeprefix(before).removesuffix(after)

@@ -1,4 +1,4 @@
-"""Python text that keeps to ament's line length, and templates that hide no mistake."""
+"""Python text within ament's line length, and strict templates."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from deros.generators.text.templates import environment, xml_text
 LONG = "n" * 120
 
 
-def test_imports_are_in_aments_order() -> None:
-    """Modules and names are sorted without regard to case; ``import x`` stands where it belongs."""
+def test_imports_are_in_the_order_of_ament() -> None:
+    """Modules and names are sorted ignoring case; ``import x`` is sorted among them."""
     imports = {"rclpy.qos": ["QoSProfile", "qos_profile_sensor_data"], "rclpy": [], "b": ["B", "a"]}
     assert import_lines(imports) == [
         "from b import a, B",
@@ -36,14 +36,14 @@ def test_imports_are_in_aments_order() -> None:
 
 
 def test_long_imports_are_broken() -> None:
-    """An import that does not fit has one name a line."""
+    """An import that does not fit has one name per line."""
     names = [f"name_{number}_of_many" for number in range(6)]
     lines = import_lines({"module": names})
     assert lines == ["from module import (", *(f"    {name}," for name in names), ")"]
 
 
-def test_a_call_that_fits_stays_on_one_line() -> None:
-    """Arguments that are None are left out, a tail follows the parenthesis."""
+def test_call_that_fits_stays_on_one_line() -> None:
+    """None arguments are omitted, and a tail follows the parenthesis."""
     assert call("f", ["1", None, Text("t=", "x"), Call("g", ("2",), ".value")], 4) == (
         "f(1, t='x', g(2).value)"
     )
@@ -53,13 +53,13 @@ def test_a_call_that_fits_stays_on_one_line() -> None:
     st.lists(st.text("ab '\"\\", max_size=150), min_size=1, max_size=4),
     st.integers(min_value=0, max_value=5),
 )
-def test_a_broken_call_means_the_same(texts: list[str], depth: int) -> None:
-    """However long the arguments, the lines fit and evaluate to the same texts."""
+def test_broken_call_has_the_same_value(texts: list[str], depth: int) -> None:
+    """Whatever the arguments, the lines fit and evaluate to the same strings."""
     indent = 4 * depth
     text = call(
         "tuple", [Call("list", (Call("", tuple(Text("", t) for t in [*texts, ""])),))], indent
     )
-    assert list(eval(text)) == [*texts, ""]  # the text is our own
+    assert list(eval(text)) == [*texts, ""]  # the text is generated here
     words = [word for t in texts for word in t.split()]
     if all(len(repr(word)) < 40 for word in words):
         assert all(len(line) <= LINE_LENGTH for line in f"{' ' * indent}{text}".splitlines())
@@ -69,8 +69,8 @@ def test_a_broken_call_means_the_same(texts: list[str], depth: int) -> None:
     st.lists(st.text("abc", min_size=1, max_size=50), max_size=12),
     st.integers(min_value=0, max_value=5),
 )
-def test_a_filled_call_means_the_same(names: list[str], depth: int) -> None:
-    """However many arguments, the lines fit and are the same call, with a comma at the end."""
+def test_filled_call_has_the_same_value(names: list[str], depth: int) -> None:
+    """For any number of arguments the lines fit and parse as the call with a trailing comma."""
     indent = 4 * depth
     lines = lay_out_call(indent, "value = function(", names)
     assert all(len(line) <= LINE_LENGTH for line in lines)
@@ -81,7 +81,7 @@ def test_a_filled_call_means_the_same(names: list[str], depth: int) -> None:
 
 
 def test_only_long_lines_are_marked() -> None:
-    """Code, comments and strings of several lines each get their mark where flake8 looks for it."""
+    """Code, comments and multi-line strings get the mark where flake8 expects it."""
     text = f'x = 1\n# {LONG}\n{LONG} = 2\ny = """\n{LONG}\n"""\n'
     assert mark_long_lines(text).splitlines() == [
         "x = 1",
@@ -93,14 +93,14 @@ def test_only_long_lines_are_marked() -> None:
     ]
 
 
-def test_short_text_is_not_touched() -> None:
-    """Without a long line the text comes back as it is."""
+def test_short_text_is_unchanged() -> None:
+    """Text without a long line is returned as it is."""
     assert mark_long_lines("x = 1\n") == "x = 1\n"
 
 
 @given(st.text(max_size=60))
-def test_a_sentence_fits_into_a_docstring(text: str) -> None:
-    """Whatever a description holds, it can stand between three quotes, on one line."""
+def test_sentence_fits_into_a_docstring(text: str) -> None:
+    """Any description can be placed between three quotes, on one line."""
     line = sentence(text)
     assert "\n" not in line
     assert ast.literal_eval(f'"""{line}"""') == line
@@ -110,13 +110,13 @@ def test_a_sentence_fits_into_a_docstring(text: str) -> None:
     ("text", "expected"),
     [("turns ticks", "Turns ticks."), ("Really?", "Really?"), ("", ""), ("a\n  b\x00c", "A b c.")],
 )
-def test_sentences_have_a_capital_and_an_end(text: str, expected: str) -> None:
-    """Descriptions become sentences; those that are keep their end."""
+def test_sentences_have_a_capital_and_punctuation(text: str, expected: str) -> None:
+    """Descriptions become sentences; existing punctuation is kept."""
     assert sentence(text) == expected
 
 
-def test_prose_is_wrapped_between_words_only() -> None:
-    """Lines fit where words do, and nothing but white space is lost."""
+def test_prose_is_wrapped_between_words() -> None:
+    """Lines fit if the words do, and only white space changes."""
     text = " ".join(["word"] * 60)
     lines = wrapped(text, indent=8)
     assert all(len(line) <= LINE_LENGTH - 8 for line in lines)
@@ -124,13 +124,13 @@ def test_prose_is_wrapped_between_words_only() -> None:
     assert wrapped(LONG, indent=8) == [LONG]
 
 
-def test_templates_hide_no_misspelling() -> None:
-    """A name that the view does not define is an error, not an empty text."""
+def test_undefined_name_in_a_template_is_an_error() -> None:
+    """A name that the view does not define is not an empty string."""
     template = environment("deros.generators.node.python").from_string("{{ nod }}")
     with pytest.raises(jinja2.UndefinedError, match="'nod' is undefined"):
         template.render(node=1)
 
 
 def test_xml_text_is_escaped() -> None:
-    """Markup in a model is text in an element and in an attribute."""
+    """Markup in a model is text in elements and attributes."""
     assert xml_text('<a & "b">') == "&lt;a &amp; &quot;b&quot;&gt;"

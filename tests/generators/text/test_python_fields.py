@@ -1,4 +1,4 @@
-"""The fields that nodes in Python write."""
+"""Message fields written by Python nodes."""
 
 from __future__ import annotations
 
@@ -22,6 +22,6 @@ from deros.interfaces.types import FieldType
         ("string", "it's", '"it\'s"'),
     ],
 )
-def test_literals_are_those_that_rclpy_takes(base: str, value: Any, text: str) -> None:
-    """A float is not written as an int, and a byte is not, either."""
+def test_literals_have_the_type_that_rclpy_expects(base: str, value: Any, text: str) -> None:
+    """A float is not written as an int, and neither is a byte."""
     assert literal(FieldType(base), value) == text

@@ -1,4 +1,4 @@
-"""Packages and nodes whose names hide what the generated programs need are refused."""
+"""Packages and nodes whose names would hide names used by generated programs are rejected."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ PORT = "publishes topic odom : nav_msgs.Odometry"
 @pytest.mark.parametrize(
     "package", ["signal", "rclpy", "std_msgs", "nav_msgs", "launch", "numpy", "yaml", "typing"]
 )
-def test_a_python_package_hides_no_module(package: str) -> None:
-    """Standard library, dependencies, packages with messages, and what these import."""
+def test_python_package_hides_no_module(package: str) -> None:
+    """This covers the standard library, dependencies, message packages, and their imports."""
     code, message, line = refusal(generate_python, f"node a\n: {package} {PORT}")
     assert (code, line) == ("DRS405", 2)
     assert message.startswith(f"package {package!r} hides")
 
 
 @pytest.mark.parametrize("node", ["signal", "rclpy", "std_msgs", "os", "queue"])
-def test_a_python_node_hides_no_module(node: str) -> None:
-    """Its module is found first where a module of its package is run as a program."""
+def test_python_node_hides_no_module(node: str) -> None:
+    """Its module is found first if a module of its package is run as a program."""
     code, message, line = refusal(generate_python, f"node\n{node} : drive {PORT}")
     assert (code, line) == ("DRS405", 2)
     assert message.startswith(f"node {node!r} hides")
 
 
-def test_a_custom_module_hides_none() -> None:
-    """The module of the user's functions is called after their namespace."""
+def test_custom_module_hides_no_module() -> None:
+    """The module of the user's functions is named after their namespace."""
     text = 'node a : drive parameters name x : int = 1 custom "math::is_even"'
     code, message, _ = refusal(generate_python, text)
     assert code == "DRS405"
@@ -41,15 +41,15 @@ def test_a_custom_module_hides_none() -> None:
     "package",
     ["signal", "time", "rclcpp", "std_msgs", "nav_msgs", "rcl_interfaces", "rmw", "select"],
 )
-def test_a_namespace_is_no_other_name(package: str) -> None:
-    """Functions of C, libraries, and packages with messages are there before."""
+def test_cpp_namespace_hides_no_name(package: str) -> None:
+    """C functions, libraries and message packages have these names already."""
     code, message, line = refusal(generate_cpp, f"node a\n: {package} {PORT}")
     assert (code, line) == ("DRS405", 2)
     assert message.startswith(f"package {package!r} hides")
 
 
-def test_a_custom_namespace_is_no_other_name() -> None:
-    """It would not compile."""
+def test_custom_namespace_hides_no_name() -> None:
+    """The code would not compile."""
     text = 'node a : drive parameters name x : int = 1\ncustom "time::is_even"'
     code, message, line = refusal(generate_cpp, text)
     assert (code, line) == ("DRS405", 2)
@@ -58,7 +58,7 @@ def test_a_custom_namespace_is_no_other_name() -> None:
 
 @in_each_language
 @pytest.mark.parametrize("name", ["drive", "signals", "odometry", "robot_safety", "navigation"])
-def test_other_names_are_fine(name: str, generate: object) -> None:
-    """A node may be called as its package is."""
+def test_other_names_are_accepted(name: str, generate: object) -> None:
+    """A node may have the name of its package."""
     target = generate_cpp if generate is generate_cpp else generate_python
     assert files_of(target, f"node {name} : {name} {PORT}")

@@ -1,4 +1,4 @@
-"""What the user's files lack when the model has changed since they were written."""
+"""Review of user files after a change of the model."""
 
 from __future__ import annotations
 
@@ -75,15 +75,15 @@ def _words(found: list[Diagnostic]) -> set[tuple[str, str]]:
 
 
 @pytest.mark.usefixtures("reader")
-def test_what_is_as_generated_lacks_nothing(language: str, tmp_path: Path) -> None:
-    """Neither at once nor after the user has filled it in."""
+def test_generated_user_files_have_no_findings(language: str, tmp_path: Path) -> None:
+    """There are none, before or after the user fills them in."""
     _write(_files(OLD, language), tmp_path)
     assert _review(OLD, language, tmp_path) == []
 
 
 @pytest.mark.usefixtures("reader")
-def test_a_new_handler_is_missing(language: str, tmp_path: Path) -> None:
-    """The finding stands at the name of the class, and names the method."""
+def test_missing_handler_is_reported(language: str, tmp_path: Path) -> None:
+    """The span is the name of the class, and the message names the method."""
     _write(_files(OLD, language), tmp_path)
     new = OLD.replace("services", "  topic rear : sensor_msgs.LaserScan\nservices")
     (found,) = _review(new, language, tmp_path)
@@ -100,10 +100,10 @@ def test_a_new_handler_is_missing(language: str, tmp_path: Path) -> None:
         (("timer control", "timer drive"), "on_control", "on_drive"),
     ],
 )
-def test_a_renamed_port_is_named(
+def test_renamed_port_suggests_a_rename(
     language: str, tmp_path: Path, change: tuple[str, str], old: str, new: str
 ) -> None:
-    """The old method and the new one point at each other."""
+    """The old and the new method refer to each other."""
     _write(_files(OLD, language), tmp_path)
     found = _review(OLD.replace(*change), language, tmp_path)
     assert _words(found) == {("DRS407", "Base"), ("DRS408", old)}
@@ -113,16 +113,16 @@ def test_a_renamed_port_is_named(
 
 
 @pytest.mark.usefixtures("reader")
-def test_a_removed_port_leaves_a_method_that_nothing_calls(language: str, tmp_path: Path) -> None:
-    """The finding stands at the method."""
+def test_method_of_a_removed_port_is_reported(language: str, tmp_path: Path) -> None:
+    """The span is the method, which is never called."""
     _write(_files(OLD, language), tmp_path)
     new = OLD.replace("subscribes\n  topic front : sensor_msgs.LaserScan\n", "")
     assert _words(_review(new, language, tmp_path)) == {("DRS408", "on_front")}
 
 
 @pytest.mark.usefixtures("reader")
-def test_uses_of_what_is_gone_are_found(language: str, tmp_path: Path) -> None:
-    """A publisher and a parameter that the model no longer has, where the code uses them."""
+def test_uses_of_removed_ports_and_parameters_are_reported(language: str, tmp_path: Path) -> None:
+    """They are reported where the code uses them."""
     _write(_files(OLD, language), tmp_path)
     if language == "python":
         path = tmp_path / "robot/robot/base.py"
@@ -144,10 +144,8 @@ def test_uses_of_what_is_gone_are_found(language: str, tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("reader")
 @pytest.mark.parametrize("helper", ["on_button", "front_of", "handle_joy"])
-def test_methods_of_the_users_own_are_left_alone(
-    language: str, tmp_path: Path, helper: str
-) -> None:
-    """A method that the user's own code calls, and hooks of ROS 2, are nobody's ports."""
+def test_other_methods_of_the_user_are_ignored(language: str, tmp_path: Path, helper: str) -> None:
+    """Methods called by user code, and hooks of ROS 2, do not belong to ports."""
     _write(_files(OLD, language), tmp_path)
     if language == "python":
         path = tmp_path / "robot/robot/base.py"
@@ -168,8 +166,8 @@ def test_methods_of_the_users_own_are_left_alone(
     assert _review(OLD, language, tmp_path) == []
 
 
-def test_what_another_file_may_have_is_not_called_missing(tmp_path: Path) -> None:
-    """A class of another file may bring the method, and so may an assignment."""
+def test_inherited_and_assigned_methods_are_not_missing(tmp_path: Path) -> None:
+    """A base class in another file, or an assignment, may provide the method."""
     _write(_files(OLD, "python"), tmp_path)
     path = tmp_path / "robot/robot/base.py"
     text = path.read_text()
@@ -183,7 +181,7 @@ def test_what_another_file_may_have_is_not_called_missing(tmp_path: Path) -> Non
     assert _review(new, "python", tmp_path) == []
 
 
-def test_functions_of_the_users_modules_are_missed(tmp_path: Path) -> None:
+def test_missing_functions_of_user_modules_are_reported(tmp_path: Path) -> None:
     """Without main() the program does not start; it may also be imported or assigned."""
     _write(_files(OLD, "python"), tmp_path)
     path = tmp_path / "robot/robot/base.py"
@@ -198,8 +196,8 @@ def test_functions_of_the_users_modules_are_missed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["class (", "\0", "from x import *\n", "(" * 1000])
-def test_a_file_that_cannot_be_read_is_left_to_its_language(tmp_path: Path, text: str) -> None:
-    """Nothing is said of it, and nothing fails."""
+def test_unreadable_user_file_is_ignored(tmp_path: Path, text: str) -> None:
+    """Its compiler or interpreter will report the error."""
     for language in LANGUAGES:
         _write(_files(OLD, language), tmp_path / language)
         for path in users_files(_files(OLD, language), tmp_path / language).values():
@@ -209,8 +207,8 @@ def test_a_file_that_cannot_be_read_is_left_to_its_language(tmp_path: Path, text
 
 
 @pytest.mark.usefixtures("reader")
-def test_places_are_right_behind_other_alphabets(language: str, tmp_path: Path) -> None:
-    """Readers count bytes, diagnostics characters."""
+def test_spans_count_characters_in_any_alphabet(language: str, tmp_path: Path) -> None:
+    """Parsers count bytes, diagnostics characters."""
     _write(_files(OLD, language), tmp_path)
     name = "robot/robot/base.py" if language == "python" else "robot/include/robot/base.hpp"
     mark = "#" if language == "python" else "//"
@@ -220,8 +218,8 @@ def test_places_are_right_behind_other_alphabets(language: str, tmp_path: Path) 
     assert _words(found) == {("DRS407", "Base"), ("DRS408", "on_front")}
 
 
-def test_package_xml_is_the_users_and_what_it_lacks_is_said(language: str, tmp_path: Path) -> None:
-    """A dependency of a new port; what the user has added is nobody else's business."""
+def test_missing_dependency_in_package_xml_is_reported(language: str, tmp_path: Path) -> None:
+    """A new port needs it; additions of the user are ignored."""
     _write(_files(OLD, language), tmp_path)
     path = tmp_path / "robot/package.xml"
     path.write_text(path.read_text().replace("</package>", "  <depend>own</depend>\n</package>"))
@@ -241,10 +239,10 @@ def test_package_xml_is_the_users_and_what_it_lacks_is_said(language: str, tmp_p
         (lambda text: text.replace("</package>", ""), "cannot be read"),
     ],
 )
-def test_a_package_xml_that_does_not_fit(
+def test_package_xml_must_fit(
     language: str, tmp_path: Path, change: Callable[[str], str], part: str
 ) -> None:
-    """Another name or build type, and a file that is no XML."""
+    """Another name or build type, and invalid XML, are reported."""
     _write(_files(OLD, language), tmp_path)
     path = tmp_path / "robot/package.xml"
     path.write_text(change(path.read_text()))
@@ -262,8 +260,8 @@ if e.far then { horn; lights; };
 
 
 @pytest.mark.usefixtures("reader")
-def test_actions_of_a_safety_node(language: str, tmp_path: Path) -> None:
-    """An action that the rules no longer have is found where its code is."""
+def test_actions_of_a_safety_node_are_reviewed(language: str, tmp_path: Path) -> None:
+    """Code of an action that the rules no longer have is reported at its place."""
     generator = discover().find("deros", language)
     assert generator is not None
     context = Context(embedded_store(), Repository())

@@ -1,4 +1,4 @@
-"""What the decoders read is what rclpy reads, from whatever data."""
+"""Decoders read what rclpy reads, from any data."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _draw(kind: InterfaceType, rng: random.Random) -> tuple[Any, list[Path]]:
 
 
 def _same(left: list[Any], right: list[Any]) -> bool:
-    """Compare values and their types; NaN is the same as NaN."""
+    """Compare values and their types; NaN equals NaN."""
     return repr(left) == repr(right)
 
 
@@ -71,8 +71,8 @@ seeds = st.integers(0, 2**32)
 @settings(max_examples=scaled(8))
 @given(seed=seeds)
 @pytest.mark.parametrize("kind", TYPES, ids=str)
-def test_reads_what_rclpy_reads(kind: InterfaceType, seed: int) -> None:
-    """Any fields of any message, in both byte orders: values and their types are the same."""
+def test_decoded_values_match_rclpy(kind: InterfaceType, seed: int) -> None:
+    """Any fields of any message, in both byte orders, have the same values and types."""
     message, paths = _draw(kind, random.Random(seed))
     decode = decoder(kind, paths)
     expected = [read(STORE, message, kind, path) for path in paths]
@@ -81,8 +81,8 @@ def test_reads_what_rclpy_reads(kind: InterfaceType, seed: int) -> None:
 
 
 @given(seed=seeds, big_endian=st.booleans())
-def test_reads_whatever_a_message_may_be(seed: int, big_endian: bool) -> None:
-    """Types that no package has, with every alignment in every place, are read as well."""
+def test_arbitrary_message_types_are_decoded(seed: int, big_endian: bool) -> None:
+    """Generated types, with every alignment in every position, are read as well."""
     rng = random.Random(seed)
     types = Definitions.draw(rng)
     message = Messages(types, lambda _: SimpleNamespace()).draw(types.last, rng)
@@ -99,8 +99,8 @@ def test_reads_whatever_a_message_may_be(seed: int, big_endian: bool) -> None:
 @pytest.mark.parametrize(
     "element", ["uint8", "float64", "uint8 uint16", "uint8 float64", "uint16 float64 uint8"]
 )
-def test_what_follows_an_array_is_found(element: str, length: int, big_endian: bool) -> None:
-    """However many elements there are, of whatever alignment and size."""
+def test_field_after_an_array_is_found(element: str, length: int, big_endian: bool) -> None:
+    """The number, alignment and size of the elements do not matter."""
     item, kind = (InterfaceType("made_up", "msg", name) for name in ("Item", "Message"))
     parts = tuple((f"part_{n}", FieldType(base)) for n, base in enumerate(element.split()))
     for base in ("uint8", "uint32", "float64"):
@@ -115,8 +115,8 @@ def test_what_follows_an_array_is_found(element: str, length: int, big_endian: b
 
 
 @given(kind=st.sampled_from(TYPES), seed=seeds)
-def test_the_writer_agrees_with_the_middleware(kind: InterfaceType, seed: int) -> None:
-    """The big endian data above is right: the middleware reads it as the message it was."""
+def test_test_serializer_agrees_with_the_middleware(kind: InterfaceType, seed: int) -> None:
+    """The big-endian data of these tests is valid: the middleware reads the same message."""
     message = Messages().draw(kind, random.Random(seed))
     for big_endian in (False, True):
         data = serialize(message, kind, big_endian)
@@ -126,8 +126,8 @@ def test_the_writer_agrees_with_the_middleware(kind: InterfaceType, seed: int) -
 @settings(max_examples=scaled(20))
 @given(seed=seeds, big_endian=st.booleans())
 @pytest.mark.parametrize("name", ["Imu", "BatteryState", "CameraInfo", "LaserScan", "PointCloud2"])
-def test_reads_what_rosbags_writes(name: str, seed: int, big_endian: bool) -> None:
-    """A writer that has nothing to do with the middleware is read as well."""
+def test_rosbags_data_is_decoded(name: str, seed: int, big_endian: bool) -> None:
+    """Data of a writer that is independent of the middleware is read as well."""
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_JAZZY)
@@ -141,8 +141,8 @@ def test_reads_what_rosbags_writes(name: str, seed: int, big_endian: bool) -> No
     assert _same(decoder(kind, paths).values(data), expected), paths
 
 
-def test_wide_characters_are_units_of_utf_16() -> None:
-    """A character beyond the basic plane takes two units; a null is a character as any other."""
+def test_wide_characters_are_utf_16_units() -> None:
+    """A character outside the basic plane takes two units; a null is an ordinary character."""
     message = WStrings(wstring_value="a\0\u20ac\U0001f600", array_of_wstrings=["", "b", "c"])
     kind = InterfaceType("test_msgs", "msg", "WStrings")
     decode = decoder(kind, [("wstring_value",), ("array_of_wstrings", 2), ("array_of_wstrings",)])
@@ -151,8 +151,8 @@ def test_wide_characters_are_units_of_utf_16() -> None:
     assert decode.values(serialize(message, kind, big_endian=True)) == expected
 
 
-def test_a_text_is_what_rclpy_makes_of_it() -> None:
-    """A null ends it, bytes that are no UTF-8 are replaced, and the null at the end may lack."""
+def test_strings_are_decoded_like_rclpy() -> None:
+    """A null ends the string, invalid UTF-8 is replaced, and the final null may be missing."""
     from std_msgs.msg import String
 
     decode = decoder(InterfaceType("std_msgs", "msg", "String"), [("data",)])
@@ -161,8 +161,8 @@ def test_a_text_is_what_rclpy_makes_of_it() -> None:
         assert decode.values(data) == [deserialize_message(data, String).data]
 
 
-def test_numbers_are_pythons_own_and_arrays_are_views() -> None:
-    """Elements do not pass through single precision; long arrays are not copied."""
+def test_numbers_are_python_numbers_and_arrays_are_views() -> None:
+    """Elements keep their precision, and long arrays are not copied."""
     message = LaserScan(ranges=[0.5, 1.5], range_max=10.0)
     kind = InterfaceType("sensor_msgs", "msg", "LaserScan")
     data = serialize_message(message)
@@ -175,8 +175,8 @@ def test_numbers_are_pythons_own_and_arrays_are_views() -> None:
     assert not ranges.flags.owndata
 
 
-def test_an_element_that_is_not_there_is_nan() -> None:
-    """That holds at each depth, also where all before it is there."""
+def test_missing_element_is_nan() -> None:
+    """This holds at each depth, even if all elements before it exist."""
     kind = InterfaceType("sensor_msgs", "msg", "JointState")
     data = serialize_message(JointState(name=["a", "b"], position=[1.0, 2.0]))
     values = decoder(kind, [("position", 1), ("position", 2), ("name", 2), ("effort", 0)])
@@ -185,13 +185,13 @@ def test_an_element_that_is_not_there_is_nan() -> None:
     assert all(map(math.isnan, others))
 
 
-# Data that is not as it should be -----------------------------------------------------------------
+# Invalid data -------------------------------------------------------------------------------------
 
 
 @settings(max_examples=scaled(60))
 @given(kind=st.sampled_from(TYPES), seed=seeds, big_endian=st.booleans())
-def test_truncated_data_is_refused(kind: InterfaceType, seed: int, big_endian: bool) -> None:
-    """Wherever a message ends: an error, or the values of the whole one, which are inside."""
+def test_truncated_data_is_rejected(kind: InterfaceType, seed: int, big_endian: bool) -> None:
+    """Wherever a message ends, the result is an error, or complete values from its start."""
     rng = random.Random(seed)
     message, paths = _draw(kind, rng)
     decode = decoder(kind, paths)
@@ -210,8 +210,8 @@ def _check_truncated(decode: Decoder, data: bytes, rng: random.Random) -> None:
 
 
 @given(kind=st.sampled_from(TYPES), seed=seeds)
-def test_damaged_data_raises_nothing_else(kind: InterfaceType, seed: int) -> None:
-    """Whatever the bytes are, lengths of billions among them, the decoder ends, and soon."""
+def test_damaged_data_raises_only_the_documented_error(kind: InterfaceType, seed: int) -> None:
+    """Whatever the bytes, including lengths of billions, the decoder returns quickly."""
     rng = random.Random(seed)
     message, paths = _draw(kind, rng)
     decode = decoder(kind, paths)
@@ -240,8 +240,8 @@ def test_damaged_data_raises_nothing_else(kind: InterfaceType, seed: int) -> Non
     ],
     ids=str,
 )
-def test_a_length_beyond_the_data_allocates_nothing(path: Path, length: int) -> None:
-    """A sequence that claims more elements than there can be is refused at once."""
+def test_length_beyond_the_data_allocates_nothing(path: Path, length: int) -> None:
+    """A sequence that claims too many elements is rejected at once."""
     kind = InterfaceType("test_msgs", "msg", "UnboundedSequences")
     names = [name for name in UnboundedSequences.get_fields_and_field_types() if "def" not in name]
     claimed = path[0] if path[0] in names[:-1] else "basic_types_values"
@@ -257,7 +257,7 @@ def test_a_length_beyond_the_data_allocates_nothing(path: Path, length: int) -> 
 
 
 @pytest.mark.parametrize("start", [b"", b"\0", b"\0\2\0\0", b"\0\7\0\0", b"\1\1\0\0"])
-def test_only_plain_cdr_is_read(start: bytes) -> None:
+def test_only_plain_cdr_is_accepted(start: bytes) -> None:
     """Parameter lists and the second version of CDR have other layouts."""
     kind = InterfaceType("std_msgs", "msg", "Float64")
     for paths in ([("data",)], []):
@@ -269,8 +269,8 @@ def test_only_plain_cdr_is_read(start: bytes) -> None:
 # Cost ---------------------------------------------------------------------------------------------
 
 
-def test_a_big_message_costs_microseconds() -> None:
-    """What is not wanted of 10 MB is neither copied nor walked through."""
+def test_large_message_is_decoded_in_microseconds() -> None:
+    """Unselected data of 10 MB is neither copied nor traversed."""
     fields = [PointField(name=name, count=1) for name in ("x", "y", "z", "intensity")]
     message = PointCloud2(width=10_000_000, height=1, fields=fields, is_dense=True)
     message.data.frombytes(bytes(10_000_000))
@@ -300,8 +300,8 @@ def test_a_big_message_costs_microseconds() -> None:
     ],
     ids=lambda each: type(each).__name__,
 )
-def test_one_field_costs_less_than_the_message(message: Any, path: Path) -> None:
-    """That is what decoders are for; they are five to thirty times as fast."""
+def test_one_field_is_faster_than_the_whole_message(message: Any, path: Path) -> None:
+    """Decoders are five to thirty times as fast as the deserialization of the message."""
     package = type(message).__module__.partition(".")[0]
     decode = decoder(InterfaceType(package, "msg", type(message).__name__), [path])
     data = serialize_message(message)

@@ -1,4 +1,4 @@
-"""The decoders as text: short, deterministic, clean, and without foreign names."""
+"""The text of decoders: short, deterministic, lint-clean, with few imports."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ FEW = [
 ]
 
 
-def test_golden(golden: Golden) -> None:
-    """The text for the usual kinds of messages is as it was kept."""
+def test_decoder_text_matches_golden(golden: Golden) -> None:
+    """The text for common messages matches the reviewed one."""
     golden.check("cdr_python", {"decoders.py": File(render_decoders(FEW, STORE))})
 
 
-def test_linters_find_nothing(tmp_path: Path) -> None:
-    """Whatever the messages and the fields, the linters of ament are content."""
+def test_decoders_pass_the_linters(tmp_path: Path) -> None:
+    """The ament linters accept decoders of any messages and fields."""
     rng = random.Random(1)
     packages = ("std_msgs", "sensor_msgs", "nav_msgs", "test_msgs", "geometry_msgs")
     topics = []
@@ -63,13 +63,13 @@ def test_linters_find_nothing(tmp_path: Path) -> None:
     assert_lint_clean(tmp_path)
 
 
-def test_same_text_every_time() -> None:
+def test_rendering_is_deterministic() -> None:
     """Two renderings of the same topics are equal."""
     assert render_decoders(FEW, STORE) == render_decoders(FEW, STORE)
 
 
-def test_imports_only_what_is_used() -> None:
-    """NumPy is there for arrays, math for elements that may lack; ROS never."""
+def test_only_used_modules_are_imported() -> None:
+    """NumPy is imported for arrays, math for optional elements, and ROS never."""
     assert _imported([_topic("twist", "geometry_msgs.Twist", ("linear", "x"))]) == {"struct"}
     arrays = [_topic("scan", "sensor_msgs.LaserScan", ("ranges",))]
     assert _imported(arrays) == {"struct", "numpy"}
@@ -84,7 +84,7 @@ def _imported(topics: list[Topic]) -> set[str]:
 
 
 def test_every_name_is_defined_and_used() -> None:
-    """No constant, helper or import of the module stands there for nothing."""
+    """The module has no unused constant, helper or import."""
     for topics in ([each] for each in FEW):
         tree = ast.parse(render_decoders(topics, STORE))
         used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
@@ -107,8 +107,8 @@ def _loaded(tree: ast.AST) -> set[str]:
     }
 
 
-def test_awkward_names_do_not_collide() -> None:
-    """Topics and fields may be called as the module's own names and Python's are."""
+def test_names_do_not_collide() -> None:
+    """Topics and fields may have names of the module's own functions and of Python."""
     store_type = "std_msgs.Float64MultiArray"
     topics = [
         _topic("data", store_type, ("data",), ("layout", "dim", 0, "label")),
@@ -129,7 +129,7 @@ def test_awkward_names_do_not_collide() -> None:
         ("no_such.Thing", ("data",), "not known"),
     ],
 )
-def test_refuses_what_is_no_value(kind: str, path: tuple[str, ...], reason: str) -> None:
-    """A path that leads nowhere, or to a message, is the caller's mistake, and it is named."""
+def test_path_without_a_value_is_rejected(kind: str, path: tuple[str, ...], reason: str) -> None:
+    """A path to a missing field, or to a message, raises with the path."""
     with pytest.raises(ValueError, match=reason):
         render_decoders([_topic("topic", kind, path)], STORE)

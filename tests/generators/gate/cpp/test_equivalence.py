@@ -1,4 +1,4 @@
-"""The gate in C++ does what the reference gate does, whatever the gate and whatever happens."""
+"""The C++ gate behaves like the reference gate, for any gate and any events."""
 
 from __future__ import annotations
 
@@ -72,8 +72,8 @@ def check_trace(players: Players, gates: Sequence[Gate], number: int, trace: Tra
     return len(engine.outputs)
 
 
-def test_zeros_are_no_command_that_is_executed(tmp_path: Path) -> None:
-    """What a limit left in them is not limited again when the zero line has ended."""
+def test_zeros_are_not_limited_as_executed_commands(tmp_path: Path) -> None:
+    """Values that a limit left in them are not limited again after the zero line has ended."""
     kind = message_type("std_msgs.Int32")
     data = FieldType("int32")
     lines = (
@@ -102,10 +102,10 @@ def test_zeros_are_no_command_that_is_executed(tmp_path: Path) -> None:
         pytest.param("clang++", ("-O2",), 1, id="optimised", marks=needs_clang),
     ],
 )
-def test_same_commands(
+def test_commands_match_the_reference(
     compiler: str, flags: tuple[str, ...], gates_of_a_type: int, tmp_path: Path
 ) -> None:
-    """Both publish the same messages at the same nanosecond; timers may be late, clocks step."""
+    """Both publish the same messages at the same nanosecond, with late timers and clock steps."""
     rng = random.Random(f"{SEED} {compiler}")
     gates = [random_gate(rng, name) for name in MORE_COMMANDS for _ in range(gates_of_a_type)]
     published = 0
@@ -117,13 +117,13 @@ def test_same_commands(
 
 def commands() -> list[InterfaceType]:
     """Return all message types of some packages that can be commands."""
-    no_commands = (HEADER, LAYOUT)  # parts of messages that say how to read the rest
+    no_commands = (HEADER, LAYOUT)  # fields that determine how to read the rest of a message
     kinds = (kind for kind in message_types(*PACKAGES) if kind not in no_commands)
     return [kind for kind in kinds if type_views(STORE, kind)]
 
 
 def test_commands_of_every_type(tmp_path: Path) -> None:
-    """Each float is looked at, each number made zero or limited, and the rest stays as it was."""
+    """Each float is checked, each number zeroed or limited, and the rest is unchanged."""
     rng = random.Random(f"{SEED} types")
     kinds = commands()
     assert len(kinds) > 100

@@ -1,4 +1,4 @@
-"""The files of gates in C++, for the package of their safety node."""
+"""The files of C++ gates, as part of the package of their safety node."""
 
 from __future__ import annotations
 
@@ -59,12 +59,12 @@ KINDS = [
 
 @pytest.fixture(scope="module")
 def files() -> Files:
-    """Give the files of the model with gates of all kinds."""
+    """Return the files of the model with all kinds of gates."""
     return gate_package((MODELS / "gates.deros").read_text(encoding="utf-8"))
 
 
-def test_the_files_are_as_kept(golden: Golden, files: Files) -> None:
-    """Logic, node, program and description have the text that was reviewed."""
+def test_files_match_golden(golden: Golden, files: Files) -> None:
+    """Logic, node, program and description match the reviewed text."""
     own = {f"{gate}{end}" for gate in GATES[:3] for end in (".hpp", ".cpp", "_cpp.rnd")}
     own |= {f"{gate}_logic{end}" for gate in GATES[:3] for end in (".hpp", ".cpp")}
     own.add("cmd_vel_gate_main.cpp")
@@ -74,18 +74,18 @@ def test_the_files_are_as_kept(golden: Golden, files: Files) -> None:
 
 
 def write_kinds(folder: Path) -> None:
-    """Write gates of all kinds, and those of the model."""
+    """Write all kinds of gates, and those of the model."""
     for number, kind in enumerate(KINDS):
         text = f"{HEAD}gate /wish/of/somebody -> /command : {kind}"
         write(gate_package(text, name=f"kind_{number}"), folder)
     write(gate_package((MODELS / "gates.deros").read_text(encoding="utf-8")), folder)
 
 
-def test_the_linters_of_ament_find_nothing(tmp_path: Path) -> None:
-    """uncrustify, cpplint and cppcheck with ament's settings pass all files of gates."""
+def test_files_pass_the_ament_linters(tmp_path: Path) -> None:
+    """uncrustify, cpplint and cppcheck with ament's settings accept all files of gates."""
     write_kinds(tmp_path)
     for shared in tmp_path.glob("kind_*/**/runtime/*"):
-        shared.unlink()  # it is there once, in the package of the model
+        shared.unlink()  # it is already in the package of the model
     assert_cpp_lint_clean(tmp_path)
 
 
@@ -94,13 +94,13 @@ def test_the_linters_of_ament_find_nothing(tmp_path: Path) -> None:
     "compiler", ["g++", pytest.param("clang++", marks=needs_clang)], ids=["gcc", "clang"]
 )
 def test_every_kind_of_logic_compiles_strictly(compiler: str, tmp_path: Path) -> None:
-    """No combination of lines and types makes a compiler warn of anything; nor does the model."""
+    """No combination of lines and types causes a compiler warning; nor does the model."""
     write_kinds(tmp_path)
     sources = sorted(tmp_path.rglob("*_logic.cpp"))
     assert len(sources) == len(KINDS) + len(GATES)
     packages = sorted(path for path in tmp_path.iterdir() if path.is_dir())
     folders = [flag for path in packages for flag in ("-I", str(path / "include"))]
-    # In one file all headers are read but once; the model's gates share their helpers' names.
+    # A single file would read each header only once; the model's gates share helper names.
     for group in ([s for s in sources if "kind_" in s.parts[-3]], *([s] for s in sources[:3])):
         together = tmp_path / "together.cpp"
         together.write_text("".join(f'#include "{each}"\n' for each in group), encoding="utf-8")
@@ -110,8 +110,8 @@ def test_every_kind_of_logic_compiles_strictly(compiler: str, tmp_path: Path) ->
         assert done.returncode == 0, done.stderr[:5000]
 
 
-def test_a_gate_is_the_twin_of_the_one_in_python(files: Files) -> None:
-    """Its type's name ends in _cpp; its ports, their QoS and its parameters are the same."""
+def test_cpp_gate_corresponds_to_the_python_gate(files: Files) -> None:
+    """The node type ends in _cpp; ports, QoS and parameters are the same."""
     for gate in GATES:
         text = files[f"{PACKAGE}/{gate}_cpp.rnd"].text
         loaded = Repository().load_text(f"{gate}_cpp.rnd", text)
@@ -126,14 +126,14 @@ def test_a_gate_is_the_twin_of_the_one_in_python(files: Files) -> None:
             assert loaded.model.parameters == python.parameters
 
 
-def test_it_runs_by_the_name_of_its_twin(files: Files) -> None:
-    """So lock, topics and remappings are those of the gate in Python."""
+def test_node_name_is_that_of_the_python_gate(files: Files) -> None:
+    """Lock, topics and remappings are therefore the same."""
     base = files[f"{PACKAGE}/src/cmd_vel_gate_base.cpp"].text
     assert 'Node("cmd_vel_gate", options)' in base
 
 
-def test_every_line_is_found_in_the_logic(files: Files) -> None:
-    """Each line of the rules stands above the code that came from it, with its place."""
+def test_every_line_of_the_rules_is_above_its_code(files: Files) -> None:
+    """Each line of the rules is quoted with its place above the resulting code."""
     logic = files[f"{PACKAGE}/src/cmd_vel_gate_logic.cpp"].text
     rules = (MODELS / "gates.deros").read_text(encoding="utf-8").splitlines()
     for number in range(24, 29):
@@ -141,22 +141,22 @@ def test_every_line_is_found_in_the_logic(files: Files) -> None:
         assert following.startswith(f"  //   {rules[number - 1].strip()}"[:60])
 
 
-def test_the_middleware_keeps_out_of_shared_memory(files: Files) -> None:
-    """The program chooses UDP before anything of ROS 2 begins, unless told otherwise."""
+def test_program_disables_shared_memory(files: Files) -> None:
+    """It selects UDP before anything of ROS 2 starts, unless configured otherwise."""
     main = files[f"{PACKAGE}/src/cmd_vel_gate_main.cpp"].text
     chosen, _, rest = main.partition('::setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4", 0);')
     assert "run<" not in chosen
     assert "run<" in rest
 
 
-def test_nobody_edits_a_gate(files: Files) -> None:
-    """All files of a gate but the manifest belong to the generator: there is nothing to fill in."""
+def test_gates_have_no_user_files(files: Files) -> None:
+    """All files of a gate except the manifest belong to the generator."""
     owned = {path for path, file in files.items() if file.owner is Owner.USER}
     assert owned == {"gates_safety_cpp/package.xml"}
 
 
-def test_the_licence_stands_above_every_source() -> None:
-    """With a holder of the copyright, each C++ file names it."""
+def test_licence_is_above_every_source() -> None:
+    """With a copyright holder, each C++ file has the header."""
     text = (MODELS / "gates.deros").read_text(encoding="utf-8")
     made = gate_package(text, {"copyright": "2026 A. Robot"})
     for path, file in made.items():
@@ -164,8 +164,8 @@ def test_the_licence_stands_above_every_source() -> None:
             assert file.text.startswith("// Copyright 2026 A. Robot"), path
 
 
-def test_topics_that_differ_in_slashes_alone_are_refused() -> None:
-    """Two ports of one gate cannot share the names that are made from them."""
+def test_topics_that_differ_only_in_slashes_are_rejected() -> None:
+    """Two ports of one gate cannot share the names derived from them."""
     text = f"{HEAD}gate /mode/x -> /mode_x : std_msgs.Int32 rate 5 Hz {{ stop: zero; }}\n"
     with pytest.raises(GenerationError) as caught:
         gate_package(text)

@@ -1,4 +1,4 @@
-"""The logic of a gate takes no memory from the heap while it works."""
+"""The logic of a gate does not allocate memory at run time."""
 
 from __future__ import annotations
 
@@ -97,10 +97,10 @@ STAMP = f"  {TIME} stamp() override {{return {TIME}();}}"
     ],
     ids=["of_fixed_size", "with_texts_and_arrays"],
 )
-def test_nothing_is_taken_from_the_heap(
+def test_logic_does_not_allocate(
     gate: str, logic: str, command: str, stamp: str, tmp_path: Path
 ) -> None:
-    """Through thousands of commands, limits, zeros and losses; texts and arrays keep their room."""
+    """Thousands of commands, limits, zeros and losses; strings and arrays keep their capacity."""
     write(gate_package((MODELS / "gates.deros").read_text(encoding="utf-8")), tmp_path)
     main = tmp_path / "main.cpp"
     text = COUNTER.format(gate=gate, logic=logic, command=command, stamp=stamp)

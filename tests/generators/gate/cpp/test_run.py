@@ -1,7 +1,6 @@
-"""The gate in C++ in the place of the one in Python, in its own process and in a container.
+"""The C++ gate in place of the Python one, in its own process and in a container.
 
-What gates in both languages have to do alike is held by the tests of the Python one, which run
-with each.
+Behaviour common to both languages is tested with the Python gate, in tests that run with each.
 """
 
 from __future__ import annotations
@@ -27,20 +26,20 @@ CONTAINER = "lib/rclcpp_components/component_container"
 
 @pytest.fixture
 def gates(tmp_path: Path) -> tuple[RunGate, RunGate]:
-    """Give what runs gates in Python and in C++."""
+    """Return functions that run the gates in Python and in C++."""
     return in_python(tmp_path), in_cpp(tmp_path)
 
 
 @pytest.fixture
 def world(ros_peer: Peer) -> World:
-    """Give all that is around the gate."""
+    """Return the simulated surroundings of the gate."""
     return World(ros_peer)
 
 
-def test_neither_runs_beside_the_other(
+def test_gates_of_both_languages_exclude_each_other(
     gates: tuple[RunGate, RunGate], ros_env: dict[str, str], world: World
 ) -> None:
-    """The lock is one: the second ends at once and names the first, which goes on."""
+    """They share one lock: the second exits at once and names the first, which continues."""
     for first, second in (gates, reversed(gates)):
         with first(GATE, ros_env) as guarding:
             world.meet()
@@ -52,10 +51,10 @@ def test_neither_runs_beside_the_other(
         world.heard.clear()
 
 
-def test_each_takes_over_from_the_other(
+def test_gates_of_both_languages_replace_each_other(
     gates: tuple[RunGate, RunGate], ros_env: dict[str, str], world: World
 ) -> None:
-    """Killed while commands pass, and zero from the other until everything is known anew."""
+    """After a kill, the other one publishes zero until everything is known again."""
     for run_gate in (*gates, *gates):
         with run_gate(GATE, ros_env) as process:
             world.meet()
@@ -63,11 +62,11 @@ def test_each_takes_over_from_the_other(
             world.release()
             process.kill()
             process.wait(LIMIT)
-            process.returncode = 0  # as it was meant
+            process.returncode = 0  # as expected
         world.heard.clear()
 
 
-def test_both_report_the_same_of_the_same_events(
+def test_both_languages_report_the_same_statuses(
     gates: tuple[RunGate, RunGate], ros_env: dict[str, str], world: World
 ) -> None:
     """Name, level, message and refusals of every status are the same."""
@@ -85,7 +84,8 @@ def test_both_report_the_same_of_the_same_events(
             ):
                 happens()
                 settled = world.reports
-                # Within 50 ms of a change, so the second status from here on has seen it.
+                # A status follows a change within 50 ms, so the second one from here on includes
+                # it.
                 world.wish_until(0.3, lambda settled=settled: world.reports >= settled + 2)
                 told = dict(world.status)
                 del told["since"], told["since_ns"]
@@ -99,10 +99,10 @@ def test_both_report_the_same_of_the_same_events(
     assert seen[0] == seen[1]
 
 
-def test_garbage_collection_is_taken_and_has_no_effect(
+def test_garbage_collection_parameter_has_no_effect(
     gates: tuple[RunGate, RunGate], ros_env: dict[str, str], world: World
 ) -> None:
-    """The parameter files of the Python gate serve the one in C++."""
+    """Parameter files of the Python gate also work for the C++ gate."""
     with gates[1](GATE, ros_env, "garbage_collection:=false"):
         world.meet()
         world.release()
@@ -110,8 +110,8 @@ def test_garbage_collection_is_taken_and_has_no_effect(
 
 
 @pytest.mark.skipif(shutil.which("ros2") is None, reason="no command ros2")
-def test_it_is_a_component(ros_env: dict[str, str], world: World) -> None:
-    """In a container that shares messages by pointer, bytes pass and a stop is zero, too."""
+def test_gate_runs_as_a_component(ros_env: dict[str, str], world: World) -> None:
+    """In a container with intra-process communication, commands pass and a stop is zero too."""
     env = overlay(gate_cpp_nodes.installed_gates(), ros_env)
     (prefix,) = (p for p in env["AMENT_PREFIX_PATH"].split(":") if (Path(p) / CONTAINER).exists())
     with running([f"{prefix}/{CONTAINER}", "--ros-args", "-r", "__node:=box"], env):

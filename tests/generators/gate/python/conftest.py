@@ -1,4 +1,4 @@
-"""A gate in each language, and the robot around it as a test plays it."""
+"""A gate in each language, and its surroundings simulated by the test."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from tests.support.ros import Peer
 
 @pytest.fixture(params=LANGUAGES)
 def run_gate(request: pytest.FixtureRequest, tmp_path: Path) -> RunGate:
-    """Give what runs the generated gates of a language."""
+    """Return a function that runs the generated gates of a language."""
     made: RunGate = request.param(tmp_path)
     return made
 
 
 @pytest.fixture
 def world(ros_peer: Peer) -> World:
-    """Give all that is around the gate, the safety node included."""
+    """Return the simulated surroundings of the gate, including the safety node."""
     return World(ros_peer)
 
 
 @pytest.fixture
 def gate(run_gate: RunGate, ros_env: dict[str, str], world: World) -> Iterator[Popen[str]]:
-    """Run the gate; commands pass."""
+    """Run the gate until commands pass."""
     with run_gate(GATE, ros_env) as process:
         world.meet()
         world.release()

@@ -1,4 +1,4 @@
-"""Whatever ends the safety node, the gate stops the robot in time; again and again."""
+"""However the safety node ends, the gate stops the robot in time, repeatedly."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ StartSafety = Callable[..., AbstractContextManager[Popen[str]]]
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """Give the package of the safety node and its gates."""
+    """Return the package of the safety node and its gates."""
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load(MODELS / "gates.deros").model
     assert isinstance(model, Rules)
@@ -56,7 +56,7 @@ def package(tmp_path: Path) -> Path:
 def drive(
     request: pytest.FixtureRequest, ros_env: dict[str, str], ros_peer: Peer, tmp_path: Path
 ) -> Iterator[Drive]:
-    """Give a robot whose gate runs, in either language, and whose safety node is to come."""
+    """Return a robot with a running gate, in each language, and no safety node yet."""
     run_gate: RunGate = request.param(tmp_path / "gates")
     with run_gate("cmd_vel_gate", ros_env):
         yield Drive(ros_peer)
@@ -64,10 +64,10 @@ def drive(
 
 @pytest.fixture
 def start_safety(package: Path, ros_env: dict[str, str], tmp_path: Path) -> StartSafety:
-    """Give a function that runs the safety node, which has shared memory, as it has by default.
+    """Return a function that starts the safety node, with shared memory as by default.
 
-    Its lease is shorter than by default unless it is said, so that one that was killed is forgotten
-    soon: a gate in Python waits for that.
+    The lease is shorter than the default unless given, so that a killed node is forgotten soon: a
+    gate in Python waits for that.
     """
     command = [sys.executable, "-m", f"{PACKAGE}.{SAFETY_NODE}"]
     env = {**ros_env, "PYTHONPATH": str(package)}
@@ -75,7 +75,7 @@ def start_safety(package: Path, ros_env: dict[str, str], tmp_path: Path) -> Star
 
 
 def report(what: str, delays: list[float]) -> None:
-    """Print how long it took, and hold the longest to the limit."""
+    """Print the delays, and check the longest against the limit."""
     milliseconds = sorted(1000 * delay for delay in delays)
     print(
         f"\n{what}, {len(delays)} times: zero after {milliseconds[0]:.1f} ms at least,"
@@ -85,13 +85,13 @@ def report(what: str, delays: list[float]) -> None:
 
 
 def at_some_moment(drive: Drive) -> None:
-    """Let part of the time between two heartbeats pass, as chance will have it."""
+    """Wait for a random part of the time between two heartbeats."""
     end = time.monotonic() + random.uniform(0.0, 0.1)
     drive.peer.until(lambda: time.monotonic() > end)
 
 
-def test_a_killed_safety_node(drive: Drive, start_safety: StartSafety) -> None:
-    """SIGKILL: from then on, zero within 0.3 s and 50 ms, every time; a new one takes over."""
+def test_gate_stops_after_safety_node_is_killed(drive: Drive, start_safety: StartSafety) -> None:
+    """SIGKILL: zero within 0.3 s and 50 ms, every time; a new node takes over."""
     delays: list[float] = []
     for _ in range(REPEATS):
         with start_safety() as safety:
@@ -99,25 +99,23 @@ def test_a_killed_safety_node(drive: Drive, start_safety: StartSafety) -> None:
             at_some_moment(drive)
             delays.append(drive.until_zero(safety.kill))
             safety.wait()
-            safety.returncode = 0  # as it was meant
+            safety.returncode = 0  # as expected
     report("killed", delays)
 
 
-def test_a_killed_safety_node_with_the_default_lease(
-    drive: Drive, start_safety: StartSafety
-) -> None:
-    """Zero in time as well, and until the middleware has forgotten it; then the new one counts."""
+def test_gate_stops_with_the_default_lease(drive: Drive, start_safety: StartSafety) -> None:
+    """Zero in time, and until the killed node's lease ends; then the new one counts."""
     with start_safety(DEFAULT_LEASE_S) as safety:
         drive.until_moving()
         report("killed", [drive.until_zero(safety.kill)])
         safety.wait()
-        safety.returncode = 0  # as it was meant
+        safety.returncode = 0  # as expected
     with start_safety(DEFAULT_LEASE_S):
         drive.until_moving()
 
 
-def test_a_stopped_safety_node(drive: Drive, start_safety: StartSafety) -> None:
-    """SIGSTOP: the same; once it goes on, its next states are believed again."""
+def test_gate_stops_while_safety_node_is_suspended(drive: Drive, start_safety: StartSafety) -> None:
+    """SIGSTOP has the same effect; when the node continues, its next states count again."""
     delays: list[float] = []
     with start_safety() as safety:
         for _ in range(REPEATS):
@@ -128,8 +126,8 @@ def test_a_stopped_safety_node(drive: Drive, start_safety: StartSafety) -> None:
     report("stopped", delays)
 
 
-def test_a_rule_that_is_broken(drive: Drive, start_safety: StartSafety) -> None:
-    """From the sensor's message to the zero, through safety node and gate, in a moment."""
+def test_gate_stops_after_a_violated_rule(drive: Drive, start_safety: StartSafety) -> None:
+    """The time from the sensor message to the zero, through safety node and gate, is short."""
     delays: list[float] = []
     with start_safety():
         drive.until_watched()

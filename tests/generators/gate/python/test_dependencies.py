@@ -1,4 +1,4 @@
-"""What a gate depends on, in each language: whatever of it fails, nothing passes unwatched."""
+"""Dependencies of a gate in each language: whichever fails, no command passes unmonitored."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ PROMPT = 1.0
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_state_that_cannot_be_read_stops(world: World) -> None:
-    """Bytes that are no state count as active, until the safety node is understood again."""
-    world.beating.callback = world.beat  # which repeats no state
+def test_undecodable_state_stops(world: World) -> None:
+    """Invalid bytes count as active until a valid state of the safety node arrives."""
+    world.beating.callback = world.beat  # so that no state is repeated
     before = len(world.heard)
     world.stop_publisher.publish(b"\x00\x01\x00\x00")
     world.wish_until(0.3, lambda: world.last == STILL)
@@ -40,9 +40,9 @@ def test_a_state_that_cannot_be_read_stops(world: World) -> None:
 
 
 def told_without_states(world: World) -> set[tuple[float, float, float]]:
-    """Return what the drive is told for a second in which the safety node only beats.
+    """Return the commands at the drive during a second with heartbeats but without states.
 
-    If the machine holds up the beats for long enough to be a loss, it is another second.
+    If the machine delays the heartbeats for so long that they are lost, another second is used.
     """
     beats: list[float] = []
 
@@ -61,10 +61,10 @@ def told_without_states(world: World) -> set[tuple[float, float, float]]:
     return told
 
 
-def test_a_state_counts_from_when_it_comes_and_holds(
+def test_state_counts_from_its_arrival(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """Late states are believed when they come; one that is not repeated holds with the beat."""
+    """Late states count on arrival; one that is not repeated remains valid with the heartbeat."""
     with run_gate(GATE, ros_env):
         world.meet()
         world.assert_stands(1.0)  # the heartbeat alone opens nothing
@@ -78,10 +78,10 @@ def test_a_state_counts_from_when_it_comes_and_holds(
 
 
 @pytest.mark.usefixtures("gate")
-def test_whoever_takes_the_place_of_the_safety_node_is_obeyed(
+def test_node_that_replaces_the_safety_node_is_obeyed(
     world: World, ros_env: dict[str, str]
 ) -> None:
-    """Alone with the heartbeat and the states, a stranger is the safety node: names are public."""
+    """A sole publisher of heartbeat and states is the safety node: names are public."""
     from std_msgs.msg import UInt8
 
     world.peer.node.destroy_timer(world.beating)
@@ -103,17 +103,17 @@ def test_whoever_takes_the_place_of_the_safety_node_is_obeyed(
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_safety_node_that_starts_again_may_say_its_states_first(
+def test_restarted_safety_node_may_publish_states_first(
     world: World, ros_env: dict[str, str]
 ) -> None:
-    """As one with a grace does: its first heartbeat comes long after it has said what is active."""
+    """During its grace period the states come long before the first heartbeat."""
     from std_msgs.msg import UInt8
 
     world.peer.node.destroy_timer(world.beating)
     for publisher in (world.stop_publisher, world.mode_publisher, world.heartbeat):
         world.peer.node.destroy_publisher(publisher)
     reports = world.reports
-    world.wish_until(0.3, lambda: world.reports >= reports + 3)  # it has looked who is there
+    world.wish_until(0.3, lambda: world.reports >= reports + 3)  # it has checked the publishers
     assert world.last == STILL
     with Stranger(ros_env, "test_peer") as again:
         beats = 0
@@ -143,8 +143,8 @@ def test_a_safety_node_that_starts_again_may_say_its_states_first(
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_drive_that_goes_and_one_that_comes_late_hold_nothing_up(world: World) -> None:
-    """The gate runs on without a listener; a new one gets what comes from then on."""
+def test_missing_and_late_drive_does_not_block_the_gate(world: World) -> None:
+    """The gate runs without a subscriber; a new one gets the commands from then on."""
     world.peer.node.destroy_subscription(world.drive)
     heard, reports = len(world.heard), world.reports
     wishing = time.monotonic() + 0.5
@@ -162,10 +162,10 @@ def test_a_drive_that_goes_and_one_that_comes_late_hold_nothing_up(world: World)
     world.peer.until(lambda: world.last == STILL)
 
 
-def test_a_gate_that_hangs_is_silent_and_begins_with_zero(gate: Popen[str], world: World) -> None:
-    """No time passes for a process that is stopped; the loss that it slept through counts."""
+def test_hung_gate_is_silent_and_continues_with_zero(gate: Popen[str], world: World) -> None:
+    """A stopped process does not notice time passing; the loss during the hang counts."""
     freeze(gate.pid)
-    world.silence(0.1)  # what was on its way
+    world.silence(0.1)  # messages still in transit
     assert world.silence(1.0) == 0
     before = len(world.heard)
     thaw(gate.pid)
@@ -179,7 +179,7 @@ def test_a_gate_that_hangs_is_silent_and_begins_with_zero(gate: Popen[str], worl
 
 @contextmanager
 def simulated_time(peer: Peer, seconds: int) -> Iterator[Any]:
-    """Publish a /clock that stands at a time; give its publisher."""
+    """Publish a /clock that is paused at a time; return its publisher."""
     from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
 
     message = Clock()
@@ -190,10 +190,10 @@ def simulated_time(peer: Peer, seconds: int) -> Iterator[Any]:
     peer.node.destroy_timer(timer)
 
 
-def test_a_wrong_clock_stamps_zeros_and_hides_no_loss(
+def test_wrong_clock_stamps_zeros_but_hides_no_loss(
     run_gate: RunGate, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:
-    """Zeros bear whatever time /clock tells; that the heartbeat is lost is known all the same."""
+    """Zeros have the time of /clock; a lost heartbeat is detected all the same."""
     from trajectory_msgs.msg import JointTrajectory  # type: ignore[import-untyped]
 
     heard: list[Any] = []
@@ -217,10 +217,8 @@ def test_a_wrong_clock_stamps_zeros_and_hides_no_loss(
 ON_CLOCK = "use_sim_time:=true"
 
 
-def test_a_second_clock_of_a_gate_is_a_fault(
-    run_gate: RunGate, ros_env: dict[str, str], world: World
-) -> None:
-    """Both are believed, which concerns the stamps of zeros alone; the strangers are named."""
+def test_second_clock_is_a_fault(run_gate: RunGate, ros_env: dict[str, str], world: World) -> None:
+    """Both are used, which affects only the stamps of zeros; the other publisher is named."""
     with simulated_time(world.peer, 1_000) as clock, run_gate(GATE, ros_env, ON_CLOCK):
         world.meet()
         world.peer.until(clock.get_subscription_count)
@@ -252,7 +250,7 @@ OTHERS = {
 
 
 def parameters(peer: Peer) -> dict[str, Any]:
-    """Return what the parameters of the gate are."""
+    """Return the values of the gate's parameters."""
     from rcl_interfaces.srv import GetParameters
     from rclpy.parameter import parameter_value_to_python
 
@@ -262,8 +260,10 @@ def parameters(peer: Peer) -> dict[str, Any]:
 
 
 @pytest.mark.usefixtures("gate")
-def test_nobody_changes_the_parameters_of_a_gate(world: World, ros_env: dict[str, str]) -> None:
-    """It runs with what it was started with, or the defaults; whoever asks later is refused."""
+def test_parameters_of_a_running_gate_cannot_be_changed(
+    world: World, ros_env: dict[str, str]
+) -> None:
+    """The gate keeps its initial values or the defaults; later requests are rejected."""
     stranger = Peer(int(ros_env["ROS_DOMAIN_ID"]), "stranger")
     assert parameters(stranger) == DEFAULTS
     for name, value in OTHERS.items():
@@ -276,10 +276,10 @@ def test_nobody_changes_the_parameters_of_a_gate(world: World, ros_env: dict[str
 
 
 @pytest.mark.parametrize("wrong", ["realtime_priority:=100", "lock_memory:=perhaps"])
-def test_a_wrong_parameter_ends_the_start_of_a_gate(
+def test_invalid_parameter_prevents_the_start(
     run_gate: RunGate, ros_env: dict[str, str], world: World, wrong: str
 ) -> None:
-    """It ends with 1 and says which, and nothing has passed."""
+    """The gate exits with 1 and names it, and no command has passed."""
     with run_gate(GATE, ros_env, wrong) as process:
         output, _ = process.communicate(timeout=LIMIT)
     assert process.returncode == 1
@@ -288,10 +288,10 @@ def test_a_wrong_parameter_ends_the_start_of_a_gate(
     assert world.heard == []
 
 
-def test_of_two_values_of_a_parameter_the_last_holds(
+def test_last_value_of_a_parameter_counts(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """As for every node of ROS 2; two gates or a mixture do not come of it."""
+    """As for every ROS 2 node; neither two gates nor a mixture result."""
     twice = ("garbage_collection:=true", "garbage_collection:=false")
     with run_gate(GATE, ros_env, *twice):
         world.meet()
@@ -302,14 +302,14 @@ def test_of_two_values_of_a_parameter_the_last_holds(
 
 
 def locks(env: dict[str, str]) -> Path:
-    """Return the folder of the locks below a temporary folder of the test's own."""
+    """Return the lock folder below a temporary folder of the test."""
     return Path(env["TMPDIR"]) / f"deros-{os.getuid()}"
 
 
-def test_a_folder_of_locks_that_is_not_its_own_is_not_used(
+def test_shared_lock_folder_is_not_used(
     run_gate: RunGate, ros_env: dict[str, str], world: World, tmp_path: Path
 ) -> None:
-    """One in which others may write could hold any lock: a fault, and the gate runs without."""
+    """Others could hold any lock in it: the gate reports a fault and runs without a lock."""
     env = {**ros_env, "TMPDIR": str(tmp_path)}
     locks(env).mkdir()
     locks(env).chmod(0o777)
@@ -320,10 +320,10 @@ def test_a_folder_of_locks_that_is_not_its_own_is_not_used(
     assert list(locks(env).iterdir()) == []
 
 
-def test_a_second_gate_is_found_when_the_lock_was_deleted(
+def test_second_gate_is_found_after_the_lock_was_deleted(
     run_gate: RunGate, ros_env: dict[str, str], world: World, tmp_path: Path
 ) -> None:
-    """The second takes a lock that is nobody's, finds the first by the graph, and gives way."""
+    """The second gets the free lock, finds the first in the graph, and exits."""
     env = {**ros_env, "TMPDIR": str(tmp_path)}
     with run_gate(GATE, env):
         world.meet()
@@ -342,10 +342,8 @@ def test_a_second_gate_is_found_when_the_lock_was_deleted(
 
 
 @pytest.mark.usefixtures("gate")
-def test_whoever_reads_the_reports_of_a_gate_is_not_heard(
-    world: World, ros_env: dict[str, str]
-) -> None:
-    """Nobody has to read them, any number may, and what they say changes nothing."""
+def test_readers_of_the_reports_have_no_influence(world: World, ros_env: dict[str, str]) -> None:
+    """None is required, any number may join, and their messages have no effect."""
     from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
     found = world.peer.node.get_subscriptions_info_by_topic("/diagnostics")

@@ -1,4 +1,4 @@
-"""The generated gate does what the reference gate does, whatever the gate and whatever happens."""
+"""The generated gate behaves like the reference gate, for any gate and any events."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ START_NS = 100
 
 @settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(st.data())
-def test_same_commands(data: st.DataObject) -> None:
-    """Both publish the same messages at the same nanosecond; timers may be late, clocks step."""
+def test_commands_match_the_reference(data: st.DataObject) -> None:
+    """Both publish the same messages at the same nanosecond, with late timers and clock steps."""
     gate = data.draw(gates())
     engine = GateEngine(gate, ACTIONS, STORE, START_NS)
     generated = GeneratedGate(gate, START_NS)
@@ -26,6 +26,6 @@ def test_same_commands(data: st.DataObject) -> None:
         expected, answer = (play(one, t_ns, each) for one in (engine, generated))
         assert answer == expected or not gate.is_latching
         assert generated.outputs == engine.outputs
-        if engine.outputs:  # before the first call it has nothing to tell
+        if engine.outputs:  # before the first call there is no status
             assert generated.applying == engine.applying
         assert generated.next_deadline is None or generated.next_deadline > t_ns

@@ -31,7 +31,7 @@ if e.r then { stop; slow; go; };
 
 
 def files_of(text: str, **options: str) -> Files:
-    """Return what is generated for rules that stand beside the models."""
+    """Return the generated files of rules that are next to the models."""
     context = Context(InterfaceStore(), Repository())
     loaded = context.repository.load_text(str(MODELS / "text.deros"), text)
     assert loaded.diagnostics == ()
@@ -41,12 +41,12 @@ def files_of(text: str, **options: str) -> Files:
 
 @pytest.fixture(scope="module")
 def files() -> Files:
-    """Give the files of the model with gates of all kinds."""
+    """Return the files of the model with all kinds of gates."""
     return files_of((MODELS / "gates.deros").read_text(encoding="utf-8"))
 
 
-def test_the_files_are_as_kept(golden: Golden) -> None:
-    """Logic, messages, node and description have the text that was reviewed."""
+def test_files_match_golden(golden: Golden) -> None:
+    """Logic, messages, node and description match the reviewed text."""
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load(MODELS / "gates.deros").model
     assert isinstance(model, Rules)
@@ -58,8 +58,8 @@ def test_the_files_are_as_kept(golden: Golden) -> None:
     golden.check("gate_python/gates", kept)
 
 
-def test_the_linters_of_ament_find_nothing(tmp_path: Path) -> None:
-    """flake8 and pep257 with ament's settings pass all files of gates."""
+def test_files_pass_the_ament_linters(tmp_path: Path) -> None:
+    """flake8 and pep257 with ament's settings accept all files of gates."""
     assert_lint_clean(write_gates(tmp_path))
 
 
@@ -90,8 +90,8 @@ def test_every_kind_of_gate_is_lint_clean(gate: str, tmp_path: Path) -> None:
     assert_lint_clean(tmp_path / "text_safety")
 
 
-def test_a_gate_is_a_node_of_the_package(files: Files) -> None:
-    """It has a program, a launch file, and a description that is read back as it was."""
+def test_gate_is_a_node_of_the_package(files: Files) -> None:
+    """It has a program, a launch file, and a description that parses to the same node."""
     setup = files["text_safety/setup.py"].text
     for gate in GATES:
         assert f"'{gate} = text_safety.{gate}:main'" in setup
@@ -104,8 +104,8 @@ def test_a_gate_is_a_node_of_the_package(files: Files) -> None:
     assert "<exec_depend>trajectory_msgs</exec_depend>" in files["text_safety/package.xml"].text
 
 
-def test_the_ports_are_those_of_the_lines(files: Files) -> None:
-    """Commands in and out, the topics of the actions named, the heartbeat where a line needs it."""
+def test_ports_follow_from_the_lines(files: Files) -> None:
+    """Command input and output, topics of the named actions, the heartbeat if a line needs it."""
     text = files["text_safety/lamp_command_gate.rnd"].text
     node = Repository().load_text("lamp_command_gate.rnd", text).model
     assert isinstance(node, NodeType)
@@ -119,8 +119,8 @@ def test_the_ports_are_those_of_the_lines(files: Files) -> None:
     )
 
 
-def test_every_line_is_found_in_the_logic(files: Files) -> None:
-    """Each line of the rules stands above the code that came from it, with its place."""
+def test_every_line_of_the_rules_is_above_its_code(files: Files) -> None:
+    """Each line of the rules is quoted with its place above the resulting code."""
     logic = files["text_safety/text_safety/cmd_vel_gate_logic.py"].text
     rules = (MODELS / "gates.deros").read_text(encoding="utf-8").splitlines()
     for number in range(24, 29):
@@ -130,20 +130,20 @@ def test_every_line_is_found_in_the_logic(files: Files) -> None:
         assert following.startswith(f"        #   {rules[number - 1].strip()}"[:60])
 
 
-def test_nobody_edits_a_gate(files: Files) -> None:
-    """All files of a gate belong to the generator: there is nothing to fill in."""
+def test_gates_have_no_user_files(files: Files) -> None:
+    """All files of a gate belong to the generator."""
     for path, file in files.items():
         if "_gate" in path:
             assert file.owner is Owner.GENERATOR
 
 
-def test_no_gates_no_files() -> None:
-    """Rules without gates get nothing of them."""
+def test_rules_without_gates_have_no_gate_files() -> None:
+    """Nothing of gates is generated for them."""
     assert not [path for path in files_of(HEAD) if "gate" in path]
 
 
-def test_two_gates_of_one_name_are_refused() -> None:
-    """Topics that differ in slashes alone would be guarded by one node type."""
+def test_two_gates_of_one_name_are_rejected() -> None:
+    """Topics that differ only in slashes would give one node type."""
     text = "gate /a -> /b/c : std_msgs.Int32 rate 5 Hz { stop: zero; }\n"
     text += "gate /d -> /b_c : std_msgs.Int32 rate 5 Hz { stop: zero; }"
     with pytest.raises(GenerationError) as caught:

@@ -1,4 +1,4 @@
-"""What generated gates do to messages of rclpy is what the reference does to plain data."""
+"""Message functions of generated gates agree with the reference on plain data."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _plain(value: Any, field: FieldType) -> Any:
 
 @pytest.mark.parametrize("kind", TYPES, ids=lambda kind: kind.short)
 def test_zeros_and_nan_of_every_type(kind: InterfaceType) -> None:
-    """Each float is looked at, each number becomes zero, and the rest stays as it was."""
+    """Each float is checked, each number zeroed, and the rest is unchanged."""
     from builtin_interfaces.msg import Time
 
     rng = random.Random(str(kind))
@@ -80,7 +80,7 @@ def test_zeros_and_nan_of_every_type(kind: InterfaceType) -> None:
 
 
 def view_of_type(kind: InterfaceType) -> Any:
-    """Return the view of a gate of one line."""
+    """Return the view of a gate with one line."""
     line = GateLine(0, None, None, (), span(2))
     return view_of(Gate(0, "/wish", "/command", kind, 10, (line,), span(1)))
 
@@ -103,8 +103,8 @@ def view_of_type(kind: InterfaceType) -> Any:
         "trajectory_msgs.JointTrajectoryPoint",
     ],
 )
-def test_limits_on_fields_of_every_kind(name: str) -> None:
-    """A number alone or in an array is read, and brought to its limit, as in plain data."""
+def test_limits_on_every_kind_of_field(name: str) -> None:
+    """A number alone or in an array is read and limited as in plain data."""
     kind = message_type(name)
     rng = random.Random(name)
     checked = 0
@@ -142,8 +142,8 @@ def _limit(kind: InterfaceType, path: tuple[str | int, ...]) -> Limit | None:
     return Limit(path, found.type, *ends)
 
 
-def test_types_of_one_name_get_functions_of_their_own(tmp_path: Path) -> None:
-    """Also where the one is in the other, in another package."""
+def test_types_of_one_name_get_separate_functions(tmp_path: Path) -> None:
+    """This holds even if one contains the other, from another package."""
     for package, field in (("inner", "float64 x"), ("outer", "inner/Speed speed")):
         folder = tmp_path / package / "msg"
         folder.mkdir(parents=True)

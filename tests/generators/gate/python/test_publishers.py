@@ -1,4 +1,4 @@
-"""Whom a gate obeys, in each language: the safety node alone, whoever else publishes."""
+"""Publishers that a gate obeys, in each language: only the safety node."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LOST_HEARTBEAT = 0.3
 
 
 def in_turn(*callbacks: Callable[[], object]) -> Callable[[], None]:
-    """Return a function that calls others, one after the other."""
+    """Return a function that calls others in sequence."""
 
     def call() -> None:
         for callback in callbacks:
@@ -40,14 +40,14 @@ def twist(speed: float) -> Any:
 
 
 def stop_for_good(world: World) -> None:
-    """Have the safety node stop the robot, and see it stand."""
+    """Have the safety node stop the robot permanently, and wait for it."""
     world.stop(True)
     world.wish_until(0.3, lambda: world.last == STILL)
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_foreign_inactive_state_frees_nobody(world: World, ros_env: dict[str, str]) -> None:
-    """Latched or repeated, not one command passes while the safety node says active."""
+def test_foreign_inactive_state_does_not_release(world: World, ros_env: dict[str, str]) -> None:
+    """Latched or repeated, no command passes while the safety node publishes active."""
     stop_for_good(world)
     with Stranger(ros_env) as stranger:
         publisher = stranger.stop(False)
@@ -63,8 +63,8 @@ def test_a_foreign_inactive_state_frees_nobody(world: World, ros_env: dict[str, 
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_drive_that_gets_nothing_is_a_fault(world: World) -> None:
-    """One that asks for more than the gate offers stands for ever; the fault says why."""
+def test_incompatible_drive_is_a_fault(world: World) -> None:
+    """A drive that requests more QoS than the gate offers never moves; the fault says why."""
     from geometry_msgs.msg import Twist
     from rclpy.duration import Duration
     from rclpy.qos import QoSProfile
@@ -77,10 +77,10 @@ def test_a_drive_that_gets_nothing_is_a_fault(world: World) -> None:
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_stranger_that_comes_speaks_and_goes_frees_nobody(
+def test_short_lived_foreign_publisher_does_not_release(
     world: World, ros_env: dict[str, str]
 ) -> None:
-    """However short its stay is, its word is not taken for the safety node's."""
+    """However briefly it exists, its state does not count as the safety node's."""
     stop_for_good(world)
     before = len(world.heard)
     for _ in range(5):
@@ -92,10 +92,10 @@ def test_a_stranger_that_comes_speaks_and_goes_frees_nobody(
     assert {world.speeds(data) for _, data in world.heard[before:]} == {STILL}
 
 
-def test_a_stranger_that_goes_while_the_gate_hangs_frees_nobody(
+def test_foreign_publisher_that_ends_during_a_hang_does_not_release(
     gate: Popen[str], world: World, ros_env: dict[str, str]
 ) -> None:
-    """What has come meanwhile is dealt with in whatever order; nothing of it is believed."""
+    """Messages received meanwhile are handled in any order; none of them counts."""
     stop_for_good(world)
     with Stranger(ros_env) as stranger:
         publisher = stranger.stop(True)
@@ -109,8 +109,8 @@ def test_a_stranger_that_goes_while_the_gate_hangs_frees_nobody(
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_foreign_active_state_stops(world: World, ros_env: dict[str, str]) -> None:
-    """It counts until the stranger is gone, however often the safety node says the contrary."""
+def test_foreign_active_state_stops(world: World, ros_env: dict[str, str]) -> None:
+    """It counts until its publisher is gone, whatever the safety node publishes."""
     with Stranger(ros_env) as stranger:
         stranger.stop(True)
         world.wish_until(0.3, lambda: world.last == STILL)
@@ -119,8 +119,8 @@ def test_a_foreign_active_state_stops(world: World, ros_env: dict[str, str]) -> 
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_second_heartbeat_is_a_lost_one(world: World, ros_env: dict[str, str]) -> None:
-    """Nobody can tell which of the two is the safety node; with the second gone it goes on."""
+def test_second_heartbeat_publisher_counts_as_a_loss(world: World, ros_env: dict[str, str]) -> None:
+    """The safety node cannot be identified; when the second is gone, the gate continues."""
     with Stranger(ros_env) as stranger:
         publisher = stranger.heartbeat(1)
         world.wish_until(0.3, publisher.get_subscription_count)
@@ -131,10 +131,10 @@ def test_a_second_heartbeat_is_a_lost_one(world: World, ros_env: dict[str, str])
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_foreign_heartbeat_keeps_no_dead_safety_node_alive(
+def test_foreign_heartbeat_does_not_replace_a_dead_safety_node(
     world: World, ros_env: dict[str, str]
 ) -> None:
-    """A stranger that beats beside the safety node opens nothing when that has died."""
+    """A second heartbeat next to the safety node's releases nothing when that has died."""
     with Stranger(ros_env) as stranger:
         world.beating.callback = in_turn(world.live, lambda: stranger.heartbeat(1))
         publisher = stranger.heartbeat(1)
@@ -144,10 +144,10 @@ def test_a_foreign_heartbeat_keeps_no_dead_safety_node_alive(
         world.assert_stands(1.0)
 
 
-def test_a_constant_heartbeat_opens_nothing(
+def test_constant_heartbeat_releases_nothing(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """A message that comes is no sign of life; a counter that advances is."""
+    """The counter must advance; a message alone is not a sign of life."""
 
     def same_count() -> None:
         world.beats = 0
@@ -162,10 +162,10 @@ def test_a_constant_heartbeat_opens_nothing(
         world.until_driving()
 
 
-def test_a_state_of_another_node_than_the_heartbeat_is_not_obeyed(
+def test_state_of_another_node_than_the_heartbeat_is_ignored(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """Though it is the only publisher of the topic: it says inactive, and nothing passes."""
+    """It is the only publisher of the topic and inactive, but nothing passes."""
     world.peer.node.destroy_publisher(world.stop_publisher)
     with Stranger(ros_env) as stranger, run_gate(GATE, ros_env):
         stranger.stop(False)
@@ -178,8 +178,8 @@ def test_a_state_of_another_node_than_the_heartbeat_is_not_obeyed(
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_second_commander_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
-    """It is reported; which of the two is right, the gate cannot know, so both pass."""
+def test_second_command_publisher_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
+    """It is reported; the gate cannot know which one is right, so both pass."""
     with Stranger(ros_env) as stranger:
         publisher = stranger.say("/cmd_vel_nav", twist(0.1))
         world.until_fault("2 publishers where one is expected: /stranger, /test_peer")
@@ -194,8 +194,8 @@ def test_a_second_commander_is_a_fault(world: World, ros_env: dict[str, str]) ->
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_publisher_past_the_gate_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
-    """The gate cannot hold it back, but it says so; it listens to nothing on its target."""
+def test_publisher_that_bypasses_the_gate_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
+    """The gate cannot block it, but reports it; it does not subscribe to its target."""
     found = world.peer.node.get_subscriptions_info_by_topic("/cmd_vel")
     assert [each.node_name for each in found] == ["test_peer"]
     with Stranger(ros_env) as stranger:
@@ -206,10 +206,10 @@ def test_a_publisher_past_the_gate_is_a_fault(world: World, ros_env: dict[str, s
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_second_gate_that_shares_no_lock_ends(
+def test_second_gate_without_a_shared_lock_ends(
     run_gate: RunGate, world: World, ros_env: dict[str, str], tmp_path: Path
 ) -> None:
-    """It finds the first by the graph, as on another machine, and gives way; commands pass on."""
+    """It finds the first in the graph, as on another machine, and exits; commands keep passing."""
     (tmp_path / "elsewhere").mkdir()
     with run_gate(GATE, {**ros_env, "TMPDIR": str(tmp_path / "elsewhere")}) as second:
         world.wish_until(0.3, lambda: second.poll() is not None)
@@ -220,20 +220,20 @@ def test_a_second_gate_that_shares_no_lock_ends(
 
 
 @pytest.mark.usefixtures("gate")
-def test_a_second_gate_that_stays_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
-    """One that does not give way, as an older one does not, is reported by both."""
+def test_second_gate_that_stays_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
+    """An older gate may not exit; both report it."""
     from geometry_msgs.msg import Twist
 
-    world.wish_for(5.0)  # the gate is not young any more
+    world.wish_for(5.0)  # the gate is no longer new
     with Stranger(ros_env, GATE) as second:
         second.node.create_publisher(Twist, "/cmd_vel", 10)
         world.until_fault(f"a second gate of the name /{GATE} publishes on it")
 
 
-def test_a_gate_without_a_heartbeat_obeys_a_sole_publisher_only(
+def test_gate_without_a_heartbeat_obeys_only_a_sole_publisher(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """It cannot know which of two is the safety node, so it believes neither."""
+    """It cannot know which of two is the safety node, so it obeys neither."""
     from std_msgs.msg import Int32
 
     heard: list[int] = []

@@ -1,4 +1,4 @@
-"""Generated gates on the real middleware, in each language, in a robot that the test plays."""
+"""Generated gates on real middleware, in each language, with a simulated robot."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ PROMPT = 1.0
 ON_CLOCK = ("use_sim_time:=true", "losses_in_simulated_time:=true")
 
 
-def test_commands_pass_as_the_bytes_they_came_in(
+def test_commands_pass_byte_for_byte(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """With no action active, every command comes out at once, to the byte."""
+    """Without active actions, every command is published at once, unchanged."""
     with run_gate(GATE, ros_env):
         world.meet()
         world.release()
@@ -41,10 +41,10 @@ def test_commands_pass_as_the_bytes_they_came_in(
     assert statistics.median(delays) < 0.01
 
 
-def test_it_holds_the_robot_until_it_is_known_to_be_safe(
+def test_robot_is_held_until_it_is_known_to_be_safe(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """Zeros come before anything is known, without a command, and on through commands."""
+    """Zeros are published before anything is known, with and without commands."""
     world.beating.cancel()
     with run_gate(GATE, ros_env):
         world.meet()
@@ -54,10 +54,10 @@ def test_it_holds_the_robot_until_it_is_known_to_be_safe(
     assert {world.speeds(data) for _, data in world.heard} == {STILL}
 
 
-def test_a_stop_commands_zero_at_once_and_steadily(
+def test_stop_publishes_zero_at_once_and_periodically(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """The first zero comes with the stop, the rest with the rate, whether commands come or not."""
+    """The first zero comes with the stop, the others at the rate, with or without commands."""
     with run_gate(GATE, ros_env):
         world.meet()
         world.release()
@@ -74,10 +74,10 @@ def test_a_stop_commands_zero_at_once_and_steadily(
     assert statistics.median(gaps) == pytest.approx(PERIOD, abs=0.005)
 
 
-def test_no_old_command_is_replayed_when_a_stop_ends(
+def test_no_old_command_is_published_when_a_stop_ends(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """After a stop the gate is silent until somebody commands something."""
+    """After a stop the gate is silent until the next command."""
     with run_gate(GATE, ros_env):
         world.meet()
         world.release()
@@ -90,10 +90,10 @@ def test_no_old_command_is_replayed_when_a_stop_ends(
     assert {world.speeds(data) for _, data in world.heard[passed:]} <= {STILL, (0.2, 0.0, 0.0)}
 
 
-def test_limits_hold_at_once_and_field_by_field(
+def test_limits_apply_at_once_to_each_field(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """What is being executed is limited without another command, and so are those to come."""
+    """The executed command is limited without a new one, and so are later commands."""
     with run_gate(GATE, ros_env):
         world.meet()
         world.release()
@@ -103,7 +103,7 @@ def test_limits_hold_at_once_and_field_by_field(
         world.peer.until(lambda: world.last == (0.4, 0.5, -0.2))
         world.mode(2)
         world.peer.until(lambda: world.last == (0.1, 0.5, -0.2))
-        # What frees the robot is believed a little later than it comes.
+        # A release takes effect a little later than its message.
         unchanged = world.wish(-0.1, turn=3.0)
         world.wish_until(-0.1, lambda: world.heard[-1][1] == unchanged, turn=3.0)
         world.mode(0)
@@ -111,10 +111,10 @@ def test_limits_hold_at_once_and_field_by_field(
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-def test_a_command_that_is_no_number_is_refused(
+def test_non_finite_command_is_refused(
     run_gate: RunGate, ros_env: dict[str, str], world: World, bad: float
 ) -> None:
-    """It counts as lost input: zeros at once, until the next good command; it is counted, too."""
+    """It counts as lost input: zeros until the next valid command; and it is counted."""
     with run_gate(GATE, ros_env):
         world.meet()
         world.release()
@@ -133,10 +133,10 @@ def test_a_command_that_is_no_number_is_refused(
 
 
 @pytest.mark.parametrize("data", [b"", b"\x00\x01\x00\x00", b"\x00\x01\x00\x00" + bytes(17)])
-def test_what_is_no_command_is_refused(
+def test_undecodable_command_is_refused(
     run_gate: RunGate, ros_env: dict[str, str], world: World, data: bytes
 ) -> None:
-    """Bytes that are no command end nothing but the command."""
+    """Invalid bytes affect only that command."""
     with run_gate(GATE, ros_env):
         world.meet()
         world.release()
@@ -147,10 +147,10 @@ def test_what_is_no_command_is_refused(
         world.wish_until(0.25, lambda: world.last == (0.25, 0.0, 0.0))
 
 
-def test_silence_of_the_input_or_of_the_heartbeat_is_zero(
+def test_silence_of_input_or_heartbeat_gives_zero(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """The time counts from the last message, and the zero comes by itself."""
+    """The time counts from the last message, and the zero needs no message."""
     with run_gate(GATE, ros_env):
         world.meet()
         world.release()
@@ -174,7 +174,7 @@ def test_silence_of_the_input_or_of_the_heartbeat_is_zero(
         world.wish_until(0.3, passes)
 
 
-def test_it_tells_what_it_does_and_why(
+def test_status_reports_output_and_reason(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """One status on /diagnostics, every second and soon after a change."""
@@ -199,10 +199,10 @@ def test_it_tells_what_it_does_and_why(
     assert "Traceback" not in output
 
 
-def test_a_second_one_does_not_run(
+def test_second_instance_does_not_run(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """It ends at once and names the first; the first goes on."""
+    """It exits at once and names the first, which continues."""
     with run_gate(GATE, ros_env) as first:
         world.meet()
         with run_gate(GATE, ros_env) as second:
@@ -216,7 +216,7 @@ def test_a_second_one_does_not_run(
 def test_simulated_time_pauses_and_steps_back(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """Asked for, deadlines follow /clock; after a step back everything has to be heard anew."""
+    """On request deadlines follow /clock; after a step back everything must be received again."""
     from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
 
     clock = world.peer.node.create_publisher(Clock, "/clock", 10)
@@ -231,7 +231,7 @@ def test_simulated_time_pauses_and_steps_back(
         clock.publish(message)
 
     def ticking(step: float, condition: Any, say: Any = world.live) -> None:
-        """Let time pass no faster than the gate follows, or it would miss what is said to it."""
+        """Advance time no faster than the gate follows, so that it misses no message."""
         answers, due = -1, 0.0
 
         def once() -> Any:
@@ -252,9 +252,7 @@ def test_simulated_time_pauses_and_steps_back(
         world.mode(0)
         ticking(0.01, lambda: world.last == (0.3, 0.0, 0.0))
         passed = len(world.heard)
-        world.peer.until(
-            lambda: world.silence(1.0) == 0
-        )  # the time stands still, so nothing is lost
+        world.peer.until(lambda: world.silence(1.0) == 0)  # time is paused, so nothing is lost
         assert {world.speeds(data) for _, data in world.heard[passed:]} <= {(0.3, 0.0, 0.0)}
         tick(-500.0)
         world.peer.until(lambda: world.last == STILL)
@@ -269,10 +267,10 @@ def test_simulated_time_pauses_and_steps_back(
 
 
 @pytest.mark.parametrize("rate", [0.0, 0.05])
-def test_losses_are_counted_on_the_steady_clock(
+def test_losses_are_measured_on_the_steady_clock(
     run_gate: RunGate, ros_env: dict[str, str], world: World, rate: float
 ) -> None:
-    """With a simulated clock that stands or creeps, silence is a loss, in time, and zeros come."""
+    """With a paused or slow simulated clock, silence is detected in time, and zeros follow."""
     from rosgraph_msgs.msg import Clock
 
     clock = world.peer.node.create_publisher(Clock, "/clock", 10)
@@ -302,10 +300,10 @@ def test_losses_are_counted_on_the_steady_clock(
 
 
 @pytest.mark.parametrize("chosen", [False, True])
-def test_the_clock_cannot_change_while_it_runs(
+def test_clock_source_cannot_change_at_run_time(
     run_gate: RunGate, ros_env: dict[str, str], world: World, chosen: bool
 ) -> None:
-    """The change is refused with a reason, and the zeros go on."""
+    """The change is rejected with a reason, and the zeros continue."""
     with run_gate(GATE, ros_env, f"use_sim_time:={str(chosen).lower()}"):
         world.peer.until(lambda: world.status)
         (result,) = set_parameter(world.peer, GATE, use_sim_time=not chosen)
@@ -315,10 +313,8 @@ def test_the_clock_cannot_change_while_it_runs(
         world.peer.until(lambda: world.reports > seen + 1)
 
 
-def test_a_gate_of_numbers_alone(
-    run_gate: RunGate, ros_env: dict[str, str], ros_peer: Peer
-) -> None:
-    """Int32: what cannot be NaN passes, and a zero is steady, though nothing can be lost."""
+def test_gate_for_integers(run_gate: RunGate, ros_env: dict[str, str], ros_peer: Peer) -> None:
+    """Int32: commands pass without NaN checks, and zeros are periodic without a loss line."""
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import Bool, Int32
 
@@ -334,7 +330,7 @@ def test_a_gate_of_numbers_alone(
         ros_peer.until(lambda: heard)
 
         def wished() -> bool:
-            stop.publish(Bool(data=False))  # a safety node repeats it, too
+            stop.publish(Bool(data=False))  # a safety node repeats it too
             wish.publish(Int32(data=7))
             return heard[-1] == 7
 
@@ -347,10 +343,10 @@ def test_a_gate_of_numbers_alone(
     assert "Traceback" not in output
 
 
-def test_a_zero_keeps_the_form_of_the_command(
+def test_zero_keeps_the_shape_of_the_command(
     run_gate: RunGate, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:
-    """JointTrajectory: names, frame and lengths stay, numbers are zero, the stamp is fresh."""
+    """JointTrajectory: names, frame and lengths stay, numbers are zero, the stamp is current."""
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import Bool, UInt8, UInt64
     from trajectory_msgs.msg import (  # type: ignore[import-untyped]

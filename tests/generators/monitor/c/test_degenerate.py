@@ -1,4 +1,4 @@
-"""Programs of which next to nothing is left: what every target makes of them compiles and runs."""
+"""Nearly empty programs: the output of every target compiles and runs."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ PROGRAMS = {
 
 @needs_c
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_c_compiles(name: str, tmp_path: Path) -> None:
-    """No enumeration and no table is empty, and no parameter is left unused."""
+def test_nearly_empty_program_compiles_in_c(name: str, tmp_path: Path) -> None:
+    """No enumeration or table is empty, and no parameter is unused."""
     for file, text in render_monitor(timelines.program(PROGRAMS[name], name)).items():
         (tmp_path / file).write_text(text, encoding="utf-8")
     command = ["gcc", *STRICT, "-c", f"{name}_monitor.c", "-o", "monitor.o"]
@@ -52,8 +52,8 @@ def test_c_compiles(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_python_runs_as_the_reference_does(name: str) -> None:
-    """Time passes, and whoever asks for a reset is answered."""
+def test_nearly_empty_program_runs_in_python(name: str) -> None:
+    """It behaves like the reference as time passes and at a reset."""
     program = timelines.program(PROGRAMS[name], name)
     engine, generated = Engine(program), GeneratedMonitor(program)
     for monitor in (engine, generated):

@@ -1,4 +1,4 @@
-"""The documentation of the monitor in C: what it shows compiles, and it tells what is so."""
+"""Documentation of the C monitor: its example compiles, and its claims hold."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ void brake(void) { exit((now >= 3000000000) ? 0 : 2); }
 
 
 @needs_c
-def test_example_brakes(tmp_path: Path) -> None:
-    """The main loop compiles without a warning, and brakes two seconds after the speed rose."""
+def test_documented_example_brakes(tmp_path: Path) -> None:
+    """The main loop compiles without warnings, and brakes two seconds after the speed rose."""
     (example,) = (each for each in examples() if each.name == "intelligent_one")
     page = (DOCS / "c-monitor.md").read_text(encoding="utf-8")
     (loop,) = re.findall(r"^```c\n(.*?)^```", page, flags=re.DOTALL | re.MULTILINE)
@@ -50,6 +50,6 @@ def test_example_brakes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("each", DEVIATIONS, ids=lambda each: each.guideline)
 def test_deviations_are_documented(each: Deviation) -> None:
-    """The page of evidence names each guideline that the text does not follow, and why."""
+    """The evidence page lists each guideline that the text deviates from, and the reason."""
     page = (DOCS / "evidence.md").read_text(encoding="utf-8")
     assert f"| {each.guideline} (advisory) | {each.reason} |" in page

@@ -1,4 +1,4 @@
-"""The monitor in C does what the reference engine does, whatever the rules and the trace."""
+"""The C monitor behaves like the reference engine, for any rules and any trace."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ KEPT = sorted([*counterexamples.FOLDER.glob("*.json"), *c_pairs.FOLDER.glob("*.j
 
 @needs_c
 @pytest.mark.parametrize("focus", c_pairs.FOCUSES)
-def test_same_events(focus: str, tmp_path: Path) -> None:
-    """Both give the same events at the same nanosecond, and know the same after every call."""
+def test_events_match_the_reference(focus: str, tmp_path: Path) -> None:
+    """Both give the same events at the same nanosecond, and the same state after every call."""
     cases = c_pairs.cases(c_pairs.FOCUSES[focus], PROGRAMS, 1)
     assert len(cases) > PROGRAMS // 2, "most programs are refused"
     library = Loaded([each.unit for each in cases], tmp_path, "-O0")
@@ -34,8 +34,8 @@ def test_same_events(focus: str, tmp_path: Path) -> None:
 
 @needs_c
 @pytest.mark.parametrize("path", KEPT, ids=lambda path: path.stem)
-def test_counterexample(path: Path) -> None:
-    """Wherever a generated monitor once differed C does not, if it has such a monitor."""
+def test_former_counterexample_passes(path: Path) -> None:
+    """Former failures are compared in C as well, if C supports the rules."""
     pair = counterexamples.read(path)
     try:
         render_monitor(pair.program)
@@ -45,8 +45,8 @@ def test_counterexample(path: Path) -> None:
 
 
 @needs_c
-def test_difference_is_shortened(tmp_path: Path) -> None:
-    """A pair that differs is told without the steps that it does not need."""
+def test_difference_is_minimised(tmp_path: Path) -> None:
+    """A failing pair is reported without unnecessary steps."""
     cases = c_pairs.cases(("number", "boolean"), 20, 1)
     units = [each.unit for each in cases]
     for each in units:  # every action runs while its behaviour holds

@@ -1,4 +1,4 @@
-"""The comparison with the reference engine can fail: it finds each slip put into the C."""
+"""The comparison with the reference engine is sensitive: it finds each mutation of the C code."""
 
 from __future__ import annotations
 
@@ -78,9 +78,9 @@ BATCH = 8
 
 @functools.cache
 def drawn() -> tuple[c_pairs.Case, ...]:
-    """Draw the programs in whose texts slips are made, those of one kind not all together."""
+    """Draw programs for mutations, mixing different kinds."""
     chosen = [
-        c_pairs.cases(kinds, PROGRAMS, 3, first=100 * number)[::-1]  # later ones are greater
+        c_pairs.cases(kinds, PROGRAMS, 3, first=100 * number)[::-1]  # later ones are larger
         for number, kinds in enumerate(c_pairs.FOCUSES.values())
     ]
     mixed = itertools.zip_longest(*chosen)
@@ -88,7 +88,7 @@ def drawn() -> tuple[c_pairs.Case, ...]:
 
 
 def mutants(slip: str) -> Iterator[c_pairs.Case]:
-    """Yield the programs with a slip, if their texts have a place for it."""
+    """Yield mutated programs, if their text contains the pattern."""
     pattern, replacement = SLIPS[slip]
     for case in drawn():
         name = f"{case.unit.prefix}_monitor.c"
@@ -101,8 +101,8 @@ def mutants(slip: str) -> Iterator[c_pairs.Case]:
 
 @needs_c
 @pytest.mark.parametrize("slip", SLIPS)
-def test_slip_is_found(slip: str, tmp_path: Path) -> None:
-    """Some random program and trace tells the mutated monitor from the reference."""
+def test_mutation_is_detected(slip: str, tmp_path: Path) -> None:
+    """Some random program and trace distinguishes the mutated monitor from the reference."""
     found = mutants(slip)
     while cases := list(itertools.islice(found, BATCH)):
         units = [each.unit for each in cases]
@@ -113,10 +113,10 @@ def test_slip_is_found(slip: str, tmp_path: Path) -> None:
 
 
 def _differs(library: Loaded, cases: Sequence[c_pairs.Case]) -> bool:
-    """Compare in a process of its own: a slip may make the emitted code run for ever."""
+    """Compare in a separate process: a mutation may cause an endless loop."""
 
     def compare() -> None:
-        faulthandler.disable()  # a slip may make it crash, too, which is no news
+        faulthandler.disable()  # a mutation may also cause a crash, which is expected
         os._exit(next(c_pairs.differences(library, cases), None) is not None)
 
     child = multiprocessing.get_context("fork").Process(target=compare)

@@ -1,4 +1,4 @@
-"""Names of messages and rules never hide a name of the emitted C's own."""
+"""Names of messages and rules never hide a name used by the emitted C code."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _FIELD = re.compile(r"[a-z](?:_?[a-z0-9])*")
 
 
 def _own_names() -> list[str]:
-    """Return what a monitor and its contracts call and declare, where a field may be named so."""
+    """Return the names used by a monitor and its contracts that are valid field names."""
     texts = render_monitor(everything()).values()
     called = {name for text in texts for name in re.findall(r"(\w+)(?:\{\w+\})?\(", text)}
     called |= {name for text in texts for name in _LOCAL.findall(text)}
@@ -47,7 +47,7 @@ def _own_names() -> list[str]:
 
 
 def _rules(names: list[str]) -> str:
-    """Return rules that read a field of each name, beside every construct that there is."""
+    """Return rules that read a field of each name, along with every construct."""
     fields = [*names, "x_count", "x_count_2", "y_length", "z_given", "z[1]"]
     fields += ["o_last_rate", "new_o_total"]
     inputs = "".join(f"input x{i} = topic /hostile.{name}\n" for i, name in enumerate(fields))
@@ -60,7 +60,7 @@ def _rules(names: list[str]) -> str:
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The monitor of these rules, with its contracts."""
+    """Return the monitor of these rules, with its contracts."""
     folder = tmp_path_factory.mktemp("hostile")
     names = _own_names()
     definition = folder / "hostile_msgs" / "msg" / "Hostile.msg"
@@ -81,8 +81,8 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @needs_c
-def test_fields_named_as_what_the_monitor_calls(source: Path) -> None:
-    """Each becomes a parameter of a function that calls the monitor's own."""
+def test_fields_may_have_names_of_monitor_functions(source: Path) -> None:
+    """Each becomes a parameter of a function that calls functions of the monitor."""
     command = ["gcc", *STRICT, "-c", source.name, "-o", "monitor.o"]
     result = subprocess.run(
         command, cwd=source.parent, capture_output=True, text=True, timeout=120, check=False
@@ -91,6 +91,6 @@ def test_fields_named_as_what_the_monitor_calls(source: Path) -> None:
 
 
 @needs_frama_c
-def test_contracts_mean_the_monitor_s_own(source: Path) -> None:
-    """What a contract calls is no parameter of the function that it stands before."""
+def test_contracts_refer_to_monitor_functions(source: Path) -> None:
+    """A function called in a contract is not hidden by a parameter."""
     assert c_proof.unreadable(source) == ""

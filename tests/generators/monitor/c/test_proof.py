@@ -1,4 +1,4 @@
-"""Contracts come from the rules: the code keeps them, and code with a slip does not."""
+"""Contracts follow from the rules: the code fulfils them, and mutated code does not."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def example() -> Unit:
 
 
 def written(made: Unit, folder: Path, source: str | None = None) -> Path:
-    """Write a monitor, or what a slip has made of it, and return its source."""
+    """Write a monitor, possibly mutated, and return its source."""
     path = folder / f"{made.prefix}_monitor.c"
     for name, text in made.texts.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -133,8 +133,8 @@ def written(made: Unit, folder: Path, source: str | None = None) -> Path:
 
 
 @needs_frama_c
-def test_contracts_are_kept(example: Unit, tmp_path: Path) -> None:
-    """Nothing is left to be proved, and nothing was assumed."""
+def test_contracts_are_proved(example: Unit, tmp_path: Path) -> None:
+    """No goal is left, and nothing is assumed."""
     proof = c_proof.prove(written(example, tmp_path), PROVED)
     assert proof.left == ()
     assert proof.complaints == ()
@@ -151,8 +151,8 @@ if e.r or e.s then { stop; };
 
 
 @needs_frama_c
-def test_contracts_of_rates_are_kept(tmp_path: Path) -> None:
-    """A rate is the change by the time, and over a span that since the newest sample before it."""
+def test_contracts_of_rates_are_proved(tmp_path: Path) -> None:
+    """A rate is the change over time, and over a span the change since the newest older sample."""
     source = c_proof.write(rules.program(RATES), tmp_path)
     functions = ("rate", "unwrapped", "between", "stamp_of", "keep")
     proof = c_proof.prove(source, functions)
@@ -162,10 +162,10 @@ def test_contracts_of_rates_are_kept(tmp_path: Path) -> None:
 
 @needs_frama_c
 @pytest.mark.parametrize("slip", SLIPS)
-def test_slip_is_found(
+def test_mutation_fails_the_proof(
     slip: str, example: Unit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The command that proves all fails with a slip, and names the function that it is in."""
+    """The proof command fails and names the mutated function."""
     function, right, wrong = SLIPS[slip]
     definition = re.search(rf"^(?:static )?\w+ {function}\(.*?^}}", example.source, re.M | re.S)
     assert definition is not None
@@ -182,8 +182,8 @@ def test_slip_is_found(
 @pytest.mark.parametrize(
     ("right", "wrong"), [("22U, arguments_1", "23U, arguments_1"), ("arguments_3, 1U", "NULL, 0U")]
 )
-def test_wrong_table_is_found(right: str, wrong: str, tmp_path: Path) -> None:
-    """The table that says what the emitted sites stand for is compared with the rules."""
+def test_wrong_table_is_detected(right: str, wrong: str, tmp_path: Path) -> None:
+    """The table of the emitted sites is compared with the rules."""
     (program,) = (each for each in examples() if each.name == "intelligent_one")
     source = c_proof.write(program, tmp_path)
     text = source.read_text(encoding="utf-8")
@@ -194,8 +194,8 @@ def test_wrong_table_is_found(right: str, wrong: str, tmp_path: Path) -> None:
 
 
 @needs_frama_c
-def test_lemmas_are_goals(tmp_path: Path) -> None:
-    """What the contracts state of themselves is proved with the functions, or the proof fails."""
+def test_lemmas_must_be_proved(tmp_path: Path) -> None:
+    """Lemmas of the contracts are goals as well, and fail the proof if they are wrong."""
     (tmp_path / "order_contracts.h").write_text(
         "/*@ lemma right: \\forall double a; !\\is_NaN(a) ==> \\le_double(a, a); */\n"
         "/*@ lemma wrong: \\forall double a; \\le_double(a, a); */\n",
@@ -213,7 +213,7 @@ def test_lemmas_are_goals(tmp_path: Path) -> None:
 
 
 def test_every_function_has_a_contract() -> None:
-    """Each function that a monitor defines is in the file of contracts, and no other."""
+    """The contracts cover exactly the functions that the monitor defines."""
     for program in (everything(), *examples()):
         made = unit(program)
         contracts = made.texts[f"{made.prefix}_contracts.h"]
@@ -222,6 +222,6 @@ def test_every_function_has_a_contract() -> None:
         assert len(declared) == len(re.findall(r"^/\*@ (?:requires|assigns)", contracts, re.M))
 
 
-def test_contracts_are_not_in_the_code(example: Unit) -> None:
-    """Without Frama-C nothing of the contracts is compiled."""
+def test_contracts_are_not_compiled(example: Unit) -> None:
+    """Without Frama-C the compiler sees nothing of the contracts."""
     assert '#ifdef __FRAMAC__\n#include "intelligent_one_contracts.h"\n#endif' in example.source

@@ -1,4 +1,4 @@
-"""The slips that the proof must find: made one at a time, in code, of every kind."""
+"""Mutations for the proof: one at a time, in code, of every kind."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ def example() -> Unit:
 
 @pytest.fixture(scope="module")
 def slips(example: Unit) -> list[Mutant]:
-    """Return all slips in it."""
+    """Return all its mutations."""
     return list(mutants(example.source, example.texts[f"{example.prefix}_monitor.h"]))
 
 
-def test_every_kind_is_made(slips: list[Mutant]) -> None:
-    """There are some of every kind, hundreds in all, and no two are equal."""
+def test_every_kind_of_mutation_is_generated(slips: list[Mutant]) -> None:
+    """There are at least fifty of each kind, and no two are equal."""
     kinds = Counter(each.kind for each in slips)
     assert set(kinds) == set(KINDS)
     assert all(count >= 50 for count in kinds.values())
     assert len({each.source for each in slips}) == len(slips)
 
 
-def test_slips_are_in_code(example: Unit, slips: list[Mutant]) -> None:
-    """No contract and no comment is changed, but where a whole loop goes with its own."""
+def test_mutations_change_only_code(example: Unit, slips: list[Mutant]) -> None:
+    """Contracts and comments stay, unless a whole loop is removed with its own."""
     comments = _COMMENT.findall(example.source)
     for each in slips:
         assert each.source != example.source
@@ -47,30 +47,30 @@ def test_slips_are_in_code(example: Unit, slips: list[Mutant]) -> None:
         assert all(text in rest for text in _COMMENT.findall(each.source)), each.name
 
 
-def test_listed_slips_are_made(slips: list[Mutant]) -> None:
-    """What is listed as equivalent names a slip, and says why."""
+def test_equivalent_mutations_exist_with_a_reason(slips: list[Mutant]) -> None:
+    """Each entry of the list names a generated mutation."""
     names = {each.name for each in slips}
     for slip, reason in equivalent()["intelligent_one"].items():
         assert re.sub(r" \(\d+\)$", "", slip) in names
         assert len(reason) > 20
 
 
-def test_a_slip_in_the_head_of_a_loop_is_named_by_what_changes() -> None:
-    """Neither the body of the loop nor the rest of the file is part of its name."""
+def test_mutation_in_a_loop_header_is_named_by_its_change() -> None:
+    """Neither the loop body nor the rest of the file is part of the name."""
     loop = "int f(int n)\n{\n  for (int i = 0; i < n; ++i) {\n    g(i);\n  }\n  return n;\n}\n"
     named = {each.name for each in mutants(loop, "") if each.kind == "comparison"}
     assert named == {"f: i < n -> i <= n", "f: i < n -> i > n"}
 
 
-def test_a_goal_is_allowed_more_than_it_took() -> None:
-    """What it took without the slip decides, and not what other goals took."""
+def test_proof_limit_follows_the_effort_without_mutation() -> None:
+    """The effort for the same goal counts, not that for other goals."""
     effort = Effort(steps={"hard": 5_000_000, "easy": 10})
     assert effort.allowed("hard") == MARGIN * 5_000_000
     assert effort.allowed("easy") == effort.allowed("another") == LEAST_STEPS
 
 
-def test_an_interrupted_run_goes_on(tmp_path: Path) -> None:
-    """What became of a slip, and what a function's proof takes, are read again."""
+def test_interrupted_run_resumes(tmp_path: Path) -> None:
+    """Results of mutations and efforts of proofs are read from the file."""
     path = tmp_path / "results.jsonl"
     before = Results(path)
     before.add("a", "f: x -> y", Found(goal="ensures"))

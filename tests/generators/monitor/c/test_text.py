@@ -1,4 +1,4 @@
-"""The emitted C as text: clean for every compiler, bounded, deterministic, self-contained."""
+"""The text of the emitted C: warning-free, bounded, deterministic, self-contained."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def random_texts() -> tuple[Mapping[str, str], ...]:
 def compiled(
     texts: Mapping[str, str], folder: Path, command: tuple[str, ...], *flags: str
 ) -> list[Path]:
-    """Compile monitors, warnings being errors, and return the objects."""
+    """Compile monitors with warnings as errors, and return the objects."""
     if shutil.which(command[0]) is None:
         pytest.skip(f"no {command[0]}")
     for name, text in texts.items():
@@ -71,16 +71,16 @@ def compiled(
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
-def test_no_compiler_warns(compiler: str, tmp_path: Path) -> None:
-    """Whatever the compiler and the rules, there is nothing that it would warn of."""
+def test_all_compilers_accept_the_code_without_warnings(compiler: str, tmp_path: Path) -> None:
+    """This holds for every compiler and any rules."""
     texts = [*map(render_monitor, PROGRAMS.values()), *random_texts()]
     together = {name: text for each in texts for name, text in each.items()}
     compiled(together, tmp_path, COMPILERS[compiler])
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_needs_the_callback_and_libm_alone(name: str, tmp_path: Path) -> None:
-    """A monitor links with its owner's callback and functions of the mathematical library."""
+def test_monitor_needs_only_its_callback_and_libm(name: str, tmp_path: Path) -> None:
+    """It links with the callback of its user and functions of the mathematical library."""
     (made,) = compiled(render_monitor(PROGRAMS[name]), tmp_path, ("gcc", "-std=c99", "-O1"))
     done = subprocess.run(["nm", "-u", str(made)], capture_output=True, text=True, check=True)
     needed = set(re.findall(r"\bU (\w+)", done.stdout))
@@ -88,8 +88,8 @@ def test_needs_the_callback_and_libm_alone(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_only_public_names_are_seen(name: str, tmp_path: Path) -> None:
-    """What else a monitor defines begins with its prefix, so that several link together."""
+def test_other_symbols_are_not_exported(name: str, tmp_path: Path) -> None:
+    """All exported names have the prefix, so that several monitors link together."""
     (made,) = compiled(render_monitor(PROGRAMS[name]), tmp_path, ("gcc", "-std=c99"))
     command = ["nm", "-g", "--defined-only", str(made)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
@@ -100,7 +100,7 @@ def test_only_public_names_are_seen(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_stack_is_bounded(name: str, tmp_path: Path) -> None:
-    """No function takes stack that depends on its arguments, none takes much, none recurs."""
+    """No function has dynamic or large stack use, and none is recursive."""
     flags = ("-fstack-usage", "-fcallgraph-info")
     compiled(render_monitor(PROGRAMS[name]), tmp_path, ("gcc", "-std=c99", "-O0"), *flags)
     usage = (tmp_path / f"{name}_monitor.su").read_text().splitlines()
@@ -115,7 +115,7 @@ def test_stack_is_bounded(name: str, tmp_path: Path) -> None:
 
 
 def _has_no_circle(edges: list[tuple[str, str]]) -> bool:
-    """Tell whether functions can be put in an order in which each calls later ones only."""
+    """Return whether each function calls only later ones in some order."""
     left = set(edges)
     while left:
         callers = {caller for caller, _ in left}
@@ -126,30 +126,30 @@ def _has_no_circle(edges: list[tuple[str, str]]) -> bool:
     return True
 
 
-def test_circles_are_found() -> None:
-    """A function that calls itself, if by another one, is told from one that does not."""
+def test_recursion_is_detected() -> None:
+    """Direct and indirect recursion are distinguished from ordinary calls."""
     assert _has_no_circle([("a", "b"), ("b", "c"), ("a", "c")])
     assert not _has_no_circle([("a", "b"), ("b", "a"), ("b", "c")])
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_no_line_is_too_long(name: str) -> None:
-    """No line but of what is to be proved is longer than 99 characters."""
+def test_lines_are_at_most_99_characters(name: str) -> None:
+    """Only contracts may have longer lines."""
     for text in render_monitor(PROGRAMS[name]).values():
         plain = re.sub(r"/\*@.*?\*/", "", text, flags=re.DOTALL)
         assert max(map(len, plain.splitlines())) <= 99
 
 
-def test_same_text_every_time() -> None:
-    """Two renderings of one program are equal, and name no folder of this machine."""
+def test_rendering_is_deterministic() -> None:
+    """Two renderings of one program are equal, and contain no path of this machine."""
     texts = [render_monitor(everything()) for _ in range(2)]
     assert texts[0] == texts[1]
     assert "/tmp" not in "".join(texts[0].values())
 
 
 @pytest.mark.skipif(not misra.has_cppcheck(), reason=f"no {misra.CPPCHECK}")
-def test_follows_misra(tmp_path: Path) -> None:
-    """Of MISRA C:2012 no rule is violated but those advisory ones that the text names."""
+def test_code_follows_misra(tmp_path: Path) -> None:
+    """The only violations of MISRA C:2012 are the advisory ones that the text lists."""
     texts = [render_monitor(each) for each in PROGRAMS.values()]
     found = misra.violations(texts, tmp_path)
     assert [str(each) for each in found if not each.is_allowed] == []
@@ -157,16 +157,16 @@ def test_follows_misra(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not misra.has_cppcheck(), reason=f"no {misra.CPPCHECK}")
-def test_misra_is_checked(tmp_path: Path) -> None:
-    """A required rule that is violated is found, and told from an advisory one."""
+def test_misra_check_is_effective(tmp_path: Path) -> None:
+    """A violated required rule is detected and distinguished from an advisory one."""
     text = "#define UNUSED 1\nint f(int a);\nint f(int a)\n{\n  return a + 017;\n}\n"
     found = misra.violations([{"wrong.c": text}], tmp_path)
     assert {"required", "advisory"} == {each.category for each in found}
     assert not any(each.is_allowed for each in found)
 
 
-def test_deviations_are_told() -> None:
-    """The head of every source names each guideline that it does not follow, all advisory."""
+def test_deviations_are_listed_in_the_source() -> None:
+    """The header of every source lists each guideline that it deviates from, all advisory."""
     for program in PROGRAMS.values():
         source = render_monitor(program)[f"{program.name}_monitor.c"]
         head = " ".join(source[: source.index("*/")].replace(" * ", " ").split())
@@ -183,8 +183,8 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_refusal(case: str) -> None:
-    """What a monitor of fixed size, or C, cannot do is an error with its place."""
+def test_unsupported_construct_is_an_error(case: str) -> None:
+    """The diagnostic points at rules that C or a monitor of fixed size does not support."""
     rule, why = REFUSED[case]
     named = "input names_of = topic /joints.header.frame_id\n"
     rules = RULES.replace("entity drive {", f"{named}entity drive {{\n  {rule}", 1)
@@ -199,8 +199,8 @@ def _program(rules: str) -> Program:
     return built(rules, "refused")
 
 
-def test_the_program_has_every_construct() -> None:
-    """What is new in the language is compiled, linted and kept, too."""
+def test_test_program_has_every_construct() -> None:
+    """New constructs of the language must be compiled, linted and compared as well."""
     conditions = list(walk.conditions(everything()))
     called = {
         term.function
@@ -212,7 +212,7 @@ def test_the_program_has_every_construct() -> None:
     assert {type(each) for each in conditions} == set(get_args(Condition))
 
 
-def test_the_files_are_as_kept(golden: Golden) -> None:
-    """The text of a program with every construct is as it was kept."""
+def test_files_match_golden(golden: Golden) -> None:
+    """The text of a program with every construct matches the reviewed one."""
     files = {name: File(text) for name, text in render_monitor(everything()).items()}
     golden.check("monitor_c", files)

@@ -1,4 +1,4 @@
-"""What watches the emitted C finds what is wrong with it, and nothing where nothing is wrong."""
+"""Tools that check the emitted C: they find planted faults, and no others."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ needs_sanitizers = pytest.mark.skipif(
 
 
 def slipped(made: Unit, right: str, wrong: str) -> Unit:
-    """Return a monitor with a slip."""
+    """Return a mutated monitor."""
     name = f"{made.prefix}_monitor.c"
     assert right in made.texts[name]
     return Unit(made.program, made.view, {**made.texts, name: made.source.replace(right, wrong)})
@@ -31,15 +31,15 @@ def slipped(made: Unit, right: str, wrong: str) -> Unit:
 
 @needs_sanitizers
 def test_sanitizers_find_nothing(tmp_path: Path) -> None:
-    """Random monitors read no byte too far and compute nothing that C does not define."""
+    """Random monitors have no out-of-bounds access and no undefined behaviour."""
     cases = c_pairs.cases(c_pairs.FOCUSES["mixed"], 12, 5)
     with Watched([each.unit for each in cases], tmp_path) as library:
         assert list(c_pairs.differences(library, cases)) == []
 
 
 @needs_sanitizers
-def test_sanitizers_do_find_something(tmp_path: Path) -> None:
-    """One element read too far ends the program, and is told."""
+def test_sanitizers_detect_an_overrun(tmp_path: Path) -> None:
+    """Reading one element too far ends the program with a report."""
     cases = c_pairs.cases(("floats",), 20, 5)
     reads = [each for each in cases if "i < count;" in each.unit.source]
     units = [slipped(each.unit, "i < count;", "i <= count;") for each in reads]
@@ -74,7 +74,7 @@ def fuzz(made: Unit, folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 def test_fuzzer_finds_nothing(example: Unit, tmp_path: Path) -> None:
-    """No bytes break what must hold of the smallest example."""
+    """No input violates the invariants of the smallest example."""
     done = fuzz(example, tmp_path)
     assert done.returncode == 0, done.stderr
 
@@ -93,7 +93,7 @@ SLIPS = {
 
 
 @pytest.mark.parametrize("slip", SLIPS)
-def test_fuzzer_finds_a_slip(slip: str, example: Unit, tmp_path: Path) -> None:
-    """What must hold after every call does not with a slip, and the fuzzer finds it."""
+def test_fuzzer_detects_a_mutation(slip: str, example: Unit, tmp_path: Path) -> None:
+    """A mutation violates an invariant after some call."""
     done = fuzz(slipped(example, *SLIPS[slip]), tmp_path)
     assert done.returncode != 0

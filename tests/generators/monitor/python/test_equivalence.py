@@ -1,4 +1,4 @@
-"""The generated monitor does what the reference engine does, whatever the rules and the trace."""
+"""The generated monitor behaves like the reference engine, for any rules and any trace."""
 
 from __future__ import annotations
 
@@ -30,40 +30,40 @@ thorough = settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.dat
 
 @thorough
 @given(programs().flatmap(pairs))
-def test_same_events(pair: Pair) -> None:
+def test_events_match_the_reference(pair: Pair) -> None:
     """Both give the same events, at the same nanosecond, in the same order."""
     pair.compare()
 
 
 @thorough
 @given(programs(kinds=("scan", "array", "element")).flatmap(pairs))
-def test_same_events_of_arrays(pair: Pair) -> None:
-    """That holds of arrays as messages bring them, and of what is not in them."""
+def test_events_of_arrays_match(pair: Pair) -> None:
+    """The same holds for message arrays and for missing elements."""
     pair.compare()
 
 
 @thorough
 @given(programs(kinds=("number", "boolean")).flatmap(pairs))
-def test_same_events_of_few_values(pair: Pair) -> None:
-    """That holds where conditions often change, and messages often repeat what was known."""
+def test_events_of_few_values_match(pair: Pair) -> None:
+    """The same holds if conditions change often and messages repeat known values."""
     pair.compare()
 
 
 @thorough
 @given(programs(kinds=("stamped", "number", "quaternion")).flatmap(pairs))
-def test_same_events_of_rates(pair: Pair) -> None:
-    """That holds of what is remembered over several messages, and of stamps that go astray."""
+def test_events_of_rates_match(pair: Pair) -> None:
+    """The same holds for state over several messages, and for irregular stamps."""
     pair.compare()
 
 
 @pytest.mark.parametrize("path", COUNTEREXAMPLES, ids=lambda path: path.stem)
-def test_counterexample(path: Path) -> None:
-    """Wherever the two once differed they do not any more."""
+def test_former_counterexample_passes(path: Path) -> None:
+    """Former differences must not occur any more."""
     counterexamples.read(path).compare()
 
 
-def test_counterexamples_can_be_kept(tmp_path: Path) -> None:
-    """What is read is what was written."""
+def test_counterexamples_round_trip(tmp_path: Path) -> None:
+    """A stored pair is read back unchanged."""
 
     @settings(thorough, max_examples=scaled(50), derandomize=True)
     @given(programs().flatmap(pairs))
@@ -71,7 +71,7 @@ def test_counterexamples_can_be_kept(tmp_path: Path) -> None:
         path = counterexamples.write(pair, tmp_path)
         kept = counterexamples.read(path)
         assert kept.program == pair.program
-        assert counterexamples.write(kept, tmp_path) == path  # whose name tells the content
+        assert counterexamples.write(kept, tmp_path) == path  # whose name depends on the content
 
     check()
 
@@ -96,8 +96,8 @@ def _build(text: str, folder: Path) -> Program:
 
 @thorough
 @given(data=st.data())
-def test_same_events_from_text(data: st.DataObject, robot: Path) -> None:
-    """Rules written as a text mean what they were written from, and so does what they generate."""
+def test_events_of_parsed_rules_match(data: st.DataObject, robot: Path) -> None:
+    """Rules written as text, parsed and generated behave like the original program."""
     meant = data.draw(programs(writable=True))
     text = rules_text(meant)
     note(text)
@@ -109,7 +109,7 @@ def test_same_events_from_text(data: st.DataObject, robot: Path) -> None:
 
 
 def _as_read_by(meant: Program, built: Program, step: Step) -> Step:
-    """Return a step with its message's leaves as another program numbers them."""
+    """Return a step with the leaves of its message as numbered by another program."""
     fields = {
         (meant.inputs[leaf.input].topic, leaf.path): step.leaves[leaf.index]
         for leaf in meant.leaves

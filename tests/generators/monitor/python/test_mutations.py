@@ -1,4 +1,4 @@
-"""The comparison with the reference engine can fail: it finds each slip put into the code."""
+"""The comparison with the reference engine is sensitive: it finds each mutation of the code."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ SLIPS = {
 
 
 @pytest.mark.parametrize("slip", SLIPS)
-def test_slip_is_found(slip: str) -> None:
-    """Some random program and trace tells the mutated monitor from the reference."""
+def test_mutation_is_detected(slip: str) -> None:
+    """Some random program and trace distinguishes the mutated monitor from the reference."""
     pattern, replacement = SLIPS[slip]
 
     @settings(

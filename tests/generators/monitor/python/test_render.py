@@ -1,4 +1,4 @@
-"""The generated monitor as text: readable, deterministic, clean, and without foreign names."""
+"""The text of the generated monitor: readable, deterministic, lint-clean, with few imports."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ if doubt.blind or doubt.hidden then { stop; };
 
 
 def _lint(folder: Path) -> str:
-    """Return what flake8, with ament's settings, and pydocstyle say of a folder."""
+    """Return the output of flake8, with ament's settings, and pydocstyle for a folder."""
     settings = [
         "--isolated",
         "--extend-ignore=B902,C816,D100,D101,D102,D103,D104,D105,D106,D107,D203,D212,D404,I202",
@@ -86,14 +86,14 @@ def _lint(folder: Path) -> str:
     return "".join(each.stdout + each.stderr for each in results)
 
 
-def test_golden(golden: Golden) -> None:
-    """The text of a program with every construct is as it was kept."""
+def test_monitor_text_matches_golden(golden: Golden) -> None:
+    """The text of a program with every construct matches the reviewed one."""
     text = render_monitor(timelines.program(EVERYTHING, "everything"))
     golden.check("monitor_python", {"everything.py": File(text)})
 
 
-def test_linters_find_nothing(tmp_path: Path) -> None:
-    """Whatever the rules, flake8 and pep257 with ament's settings are content."""
+def test_monitors_pass_the_linters(tmp_path: Path) -> None:
+    """flake8 and pep257 with ament's settings accept monitors of any rules."""
     programs = [case.program() for case in timelines.ALL]
     programs.append(timelines.program(EVERYTHING, "everything"))
     for number, program in enumerate([*programs, _awkward()]):
@@ -101,15 +101,15 @@ def test_linters_find_nothing(tmp_path: Path) -> None:
     assert _lint(tmp_path) == ""
 
 
-def test_linters_do_find_something(tmp_path: Path) -> None:
-    """The settings are in force: a needless import and a long line are found."""
+def test_linter_settings_are_in_force(tmp_path: Path) -> None:
+    """An unused import and a long line are detected."""
     (tmp_path / "bad.py").write_text(f'import os\n\ntext = "{"x" * 100}"\n')
     found = _lint(tmp_path)
     assert all(code in found for code in ("F401", "E501", "Q000"))
 
 
-def test_same_text_every_time() -> None:
-    """Two renderings of one program are equal."""
+def test_rendering_is_deterministic() -> None:
+    """Repeated renderings of one program are equal."""
     texts = {render_monitor(timelines.program(EVERYTHING, "everything")) for _ in range(3)}
     assert len(texts) == 1
 
@@ -126,8 +126,8 @@ def _imported(text: str) -> set[str | None]:
     }
 
 
-def test_needs_the_standard_library_alone() -> None:
-    """Nothing of ROS and nothing of this package is imported; numpy where arrays are read."""
+def test_only_the_standard_library_is_imported() -> None:
+    """Neither ROS nor deros is imported; numpy is if arrays are read."""
     text = render_monitor(timelines.program(EVERYTHING))
     assert _imported(text) == {"collections.abc", "functools", "math", "numpy", "typing"}
     lines = [line for line in EVERYTHING.splitlines(keepends=True) if "scan" not in line]
@@ -139,8 +139,8 @@ def test_needs_the_standard_library_alone() -> None:
     }
 
 
-def test_each_rule_names_its_source() -> None:
-    """Above the code of a rule stand its name, its line and its text."""
+def test_each_rule_is_quoted_above_its_code() -> None:
+    """The comment has name, line and text of the rule."""
     text = render_monitor(timelines.program(EVERYTHING, "everything"))
     assert "# Rule drive.too_fast (everything.deros:15)\n" in text
     assert "#   too_fast: speed > max_speed for 2 sec" in text
@@ -149,7 +149,7 @@ def test_each_rule_names_its_source() -> None:
 
 
 def _awkward() -> ir.Program:
-    """Return a program whose names are keywords, builtins and each other's, and very long."""
+    """Return a program with names that are keywords, builtins, duplicates, or very long."""
     source = SourceFile("/some/where/awkward.deros", "x" * 300)
     span = Span(source, 0, 300)
     kind = InterfaceType("std_msgs", "msg", "Float64")
@@ -181,7 +181,7 @@ def _awkward() -> ir.Program:
 
 
 def test_names_do_not_collide() -> None:
-    """Keywords, builtins and equal names get identifiers of their own, and the monitor runs."""
+    """Keywords, builtins and equal names get unique identifiers, and the monitor runs."""
     program = _awkward()
     view = monitor_view(program)
     assert len(set(view.slots)) == len(view.slots)
@@ -198,8 +198,8 @@ def test_names_do_not_collide() -> None:
 
 
 @pytest.mark.parametrize("present", [1.0, None])
-def test_absent_element_is_given_as_nan(present: float | None) -> None:
-    """Where a parameter's path has an index, the caller passes NaN for "no such element"."""
+def test_missing_element_is_passed_as_nan(present: float | None) -> None:
+    """If the path of a parameter has an index, NaN means that the element does not exist."""
     case = next(each for each in timelines.ALL if each.name == "element_of_an_array")
     program = case.program()
     (handler,) = monitor_view(program).handlers
@@ -210,8 +210,8 @@ def test_absent_element_is_given_as_nan(present: float | None) -> None:
 
 
 @pytest.mark.parametrize("function", ["count", "min"])
-def test_absent_array_is_given_as_nan(function: str) -> None:
-    """So is an array in an element that is not there: the input is unknown then, like any other."""
+def test_missing_array_is_passed_as_nan(function: str) -> None:
+    """An array in a missing element makes the input unknown, too."""
     rules = f"""use "robot.system" import Robot
 action stop publishes true on /stop : std_msgs.Bool latched;
 input ranges = topic /scan.ranges timeout 1 sec
@@ -236,8 +236,8 @@ if e.fast or e.on then { stop; };
 """
 
 
-def test_message_that_repeats_is_not_judged() -> None:
-    """Where nothing new is said no rule is evaluated; the timeout starts anew all the same."""
+def test_repeated_message_is_not_evaluated() -> None:
+    """Without new values no rule is evaluated, but the timeout restarts."""
     text = render_monitor(timelines.program(REPEATED))
     module: dict[str, Any] = {}
     exec(text.replace("Evaluate the rules on", 'Evaluate"""; JUDGED.append(t); """'), module)
@@ -251,8 +251,8 @@ def test_message_that_repeats_is_not_judged() -> None:
     assert monitor.next_deadline == 10**9 + 7
 
 
-def test_rules_of_behaviours() -> None:
-    """A monitor says which rules the condition of each behaviour names."""
+def test_rules_of_behaviours_are_listed() -> None:
+    """A monitor lists the rules in the condition of each behaviour."""
     module: dict[str, Any] = {}
     exec(render_monitor(timelines.program(EVERYTHING)), module)
     assert module["Monitor"].rules_of is module["RULES_OF"]

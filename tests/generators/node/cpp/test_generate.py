@@ -1,4 +1,4 @@
-"""What the C++ target refuses, and how it turns single constructs into rclcpp."""
+"""The C++ target: rejected nodes, and translation of single constructs to rclcpp."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def base_for(sections: str) -> str:
     return " ".join(files["a_package/src/a_node_base.cpp"].text.split())
 
 
-# Refusals -----------------------------------------------------------------------------------------
+# Rejected nodes -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -39,8 +39,8 @@ def base_for(sections: str) -> str:
         ("parameters name a__b : double = 1.0\nname a_b : double = 1.0", "a_b"),
     ],
 )
-def test_names_that_differ_in_underscores_collide(sections: str, name: str) -> None:
-    """C++ reserves many names with underscores: none stays at either end, one of several within."""
+def test_names_that_differ_only_in_underscores_collide(sections: str, name: str) -> None:
+    """C++ reserves many names with underscores: leading, trailing and repeated ones are dropped."""
     code, message, line = refusal(generate, f"node a : b {sections}")
     assert (code, line) == ("DRS401", 2)
     assert repr(name) in message
@@ -54,8 +54,10 @@ def test_names_that_differ_in_underscores_collide(sections: str, name: str) -> N
         ("a_b", "aB", "'AB' in the namespace b"),
     ],
 )
-def test_nodes_of_one_package_collide(name: str, other: str, within: str, tmp_path: Path) -> None:
-    """Two nodes have neither a file nor a class in common."""
+def test_nodes_of_one_package_must_not_collide(
+    name: str, other: str, within: str, tmp_path: Path
+) -> None:
+    """Two nodes share neither a file nor a class."""
     (tmp_path / "own.rnd").write_text(f"node {name} : b")
     (tmp_path / "other.rnd").write_text(f"node {other} : b")
     context = Context(InterfaceStore(), Repository())
@@ -66,8 +68,8 @@ def test_nodes_of_one_package_collide(name: str, other: str, within: str, tmp_pa
 
 
 @pytest.mark.parametrize("package", ["namespace", "std"])
-def test_a_package_must_be_a_namespace(package: str) -> None:
-    """A package named by a C++ keyword, or as the standard library, cannot hold the class."""
+def test_package_name_must_be_a_valid_namespace(package: str) -> None:
+    """A C++ keyword or the name of the standard library cannot contain the class."""
     assert refusal(generate, f"node a\n: {package}")[::2] == ("DRS402", 2)
 
 
@@ -90,8 +92,8 @@ def test_a_package_must_be_a_namespace(package: str) -> None:
         ),
     ],
 )
-def test_qos_is_as_stated(qos: str, expression: str) -> None:
-    """Presets, policies and both together become the rclcpp profile they mean."""
+def test_qos_is_translated_as_stated(qos: str, expression: str) -> None:
+    """Presets, policies and combinations become the matching rclcpp profile."""
     text = base_for(f"publishes topic x : std_msgs.Bool {qos}").replace("( ", "(")
     assert (
         f'create_publisher<std_msgs::msg::Bool>("x", {expression}, report.publisher("x"));' in text
@@ -134,16 +136,16 @@ def test_defaults_have_the_declared_type(declaration: str, declared: str, field:
         ("[-1e30, 1e30]", ("std::numeric_limits<int64_t>::min()", "INT64_C(9223372036854775807)")),
     ],
 )
-def test_open_ends_of_integers_are_exact(interval: str, bounds: tuple[str, str]) -> None:
-    """The closed range of a descriptor holds exactly the integers of the interval."""
+def test_open_integer_bounds_are_exact(interval: str, bounds: tuple[str, str]) -> None:
+    """The closed range of a descriptor contains exactly the integers of the interval."""
     text = base_for(f"parameters name x : int = 5 in {interval}")
     assert f"integer_range[0].from_value = {bounds[0]};" in text
     assert f"integer_range[0].to_value = {bounds[1]};" in text
     assert "violated" not in text
 
 
-def test_a_topic_named_by_a_parameter_is_fixed_at_start() -> None:
-    """The port reads its parameter, whose change at run time is refused as read-only."""
+def test_topic_parameter_is_read_only() -> None:
+    """The port reads its parameter at the start; later changes are rejected."""
     text = base_for('parameters name t : string = "/a" subscribes topic x : std_msgs.Bool via t')
     assert 'parameters_->t.empty() ? "x" : parameters_->t, 10,' in text
     assert (
@@ -163,14 +165,14 @@ def test_a_topic_named_by_a_parameter_is_fixed_at_start() -> None:
         ("IMUData2D", "imu_data2_d"),
     ],
 )
-def test_headers_are_named_as_rosidl_names_them(name: str, header: str) -> None:
-    """The header of a type's name in capitals is found by the rule of the interface generators."""
+def test_header_names_follow_rosidl(name: str, header: str) -> None:
+    """A type name in mixed case becomes a header name by the rule of the interface generators."""
     files = files_of(generate, f"node a : b publishes topic x : some_msgs.{name}")
     assert f'#include "some_msgs/msg/{header}.hpp"' in files["b/include/b/a_base.hpp"].text
 
 
-def test_headers_of_the_wheels_are_found() -> None:
-    """Every type of the common message packages has its header where the rule says."""
+def test_headers_of_common_packages_exist() -> None:
+    """Every type of the common message packages has its header at the computed path."""
     from deros.generators.text.cpp import cpp_header
     from deros.interfaces.types import InterfaceType
     from tests.support.cpp import message_flags
@@ -186,8 +188,8 @@ def test_headers_of_the_wheels_are_found() -> None:
 # Nodes of other generators ------------------------------------------------------------------------
 
 
-def test_a_provided_node_is_opened_by_its_class() -> None:
-    """The caller's sources are built, no file is the user's, and ports open on demand."""
+def test_external_node_is_constructed_by_its_class() -> None:
+    """Its sources are built, no file is a user file, and ports are opened on demand."""
     model = node_of(
         "node guard_cpp : b parameters name x : int = 1 subscribes topic y : std_msgs.Bool "
         "services service z : std_srvs.Trigger"
@@ -216,8 +218,8 @@ def test_a_provided_node_is_opened_by_its_class() -> None:
     assert "executable='guard_cpp'" in files["b/launch/guard_cpp.launch.py"].text
 
 
-def test_a_provided_node_may_bring_its_program() -> None:
-    """With a main of the caller's there is none of ours."""
+def test_external_node_may_have_its_own_main() -> None:
+    """No other main is generated for it."""
     model = node_of("node guard : b")
     provided = Provided(("src/guard.cpp",), main=("src/own_main.cpp",))
     files = package_files([model], {}, {"guard": provided})
@@ -230,8 +232,8 @@ def test_a_provided_node_may_bring_its_program() -> None:
 # Any text -----------------------------------------------------------------------------------------
 
 
-def test_long_names_do_not_break_the_linters(tmp_path: Path) -> None:
-    """Names as long as ROS 2 allows, and hostile descriptions, still give a clean package."""
+def test_long_names_pass_the_linters(tmp_path: Path) -> None:
+    """Names of maximum length and hostile descriptions still give a clean package."""
     long = "n" * 120
     text = (
         f'node talker : chat "Say \\\\d \\"\\"\\" and more, {"very " * 40}often TODO ??/"\n'
@@ -248,7 +250,7 @@ def test_long_names_do_not_break_the_linters(tmp_path: Path) -> None:
 @settings(max_examples=scaled(25))
 @given(description=st.text(max_size=200), default=st.text(max_size=40))
 def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
-    """Whatever a text holds, XML parses, and the code beside comments and literals stays."""
+    """Whatever a text contains, XML parses, and code outside comments and literals is unchanged."""
     model = node_of('node a : b parameters name x : string = "" publishes topic y : std_msgs.Bool')
     (parameter,), (port,) = model.parameters, model.ports
 
@@ -268,7 +270,7 @@ def test_any_text_gives_well_formed_files(description: str, default: str) -> Non
 
 
 def _code(text: str) -> str:
-    """Return the text without comments, white space, and what stands in literals."""
+    """Return the text without comments, white space and literals."""
     without = re.sub(r"^ *//.*$|  // NOLINT.*$", "", text, flags=re.MULTILINE)
     literals = re.sub(r'"(?:[^"\\\n]|\\.)*"', "TEXT", without)
     literals = re.sub(r"std::string\(TEXT, \d+\)", "TEXT", literals)

@@ -1,4 +1,4 @@
-"""The generated packages, compared with golden files and held against ament's linters."""
+"""The generated packages, compared with golden files and checked with ament's linters."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ COPYRIGHT = {"copyright": "2026 Jane Doe", "maintainer": "Jane Doe <jane@example
 
 
 def files_of(name: str, options: dict[str, str] | None = None) -> Files:
-    """Return what is generated for one of the models."""
+    """Return the generated files of one of the models."""
     context = Context(InterfaceStore(), Repository())
     loaded = context.repository.load(MODELS[name])
     assert loaded.diagnostics == ()
@@ -42,13 +42,13 @@ def files_of(name: str, options: dict[str, str] | None = None) -> Files:
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_the_package_is_as_kept(name: str, golden: Golden) -> None:
-    """Every generated file has the text that was reviewed."""
+def test_package_matches_golden(name: str, golden: Golden) -> None:
+    """Every generated file matches the reviewed text."""
     golden.check(f"rosnode_cpp/{name}", files_of(name))
 
 
-def test_the_order_of_a_packages_nodes_is_of_no_matter() -> None:
-    """Either node of a package leads to the same package, both nodes included."""
+def test_package_is_independent_of_the_node_order() -> None:
+    """Either node of a package leads to the same package with both nodes."""
     context = Context(InterfaceStore(), Repository())
     listener = context.repository.load(SHARED / "listener.rnd").model
     assert isinstance(listener, NodeType)
@@ -59,7 +59,7 @@ def test_the_order_of_a_packages_nodes_is_of_no_matter() -> None:
 
 
 def test_generation_is_deterministic() -> None:
-    """Another interpreter, with other hashes, gives the same text to the byte."""
+    """Another interpreter, with other hashes, generates the same bytes."""
     script = (
         "import sys; sys.path.insert(0, '.');"
         "from deros.generators.builtin import rosnode_cpp as g;"
@@ -82,8 +82,8 @@ def test_generation_is_deterministic() -> None:
     assert str(SHARED).encode() not in outputs.pop()
 
 
-def test_the_users_files_are_the_users() -> None:
-    """Exactly the manifest, and header and source of the node's own class, are the user's."""
+def test_user_files_are_manifest_header_and_source() -> None:
+    """All other files belong to the generator."""
     files = files_of("odometry_node")
     users = [path for path, file in files.items() if file.owner is Owner.USER]
     assert users == [
@@ -94,8 +94,8 @@ def test_the_users_files_are_the_users() -> None:
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_the_users_class_fills_in_every_handler(name: str) -> None:
-    """The user's class overrides each pure virtual function, with the same parameters."""
+def test_user_class_overrides_every_handler(name: str) -> None:
+    """It overrides each pure virtual function with the same parameters."""
     files = files_of(name)
     for path in (p for p in files if p.endswith("_base.hpp")):
         user = files[path.replace("_base.hpp", ".hpp")].text
@@ -108,8 +108,10 @@ def test_the_users_class_fills_in_every_handler(name: str) -> None:
 
 @pytest.mark.parametrize("options", [{}, COPYRIGHT], ids=["plain", "copyright"])
 @pytest.mark.parametrize("name", MODELS)
-def test_ament_has_nothing_to_say(name: str, options: dict[str, str], tmp_path: Path) -> None:
-    """The linters of ament for C++ and Python find nothing in any file."""
+def test_package_passes_the_ament_linters(
+    name: str, options: dict[str, str], tmp_path: Path
+) -> None:
+    """The C++ and Python linters of ament find nothing in any file."""
     write(files_of(name, options), tmp_path)
     (package,) = tmp_path.iterdir()
     assert_cpp_lint_clean(package)
@@ -118,8 +120,8 @@ def test_ament_has_nothing_to_say(name: str, options: dict[str, str], tmp_path: 
 
 @needs_rclcpp
 @pytest.mark.skipif(not has_package("ament_lint_auto"), reason="no ament_lint_auto")
-def test_the_packages_own_tests_pass(tmp_path: Path) -> None:
-    """What ``colcon test`` runs, XML, CMake and copyright included, passes."""
+def test_tests_of_the_package_pass(tmp_path: Path) -> None:
+    """``colcon test`` passes, with the XML, CMake and copyright linters."""
     for name in ("picky", "valve"):
         write(files_of(name, COPYRIGHT), tmp_path)
     colcon_build(tmp_path, testing=True)
@@ -128,8 +130,8 @@ def test_the_packages_own_tests_pass(tmp_path: Path) -> None:
 # Other files --------------------------------------------------------------------------------------
 
 
-def test_package_xml_names_what_is_needed() -> None:
-    """The manifest is of format 3, and depends on each message package and the client library."""
+def test_package_xml_lists_all_dependencies() -> None:
+    """The manifest has format 3, and depends on each message package and the client library."""
     root = ElementTree.fromstring(
         files_of("odometry_node")["differential_odometry/package.xml"].text
     )
@@ -143,14 +145,14 @@ def test_package_xml_names_what_is_needed() -> None:
     assert [element.text for element in root.findall("license")] == ["Apache-2.0"]
 
 
-def test_a_managed_node_needs_its_library() -> None:
+def test_lifecycle_and_action_nodes_link_their_libraries() -> None:
     """A lifecycle node is linked with rclcpp_lifecycle, an action with rclcpp_action."""
     assert "rclcpp_lifecycle::rclcpp_lifecycle" in files_of("valve")["process/CMakeLists.txt"].text
     assert "rclcpp_action::rclcpp_action" in files_of("counter")["counting/CMakeLists.txt"].text
 
 
-def test_parameter_and_launch_files_are_those_of_the_python_target() -> None:
-    """Either language of the node is started the same way."""
+def test_parameter_and_launch_files_match_the_python_target() -> None:
+    """The node is started the same way in either language."""
     from deros.generators.node.python.generate import generate as generate_python
 
     context = Context(InterfaceStore(), Repository())

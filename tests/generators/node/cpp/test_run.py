@@ -1,4 +1,4 @@
-"""What only nodes in C++ do: their ends, their parameters beside Python's, and components."""
+"""Features of C++ nodes only: termination, parameters compared with Python, and components."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ pytestmark = [pytest.mark.ros, needs_rclcpp]
 
 @pytest.fixture(scope="module")
 def packages(tmp_path_factory: pytest.TempPathFactory) -> CppPackages:
-    """Give the built packages."""
+    """Return the built packages."""
     return CppPackages(tmp_path_factory.mktemp("workspace"))
 
 
 @pytest.fixture
 def start(packages: CppPackages, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs a program of the packages."""
+    """Return a function that starts a program of the packages."""
     return packages.starting(ros_env)
 
 
@@ -41,7 +41,7 @@ def start(packages: CppPackages, ros_env: dict[str, str]) -> Start:
         ("fussy", "picky", PICKY),
     ],
 )
-def test_parameters_are_those_of_the_python_node(
+def test_parameters_match_the_python_node(
     package: str,
     node: str,
     model: Path,
@@ -50,7 +50,7 @@ def test_parameters_are_those_of_the_python_node(
     ros_env: dict[str, str],
     tmp_path: Path,
 ) -> None:
-    """Names, values and descriptors that can be asked for do not tell the two targets apart."""
+    """Names, values and descriptors are the same for both targets."""
     loaded, context = model_of(model)
     write(generate_python(loaded, context, {}), tmp_path)
     script = f"from {package}.{node} import main; main()"
@@ -69,7 +69,7 @@ def test_parameters_are_those_of_the_python_node(
 
 
 def _told(peer: Peer, node: str, names: list[str]) -> dict[str, Any]:
-    """Return descriptor and value of each parameter, as the services of a node tell them."""
+    """Return descriptor and value of each parameter from the services of a node."""
     from rcl_interfaces.srv import DescribeParameters, GetParameters
 
     peer.until(lambda: node in peer.node.get_node_names())
@@ -84,27 +84,27 @@ def _told(peer: Peer, node: str, names: list[str]) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("value", [float("inf"), float("-inf"), float("nan"), 1.001])
-def test_no_number_passes_a_range(value: float, start: Start, ros_peer: Peer) -> None:
-    """What rclcpp's own check of a range lets pass, infinity and NaN, is refused all the same."""
+def test_values_outside_a_range_are_rejected(value: float, start: Start, ros_peer: Peer) -> None:
+    """Infinity and NaN, which rclcpp's own check accepts, are rejected too."""
     with start("process", "valve"):
         ros_peer.until(lambda: "valve" in ros_peer.node.get_node_names())
         (result,) = set_parameter(ros_peer, "valve", opening=value)
     assert not result.successful
 
 
-# Ends ---------------------------------------------------------------------------------------------
+# Termination --------------------------------------------------------------------------------------
 
 
-def test_arguments_that_ros_cannot_read_are_refused(start: Start) -> None:
-    """A remapping with no meaning ends the program with a reason, not with an abort."""
+def test_invalid_ros_arguments_are_rejected(start: Start) -> None:
+    """An invalid remapping ends the program with a reason, without an abort."""
     with start("chat", "talker", "--ros-args", "-r", "nonsense") as node:
         output, _ = node.communicate(timeout=LIMIT)
     assert node.returncode == 1, output
     assert "nonsense" in output
 
 
-def test_what_a_handler_throws_ends_the_program(start: Start, ros_peer: Peer) -> None:
-    """An exception that nobody catches is told, and the program fails without an abort."""
+def test_uncaught_exception_ends_the_program(start: Start, ros_peer: Peer) -> None:
+    """The exception is printed, and the program fails without an abort."""
     from std_msgs.msg import String
 
     with start("chat", "listener") as process:

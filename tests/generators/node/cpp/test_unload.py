@@ -1,4 +1,4 @@
-"""A component is unloaded amid its goals: none of them uses the node once it is freed."""
+"""Unloading a component with running goals: none uses the node after it is freed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TIMES = 10
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give an install folder with a node that notices freed memory."""
+    """Return an install folder with a node that detects use of freed memory."""
     source = cpp_breaker(tmp_path_factory.mktemp("workspace"))
     instrument(source / "breaking", "breaker", SOURCES)
     return colcon_build(source)
@@ -33,7 +33,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_goals_of_an_unloaded_node_are_aborted(
     kind: str, installed: Path, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:
-    """The node is destroyed when its goals have returned, and only then."""
+    """The node is destroyed only after its goals have returned."""
     from rclpy.action.client import ActionClient
     from test_msgs.action import Fibonacci
 

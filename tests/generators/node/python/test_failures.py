@@ -1,4 +1,4 @@
-"""A user's code that fails, goals in any number, and the end amid goals, in either language."""
+"""Failing user code, many goals, and termination with running goals, in either language."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ ORDINARY = 5
     ],
 )
 def breaker(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Breaker:
-    """Give the built package, in one language after the other."""
+    """Return the built package, in each language."""
     built: Breaker = request.param(tmp_path_factory.mktemp("workspace"))
     return built
 
 
 @pytest.fixture
 def start(breaker: Breaker, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs the node with parameters."""
+    """Return a function that runs the node with parameters."""
 
     def run(**parameters: str) -> AbstractContextManager[subprocess.Popen[str]]:
         command, env = breaker.command(ros_env)
@@ -50,10 +50,10 @@ def start(breaker: Breaker, ros_env: dict[str, str]) -> Start:
 
 
 class Client:
-    """The test's end of the node."""
+    """The test's client of the node."""
 
     def __init__(self, peer: Peer) -> None:
-        """Open the ports; the node may come later."""
+        """Open the ports; the node may start later."""
         from rclpy.action.client import ActionClient
         from std_msgs.msg import Empty
         from std_srvs.srv import Trigger
@@ -70,17 +70,17 @@ class Client:
         self.echoes += 1
 
     def poke(self) -> None:
-        """Send a message once the node is there."""
+        """Send a message once the node is discovered."""
         self.peer.until(self._poke.get_subscription_count)
         self._poke.publish(self._empty())
 
     def ask(self) -> Any:
-        """Send a request once the node is there, and return the future."""
+        """Send a request once the node is discovered, and return the future."""
         self.peer.until(self._ask.service_is_ready)
         return self._ask.call_async(self._trigger.Request())
 
     def send_goal(self, order: int = ORDINARY) -> Any:
-        """Send a goal once the node is there, and return the goal's handle."""
+        """Send a goal once the node is discovered, and return the goal handle."""
         self.peer.until(self.actions.server_is_ready)
         future = self.actions.send_goal_async(self._fibonacci.Goal(order=order))
         self.peer.until(future.done)
@@ -89,21 +89,21 @@ class Client:
 
 @pytest.fixture
 def client(ros_peer: Peer) -> Iterator[Client]:
-    """Give the test's end of the node."""
+    """Return the test's client of the node."""
     opened = Client(ros_peer)
     yield opened
     opened.actions.destroy()
 
 
-# Code that fails ----------------------------------------------------------------------------------
+# Failing code -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("place", PLACES)
-def test_code_that_fails_ends_the_program_with_the_reason(
+def test_failing_user_code_ends_the_program_with_the_reason(
     place: str, way: str, breaker: Breaker, start: Start, client: Client
 ) -> None:
-    """The exit code is that of a failure, and the reason is printed; a goal alone is aborted."""
+    """The exit code is that of a failure, and the reason is printed; a goal is only aborted."""
     from action_msgs.msg import GoalStatus
 
     given = "" if place == "parameters" else place
@@ -143,7 +143,7 @@ def _goal() -> Any:
 
 
 def _set_at_once(peer: Peer, place: str) -> None:
-    """Set the place without waiting for the answer, which does not come."""
+    """Set the place without waiting for the response, which does not arrive."""
     from rcl_interfaces.srv import SetParameters
     from rclpy.parameter import Parameter
 
@@ -155,10 +155,10 @@ def _set_at_once(peer: Peer, place: str) -> None:
 
 @needs_rclcpp
 @pytest.mark.parametrize("way", WAYS)
-def test_a_destructor_that_fails_ends_the_program_with_the_reason(
+def test_failing_destructor_ends_the_program_with_the_reason(
     way: str, breaker: Breaker, start: Start, client: Client
 ) -> None:
-    """What a destructor throws cannot be caught, but the reason is printed."""
+    """An exception from a destructor cannot be caught, but the reason is printed."""
     if not isinstance(breaker, CppBreaker):
         pytest.skip("Python has no destructors")
     with start(place="destructor", way=way) as process:
@@ -170,8 +170,8 @@ def test_a_destructor_that_fails_ends_the_program_with_the_reason(
 # Goals --------------------------------------------------------------------------------------------
 
 
-def test_goals_delay_neither_messages_nor_cancels(start: Start, client: Client) -> None:
-    """With as many goals as may be, messages, parameters and cancels are served at once."""
+def test_goals_delay_neither_messages_nor_cancel_requests(start: Start, client: Client) -> None:
+    """Even with the maximum number of goals, all other requests are served at once."""
     from action_msgs.msg import GoalStatus
 
     peer = client.peer
@@ -189,7 +189,7 @@ def test_goals_delay_neither_messages_nor_cancels(start: Start, client: Client) 
         peer.until(result.done)
         assert time.monotonic() - began < LIMIT / 3
         assert result.result().status == GoalStatus.STATUS_CANCELED
-        # The thread of the goal ends after its result is out.
+        # The thread of the goal ends after its result is published.
         peer.until(lambda: client.send_goal().accepted)
         code, output = stop(process, signal.SIGINT)
     assert code == 0, output
@@ -198,10 +198,10 @@ def test_goals_delay_neither_messages_nor_cancels(start: Start, client: Client) 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("order", [ORDINARY, USUAL])
-def test_the_end_aborts_goals(
+def test_termination_aborts_goals(
     order: int, number: signal.Signals, start: Start, client: Client
 ) -> None:
-    """A signal amid goals ends the node without an error, and clients learn of the abort."""
+    """A signal during goals ends the node without an error, and clients learn of the abort."""
     from action_msgs.msg import GoalStatus
 
     with start() as process:
@@ -218,8 +218,8 @@ def test_the_end_aborts_goals(
         assert sign not in output
 
 
-def test_a_goal_that_does_not_return_is_left_behind(start: Start, client: Client) -> None:
-    """The program ends all the same, and says why it does so in the middle of something."""
+def test_goal_that_does_not_return_is_abandoned(start: Start, client: Client) -> None:
+    """The program ends anyway, and reports the running goal."""
     with start() as process:
         assert client.send_goal(STUBBORN).accepted
         code, output = stop(process, signal.SIGINT)

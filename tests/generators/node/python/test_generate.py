@@ -1,4 +1,4 @@
-"""What the Python target refuses, and how it turns single constructs into rclpy."""
+"""The Python target: rejected nodes, and translation of single constructs to rclpy."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ def base_for(sections: str) -> str:
     return files["a_package/a_package/a_node_base.py"].text
 
 
-# Refusals -----------------------------------------------------------------------------------------
+# Rejected nodes -----------------------------------------------------------------------------------
 
 
-def test_modules_of_one_package_collide(tmp_path: Path) -> None:
-    """A node cannot be called as another node's base module is."""
+def test_modules_of_one_package_must_not_collide(tmp_path: Path) -> None:
+    """A node cannot have the name of another node's base module."""
     (tmp_path / "a.rnd").write_text("node a : b")
     (tmp_path / "a_base.rnd").write_text("node a_base : b")
     context = Context(InterfaceStore(), Repository())
@@ -41,7 +41,7 @@ def test_modules_of_one_package_collide(tmp_path: Path) -> None:
         generate(model, context, {})
 
 
-def test_a_package_must_be_a_module() -> None:
+def test_package_name_must_be_a_valid_module() -> None:
     """A package named by a Python keyword cannot be imported."""
     assert refusal(generate, "node a\n: class")[::2] == ("DRS402", 2)
 
@@ -68,8 +68,8 @@ def test_a_package_must_be_a_module() -> None:
         ),
     ],
 )
-def test_qos_is_as_stated(qos: str, expression: str) -> None:
-    """Presets, policies and both together become the rclpy profile they mean."""
+def test_qos_is_translated_as_stated(qos: str, expression: str) -> None:
+    """Presets, policies and combinations become the matching rclpy profile."""
     text = base_for(f"publishes topic x : std_msgs.Bool {qos}")
     compact = "".join(text.split()).replace(",)", ")")
     report = "event_callbacks=report.of_publishers"
@@ -104,8 +104,8 @@ def test_defaults_have_the_declared_type(declaration: str, declared: str) -> Non
         ("[-1e30, 1e30]", (-(2**63), 2**63 - 1)),
     ],
 )
-def test_open_ends_of_integers_are_exact(interval: str, bounds: tuple[int, int]) -> None:
-    """The closed range of a descriptor holds exactly the integers of the interval."""
+def test_open_integer_bounds_are_exact(interval: str, bounds: tuple[int, int]) -> None:
+    """The closed range of a descriptor contains exactly the integers of the interval."""
     text = base_for(f"parameters name x : int = 5 in {interval}")
     found = re.search(r"IntegerRange\(\s*from_value=(\S+),\s*to_value=([-\d]+)", text)
     assert found is not None
@@ -113,15 +113,15 @@ def test_open_ends_of_integers_are_exact(interval: str, bounds: tuple[int, int])
     assert "_CONSTRAINTS" not in text
 
 
-def test_a_topic_named_by_a_parameter_is_fixed_at_start() -> None:
-    """The port reads its parameter, whose change at run time is refused as read-only."""
+def test_topic_parameter_is_read_only() -> None:
+    """The port reads its parameter at the start; later changes are rejected."""
     text = base_for('parameters name t : string = "/a" subscribes topic x : std_msgs.Bool via t')
     assert "Bool, self.parameters.t or 'x', self.on_x, 10, " in " ".join(text.split())
     assert "self.declare_parameter('t', '/a', ParameterDescriptor(read_only=True))" in text
 
 
-def test_message_types_of_one_name_are_told_apart() -> None:
-    """Two packages may have one type name, and a type may be called as the node's class is."""
+def test_message_types_of_one_name_are_distinguished() -> None:
+    """Two packages may have one type name, and a type may be named like the node's class."""
     text = base_for(
         "publishes topic x : a_msgs.State topic y : b_msgs.State topic z : c_msgs.ANode"
     )
@@ -130,8 +130,8 @@ def test_message_types_of_one_name_are_told_apart() -> None:
     assert "from c_msgs.msg import ANode as CMsgsANode" in text
 
 
-def test_no_generated_name_hides_one_of_rclpy() -> None:
-    """No attribute of rclpy's nodes starts like the methods that ports and timers become."""
+def test_generated_names_do_not_hide_names_of_rclpy() -> None:
+    """No attribute of rclpy's nodes has a prefix of the generated methods."""
     from rclpy.lifecycle import LifecycleNode
 
     prefixes = (
@@ -163,7 +163,7 @@ def test_no_generated_name_hides_one_of_rclpy() -> None:
     ],
 )
 def test_ros_reads_every_parameter_file(parameters: str, tmp_path: Path) -> None:
-    """The parser of ROS 2 takes the file, even when it holds no value."""
+    """The parser of ROS 2 accepts the file, even without a value."""
     import rclpy
     from rclpy.context import Context as RosContext
 
@@ -180,7 +180,7 @@ def test_ros_reads_every_parameter_file(parameters: str, tmp_path: Path) -> None
 @settings(max_examples=scaled(25))
 @given(description=st.text(max_size=200), default=st.text(max_size=40))
 def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
-    """Whatever a text holds, Python compiles, XML parses, and YAML gives the default back."""
+    """Whatever a text contains, Python compiles, XML parses, and YAML gives the default back."""
     model = node_of('node a : b parameters name x : string = "" publishes topic y : std_msgs.Bool')
     (parameter,), (port,) = model.parameters, model.ports
     model = replace(

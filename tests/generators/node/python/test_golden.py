@@ -1,4 +1,4 @@
-"""The generated packages, compared with golden files and held against ament's linters."""
+"""The generated packages, compared with golden files and checked with ament's linters."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ COPYRIGHT = {"copyright": "2026 Jane Doe", "maintainer": "Jane Doe <jane@example
 
 
 def files_of(name: str, options: dict[str, str] | None = None) -> Files:
-    """Return what is generated for one of the models."""
+    """Return the generated files of one of the models."""
     context = Context(InterfaceStore(), Repository())
     loaded = context.repository.load(MODELS / f"{name}.rnd")
     assert loaded.diagnostics == ()
@@ -39,7 +39,7 @@ def files_of(name: str, options: dict[str, str] | None = None) -> Files:
 
 @pytest.fixture(scope="module")
 def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give a folder with the package of every model."""
+    """Create a folder with the package of every model."""
     folder = tmp_path_factory.mktemp("packages")
     for name in NAMES:
         write(files_of(name), folder)
@@ -47,13 +47,13 @@ def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_package_is_as_kept(name: str, golden: Golden) -> None:
-    """Every generated file has the text that was reviewed."""
+def test_package_matches_golden(name: str, golden: Golden) -> None:
+    """Every generated file matches the reviewed text."""
     golden.check(f"rosnode_python/{name}", files_of(name))
 
 
-def test_the_order_of_a_packages_nodes_is_of_no_matter() -> None:
-    """Either node of a package leads to the same package, both nodes included."""
+def test_package_is_independent_of_the_node_order() -> None:
+    """Either node of a package leads to the same package with both nodes."""
     assert files_of("talker") == files_of("listener")
     setup = files_of("talker")["chat/setup.py"].text
     assert "'listener = chat.listener:main'" in setup
@@ -61,7 +61,7 @@ def test_the_order_of_a_packages_nodes_is_of_no_matter() -> None:
 
 
 def test_generation_is_deterministic() -> None:
-    """Another interpreter, with other hashes, gives the same text to the byte."""
+    """Another interpreter, with other hashes, generates the same bytes."""
     script = (
         "import sys; sys.path.insert(0, '.');"
         "from deros.generators.builtin import rosnode_python as g;"
@@ -84,8 +84,8 @@ def test_generation_is_deterministic() -> None:
     assert str(MODELS).encode() not in outputs.pop()
 
 
-def test_the_users_file_is_the_users() -> None:
-    """Exactly the manifest and the node's own module are left to the user."""
+def test_user_files_are_manifest_and_node_module() -> None:
+    """All other files belong to the generator."""
     files = files_of("odometry_node")
     users = [path for path, file in files.items() if file.owner is Owner.USER]
     assert sorted(users) == [
@@ -94,8 +94,8 @@ def test_the_users_file_is_the_users() -> None:
     ]
 
 
-def test_the_users_class_fills_in_every_handler(packages: Path) -> None:
-    """The user's file has a method for each abstract one, with the same signature."""
+def test_user_class_overrides_every_handler(packages: Path) -> None:
+    """The user file has a method for each abstract one, with the same signature."""
     for base in packages.glob("*/*/*_base.py"):
         user = base.with_name(base.name.replace("_base.py", ".py"))
         abstract = _methods(
@@ -117,7 +117,7 @@ def _methods(path: Path, wanted: Callable[[ast.FunctionDef], bool]) -> dict[str,
 
 @pytest.mark.parametrize("options", [{}, COPYRIGHT], ids=["plain", "copyright"])
 @pytest.mark.parametrize("name", NAMES)
-def test_ament_has_nothing_to_say(
+def test_package_passes_the_ament_linters(
     name: str, options: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """flake8 and pep257 with ament's settings find nothing in any file."""
@@ -128,10 +128,8 @@ def test_ament_has_nothing_to_say(
     assert ament_pep257(argv=["."]) == 0
 
 
-def test_long_names_do_not_break_the_linters(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Names as long as ROS 2 allows, and hostile descriptions, still give a clean package."""
+def test_long_names_pass_the_linters(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Names of maximum length and hostile descriptions still give a clean package."""
     long = "n" * 200
     text = (
         f'node talker : chat "Say \\\\d \\"\\"\\" and more, {"very " * 40}often"\n'
@@ -152,7 +150,7 @@ def test_long_names_do_not_break_the_linters(
 
 
 def test_types_are_consistent(packages: Path) -> None:
-    """Mypy accepts the generated code, as ament_mypy would run it."""
+    """The generated code passes mypy with the settings of ament_mypy."""
     modules = sorted(str(p) for p in packages.glob("*/*/*.py") if p.parent.name == p.parts[-3])
     options = ["--ignore-missing-imports", "--config-file=", "--check-untyped-defs"]
     command = [sys.executable, "-m", "mypy", *options, *modules]
@@ -166,8 +164,8 @@ def test_types_are_consistent(packages: Path) -> None:
 # Other files --------------------------------------------------------------------------------------
 
 
-def test_package_xml_names_what_is_needed(packages: Path) -> None:
-    """The manifest is well-formed, of format 3, and depends on each message package."""
+def test_package_xml_lists_all_dependencies(packages: Path) -> None:
+    """The manifest is well-formed, has format 3, and depends on each message package."""
     root = ElementTree.parse(packages / "differential_odometry/package.xml").getroot()
     assert root.get("format") == "3"
     depends = {element.text for element in root.findall("exec_depend")}
@@ -175,8 +173,8 @@ def test_package_xml_names_what_is_needed(packages: Path) -> None:
     assert [element.text for element in root.findall("license")] == ["Apache-2.0"]
 
 
-def test_the_parameter_file_holds_the_defaults(packages: Path) -> None:
-    """The file is YAML that ROS 2 reads; what it cannot hold is left out."""
+def test_parameter_file_contains_the_defaults(packages: Path) -> None:
+    """It is YAML that ROS 2 reads; values that it cannot represent are omitted."""
     config: Any = yaml.safe_load(
         (packages / "differential_odometry/config/odometry_node.yaml").read_text()
     )

@@ -1,4 +1,4 @@
-"""Generated packages in either language build with colcon, and their nodes run where installed."""
+"""Generated packages in either language build with colcon, and their installed nodes run."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ pytestmark = pytest.mark.ros
 def packages(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> NodePackages:
-    """Give the built packages, in one language after the other."""
+    """Return the built packages, in each language."""
     built: NodePackages = request.param(tmp_path_factory.mktemp("workspace"))
     return built
 
 
 @pytest.fixture
 def start(packages: NodePackages, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs a program of the packages."""
+    """Return a function that starts a program of the packages."""
     return packages.starting(ros_env)
 
 
@@ -47,7 +47,7 @@ def start(packages: NodePackages, ros_env: dict[str, str]) -> Start:
 
 
 def odometry_for(peer: Peer, count: int) -> Callable[[], float]:
-    """Return a function that sends a count and waits for the position that comes back."""
+    """Return a function that sends a count and waits for the resulting position."""
     from nav_msgs.msg import Odometry
     from rclpy.duration import Duration
     from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -70,10 +70,10 @@ def odometry_for(peer: Peer, count: int) -> Callable[[], float]:
     return exchange
 
 
-def test_messages_parameters_and_the_end(
+def test_node_handles_messages_parameters_and_termination(
     packages: NodePackages, start: Start, ros_peer: Peer
 ) -> None:
-    """The node answers a message, refuses bad parameters with a reason, and ends with 0."""
+    """It answers a message, rejects invalid parameters with a reason, and ends with 0."""
     with start("differential_odometry", "odometry_node") as process:
         exchange = odometry_for(ros_peer, 3)
         assert exchange() == 3.0
@@ -109,14 +109,14 @@ UNKNOWN = "a node that is not known yet"
 
 
 def until_printed(process: Popen[str], text: str) -> str:
-    """Read what a program prints up to the line that holds a text, and return that."""
+    """Read the output of a program up to the line that contains a text, and return it."""
     while text not in (line := read_line(process)):
         assert line, f"it ended without printing {text!r}"
     return line
 
 
-def test_a_subscription_that_asks_for_more_is_told(start: Start, ros_peer: Peer) -> None:
-    """The error names topic, node and each policy; no message would ever come."""
+def test_incompatible_subscription_is_reported(start: Start, ros_peer: Peer) -> None:
+    """The error names topic, node and each policy, since no message would ever be delivered."""
     from rclpy.duration import Duration
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import String
@@ -134,8 +134,8 @@ def test_a_subscription_that_asks_for_more_is_told(start: Start, ros_peer: Peer)
     assert "Subscription" in line.partition("; ")[2]  # the deadline, in the words of each library
 
 
-def test_a_publisher_that_offers_less_is_told(start: Start, ros_peer: Peer) -> None:
-    """Of one that matches, nothing is said."""
+def test_incompatible_publisher_is_reported(start: Start, ros_peer: Peer) -> None:
+    """A matching publisher is not reported."""
     from rclpy.qos import QoSProfile, ReliabilityPolicy
     from std_msgs.msg import String
 
@@ -152,8 +152,8 @@ def test_a_publisher_that_offers_less_is_told(start: Start, ros_peer: Peer) -> N
     assert (code, "[ERROR]" in output) == (0, False), output
 
 
-def test_parameters_set_together_are_checked_together(start: Start, ros_peer: Peer) -> None:
-    """One bad value in an atomic request leaves all parameters as they were."""
+def test_atomic_parameter_request_is_checked_as_a_whole(start: Start, ros_peer: Peer) -> None:
+    """One invalid value leaves all parameters unchanged."""
     from rcl_interfaces.srv import GetParameters, SetParametersAtomically
     from rclpy.parameter import Parameter
 
@@ -173,8 +173,8 @@ def test_parameters_set_together_are_checked_together(start: Start, ros_peer: Pe
         assert (found[0].double_value, list(found[1].double_array_value)) == (1.0, [1.0, 0.1, 0.0])
 
 
-def test_descriptors_tell_what_a_parameter_is(start: Start, ros_peer: Peer) -> None:
-    """Description with unit, range and constraints can be asked for at run time."""
+def test_descriptors_describe_the_parameters(start: Start, ros_peer: Peer) -> None:
+    """Description with unit, range and constraints is available at run time."""
     from rcl_interfaces.msg import ParameterType
     from rcl_interfaces.srv import DescribeParameters
 
@@ -195,10 +195,10 @@ def test_descriptors_tell_what_a_parameter_is(start: Start, ros_peer: Peer) -> N
     assert bytes_.type == ParameterType.PARAMETER_BYTE_ARRAY
 
 
-def test_parameters_at_start_come_from_the_file(
+def test_initial_parameters_come_from_the_file(
     packages: NodePackages, start: Start, ros_peer: Peer
 ) -> None:
-    """The generated parameter file is read, and the topic's name follows its parameter."""
+    """The generated parameter file is read, and the topic name follows its parameter."""
     config = packages.share("differential_odometry") / "config/odometry_node.yaml"
     arguments = ["--ros-args", "--params-file", str(config), "-p", "imu_topic:=/other_imu"]
     with start("differential_odometry", "odometry_node", *arguments):
@@ -206,15 +206,15 @@ def test_parameters_at_start_come_from_the_file(
         assert ros_peer.node.count_subscribers("/fmInformation/imu") == 0
 
 
-def test_an_empty_topic_parameter_leaves_the_ports_own_name(start: Start, ros_peer: Peer) -> None:
-    """A port whose parameter holds no name keeps the one of the node description."""
+def test_empty_topic_parameter_keeps_the_port_name(start: Start, ros_peer: Peer) -> None:
+    """The port has the name of the node description."""
     arguments = ["--ros-args", "-p", "imu_topic:=''"]
     with start("differential_odometry", "odometry_node", *arguments):
         ros_peer.until(lambda: ros_peer.node.count_subscribers("/imu"))
 
 
 def refused_at_start(start: Start, setting: str) -> str:
-    """Return what a node prints that is given a forbidden value, and so does not start."""
+    """Return the output of a node that does not start because of an invalid value."""
     with start("differential_odometry", "odometry_node", "--ros-args", "-p", setting) as node:
         output, _ = node.communicate(timeout=LIMIT)
     assert node.returncode == 1, output
@@ -229,18 +229,20 @@ def refused_at_start(start: Start, setting: str) -> str:
         ("scale:=fast", "scale"),
     ],
 )
-def test_a_bad_value_at_start_is_refused(start: Start, setting: str, reason: str) -> None:
-    """A node that is given a forbidden value does not start, and says why."""
+def test_invalid_initial_value_prevents_the_start(start: Start, setting: str, reason: str) -> None:
+    """The node says why."""
     assert reason in refused_at_start(start, setting)
 
 
-def test_a_value_out_of_range_at_start_is_refused(packages: NodePackages, start: Start) -> None:
-    """What the client library refuses itself is told in its own words."""
+def test_initial_value_out_of_range_prevents_the_start(
+    packages: NodePackages, start: Start
+) -> None:
+    """The client library rejects it with its own message."""
     assert packages.out_of_range["scale"] in refused_at_start(start, "scale:=2.5")
 
 
-def test_a_service_is_answered_and_sigterm_ends_the_node(start: Start, ros_peer: Peer) -> None:
-    """An unfilled service handler answers with an empty response; SIGTERM ends with 0."""
+def test_service_is_answered_and_sigterm_ends_the_node(start: Start, ros_peer: Peer) -> None:
+    """An empty service handler returns an empty response; SIGTERM ends with 0."""
     from std_srvs.srv import Trigger
 
     with start("differential_odometry", "odometry_node") as process:
@@ -252,11 +254,11 @@ def test_a_service_is_answered_and_sigterm_ends_the_node(start: Start, ros_peer:
     assert output.count("handle_reset does nothing yet") == 1
 
 
-# Managed nodes, actions ---------------------------------------------------------------------------
+# Lifecycle nodes, actions -------------------------------------------------------------------------
 
 
-def test_a_managed_node_rests_until_activated(start: Start, ros_peer: Peer) -> None:
-    """Handlers and publishers of a lifecycle node work while it is active, and only then."""
+def test_lifecycle_node_is_idle_until_activated(start: Start, ros_peer: Peer) -> None:
+    """Handlers and publishers of a lifecycle node work only while it is active."""
     from lifecycle_msgs.msg import Transition
     from lifecycle_msgs.srv import ChangeState
     from std_msgs.msg import Bool
@@ -274,20 +276,20 @@ def test_a_managed_node_rests_until_activated(start: Start, ros_peer: Peer) -> N
         ros_peer.until(
             lambda: command.get_subscription_count() and ros_peer.node.count_publishers("/state")
         )
-        command.publish(Bool(data=True))  # nobody acts on this one
+        command.publish(Bool(data=True))  # has no effect while inactive
         assert change(Transition.TRANSITION_CONFIGURE)
         assert change(Transition.TRANSITION_ACTIVATE)
         command.publish(Bool(data=False))
         ros_peer.until(lambda: states)
         assert states == [False]
-        assert "on_report does nothing yet" in read_line(process)  # the timer's handler
+        assert "on_report does nothing yet" in read_line(process)  # from the handler of the timer
         assert change(Transition.TRANSITION_DEACTIVATE)
         code, output = stop(process, signal.SIGINT)
     assert (code, "Traceback" in output) == (0, False), output
 
 
-def test_nodes_of_one_package_share_it(start: Start, ros_peer: Peer) -> None:
-    """Both programs of a package run, each under its own name."""
+def test_nodes_of_one_package_run_together(start: Start, ros_peer: Peer) -> None:
+    """Both programs of a package run under their own names."""
     with start("chat", "talker"), start("chat", "listener"):
         names = ros_peer.until(
             lambda: {"talker", "listener"} <= set(ros_peer.node.get_node_names())
@@ -296,10 +298,10 @@ def test_nodes_of_one_package_share_it(start: Start, ros_peer: Peer) -> None:
 
 
 @pytest.mark.parametrize(("order", "outcome"), [(5, 0 + 1 + 2 + 3 + 4), (0, -1)])
-def test_a_goal_runs_beside_the_other_handlers(
+def test_goal_runs_in_parallel_with_other_handlers(
     order: int, outcome: int, start: Start, ros_peer: Peer
 ) -> None:
-    """A message reaches the server while a goal is pursued; a goal left open is aborted."""
+    """A message is handled during a goal; a goal left open is aborted."""
     from std_msgs.msg import Empty, Int32
 
     with start("counting", "counter") as counter, start("counting", "asker") as asker:
@@ -332,7 +334,7 @@ def test_a_goal_runs_beside_the_other_handlers(
 
 
 def shown_by(peer: Peer, service: str) -> list[str]:
-    """Return what the mapper says of its parameters."""
+    """Return the reported parameters of the mapper."""
     from std_srvs.srv import Trigger
 
     client = peer.node.create_client(Trigger, service)
@@ -341,8 +343,8 @@ def shown_by(peer: Peer, service: str) -> list[str]:
     return words
 
 
-def test_a_node_publishes_and_subscribes_one_name(start: Start, ros_peer: Peer) -> None:
-    """Both ends move with a topic's remapping, server and client with a service's own."""
+def test_node_publishes_and_subscribes_to_one_name(start: Start, ros_peer: Peer) -> None:
+    """Both ends follow the remapping of a topic, server and client that of a service."""
     from std_msgs.msg import String
 
     received: list[str] = []
@@ -360,10 +362,10 @@ def test_a_node_publishes_and_subscribes_one_name(start: Start, ros_peer: Peer) 
         assert not ros_peer.node.count_publishers("/map")
 
 
-def test_nan_infinity_and_odd_names_arrive_from_a_systems_parameter_file(
+def test_nan_infinity_and_special_names_arrive_from_a_parameter_file(
     start: Start, ros_peer: Peer, tmp_path: Path
 ) -> None:
-    """What ``param`` says is what the node has; what it does not say is the default."""
+    """The node has the values set by ``param``, and defaults otherwise."""
     system = """
         system Test imports import "*.rnd" topics topic /map
         node mapper : mapper
@@ -411,7 +413,7 @@ CONSTRAINTS: list[tuple[str, list[Any], str, list[Any]]] = [
 
 
 def test_each_constraint_is_enforced(start: Start, ros_peer: Peer) -> None:
-    """A change is refused with the reason, and made where nothing speaks against it."""
+    """A change is rejected with the reason, or accepted if all constraints hold."""
     with start("mapping", "mapper", "--ros-args", "-p", "needed:=1.0"):
         for parameter, refused, reason, accepted in CONSTRAINTS:
             for value in refused:
@@ -433,7 +435,7 @@ def test_each_constraint_is_enforced(start: Start, ros_peer: Peer) -> None:
         (("needed:=1.0", "joints:=[shoulder, knee]"), "joints"),
     ],
 )
-def test_a_bad_value_at_the_start_ends_it(
+def test_invalid_initial_value_is_named(
     start: Start, arguments: tuple[str, ...], named: str
 ) -> None:
     """The program fails, and names the parameter."""

@@ -1,4 +1,4 @@
-"""How generated nodes stop: a signal ends them between two callbacks, wherever it comes."""
+"""Termination of generated nodes: a signal at any time ends them between two callbacks."""
 
 from __future__ import annotations
 
@@ -61,10 +61,10 @@ def make_node(folder: Path, body: str) -> tuple[list[str], dict[str, str]]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_stop_breaks_no_callback(
+def test_signal_does_not_interrupt_a_callback(
     tmp_path: Path, ros_env: dict[str, str], number: signal.Signals
 ) -> None:
-    """What a callback has begun it carries out, publishing included; then the node ends with 0."""
+    """A running callback completes, including publishing; then the node ends with 0."""
     command, env = make_node(tmp_path, SIGNALLED.format(signal=number.name))
     with running(command, {**ros_env, **env}) as process:
         assert read_line(process) == "carried out\n"
@@ -72,10 +72,8 @@ def test_a_stop_breaks_no_callback(
         assert (process.returncode, output) == (0, "")
 
 
-def test_a_callback_that_hangs_ends_by_a_second_signal(
-    tmp_path: Path, ros_env: dict[str, str]
-) -> None:
-    """After SIGINT, SIGTERM ends the process as it ends any other."""
+def test_second_signal_ends_a_hung_callback(tmp_path: Path, ros_env: dict[str, str]) -> None:
+    """After SIGINT, SIGTERM ends the process by default action."""
     command, env = make_node(tmp_path, HANGING)
     with running(command, {**ros_env, **env}) as process:
         assert read_line(process) == "hangs\n"

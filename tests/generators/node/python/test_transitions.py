@@ -1,4 +1,4 @@
-"""Transitions of managed nodes that fail, in either language."""
+"""Failing transitions of lifecycle nodes, in either language."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ BEFORE = {
     ],
 )
 def leaver(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Leaver:
-    """Give the built package, in one language after the other."""
+    """Return the built package, in each language."""
     built: Leaver = request.param(tmp_path_factory.mktemp("workspace"))
     return built
 
 
 @pytest.fixture
 def start(leaver: Leaver, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs the node, with a place that fails in some way."""
+    """Return a function that runs the node with a place that fails in some way."""
 
     def run(place: str, way: str) -> AbstractContextManager[subprocess.Popen[str]]:
         command, env = leaver.command(ros_env)
@@ -53,10 +53,10 @@ def start(leaver: Leaver, ros_env: dict[str, str]) -> Start:
 
 
 class Client:
-    """The test's end of the node."""
+    """The test's client of the node."""
 
     def __init__(self, peer: Peer) -> None:
-        """Open the ports; the node may come later."""
+        """Open the ports; the node may start later."""
         from lifecycle_msgs.srv import ChangeState, GetState
         from std_msgs.msg import Empty
         from std_srvs.srv import Trigger
@@ -75,7 +75,7 @@ class Client:
         self.echoes += 1
 
     def change(self, name: str) -> bool:
-        """Ask for a transition, and return whether it succeeded."""
+        """Request a transition, and return whether it succeeded."""
         return bool(self.peer.call(self._change, self.request(name)).success)
 
     def request(self, name: str) -> Any:
@@ -87,12 +87,12 @@ class Client:
         return self._change_state.Request(transition=Transition(id=number))
 
     def send_change(self, name: str) -> None:
-        """Ask for a transition, and do not wait for the answer."""
+        """Request a transition, without waiting for the response."""
         self.peer.until(self._change.service_is_ready)
         self._change.call_async(self.request(name))
 
     def lead_to(self, place: str) -> None:
-        """Bring the node to where a transition starts."""
+        """Bring the node to the start state of a transition."""
         self.peer.until(lambda: self.peer.node.count_publishers("/echo"))
         for name in BEFORE[place]:
             assert self.change(name)
@@ -102,18 +102,18 @@ class Client:
         return str(self.peer.call(self._get, self._get_state.Request()).current_state.label)
 
     def poke(self) -> None:
-        """Send a message once the node is there."""
+        """Send a message once the node is discovered."""
         self.peer.until(self._poke.get_subscription_count)
         self._poke.publish(self._empty())
 
     def hear(self) -> None:
-        """Wait for what the timer of the node publishes."""
+        """Wait for a message from the timer of the node."""
         self.echoes = 0
         self.peer.until(lambda: self.echoes)
 
     def hear_nothing(self) -> None:
         """Check that neither the timer nor a service publishes, for ten periods of the timer."""
-        self.peer.call(self._ask, self._trigger.Request())  # what was on its way has come
+        self.peer.call(self._ask, self._trigger.Request())  # messages in transit have arrived
         self.echoes = periods = 0
 
         def count() -> None:
@@ -129,16 +129,16 @@ class Client:
 
 @pytest.fixture
 def client(ros_peer: Peer) -> Client:
-    """Give the test's end of the node."""
+    """Return the test's client of the node."""
     return Client(ros_peer)
 
 
 @pytest.mark.parametrize("place", TRANSITIONS)
 @pytest.mark.parametrize("way", ["error", "ERROR"])
-def test_a_transition_with_an_error_leaves_the_node_unconfigured(
+def test_transition_with_an_error_leaves_the_node_unconfigured(
     place: str, way: str, leaver: Leaver, start: Start, client: Client
 ) -> None:
-    """What it throws is logged, the client learns of it, and the node rests and can go on."""
+    """The error is logged, the client learns of it, and the node is idle and can be configured."""
     with start(place, way) as process:
         client.lead_to(place)
         assert not client.change(place)
@@ -156,10 +156,10 @@ def test_a_transition_with_an_error_leaves_the_node_unconfigured(
 
 @pytest.mark.parametrize("place", TRANSITIONS)
 @pytest.mark.parametrize("way", ["odd", "exit"])
-def test_a_transition_can_end_the_program(
+def test_transition_may_end_the_program(
     place: str, way: str, leaver: Leaver, start: Start, client: Client
 ) -> None:
-    """By what is no error of a transition: an interrupt, an exit, in C++ any other value."""
+    """Exceptions that are not transition errors do: interrupts, exits, in C++ any other value."""
     with start(place, way) as process:
         client.lead_to(place)
         client.send_change(place)
@@ -170,10 +170,10 @@ def test_a_transition_can_end_the_program(
 
 
 @pytest.mark.parametrize("place", ["topic", "timer"])
-def test_a_handler_that_throws_ends_the_program(
+def test_throwing_handler_ends_the_program(
     place: str, leaver: Leaver, start: Start, client: Client
 ) -> None:
-    """A managed node that is active ends like any other: with 1 and the reason."""
+    """An active lifecycle node ends like any other: with 1 and the reason."""
     with start(place, "error") as process:
         client.lead_to("deactivate")
         if place == "topic":
@@ -184,10 +184,8 @@ def test_a_handler_that_throws_ends_the_program(
 
 
 @pytest.mark.parametrize(("place", "state"), [("activate", "inactive"), ("shutdown", "finalized")])
-def test_a_node_that_is_not_active_rests(
-    place: str, state: str, start: Start, client: Client
-) -> None:
-    """An activation that fails, and a shutdown amid all, leave nothing running."""
+def test_inactive_node_is_idle(place: str, state: str, start: Start, client: Client) -> None:
+    """After a failed activation, or a shutdown at work, nothing runs."""
     with start(place, "failure") as process:
         client.lead_to(place)
         assert not client.change(place)
@@ -197,8 +195,8 @@ def test_a_node_that_is_not_active_rests(
     assert code == 0, output
 
 
-def test_a_node_that_stays_active_goes_on(start: Start, client: Client) -> None:
-    """A deactivation that fails changes nothing."""
+def test_failed_deactivation_changes_nothing(start: Start, client: Client) -> None:
+    """The node stays active and continues."""
     with start("deactivate", "failure") as process:
         client.lead_to("deactivate")
         assert not client.change("deactivate")
@@ -208,8 +206,8 @@ def test_a_node_that_stays_active_goes_on(start: Start, client: Client) -> None:
     assert code == 0, output
 
 
-def test_a_shutdown_leaves_nothing_running(start: Start, client: Client) -> None:
-    """A node that is shut down while it is active rests."""
+def test_shutdown_leaves_nothing_running(start: Start, client: Client) -> None:
+    """A node that is shut down while active is idle."""
     with start("nowhere", "error") as process:
         client.lead_to("shutdown")
         client.hear()

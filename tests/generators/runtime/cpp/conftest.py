@@ -1,4 +1,4 @@
-"""The runtime as a program that can be asked."""
+"""The C++ runtime as a program with a command interface."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ HERE = Path(__file__).resolve().parent
 
 @pytest.fixture(scope="session")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give the compiled program."""
+    """Return the compiled program."""
     return compiled(HERE / "harness.cpp", tmp_path_factory.mktemp("harness"))
 
 
 @pytest.fixture
 def harness(program: Path) -> Iterator[Harness]:
-    """Give a running one."""
+    """Return a running harness."""
     harness = Harness(program)
     yield harness
     harness.close()

@@ -1,4 +1,4 @@
-"""The runtime of the C++ safety node, held to that of the Python one."""
+"""The C++ runtime, compared with the Python one."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ KNOWN = ("halt", "stop")
 
 
 def latch_file(folder: Path) -> LatchFile:
-    """Return the file of a node as the Python node sees it."""
+    """Return the file of a node as used by the Python node."""
     return LatchFile(folder / "deros" / "robot.latches", OWNER)
 
 
@@ -37,8 +37,8 @@ def test_event_loop(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (0, "all is so\n")
 
 
-def test_numbers_are_shown_as_python_shows_them(harness: Harness) -> None:
-    """The reports of both nodes say the same of any value."""
+def test_numbers_are_formatted_like_python(harness: Harness) -> None:
+    """The reports of both nodes show the same text for any value."""
     drawn = random.Random(1)
     numbers = [0.0, -0.0, 0.9, 1e16, 1e15, 123456789012345680.0, 1e-4, 1e-5, 5e-324, 1.5, 100.0]
     numbers += [float("inf"), float("-inf"), float("nan"), 0.1 + 0.2, 1 / 3, 2.0**53]
@@ -49,8 +49,8 @@ def test_numbers_are_shown_as_python_shows_them(harness: Harness) -> None:
         assert harness.ask("number", bits) == str(value)
 
 
-def test_nodes_of_both_languages_give_way_alike(harness: Harness) -> None:
-    """They meet each other, too."""
+def test_duplicate_detection_agrees_with_python(harness: Harness) -> None:
+    """Nodes of both languages may meet each other."""
     drawn = random.Random(2)
     for _ in range(100):
         times = sorted(drawn.randrange(0, 15 * 10**9, 10**8) for _ in range(40))
@@ -63,22 +63,22 @@ def test_nodes_of_both_languages_give_way_alike(harness: Harness) -> None:
 
 
 @pytest.mark.parametrize("length", [0, 1, 55, 56, 63, 64, 65, 119, 120, 1000])
-def test_the_digest_is_sha_256(harness: Harness, length: int) -> None:
-    """At the ends of its blocks, too."""
+def test_digest_is_sha_256(harness: Harness, length: int) -> None:
+    """Lengths include the block boundaries."""
     text = "".join(chr(97 + i % 26) for i in range(length))
     assert harness.ask("digest", text) == hashlib.sha256(text.encode()).hexdigest()
 
 
 @pytest.mark.parametrize("name", ["/robot_safety", "/cell/one/robot_safety", "/" + "n" * 201])
-def test_files_are_named_alike(harness: Harness, name: str) -> None:
-    """One node takes over the other's files."""
+def test_file_names_agree_with_python(harness: Harness, name: str) -> None:
+    """A node of one language takes over the files of the other."""
     assert harness.ask("stem", name, 7) == file_stem(name, 7)
 
 
-def test_the_usual_place_is_the_same(
+def test_default_folder_agrees_with_python(
     program: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """In ROS_HOME, or else in the home folder."""
+    """It is in ROS_HOME, or else in the home folder."""
     for home in (str(tmp_path), ""):
         monkeypatch.setenv("ROS_HOME", home)
         harness = Harness(program)
@@ -86,14 +86,14 @@ def test_the_usual_place_is_the_same(
         harness.close()
 
 
-# The latch file -------------------------------------------------------------------------------
+# Latch file -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("active", [(), ("stop",), ("halt", "stop")])
-def test_each_node_reads_what_the_other_wrote(
+def test_latch_files_agree_with_python(
     harness: Harness, tmp_path: Path, active: tuple[str, ...]
 ) -> None:
-    """Byte for byte the same file."""
+    """The files are equal byte for byte, and each node reads the other's."""
     file = latch_file(tmp_path)
     assert harness.ask("save", file.path, OWNER, ",".join(active)) == "done"
     written = file.path.read_bytes()
@@ -104,14 +104,12 @@ def test_each_node_reads_what_the_other_wrote(
     assert harness.ask("load", file.path, OWNER, ",".join(KNOWN)) == f"{','.join(active)}|"
 
 
-def test_without_a_file_nothing_is_active(harness: Harness, tmp_path: Path) -> None:
-    """The first start of a node is no fault."""
+def test_nothing_is_active_without_a_file(harness: Harness, tmp_path: Path) -> None:
+    """The first start of a node is not an error."""
     assert harness.ask("load", tmp_path / "none", OWNER, "halt,stop") == "|"
 
 
-def test_every_flipped_bit_and_every_shorter_file_is_noticed(
-    harness: Harness, tmp_path: Path
-) -> None:
+def test_every_flipped_bit_and_truncation_is_detected(harness: Harness, tmp_path: Path) -> None:
     """No damage makes an active action inactive."""
     file = latch_file(tmp_path)
     file.save(frozenset({"stop"}))
@@ -134,10 +132,10 @@ def test_every_flipped_bit_and_every_shorter_file_is_noticed(
         ("freeze", OWNER, "names freeze, unknown by now"),
     ],
 )
-def test_a_file_that_is_not_the_nodes_own_counts_as_active(
+def test_file_of_another_node_counts_as_active(
     harness: Harness, tmp_path: Path, names: str, owner: str, fragment: str
 ) -> None:
-    """Another node's, or that of a node with other rules."""
+    """This includes a node with other rules."""
     path = tmp_path / "robot.latches"
     harness.ask("save", path, owner, names)
     answer = harness.ask("load", path, OWNER, "halt,stop")
@@ -146,25 +144,25 @@ def test_a_file_that_is_not_the_nodes_own_counts_as_active(
 
 
 @pytest.mark.parametrize("how", ["mark_dirty", "truncate"])
-def test_dirty_or_truncated_file_counts_as_active_in_both_languages(
+def test_dirty_or_truncated_file_counts_as_active(
     harness: Harness, tmp_path: Path, how: str
 ) -> None:
-    """Whichever node comes next starts with all actions active."""
+    """The next node of either language starts with all actions active."""
     file = latch_file(tmp_path)
     assert harness.ask(how, file.path, OWNER, "") == "done"
     assert file.load(KNOWN)[0] == frozenset(KNOWN)
     assert harness.ask("load", file.path, OWNER, "halt,stop").startswith("halt,stop|")
 
 
-def test_a_file_that_cannot_be_written_says_why(harness: Harness, tmp_path: Path) -> None:
-    """The text is for whoever has to mend it."""
+def test_write_error_has_a_reason(harness: Harness, tmp_path: Path) -> None:
+    """The text helps to fix the cause."""
     (tmp_path / "file").write_text("")
     answer = harness.ask("save", tmp_path / "file" / "robot.latches", OWNER, "stop")
     assert answer == "Not a directory"
 
 
-def test_no_half_written_file_is_left(harness: Harness, tmp_path: Path) -> None:
-    """Where the new file cannot take the old one's place, it goes."""
+def test_no_partial_file_is_left(harness: Harness, tmp_path: Path) -> None:
+    """If the new file cannot replace the old one, it is deleted."""
     (tmp_path / "robot.latches").mkdir()
     assert harness.ask("save", tmp_path / "robot.latches", OWNER, "stop") == (
         "it is a directory, not a regular file"
@@ -173,20 +171,20 @@ def test_no_half_written_file_is_left(harness: Harness, tmp_path: Path) -> None:
 
 
 def put_link(path: Path) -> None:
-    """Put a link to another file."""
+    """Create a link to another file."""
     path.symlink_to(path.with_name("other"))
 
 
 def put_pipe(path: Path) -> None:
-    """Put a pipe, which would block whoever opens it."""
+    """Create a pipe, which would block an open call."""
     os.mkfifo(path)
 
 
 @pytest.mark.parametrize("put", [put_link, put_pipe, Path.mkdir])
-def test_what_is_no_regular_file_is_left_alone(
+def test_irregular_file_is_left_alone(
     harness: Harness, tmp_path: Path, put: Callable[[Path], object]
 ) -> None:
-    """Nothing else is read, emptied or replaced, nor locked."""
+    """No other file is read, truncated, replaced or locked."""
     path = tmp_path / f"{file_stem('/robot', 7)}.lock"
     put(path)
     before = path.lstat()
@@ -199,10 +197,8 @@ def test_what_is_no_regular_file_is_left_alone(
     assert (path.lstat().st_ino, path.lstat().st_mode) == (before.st_ino, before.st_mode)
 
 
-def test_what_a_killed_process_left_half_written_is_removed(
-    harness: Harness, tmp_path: Path
-) -> None:
-    """Only that: other files in the folder are not the node's."""
+def test_partial_files_of_a_killed_process_are_removed(harness: Harness, tmp_path: Path) -> None:
+    """Other files in the folder are kept."""
     path = tmp_path / "robot.latches"
     kept = {"robot.latches.new", "other.latches.0123456789abcdef.new"}
     for name in (*kept, "robot.latches.0123456789abcdef.new"):
@@ -211,18 +207,18 @@ def test_what_a_killed_process_left_half_written_is_removed(
     assert {each.name for each in tmp_path.iterdir()} == kept
 
 
-def test_a_missing_folder_is_made_for_the_user_alone(harness: Harness, tmp_path: Path) -> None:
-    """As the Python node does it."""
+def test_missing_folder_is_created_private(harness: Harness, tmp_path: Path) -> None:
+    """This agrees with the Python node."""
     path = tmp_path / "made" / "for" / "robot.latches"
     assert harness.ask("save", path, OWNER, "stop") == "done"
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
 
 
-# One instance ---------------------------------------------------------------------------------
+# Single instance ------------------------------------------------------------------------------
 
 
-def test_a_node_in_cpp_is_refused_beside_one_in_python(harness: Harness, tmp_path: Path) -> None:
-    """The lock is one, whatever the language."""
+def test_cpp_node_is_refused_next_to_a_python_node(harness: Harness, tmp_path: Path) -> None:
+    """The lock is the same in both languages."""
     with claim("/robot", 7, tmp_path):
         answer = harness.ask("claim", tmp_path, 7, "/robot")
         assert answer == (
@@ -231,8 +227,8 @@ def test_a_node_in_cpp_is_refused_beside_one_in_python(harness: Harness, tmp_pat
     assert harness.ask("claim", tmp_path, 7, "/robot") == "held"
 
 
-def test_a_node_in_python_is_refused_beside_one_in_cpp(harness: Harness, tmp_path: Path) -> None:
-    """And other names and domains are free."""
+def test_python_node_is_refused_next_to_a_cpp_node(harness: Harness, tmp_path: Path) -> None:
+    """Other names and domains are free."""
     assert harness.ask("claim", tmp_path, 7, "/robot") == "held"
     with pytest.raises(Refusal, match=f"as process {harness.process.pid}"):
         claim("/robot", 7, tmp_path)

@@ -1,4 +1,4 @@
-"""The clock that a node starts with is the one that it keeps."""
+"""A node keeps the clock that it starts with."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from deros.generators.runtime.python.deros_runtime.clock_choice import refuse_cl
 from tests.support.ros import Peer
 
 
-def test_a_change_of_the_clock_is_refused_with_a_reason(ros_peer: Peer) -> None:
-    """And nothing of it is done; setting what is set already, and all else, stays allowed."""
+def test_clock_change_is_rejected_with_a_reason(ros_peer: Peer) -> None:
+    """The clock stays; setting the current value, and all other parameters, is allowed."""
     from rclpy.parameter import Parameter
 
     node = ros_peer.node

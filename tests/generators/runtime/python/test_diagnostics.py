@@ -1,4 +1,4 @@
-"""The present state of a safety node, as operators see it."""
+"""The current state of a safety node on /diagnostics."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OK, WARN, ERROR, STALE = range(4)
 
 
 class Rule(NamedTuple):
-    """The state of a rule, as the monitor explains it."""
+    """The state of a rule, as explained by the monitor."""
 
     name: str
     value: bool | None
@@ -32,7 +32,7 @@ class Rule(NamedTuple):
 
 
 class Explanation(NamedTuple):
-    """What a monitor explains."""
+    """The explanation of a monitor."""
 
     rules: tuple[Rule, ...] = ()
     causes: Mapping[str, tuple[str, ...]] = MappingProxyType({})
@@ -48,12 +48,12 @@ class Event(NamedTuple):
 
 
 class Shown:
-    """Diagnostics of a node with some rules, and what they publish."""
+    """Diagnostics of a node with some rules, and their messages."""
 
     def __init__(
         self, *rules: Rule, holding: tuple[str, ...] = (), named: tuple[str, ...] = ()
     ) -> None:
-        """Begin to publish."""
+        """Start publishing."""
         self.messages: list[Any] = []
         self.node = Mock()
         self.node.get_fully_qualified_name.return_value = "/safety"
@@ -68,13 +68,13 @@ class Shown:
         self.diagnostics.begin(lambda: explained, lambda: 6_000_000_000, lambda: self.unready)
 
     def ring(self) -> dict[str, Any]:
-        """Publish now, and return the statuses by the last part of their name."""
+        """Publish now, and return the statuses by the last part of their names."""
         self.diagnostics._timer.fire()
         return {each.name.rpartition(": ")[2]: each for each in self.messages[-1].status}
 
     @property
     def wait(self) -> float:
-        """In how many seconds the next message is due."""
+        """Return the seconds until the next message is due."""
         due: int = self.diagnostics._timer.due
         return (due - time.monotonic_ns()) / 1e9
 
@@ -95,30 +95,30 @@ def _no_time() -> Any:
         (None, ("stopping",), STALE),
     ],
 )
-def test_the_level_of_a_rule_says_what_follows_from_it(
+def test_level_of_a_rule_follows_its_effect(
     value: bool | None, holding: tuple[str, ...], level: int
 ) -> None:
-    """Red is what holds the robot; what is unknown is stale."""
+    """Red for a rule that holds the robot, stale for an unknown one."""
     shown = Shown(Rule("drive.fast", value), holding=holding, named=("drive.fast",)).ring()
     assert shown["drive.fast"].level[0] == level
 
 
-def test_only_the_rules_that_are_true_are_to_blame() -> None:
-    """Of 'a or b', the one that is false does not hold the robot."""
+def test_only_true_rules_are_errors() -> None:
+    """Of 'a or b', the false one does not hold the robot."""
     rules = (Rule("a.a", True), Rule("b.b", False))
     shown = Shown(*rules, holding=("stopping",), named=("a.a", "b.b")).ring()
     assert [shown[name].level[0] for name in ("a.a", "b.b")] == [ERROR, OK]
 
 
-def test_a_rule_that_has_to_be_false_is_to_blame_for_it() -> None:
+def test_negated_rule_is_an_error_if_false() -> None:
     """Of 'not ready', the false rule holds the robot."""
     rule = Rule("self.ready", False)
     shown = Shown(rule, holding=("stopping",), named=("self.ready",)).ring()
     assert shown["self.ready"].level[0] == ERROR
 
 
-def test_an_action_shows_cause_and_time() -> None:
-    """Since when, by what; a further trigger does not move the start."""
+def test_action_shows_cause_and_start() -> None:
+    """Another trigger does not change the start."""
     shown = Shown()
     why = Explanation((), {"stopping": ("a.a: speed 2.0 > 1", "b.b: lidar.missing()")})
     shown.diagnostics.update(Event("trigger", "stop"), why)
@@ -139,16 +139,16 @@ def test_an_action_shows_cause_and_time() -> None:
     assert shown.ring()["action stop"].message == "inactive"
 
 
-def test_a_true_rule_shows_its_true_parts() -> None:
-    """Beside the values of all that it reads."""
+def test_true_rule_shows_its_true_parts() -> None:
+    """They are listed next to all values that it reads."""
     rule = Rule("drive.fast", True, causes=("speed 2.0 > 1", "lidar.missing()"))
     values = {each.key: each.value for each in Shown(rule).ring()["drive.fast"].values}
     assert values["speed"] == "2.0"
     assert values["cause"] == "speed 2.0 > 1 and lidar.missing()"
 
 
-def test_a_fault_is_red_until_it_is_gone() -> None:
-    """The node's own status carries it; only news is news."""
+def test_fault_is_an_error_until_it_ends() -> None:
+    """It is in the node's own status; only changes are reported as such."""
     shown = Shown()
     assert shown.diagnostics.fault("/imu", "is not heard")
     assert not shown.diagnostics.fault("/imu", "is not heard")
@@ -160,8 +160,8 @@ def test_a_fault_is_red_until_it_is_gone() -> None:
     assert shown.ring()["/safety"].level[0] == WARN
 
 
-def test_a_change_is_shown_soon_and_otherwise_after_the_period() -> None:
-    """Within 50 ms, or after a second."""
+def test_change_is_published_soon() -> None:
+    """Changes are published within 50 ms, otherwise every second."""
     shown = Shown()
     shown.ring()
     assert 0.9 < shown.wait <= 1.0
@@ -169,8 +169,8 @@ def test_a_change_is_shown_soon_and_otherwise_after_the_period() -> None:
     assert shown.wait <= 0.05
 
 
-def test_many_rules_are_shown_in_portions() -> None:
-    """A thousand statuses in one message would keep the rules waiting for tens of ms."""
+def test_many_rules_are_published_in_chunks() -> None:
+    """A thousand statuses in one message would delay the rules by tens of ms."""
     rules = [Rule(f"e.r{number}", False) for number in range(3 * CHUNK)]
     shown = Shown(*rules)
     shown.ring()

@@ -1,4 +1,4 @@
-"""What a safety node tells of an event, in its log and on its topic."""
+"""Reports of events by a safety node, in its log and on its topic."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Event(NamedTuple):
 
 
 class Rule(NamedTuple):
-    """The state of a rule, as the monitor explains it."""
+    """The state of a rule, as explained by the monitor."""
 
     name: str
     value: bool | None
@@ -35,7 +35,7 @@ class Rule(NamedTuple):
 
 
 class Explanation(NamedTuple):
-    """What a monitor explains."""
+    """The explanation of a monitor."""
 
     rules: tuple[Rule, ...]
     causes: dict[str, tuple[str, ...]]
@@ -69,8 +69,8 @@ def told(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
     return line, {each.key: each.value for each in status.values}
 
 
-def test_a_trigger_names_its_cause() -> None:
-    """In place of the condition in the log, beside it on the topic."""
+def test_trigger_shows_its_cause() -> None:
+    """The log shows it instead of the condition, the topic shows both."""
     line, values = told(Event("trigger", behaviour="halt"), HOLDING)
     cause = "drive.fast: speed 2.0 > 1 and body.near: x"
     assert line == f"stop, by halt (robot.deros:7): {cause}"
@@ -78,15 +78,15 @@ def test_a_trigger_names_its_cause() -> None:
     assert (values["rule drive.fast"], values["value speed"]) == ("true", "2.0")
 
 
-def test_a_trigger_whose_behaviour_has_ceased_is_told_with_its_condition() -> None:
-    """It may have turned true at a step of the clock, and false with the message that shows it."""
+def test_trigger_of_a_past_cause_shows_its_condition() -> None:
+    """The behaviour may have become true at a clock step, and false with the next message."""
     line, values = told(Event("trigger", behaviour="halt"), Explanation(RULES, {}))
     assert line == "stop, by halt (robot.deros:7: if drive.fast or body.near)"
     assert values["cause"] == ""
 
 
-def test_a_refused_reset_names_what_holds_and_what_is_unknown() -> None:
-    """Each with its cause, or with the terms without a value."""
+def test_refused_reset_lists_holding_and_unknown_behaviours() -> None:
+    """Each has its cause, or the terms without a value."""
     line, values = told(Event("refused", holding=("halt",), unknown=("back",)), HOLDING)
     cause = "drive.fast: speed 2.0 > 1 and body.near: x"
     assert line == (

@@ -1,4 +1,4 @@
-"""One node of a name on this machine."""
+"""One node of each name on this machine."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from deros.generators.runtime.python.deros_runtime.instance import Refusal, clai
 NAME = "/cell/robot_safety"
 
 
-def test_a_second_claim_is_refused_and_names_the_first(tmp_path: Path) -> None:
-    """The message tells the operator which process to look at."""
+def test_second_claim_is_refused_and_names_the_first(tmp_path: Path) -> None:
+    """The message has the process id for the operator."""
     with claim(NAME, 7, tmp_path):
         with pytest.raises(
             Refusal, match=f"{NAME} runs already in domain 7, as process"
@@ -28,8 +28,8 @@ def test_a_second_claim_is_refused_and_names_the_first(tmp_path: Path) -> None:
         assert str(os.getpid()) in str(refused.value)
 
 
-def test_other_names_and_domains_have_locks_of_their_own(tmp_path: Path) -> None:
-    """Two robots, or two domains, on one machine do not hinder each other."""
+def test_other_names_and_domains_have_separate_locks(tmp_path: Path) -> None:
+    """Two robots, or two domains, on one machine do not interfere."""
     with (
         claim(NAME, 7, tmp_path),
         claim(NAME, 8, tmp_path),
@@ -38,8 +38,8 @@ def test_other_names_and_domains_have_locks_of_their_own(tmp_path: Path) -> None
         pass
 
 
-def test_the_lock_ends_with_its_process(tmp_path: Path) -> None:
-    """However it ends: a killed node can be started again at once."""
+def test_lock_ends_with_its_process(tmp_path: Path) -> None:
+    """A killed node can be restarted at once."""
     code = (
         "import os, signal, sys; from pathlib import Path;"
         "from deros.generators.runtime.python.deros_runtime.instance import claim;"
@@ -53,8 +53,8 @@ def test_the_lock_ends_with_its_process(tmp_path: Path) -> None:
         assert lock.read() == f"{os.getpid()}\n"
 
 
-def test_the_usual_folder_is_the_users_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nobody else can hold the lock, and so keep the node from running."""
+def test_default_folder_is_private(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Other users cannot take the lock, and so prevent a start."""
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     with claim(NAME, 7):
         (folder,) = tmp_path.iterdir()
@@ -66,17 +66,17 @@ def test_the_usual_folder_is_the_users_own(tmp_path: Path, monkeypatch: pytest.M
 
 
 def put_link(path: Path) -> None:
-    """Put a link to another file."""
+    """Create a link to another file."""
     path.symlink_to(path.with_name("other"))
 
 
 def put_pipe(path: Path) -> None:
-    """Put a pipe."""
+    """Create a pipe."""
     os.mkfifo(path)
 
 
 @pytest.mark.parametrize("put", [put_link, put_pipe, Path.mkdir])
-def test_a_lock_is_a_regular_file(tmp_path: Path, put: Callable[[Path], object]) -> None:
+def test_lock_must_be_a_regular_file(tmp_path: Path, put: Callable[[Path], object]) -> None:
     """Nothing else is opened, waited for or written to."""
     put(tmp_path / f"{file_stem(NAME, 7)}.lock")
     before = sorted(tmp_path.iterdir())
@@ -85,8 +85,8 @@ def test_a_lock_is_a_regular_file(tmp_path: Path, put: Callable[[Path], object])
     assert sorted(tmp_path.iterdir()) == before
 
 
-def test_the_folder_of_the_locks_is_the_users_alone(tmp_path: Path) -> None:
-    """Neither a link nor a folder in which others may write will do."""
+def test_lock_folder_must_be_private(tmp_path: Path) -> None:
+    """Neither a link nor a folder writable by others is accepted."""
     link = tmp_path / "link"
     link.symlink_to(tmp_path)
     with pytest.raises(OSError, match="is not a folder"):
@@ -96,10 +96,8 @@ def test_the_folder_of_the_locks_is_the_users_alone(tmp_path: Path) -> None:
         claim(NAME, 7, tmp_path)
 
 
-def test_a_lock_that_is_removed_is_not_taken_for_the_lock(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Two processes that open it around the removal do not both hold one."""
+def test_removed_lock_file_is_not_the_lock(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two processes that open it around the removal do not both get the lock."""
     path = tmp_path / f"{file_stem(NAME, 7)}.lock"
     real, taken = fcntl.flock, 0
 
@@ -116,8 +114,8 @@ def test_a_lock_that_is_removed_is_not_taken_for_the_lock(
     assert taken == 2
 
 
-def test_a_long_name_makes_a_file_name_all_the_same() -> None:
-    """Names of ROS 2 are longer than those of files, and still tell nodes apart."""
+def test_long_name_gives_a_valid_file_name() -> None:
+    """ROS 2 names may be longer than file names, and must remain distinct."""
     stems = {file_stem("/" + "a" * 254 + end, 0) for end in "bc"}
     assert len(stems) == 2
     assert all(len(stem) < 200 for stem in stems)

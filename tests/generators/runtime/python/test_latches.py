@@ -1,4 +1,4 @@
-"""The file in which latched actions outlive the process."""
+"""The file in which latched actions survive the process."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ KNOWN = ("halt", "stop")
 
 
 class Told:
-    """Collects what is told of the file; the last text is what is wrong now."""
+    """Collects reports about the file; the last text is the current problem."""
 
     def __init__(self) -> None:
-        """Begin with nothing told."""
+        """Start without reports."""
         self.texts: list[str] = []
 
     def __call__(self, subject: str, text: str) -> None:
-        """Take a text."""
+        """Store a report."""
         assert subject == "latches"
         self.texts.append(text)
 
 
 def file_in(folder: Path, owner: str = "/robot_safety") -> LatchFile:
-    """Return the file of a node, in a folder that is yet to be made."""
+    """Return the file of a node, in a folder that does not exist yet."""
     return LatchFile(folder / "deros" / "robot.latches", owner)
 
 
 def latches_in(folder: Path) -> tuple[Latches, Told]:
-    """Return what a node that starts reads from the file, and what it tells."""
+    """Return the latches that a starting node reads from the file, and its reports."""
     told = Told()
     return Latches(file_in(folder), KNOWN, told), told
 
 
 def without_space(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have every file written fail as on a full disk."""
+    """Make every write fail as on a full disk."""
 
     def full(_descriptor: int) -> None:
         raise OSError(28, "No space left on device")
@@ -45,15 +45,15 @@ def without_space(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "fsync", full)
 
 
-def test_without_a_file_nothing_is_active(tmp_path: Path) -> None:
-    """The first start of a node is no fault."""
+def test_nothing_is_active_without_a_file(tmp_path: Path) -> None:
+    """The first start of a node is not an error."""
     latches, told = latches_in(tmp_path)
     assert latches.active == frozenset()
     assert told.texts == []
 
 
-def test_what_is_being_done_when_the_process_ends_is_active(tmp_path: Path) -> None:
-    """Between the trigger and the save all actions count as active; a save ends the doubt."""
+def test_pending_change_counts_as_active(tmp_path: Path) -> None:
+    """Between trigger and save all actions count as active; a save ends this."""
     latches, _ = latches_in(tmp_path)
     latches.mark_pending("beep")
     assert file_in(tmp_path).load(KNOWN) == (frozenset(), "")
@@ -67,8 +67,8 @@ def test_what_is_being_done_when_the_process_ends_is_active(tmp_path: Path) -> N
     assert file_in(tmp_path).load(KNOWN) == (frozenset({"stop"}), "")
 
 
-def test_what_was_active_is_active_after_a_restart(tmp_path: Path) -> None:
-    """The file says what the last process knew, no more and no less."""
+def test_active_actions_survive_a_restart(tmp_path: Path) -> None:
+    """The file contains exactly the state of the last process."""
     latches, _ = latches_in(tmp_path)
     latches.record("trigger", "stop")
     latches.record("trigger", "beep")
@@ -82,8 +82,8 @@ def test_what_was_active_is_active_after_a_restart(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("damage", [b"", b"deros latches 1\n", b"\xff\xfe", b"\n" * 5])
-def test_a_damaged_file_counts_as_active(tmp_path: Path, damage: bytes) -> None:
-    """Whatever cannot be trusted keeps the robot where it is."""
+def test_damaged_file_counts_as_active(tmp_path: Path, damage: bytes) -> None:
+    """A file that cannot be trusted keeps the robot stopped."""
     file_in(tmp_path).save(frozenset())
     file_in(tmp_path).path.write_bytes(damage)
     latches, told = latches_in(tmp_path)
@@ -92,8 +92,8 @@ def test_a_damaged_file_counts_as_active(tmp_path: Path, damage: bytes) -> None:
     assert text.endswith("all latched actions are active")
 
 
-def test_every_flipped_bit_is_noticed(tmp_path: Path) -> None:
-    """No single error of the disk makes an active action inactive."""
+def test_every_flipped_bit_is_detected(tmp_path: Path) -> None:
+    """No single disk error makes an active action inactive."""
     file = file_in(tmp_path)
     file.save(frozenset({"stop"}))
     whole = file.path.read_bytes()
@@ -106,8 +106,8 @@ def test_every_flipped_bit_is_noticed(tmp_path: Path) -> None:
         assert problem
 
 
-def test_every_shorter_file_is_noticed(tmp_path: Path) -> None:
-    """Half a file is none."""
+def test_every_truncation_is_detected(tmp_path: Path) -> None:
+    """A part of a file is invalid."""
     file = file_in(tmp_path)
     file.save(frozenset())
     whole = file.path.read_bytes()
@@ -116,34 +116,34 @@ def test_every_shorter_file_is_noticed(tmp_path: Path) -> None:
         assert file_in(tmp_path).load(KNOWN)[0] == set(KNOWN)
 
 
-def test_the_file_of_another_node_is_not_believed(tmp_path: Path) -> None:
-    """Two nodes that are given one file by mistake do not take each other's state."""
+def test_file_of_another_node_is_rejected(tmp_path: Path) -> None:
+    """Two nodes with one file by mistake do not use each other's state."""
     file_in(tmp_path, "/other").save(frozenset())
     assert latches_in(tmp_path)[0].active == set(KNOWN)
 
 
-def test_an_action_that_is_gone_from_the_rules_leaves_all_active(tmp_path: Path) -> None:
-    """It may have got another name, under which it is still to hold the robot."""
+def test_action_missing_from_the_rules_makes_all_active(tmp_path: Path) -> None:
+    """It may have been renamed, and must still hold the robot."""
     file_in(tmp_path).save(frozenset({"freeze"}))
     latches, told = latches_in(tmp_path)
     assert latches.active == set(KNOWN)
     assert "freeze" in told.texts[0]
 
 
-def test_a_file_that_cannot_be_written_at_the_start_counts_as_active(
+def test_unwritable_file_at_the_start_counts_as_active(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nothing could be remembered, so nothing may be forgotten."""
+    """The node could not store a stop."""
     without_space(monkeypatch)
     latches, told = latches_in(tmp_path)
     assert latches.active == set(KNOWN)
     assert "No space left" in told.texts[0]
 
 
-def test_when_the_disk_is_full_a_restart_finds_all_active(
+def test_full_disk_makes_all_active_after_a_restart(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The old file, which says 'inactive', does not outlive the trigger that it does not know."""
+    """The old file, without the trigger, must not remain valid."""
     latches, told = latches_in(tmp_path)
     latches.record("trigger", "stop")
     with monkeypatch.context() as full:
@@ -155,10 +155,10 @@ def test_when_the_disk_is_full_a_restart_finds_all_active(
     assert file_in(tmp_path).load(KNOWN) == (frozenset({"stop"}), "")
 
 
-def test_a_reset_that_cannot_be_kept_is_refused(
+def test_reset_that_cannot_be_stored_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Who has reset the robot must not find it stopped again after a restart, nor the reverse."""
+    """The state before and after a restart must agree."""
     latches, _ = latches_in(tmp_path)
     latches.record("trigger", "stop")
     latches.persist()
@@ -171,7 +171,7 @@ def test_a_reset_that_cannot_be_kept_is_refused(
     assert latches_in(tmp_path)[0].active == frozenset()
 
 
-def test_no_half_written_file_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_partial_file_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A full disk is not filled further."""
     latches, _ = latches_in(tmp_path)
     latches.record("trigger", "stop")
@@ -180,8 +180,8 @@ def test_no_half_written_file_is_left(tmp_path: Path, monkeypatch: pytest.Monkey
     assert [path.name for path in (tmp_path / "deros").iterdir()] == ["robot.latches"]
 
 
-def test_what_a_killed_process_left_half_written_is_removed(tmp_path: Path) -> None:
-    """Only that: other files in the folder are not the node's."""
+def test_partial_files_of_a_killed_process_are_removed(tmp_path: Path) -> None:
+    """Other files in the folder are kept."""
     latches_in(tmp_path)
     folder = tmp_path / "deros"
     kept = {"robot.latches", "robot.latches.new", "other.latches.0123456789abcdef.new"}
@@ -195,8 +195,8 @@ def test_what_a_killed_process_left_half_written_is_removed(tmp_path: Path) -> N
     }
 
 
-def test_a_file_without_end_is_not_read_to_the_end(tmp_path: Path) -> None:
-    """It cannot fill the memory of a node that starts."""
+def test_huge_file_is_not_read_completely(tmp_path: Path) -> None:
+    """It cannot exhaust the memory of a starting node."""
     file_in(tmp_path).save(frozenset())
     with file_in(tmp_path).path.open("r+b") as file:
         file.truncate(1 << 40)
@@ -205,9 +205,7 @@ def test_a_file_without_end_is_not_read_to_the_end(tmp_path: Path) -> None:
     assert "it is longer than" in told.texts[0]
 
 
-def test_what_is_saved_is_not_written_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_stored_state_is_not_written_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """persist() may be called at every heartbeat."""
     latches, _ = latches_in(tmp_path)
     without_space(monkeypatch)
@@ -215,10 +213,10 @@ def test_what_is_saved_is_not_written_again(
 
 
 @pytest.mark.parametrize(("home", "expected"), [("/ros", "/ros"), ("", "~/.ros")])
-def test_the_usual_place_is_in_the_home_of_ros(
+def test_default_path_is_in_ros_home(
     monkeypatch: pytest.MonkeyPatch, home: str, expected: str
 ) -> None:
-    """ROS_HOME if it is set, as for the logs."""
+    """ROS_HOME is used if set, as for the logs."""
     monkeypatch.setenv("ROS_HOME", home)
     path = Path(expected).expanduser() / "deros" / "robot_safety.0.latches"
     assert default_path("robot_safety.0") == path

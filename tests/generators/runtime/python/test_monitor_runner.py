@@ -1,4 +1,4 @@
-"""A monitor in time."""
+"""Running a monitor in real time."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from deros.generators.runtime.python.deros_runtime.monitor_runner import (
 
 
 class Event(NamedTuple):
-    """What the monitor orders."""
+    """An action requested by the monitor."""
 
     action: str
 
@@ -34,17 +34,17 @@ BAD: dict[str, BaseException] = {
 
 
 class Monitor:
-    """A monitor that orders some actions at its deadline, or fails then."""
+    """A monitor that requests some actions at its deadline, or then fails."""
 
     def __init__(self, actions: list[str], emit: Callable[[Event], None], failing: bool) -> None:
-        """Begin; the deadline is at once."""
+        """Start with a deadline that is due."""
         self.actions = actions
         self.emit = emit
         self.failing = failing
         self.next_deadline: int | None = 0
 
     def advance(self, _now: int) -> None:
-        """Order the actions, once."""
+        """Request the actions, once."""
         if self.next_deadline is None:
             return
         self.next_deadline = None
@@ -54,15 +54,15 @@ class Monitor:
             raise ArithmeticError("in the monitor")
 
     def explain(self) -> str:
-        """Explain nothing."""
+        """Return an empty explanation."""
         return ""
 
 
 class Owner:
-    """What a runner calls, in the order called."""
+    """Records the calls of a runner in order."""
 
     def __init__(self, *actions: str, failing: bool = False) -> None:
-        """Start a runner off simulated time."""
+        """Start a runner without simulated time."""
         self.calls: list[str] = []
         self.steady = Mock()
         node = Mock()
@@ -80,7 +80,7 @@ class Owner:
         self.runner.start()
 
     def show(self, event: Event) -> bool:
-        """Show a stop at once; what cannot be shown fails once, and the rest is code."""
+        """Show a stop at once; 'unshowable' fails once, and other actions are user code."""
         if event.action == "unshowable" and "no unshowable" not in self.calls:
             self.calls.append("no unshowable")
             raise OSError("no publisher")
@@ -90,34 +90,34 @@ class Owner:
         return False
 
     def run(self, event: Event) -> None:
-        """Run code, unless it is bad."""
+        """Run user code, which may fail."""
         self.calls.append(f"run {event.action}")
         if event.action in BAD:
             raise BAD[event.action]
 
     def after(self, events: list[Any], done: list[int], states: list[Any]) -> None:
-        """Take what has been done."""
+        """Record the executed actions."""
         assert len(events) == len(done) == len(states)
         assert all(done)
         self.calls.append(f"after {' '.join(event.action for event in events)}")
 
 
-def test_all_is_done_before_anything_is_told() -> None:
-    """The actions come first."""
+def test_actions_are_executed_before_reports() -> None:
+    """All actions come first."""
     owner = Owner("stop", "beep")
     owner.runner.advance()
     assert owner.calls == ["show stop", "run beep", "after stop beep"]
 
 
-def test_what_is_published_waits_for_no_code() -> None:
-    """A stop that is ordered after code is out before that; it is told of in its place."""
+def test_publishing_does_not_wait_for_user_code() -> None:
+    """A stop requested after user code is published before it, and reported in order."""
     owner = Owner("beep", "stop")
     owner.runner.advance()
     assert owner.calls == ["show stop", "run beep", "after beep stop"]
 
 
-def test_what_could_not_be_published_is_tried_again_before_code_runs() -> None:
-    """A failure in the middle of an evaluation is no failure of the monitor."""
+def test_failed_publication_is_retried_before_user_code() -> None:
+    """A failure during an evaluation is not a failure of the monitor."""
     owner = Owner("beep", "unshowable", "stop")
     owner.runner.advance()
     assert owner.calls == [
@@ -130,8 +130,8 @@ def test_what_could_not_be_published_is_tried_again_before_code_runs() -> None:
 
 
 @pytest.mark.parametrize("bad", BAD)
-def test_failing_code_keeps_nothing_else_from_being_done(bad: str) -> None:
-    """Whatever it raises, the rest is done and told, and then an ordinary error ends the node."""
+def test_failing_user_code_does_not_prevent_other_actions(bad: str) -> None:
+    """Everything else is executed and reported, and then an ordinary error ends the node."""
     owner = Owner(bad, "beep", "stop")
     with pytest.raises(ActionError) as raised:
         owner.runner.advance()
@@ -145,15 +145,15 @@ def test_failing_code_keeps_nothing_else_from_being_done(bad: str) -> None:
     ]
 
 
-def test_code_of_before_the_start_is_run_whatever_fails() -> None:
-    """One that fails keeps no other from being run again."""
+def test_repeated_user_code_runs_despite_failures() -> None:
+    """A failing action does not prevent the others from running again."""
     owner = Owner()
     with pytest.raises(ActionError):
         owner.runner.run_again([Event("throws"), Event("beep")])
     assert owner.calls == ["run throws", "run beep", "tell"]
 
 
-def test_code_that_comes_back_finds_nothing_to_be_done() -> None:
+def test_reentrant_user_code_executes_nothing_twice() -> None:
     """An action that spins its node does not run itself again."""
     owner = Owner("beep", "stop")
 
@@ -166,24 +166,24 @@ def test_code_that_comes_back_finds_nothing_to_be_done() -> None:
     assert owner.calls == ["show stop", "run beep", "after beep stop"]
 
 
-def test_what_a_failing_monitor_has_ordered_is_done() -> None:
-    """An error in the rules ends the node, but not before the stop is out."""
+def test_actions_of_a_failing_monitor_are_executed() -> None:
+    """An error in the rules ends the node, but only after the stop is published."""
     owner = Owner("stop", "beep", failing=True)
     with pytest.raises(ArithmeticError):
         owner.runner.advance()
     assert owner.calls == ["show stop", "run beep", "after stop beep"]
 
 
-def test_what_is_done_is_done_once() -> None:
-    """A second look finds nothing ordered."""
+def test_actions_are_executed_once() -> None:
+    """A second call finds nothing to do."""
     owner = Owner("stop", "beep")
     owner.runner.advance()
     owner.runner.settle()
     assert owner.calls == ["show stop", "run beep", "after stop beep"]
 
 
-def test_what_can_wait_waits_while_a_deadline_is_near() -> None:
-    """From shortly before it until shortly after it, and not on account of one that is far."""
+def test_reports_are_deferred_near_a_deadline() -> None:
+    """From shortly before to shortly after it, and not because of a distant one."""
     owner = Owner()
     runner = owner.runner
     assert runner.defer() <= AFTER
@@ -197,28 +197,28 @@ def test_what_can_wait_waits_while_a_deadline_is_near() -> None:
 
 
 class Counter:
-    """A monitor with a deadline each second, which explains what it has ordered by its count."""
+    """A monitor with a deadline each second, whose explanation is the number of its actions."""
 
     def __init__(self, emit: Callable[[Event], None]) -> None:
-        """Begin; the first deadline is after a second."""
+        """Start with a deadline in one second."""
         self.emit = emit
         self.count = 0
         self.next_deadline = 1
 
     def advance(self, now: int) -> None:
-        """Order an action at each second."""
+        """Request an action at each second."""
         while self.next_deadline <= now:
             self.count += 1
             self.emit(Event(f"stop {self.count}"))
             self.next_deadline += 1
 
     def explain(self) -> int:
-        """Return how many actions it has ordered."""
+        """Return the number of requested actions."""
         return self.count
 
 
-def test_each_of_several_late_events_is_explained_by_what_was_known_then() -> None:
-    """A call that comes late settles one instant after the other; it publishes all at once."""
+def test_late_events_have_the_explanations_of_their_time() -> None:
+    """A late call handles one deadline after the other, and publishes everything at once."""
     told: list[tuple[str, int]] = []
     owner = Owner()
     runner = owner.runner

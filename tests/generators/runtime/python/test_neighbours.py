@@ -1,4 +1,4 @@
-"""Publishers that a node cannot hear, those that are too many, and those that use its name."""
+"""Publishers with another type or incompatible QoS, duplicates, and nodes of the same name."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 def publisher(kind: str = "std_msgs/msg/Bool", qos: QoSProfile = RELIABLE) -> Any:
-    """Return what the middleware tells of a publisher."""
+    """Return endpoint information of a publisher as given by the middleware."""
     return SimpleNamespace(
         node_name="driver", node_namespace="/arm", topic_type=kind, qos_profile=qos
     )
 
 
 def report(*publishers: Any, shared: tuple[str, ...] = ()) -> tuple[str, str]:
-    """Return what is reported of a topic with some publishers."""
+    """Return the report about a topic with some publishers."""
     from std_msgs.msg import Bool
 
     subscription = SimpleNamespace(topic_name="/go", msg_type=Bool, qos_profile=RELIABLE)
@@ -41,22 +41,22 @@ def report(*publishers: Any, shared: tuple[str, ...] = ()) -> tuple[str, str]:
     return topic, text
 
 
-def test_a_publisher_that_is_heard_is_no_fault() -> None:
-    """Nothing is wrong with it, nor with a topic that has none."""
+def test_matching_publisher_is_not_a_fault() -> None:
+    """Nor is a topic without publishers."""
     assert report(publisher()) == ("/go", "")
     assert report() == ("/go", "")
 
 
-def test_another_type_and_a_lesser_quality_are_faults() -> None:
-    """Each is named, with its node."""
+def test_other_type_and_incompatible_qos_are_faults() -> None:
+    """Each publisher is named with its node."""
     _, text = report(publisher("std_msgs/msg/String"), publisher(qos=BEST_EFFORT), publisher())
     first, second = text.split("; ", 1)
     assert first == "/arm/driver publishes std_msgs/msg/String on it, which is not heard"
     assert second.startswith("/arm/driver offers a QoS on it that is not heard:")
 
 
-def test_a_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
-    """Only those that are heard count; one whose node is not known yet counts, too."""
+def test_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
+    """Only matching publishers count, including those of nodes not known yet."""
     unnamed = publisher()
     unnamed.node_name = "_NODE_NAME_UNKNOWN_"
     _, text = report(publisher(), publisher("std_msgs/msg/String"), unnamed)
@@ -66,20 +66,20 @@ def test_a_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
     assert report(publisher(), publisher(), shared=("/go",)) == ("/go", "")
 
 
-def test_a_node_without_subscriptions_has_nothing_to_look_at() -> None:
-    """It just looks on."""
+def test_node_without_subscriptions_checks_nothing() -> None:
+    """The check does not fail."""
     PublisherCheck(Mock(subscriptions=[]), Mock(side_effect=AssertionError)).check()
 
 
 def _told(found: Mock, topic: str) -> list[str]:
-    """Return what was reported of a topic."""
+    """Return the report about a topic."""
     return [call.args[1] for call in found.call_args_list if call.args[0] == topic]
 
 
-def test_a_second_heartbeat_is_reported_and_ends_the_node_that_started_last() -> None:
-    """It is a fault until it is known which of the two that is."""
+def test_second_heartbeat_is_reported_and_ends_the_later_node() -> None:
+    """It is a fault until it is known which of the two started later."""
     node, found = Mock(), Mock()
-    node.get_publishers_info_by_topic.return_value = []  # nor is anybody known to read
+    node.get_publishers_info_by_topic.return_value = []  # no reader is known either
     node.count_publishers.return_value = 2
     detector = DuplicateInstanceDetector(node, "/safety/heartbeat", [], found)
     detector._order = Mock()
@@ -97,8 +97,8 @@ def test_a_second_heartbeat_is_reported_and_ends_the_node_that_started_last() ->
     assert _told(found, "/safety/heartbeat")[-1] == ""
 
 
-def test_another_publisher_of_a_state_is_named() -> None:
-    """One topic at a time; the node itself is none of the others."""
+def test_other_publisher_of_a_state_is_named() -> None:
+    """One topic is checked at a time, and the node itself does not count."""
     node, found = Mock(), Mock()
     node.get_subscriptions_info_by_topic.return_value = []
     counts = {"/safety/heartbeat": 1, "/stop": 2, "/slow": 1}

@@ -22,16 +22,16 @@ from tests.support.ros import LIMIT
 MS = 1_000_000
 
 
-def test_a_timer_fires_once_however_often_the_executor_calls(clockwork: Clockwork) -> None:
-    """Further calls for one expiry, which the EventsExecutor may make, do nothing."""
+def test_timer_fires_once_despite_repeated_calls(clockwork: Clockwork) -> None:
+    """The EventsExecutor may call several times for one expiry."""
     timer, fired = timer_on(clockwork)
     timer.schedule(1500)
     clockwork.pass_to(1500, calls=3)
     assert fired == [1500]
 
 
-def test_a_call_that_comes_too_early_sets_no_timer(clockwork: Clockwork) -> None:
-    """It would be called once more for each time that it is set."""
+def test_early_call_does_not_reset_the_timer(clockwork: Clockwork) -> None:
+    """Each reset would cause another call."""
     timer, fired = timer_on(clockwork)
     timer.schedule(5 * MS)
     clockwork.pass_to(4 * MS, calls=100)
@@ -40,8 +40,8 @@ def test_a_call_that_comes_too_early_sets_no_timer(clockwork: Clockwork) -> None
     assert fired == [5 * MS + 100]
 
 
-def test_a_timer_that_the_clock_has_left_behind_is_set_again(clockwork: Clockwork) -> None:
-    """When time has stepped, rcl has its own idea of when the timer expires."""
+def test_timer_is_set_again_after_a_clock_step(clockwork: Clockwork) -> None:
+    """After a time jump, rcl may have another expiry time."""
     timer, fired = timer_on(clockwork)
     timer.schedule(5 * MS)
     clockwork.timer.expires = 2 * MS
@@ -52,8 +52,8 @@ def test_a_timer_that_the_clock_has_left_behind_is_set_again(clockwork: Clockwor
     assert fired == [5 * MS]
 
 
-def test_a_timer_scheduled_in_the_past_fires_at_once(clockwork: Clockwork) -> None:
-    """A timer cannot have a period below one nanosecond."""
+def test_timer_scheduled_in_the_past_fires_at_once(clockwork: Clockwork) -> None:
+    """A timer period is at least one nanosecond."""
     timer, _ = timer_on(clockwork)
     timer.schedule(0)
     assert clockwork.timer.expires == clockwork.now + 1
@@ -62,10 +62,10 @@ def test_a_timer_scheduled_in_the_past_fires_at_once(clockwork: Clockwork) -> No
 @pytest.mark.parametrize(
     ("now", "due"), [(1500, 1600), (1530, 1600), (1600, 1700), (9999, 10099), (700, 800)]
 )
-def test_repeating_keeps_the_rhythm_but_for_pauses_and_steps(
+def test_repetition_keeps_the_period_except_after_pauses(
     now: int, due: int, clockwork: Clockwork
 ) -> None:
-    """Lateness does not add up; after a pause nothing is made up for, nor after a step back."""
+    """Lateness does not accumulate; periods missed in a pause or clock step are skipped."""
     timer, _ = timer_on(clockwork)
     timer.schedule(1500)
     clockwork.now = now
@@ -73,8 +73,8 @@ def test_repeating_keeps_the_rhythm_but_for_pauses_and_steps(
     assert timer.due == due
 
 
-def test_it_is_put_off_while_something_goes_before_it(clockwork: Clockwork) -> None:
-    """It asks again when told to; what it was due for stays as it was."""
+def test_timer_is_deferred_while_something_has_priority(clockwork: Clockwork) -> None:
+    """It asks again after the given time; its due time is unchanged."""
     pauses = [300, 0]
     timer, fired = timer_on(clockwork, lambda: pauses.pop(0))
     timer.schedule(1500)
@@ -84,8 +84,8 @@ def test_it_is_put_off_while_something_goes_before_it(clockwork: Clockwork) -> N
     assert fired == [1810]
 
 
-def test_it_is_not_put_off_for_ever(clockwork: Clockwork) -> None:
-    """A node that is always busy tells, after a while, all the same."""
+def test_deferral_is_bounded(clockwork: Clockwork) -> None:
+    """A node that is always busy still reports after a while."""
     timer, fired = timer_on(clockwork, lambda: 300)
     timer.schedule(1500)
     clockwork.pass_to(1500 + MAX_DEFERRAL - 1)
@@ -95,7 +95,7 @@ def test_it_is_not_put_off_for_ever(clockwork: Clockwork) -> None:
 
 
 def test_timers_of_one_clock_share_a_timer(clockwork: Clockwork) -> None:
-    """It is set for the first of them, and not anew for one that comes later."""
+    """It is set for the earliest of them, and not again for a later one."""
     early, fired_early = timer_on(clockwork)
     late, fired_late = timer_on(clockwork)
     late.schedule(3000)
@@ -109,7 +109,7 @@ def test_timers_of_one_clock_share_a_timer(clockwork: Clockwork) -> None:
 
 
 def test_messages_are_handled_between_timers(clockwork: Clockwork) -> None:
-    """Of those that are due together one fires in a call, the earliest first."""
+    """Of several due timers one fires per call, the earliest first."""
     timers = [timer_on(clockwork) for _ in range(3)]
     for (timer, _), due in zip(timers, (1300, 1100, 1200), strict=True):
         timer.schedule(due)
@@ -120,7 +120,7 @@ def test_messages_are_handled_between_timers(clockwork: Clockwork) -> None:
     assert order == [[1], [2], [0]]
 
 
-def test_a_callback_may_schedule_other_timers(clockwork: Clockwork) -> None:
+def test_callback_may_schedule_other_timers(clockwork: Clockwork) -> None:
     """The timer is set once for all of them."""
     others = [timer_on(clockwork) for _ in range(3)]
 
@@ -135,17 +135,17 @@ def test_a_callback_may_schedule_other_timers(clockwork: Clockwork) -> None:
 
 
 def test_each_clock_has_its_own_shared_timer(clockwork: Clockwork) -> None:
-    """Simulated time and steady time pass on their own."""
+    """Simulated and steady time are independent."""
     timer_on(clockwork)
     OneShotTimer(clockwork.node, Mock(), clockwork.read, Mock())
     assert clockwork.timers == 2
 
 
 @pytest.mark.ros
-def test_calls_do_not_multiply_on_a_busy_node(ros_env: dict[str, str]) -> None:
-    """Alarms that set each other, at once and for long, keep rclpy's executor from nothing else.
+def test_timer_calls_do_not_multiply_on_a_busy_node(ros_env: dict[str, str]) -> None:
+    """Timers that schedule each other leave rclpy's executor time for everything else.
 
-    With a timer for each of them it makes thirty calls for each time that one fires.
+    With a separate timer for each of them it makes thirty calls for each expiry.
     """
     import rclpy
     from rclpy.clock import Clock
@@ -187,7 +187,7 @@ def test_calls_do_not_multiply_on_a_busy_node(ros_env: dict[str, str]) -> None:
 def timer_on(
     clockwork: Clockwork, defer: Callable[[], int] | None = None
 ) -> tuple[OneShotTimer, list[int]]:
-    """Return an timer, and the moments at which it fires."""
+    """Return a timer, and the times at which it fires."""
     fired: list[int] = []
 
     def fire() -> None:
@@ -199,5 +199,5 @@ def timer_on(
 
 @pytest.fixture
 def clockwork() -> Clockwork:
-    """Give a clock that shows 1000 ns."""
+    """Return a clock that shows 1000 ns."""
     return Clockwork(1000)

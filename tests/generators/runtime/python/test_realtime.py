@@ -1,4 +1,4 @@
-"""What a node asks of the machine."""
+"""Real-time settings of the process."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from deros.generators.runtime.python.deros_runtime import realtime
 
 @pytest.fixture(autouse=True)
 def collecting() -> Iterator[None]:
-    """Leave the garbage collection of the test process as it was."""
+    """Restore the garbage collection of the test process afterwards."""
     yield
     gc.enable()
 
 
-def test_by_default_nothing_is_changed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No priority, no locked memory, the garbage collection as it is."""
+def test_defaults_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No priority, no locked memory, garbage collection as it is."""
     monkeypatch.setattr(os, "sched_setscheduler", Mock(side_effect=AssertionError))
     monkeypatch.setattr(ctypes, "CDLL", Mock(side_effect=AssertionError))
     assert realtime.configure_process(0, lock_memory=False, garbage_collection=True) == []
@@ -31,7 +31,7 @@ def test_by_default_nothing_is_changed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_every_thread_gets_the_priority(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those of the middleware, which bring the messages, as well as the node's own."""
+    """This includes threads of the middleware, which deliver the messages."""
     setting = Mock()
     monkeypatch.setattr(os, "sched_setscheduler", setting)
     assert realtime.configure_process(40, lock_memory=False, garbage_collection=True) == []
@@ -42,8 +42,8 @@ def test_every_thread_gets_the_priority(monkeypatch: pytest.MonkeyPatch) -> None
         assert call.args[2].sched_priority == 40
 
 
-def test_what_is_not_permitted_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The node runs on without it."""
+def test_missing_permission_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The node runs without the setting."""
     refusing = Mock(side_effect=PermissionError(1, "Operation not permitted"))
     monkeypatch.setattr(os, "sched_setscheduler", refusing)
     library = Mock()
@@ -56,8 +56,8 @@ def test_what_is_not_permitted_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     assert memory == "lock_memory is not permitted: Operation not permitted"
 
 
-def test_memory_is_locked_for_good(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is there, and what comes."""
+def test_memory_is_locked_permanently(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Current and future pages are locked."""
     library = Mock()
     library.mlockall.return_value = 0
     monkeypatch.setattr(ctypes, "CDLL", lambda *_, **__: library)
@@ -67,27 +67,27 @@ def test_memory_is_locked_for_good(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_memory_is_not_locked_under_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Else the node would end when, hours later, it needs more than the limit."""
+    """Otherwise the node would end when it needs more than the limit, hours later."""
     monkeypatch.setattr(ctypes, "CDLL", Mock(side_effect=AssertionError))
     monkeypatch.setattr(realtime, "can_lock_memory", lambda: False)
     (refusal,) = realtime.configure_process(0, lock_memory=True, garbage_collection=True)
     assert refusal == "lock_memory is not permitted: it needs an unlimited RLIMIT_MEMLOCK"
 
 
-def test_garbage_collection_can_be_left_out() -> None:
-    """It is the parameter's choice."""
+def test_garbage_collection_can_be_disabled() -> None:
+    """The parameter decides."""
     assert realtime.configure_process(0, lock_memory=False, garbage_collection=False) == []
     assert not gc.isenabled()
 
 
-def test_sharp_timers_are_asked_of_the_kernel() -> None:
-    """The slack of this thread's timers is what Linux allows least."""
+def test_timer_slack_is_minimised() -> None:
+    """This thread's timers have the smallest slack of Linux."""
     realtime.minimize_timer_slack()
     assert ctypes.CDLL(None).prctl(30, 0, 0, 0, 0) == 1  # PR_GET_TIMERSLACK
 
 
-def test_a_full_pipe_is_not_waited_for() -> None:
-    """What does not fit is lost; whoever shares the pipe goes on waiting for its reader."""
+def test_full_pipe_does_not_block() -> None:
+    """Excess output is lost; other users of the pipe still wait for its reader."""
     reader, writer = os.pipe()
     code = (
         "import os; from deros.generators.runtime.python.deros_runtime import realtime\n"

@@ -1,4 +1,4 @@
-"""What was done is told afterwards, a little at a time."""
+"""Queued reports are published later, in chunks."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from tests.support.clockwork import Clockwork
 
 
 class Telling(Clockwork):
-    """A queue on a clock that the test moves, and what they have told."""
+    """A queue on a simulated clock, and its reports."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Begin at zero, with nothing to tell."""
+        """Start at time zero without reports."""
         super().__init__()
         self.told: list[int] = []
         self.pauses = 0
@@ -34,12 +34,12 @@ class Telling(Clockwork):
         self.reports = ReportQueue(self.node, self.clock, events, self.diagnostics, self.pause, int)
 
     def note(self, event: Any, done: int, states: Any) -> None:
-        """Note what is told, with all that belongs to it."""
+        """Record a report with its data."""
         assert (done, states) == (7, "states")
         self.told.append(event.number)
 
     def pause(self) -> None:
-        """Count how often some have been told."""
+        """Count the reported items."""
         self.pauses += 1
 
     def add(self, *numbers: int) -> None:
@@ -48,18 +48,18 @@ class Telling(Clockwork):
             self.reports.add([Mock(action="stop", number=number)], [7], ["states"])
 
     def pass_time(self, time: int) -> None:
-        """Let time pass, and have the executor call the timer."""
+        """Advance the time, and let the executor call the timer."""
         self.pass_to(self.now + time)
 
 
 @pytest.fixture
 def telling(monkeypatch: pytest.MonkeyPatch) -> Telling:
-    """Give reports that have nothing to tell yet."""
+    """Return an empty queue."""
     return Telling(monkeypatch)
 
 
-def test_nothing_is_told_until_those_who_act_have_had_the_processor(telling: Telling) -> None:
-    """Two milliseconds after the first of them."""
+def test_reports_wait_for_the_readers_of_states(telling: Telling) -> None:
+    """The delay is two milliseconds after the first of them."""
     telling.add(1)
     telling.now += SOON // 2
     telling.add(2)
@@ -68,8 +68,8 @@ def test_nothing_is_told_until_those_who_act_have_had_the_processor(telling: Tel
     assert telling.told == [1, 2]
 
 
-def test_messages_come_between_chunks(telling: Telling) -> None:
-    """A backlog is told of in order, and never more than a chunk of it at once."""
+def test_messages_are_handled_between_chunks(telling: Telling) -> None:
+    """A backlog is reported in order, at most one chunk at a time."""
     everything = list(range(2 * CHUNK + 1))
     telling.add(*everything)
     telling.pass_time(SOON)
@@ -84,8 +84,8 @@ def test_messages_come_between_chunks(telling: Telling) -> None:
     assert telling.diagnostics.update.call_count == len(everything)
 
 
-def test_what_comes_later_is_told_later(telling: Telling) -> None:
-    """Once all is told, the next report waits as the first one did."""
+def test_later_report_waits_again(telling: Telling) -> None:
+    """When the queue is empty, the next report waits as the first one did."""
     telling.add(1)
     telling.pass_time(SOON)
     telling.add(2)
@@ -95,8 +95,8 @@ def test_what_comes_later_is_told_later(telling: Telling) -> None:
     assert telling.told == [1, 2]
 
 
-def test_a_backlog_does_not_grow_for_ever(telling: Telling) -> None:
-    """Where the timer never gets its turn, each new report tells of an old one; none is lost."""
+def test_backlog_is_bounded(telling: Telling) -> None:
+    """If the timer never fires, each new report flushes an old one; none is lost."""
     everything = list(range(3 * ROOM))
     telling.add(*everything)
     assert telling.told == everything[:-ROOM]

@@ -1,4 +1,4 @@
-"""Of two nodes of one name, the one that started last gives way."""
+"""Of two nodes of one name, the later one exits."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ SEC = 1_000_000_000
 
 
 def age_at_end(met: int, last: int = 20 * SEC) -> int | None:
-    """Return at which age a node ends that meets another one at an age; None if it stays."""
+    """Return the age at which a node exits after meeting another at a given age, or None."""
     order = StartOrder(0)
     ages = range(0, last, LOOK)
     return next((age for age in ages if order.gives_way(age >= met, age)), None)
 
 
 def remaining(lag: int, found: int) -> tuple[bool, bool]:
-    """Run two nodes, the second one started ``lag`` later; return whether each of them is left.
+    """Run two nodes, the second started ``lag`` later; return whether each of them remains.
 
     Args:
         lag: in ns.
-        found: how long after its start the second one finds the first one, and is found.
+        found: time after its start at which the second finds the first, and is found.
     """
     orders = [StartOrder(0), StartOrder(lag)]
     ends: list[int | None] = [None, None]
@@ -47,25 +47,25 @@ def remaining(lag: int, found: int) -> tuple[bool, bool]:
         for found in (0, LOOK // 3, 3 * LOOK, SEC)
     ],
 )
-def test_the_first_one_goes_on(lag: int, found: int) -> None:
-    """However young it is itself, and in whichever phase the two look."""
+def test_first_node_remains(lag: int, found: int) -> None:
+    """This holds for any ages and phases of the two."""
     assert remaining(lag, found) == (True, False)
 
 
-def test_a_node_waits_as_long_again_as_it_has_run() -> None:
-    """And a little longer, since the other one may be just ending."""
+def test_node_waits_for_twice_its_age() -> None:
+    """It adds a margin, because the other one may be ending."""
     for met in (0, SEC, 3 * SEC):
         assert age_at_end(met) == 2 * met + PATIENCE
 
 
-def test_an_old_node_never_gives_way() -> None:
-    """Two that meet late both stay; that is for people to mend."""
+def test_old_node_never_exits() -> None:
+    """If two meet late, both remain, and an operator must act."""
     assert age_at_end(YOUNG) is None
     assert age_at_end(YOUNG - LOOK) is not None
 
 
-def test_one_that_goes_in_time_ends_nobody() -> None:
-    """It was just ending; another one that comes later is met anew."""
+def test_node_that_leaves_in_time_ends_no_other() -> None:
+    """A node that appears later is a new encounter."""
     order = StartOrder(0)
     assert not order.gives_way(True, SEC)
     assert not order.gives_way(True, 2 * SEC)

@@ -1,4 +1,4 @@
-"""Topics that carry the states of bound actions."""
+"""Topics with the states of bound actions."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from deros.generators.runtime.python.deros_runtime.states import StateTopic  # n
 
 
 class Published:
-    """A topic of two actions, and what went out on it."""
+    """A topic of two actions, and its messages."""
 
     def __init__(self, stamped: bool = False) -> None:
-        """Begin with both inactive."""
+        """Start with both inactive."""
         self.messages: list[Any] = []
         self.made = 0
         self.topic = StateTopic(
@@ -28,13 +28,13 @@ class Published:
         self.topic.begin(frozenset({"another"}))
 
     def message(self, active: Set[str]) -> Any:
-        """Make the message, and count how often."""
+        """Create the message, and count the calls."""
         self.made += 1
         return std_msgs.String(data=" ".join(sorted(active)))
 
     @property
     def texts(self) -> list[str]:
-        """What the messages say."""
+        """Return the texts of the messages."""
         return [
             deserialize_message(each, std_msgs.String).data
             if isinstance(each, bytes)
@@ -44,7 +44,7 @@ class Published:
 
 
 def test_each_change_is_published() -> None:
-    """Active, active as well, no more active; and again whenever it is asked for."""
+    """Activation, second activation, deactivation, and repetition on request."""
     it = Published()
     it.topic.show("stop", True)
     it.topic.show("slow", True)
@@ -53,8 +53,8 @@ def test_each_change_is_published() -> None:
     assert it.texts == ["stop", "slow stop", "slow", "slow"]
 
 
-def test_the_next_message_is_made_in_advance() -> None:
-    """When an action becomes active, bytes are at hand."""
+def test_next_message_is_prepared_in_advance() -> None:
+    """When an action becomes active, the bytes exist already."""
     it = Published()
     made = it.made
     it.topic.show("stop", True)
@@ -66,8 +66,8 @@ def test_the_next_message_is_made_in_advance() -> None:
     assert all(isinstance(message, bytes) for message in it.messages)
 
 
-def test_messages_are_not_made_for_ever() -> None:
-    """However often the states change, there are only so many messages."""
+def test_number_of_messages_is_bounded() -> None:
+    """Repeated changes reuse the messages."""
     it = Published()
     for _ in range(100):
         for action in ("stop", "slow"):
@@ -77,8 +77,8 @@ def test_messages_are_not_made_for_ever() -> None:
     assert it.made <= 4
 
 
-def test_a_stamped_message_is_made_each_time() -> None:
-    """Its time is that of its publication."""
+def test_stamped_message_is_created_each_time() -> None:
+    """Its stamp is the time of publication."""
     it = Published(stamped=True)
     it.topic.show("stop", True)
     it.topic.prepare()
@@ -87,8 +87,8 @@ def test_a_stamped_message_is_made_each_time() -> None:
     assert it.texts == ["stop", "stop"]
 
 
-def test_it_begins_with_what_is_latched() -> None:
-    """The states of its own actions, whatever else is active."""
+def test_latched_actions_are_published_at_the_start() -> None:
+    """Only the actions of this topic count."""
     it = Published()
     it.topic.begin(frozenset({"stop", "another"}))
     it.topic.publish()

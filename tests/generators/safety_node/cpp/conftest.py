@@ -1,4 +1,4 @@
-"""Fixtures of the tests that run the node."""
+"""Fixtures for tests that run the node."""
 
 from tests.support.safety_node import robot
 

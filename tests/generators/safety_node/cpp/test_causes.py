@@ -1,4 +1,4 @@
-"""The node in C++ names the same causes as the reference, whatever the rules and the trace."""
+"""The C++ node gives the same causes as the reference, for any rules and any trace."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ pytestmark = [needs_c, needs_compiler]
 PROGRAMS = 60
 """Programs that are drawn per property, of each of which five traces are compared."""
 
-# The monitor in C keeps no text that its rules do not know, and so tells none.
+# The C monitor stores no text that its rules do not contain, and so reports none.
 KINDS = {
     "all kinds": tuple(each for each in ALL_KINDS if not each.startswith("text")),
     "few values": ("number", "boolean"),
@@ -30,13 +30,13 @@ KINDS = {
 
 
 def _converts(program: Program) -> bool:
-    """Return whether C keeps a value in another unit only; converted back, it may lose a digit."""
+    """Return whether C stores a value only in another unit; the conversion may lose a digit."""
     return any(isinstance(each, Scale) for each in walk.values(walk.conditions(program)))
 
 
 @pytest.mark.parametrize("kinds", KINDS)
-def test_same_causes(kinds: str, tmp_path: Path) -> None:
-    """Of every rule that is true, and of every behaviour that holds, after every call."""
+def test_causes_match_the_reference(kinds: str, tmp_path: Path) -> None:
+    """Every true rule and every active behaviour is compared after every call."""
     drawn = c_pairs.cases(KINDS[kinds], PROGRAMS, 1)
     cases = [each for each in drawn if not _converts(each.unit.program)]
     assert len(cases) > PROGRAMS // 3, "most programs are refused"
@@ -49,8 +49,8 @@ def test_same_causes(kinds: str, tmp_path: Path) -> None:
     assert told > 20 * PROGRAMS, "hardly anything was true"
 
 
-def test_the_texts_of_the_author(tmp_path: Path) -> None:
-    """Units, names of constants and texts are those of the rules; braces and quotes stay whole."""
+def test_causes_use_the_words_of_the_rules(tmp_path: Path) -> None:
+    """Units, names of constants and strings are as written; braces and quotes are preserved."""
     rules = """
     action stop;
     const limit = 2.5

@@ -1,4 +1,4 @@
-"""What of the C++ safety node needs no rclcpp: compiled against the wheels' messages, and run."""
+"""Parts of the C++ safety node without rclcpp: compiled with the message packages, and run."""
 
 from __future__ import annotations
 
@@ -41,26 +41,24 @@ MESSAGES = [
 
 @pytest.fixture(scope="module")
 def model() -> tuple[Rules, Context]:
-    """Give the rules, and where they were read."""
+    """Return the rules, and the context in which they were read."""
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load(MODEL).model
     assert isinstance(model, Rules)
     return model, context
 
 
-def test_nothing_is_allocated_while_it_watches(
-    model: tuple[Rules, Context], tmp_path: Path
-) -> None:
+def test_hot_path_does_not_allocate(model: tuple[Rules, Context], tmp_path: Path) -> None:
     """From message to state, over hundreds of triggers and resets."""
     program = compiled(HERE / "hot_path.cpp", tmp_path, generate(*model, {}))
     done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=False)
     assert done.stdout == "acted, 0 allocations\n"
 
 
-def test_it_explains_what_the_python_monitor_explains(
+def test_explanations_match_the_python_monitor(
     model: tuple[Rules, Context], tmp_path: Path
 ) -> None:
-    """The diagnostics of both nodes say the same after the same messages."""
+    """The diagnostics of both nodes agree after the same messages."""
     program = compiled(HERE / "explained.cpp", tmp_path, generate(*model, {}))
     lines = "".join(f"{topic} {t} {value}\n" for topic, t, value in MESSAGES if value == value)
     told = subprocess.run(
@@ -70,7 +68,7 @@ def test_it_explains_what_the_python_monitor_explains(
 
 
 def _explained(model: Rules, context: Context) -> list[str]:
-    """Return the lines that tell what the monitor in Python is worth after each message."""
+    """Return the lines that show the state of the Python monitor after each message."""
     program = build(model, context.store).program
     assert program is not None
     names: dict[str, Any] = {}
@@ -79,7 +77,7 @@ def _explained(model: Rules, context: Context) -> list[str]:
     told: list[str] = []
     for topic, t, value in MESSAGES:
         if value != value:
-            continue  # no stream of C++ reads NaN
+            continue  # C++ streams do not read NaN
         _take(monitor, topic, t, value)
         state = monitor.explain()
         for rule in state.rules:

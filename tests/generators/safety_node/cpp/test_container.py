@@ -1,4 +1,4 @@
-"""Generated C++ packages in one process: what each of them promises, it keeps beside others."""
+"""Several generated C++ packages in one process: each behaves as it does alone."""
 
 from __future__ import annotations
 
@@ -57,10 +57,10 @@ void base_safety_cpp::BaseSafetyNodeActions::honk(std::int64_t)
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give an install folder with the packages of two files of rules, and of a sensor.
+    """Return an install folder with the packages of two files of rules, and of a sensor.
 
-    The rules have names in common: those of the files, of entities, of behaviours. The sensor takes
-    its time to end, in which others find the middleware shut down.
+    The rules share names of files, entities and behaviours. The sensor takes time to end, during
+    which others find the middleware shut down.
     """
     source = tmp_path_factory.mktemp("workspace")
     for part in PARTS:
@@ -87,18 +87,18 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class Part:
-    """A part of the robot: the test's end of what its safety node and its gate say.
+    """A part of the robot: the test's end of its safety node and its gate.
 
     Attributes:
-        name: that of the part.
-        stops: all states of its stop that were heard.
+        name: name of the part.
+        stops: all received states of its stop.
         beats: all heartbeats.
         events: all events.
-        commands: forward speeds that its gate let pass, or made.
+        commands: forward speeds published by its gate.
     """
 
     def __init__(self, peer: Peer, name: str) -> None:
-        """Listen; the nodes may come later."""
+        """Subscribe; the nodes may start later."""
         from diagnostic_msgs.msg import DiagnosticStatus
         from geometry_msgs.msg import Twist
         from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -140,20 +140,20 @@ class Part:
 
     @property
     def is_stopped(self) -> bool:
-        """Whether its stop is active, as far as was heard."""
+        """Return whether its stop is active according to the last message."""
         return self.stops[-1:] == [True]
 
     def actions(self) -> set[str]:
-        """Return which actions were called for."""
+        """Return the triggered actions."""
         return {each["action"] for each in self.events if each["kind"] == "trigger"}
 
     def forget(self) -> None:
-        """Forget what was heard."""
+        """Clear the recorded messages."""
         for heard in (self.stops, self.beats, self.events, self.commands):
             heard.clear()
 
     def await_beats(self) -> None:
-        """Wait until its safety node has gone through its rules once more."""
+        """Wait until its safety node has evaluated its rules once more."""
         count = len(self.beats)
         self._peer.until(lambda: len(self.beats) >= count + 2)
 
@@ -164,7 +164,7 @@ class Part:
         self._wish.publish(message)
 
     def wish_until(self, speed: float, passed: float) -> None:
-        """Command a speed again and again, until another one comes out."""
+        """Command a speed repeatedly, until the given one is published."""
 
         def once() -> bool:
             self.wish(speed)
@@ -181,10 +181,10 @@ class Part:
 
 
 class Robot:
-    """Both parts, and what is measured."""
+    """Both parts, and the measured values."""
 
     def __init__(self, peer: Peer) -> None:
-        """Open the topics; the nodes may come later."""
+        """Open the topics; the nodes may start later."""
         from std_msgs.msg import Float64
 
         self.peer = peer
@@ -193,7 +193,7 @@ class Robot:
         self._publishers: dict[str, Any] = {}
 
     def tell_until(self, topic: str, value: float, condition: Callable[[], Any]) -> None:
-        """Publish a number again and again until something happens."""
+        """Publish a number repeatedly until a condition holds."""
         if topic not in self._publishers:
             self._publishers[topic] = self.peer.node.create_publisher(self._float, topic, 10)
 
@@ -204,7 +204,7 @@ class Robot:
         self.peer.until(once)
 
     def end(self, container: Container) -> str:
-        """End the container by SIGINT, with commands coming in all the while; return its output."""
+        """End the container by SIGINT while commands keep arriving; return its output."""
         container.process.send_signal(signal.SIGINT)
 
         def wished() -> bool:
@@ -220,18 +220,18 @@ class Robot:
 
 @pytest.fixture
 def two_parts(ros_peer: Peer) -> Robot:
-    """Give the test's end of all topics."""
+    """Return the test's end of all topics."""
     return Robot(ros_peer)
 
 
 @pytest.fixture
 def env(installed: Path, ros_env: dict[str, str]) -> dict[str, str]:
-    """Give the environment in which the components are found."""
+    """Return the environment in which the components are found."""
     return overlay(installed, ros_env)
 
 
 def latched(env: dict[str, str], part: Part) -> bool:
-    """Tell whether the file of a part's safety node says that the stop is active."""
+    """Return whether the file of a part's safety node has the stop as active."""
     name = f"{part.name}_safety_node.{env['ROS_DOMAIN_ID']}.latches"
     return "stop" in (Path(env["ROS_HOME"]) / "deros" / name).read_text().splitlines()
 
@@ -240,10 +240,10 @@ def latched(env: dict[str, str], part: Part) -> bool:
 
 
 @pytest.mark.parametrize("kind", ["component_container", "component_container_isolated"])
-def test_each_of_two_packages_watches_its_own_rules(
+def test_each_package_monitors_its_own_rules(
     kind: str, env: dict[str, str], two_parts: Robot
 ) -> None:
-    """Each acts, beats, latches and resets for itself, and each gate heeds its own node."""
+    """Actions, heartbeats, latches and resets are separate, and each gate obeys its own node."""
     base, arm = two_parts.base, two_parts.arm
     with running_container(env, two_parts.peer, kind) as container:
         for part in (base, arm):
@@ -252,7 +252,7 @@ def test_each_of_two_packages_watches_its_own_rules(
         for part in (base, arm):
             part.wish_until(0.7, passed=0.7)
 
-        # Both hear of the speed, and each does what its rules say.
+        # Both receive the speed, and each acts according to its rules.
         two_parts.tell_until("/speed", 1.0, lambda: base.actions() and arm.actions())
         assert (base.actions(), arm.actions()) == ({"stop"}, {"slow"})
         base.wish_until(0.7, passed=0.0)
@@ -261,7 +261,7 @@ def test_each_of_two_packages_watches_its_own_rules(
         assert not arm.is_stopped
         assert (latched(env, base), latched(env, arm)) == (True, False)
 
-        # Of the load, one alone; the reset is of one alone, too.
+        # Only one receives the load; the reset is for one of them, too.
         two_parts.tell_until("/load", 11.0, lambda: "stop" in arm.actions())
         arm.wish_until(0.7, passed=0.0)
         assert arm.is_stopped
@@ -279,8 +279,8 @@ def test_each_of_two_packages_watches_its_own_rules(
         assert "FATAL" not in output, output
 
 
-def test_one_goes_and_the_other_watches(env: dict[str, str], two_parts: Robot) -> None:
-    """A safety node that is unloaded is silent; loaded again it knows what it had latched."""
+def test_other_package_continues_after_an_unload(env: dict[str, str], two_parts: Robot) -> None:
+    """An unloaded safety node is silent; loaded again, it knows its latches."""
     base, arm = two_parts.base, two_parts.arm
     with running_container(env, two_parts.peer) as container:
         base.load_gate(container)
@@ -297,7 +297,7 @@ def test_one_goes_and_the_other_watches(env: dict[str, str], two_parts: Robot) -
         two_parts.peer.until(
             lambda: not two_parts.peer.node.count_publishers("/base_safety_node/heartbeat")
         )
-        arm.await_beats()  # by then, what was still on its way has come
+        arm.await_beats()  # by then, messages in transit have arrived
         base.forget()
         two_parts.tell_until("/load", 11.0, lambda: arm.is_stopped)
         arm.await_beats()
@@ -314,8 +314,8 @@ def test_one_goes_and_the_other_watches(env: dict[str, str], two_parts: Robot) -
         assert "FATAL" not in output, output
 
 
-def test_one_fails_and_the_other_watches(env: dict[str, str], two_parts: Robot) -> None:
-    """Robot code that throws ends its own node: the gate of that one stops, the other goes on."""
+def test_other_package_continues_after_a_failure(env: dict[str, str], two_parts: Robot) -> None:
+    """User code that throws ends its own node: the gate of that one stops, the other continues."""
     base, arm = two_parts.base, two_parts.arm
     with running_container(env, two_parts.peer) as container:
         base.load_gate(container)
@@ -335,13 +335,13 @@ def test_one_fails_and_the_other_watches(env: dict[str, str], two_parts: Robot) 
         assert output.count("FATAL") == 2, output  # the action, and the node
 
 
-# Messages within the process ----------------------------------------------------------------------
+# Intra-process messages ---------------------------------------------------------------------------
 
 SHARED = ("--extra-argument", "use_intra_process_comms:=true")
 
 
-def test_messages_of_the_same_process_are_heard(env: dict[str, str], two_parts: Robot) -> None:
-    """What is passed by pointer comes as what is sent, also when somebody outside listens."""
+def test_intra_process_messages_are_received(env: dict[str, str], two_parts: Robot) -> None:
+    """A message passed by pointer has its content, also with a subscriber outside."""
     from std_msgs.msg import Float64
 
     base, arm, peer = two_parts.base, two_parts.arm, two_parts.peer
@@ -363,14 +363,14 @@ def test_messages_of_the_same_process_are_heard(env: dict[str, str], two_parts: 
         two_parts.tell_until("/measured", 1.0, lambda: base.is_stopped)
         peer.until(lambda: 1.0 in heard)
 
-        # What comes from outside is heard as before.
+        # Messages from outside are received as before.
         two_parts.tell_until("/load", 11.0, lambda: arm.is_stopped)
         output = two_parts.end(container)
         assert "FATAL" not in output, output
 
 
-def test_simulated_time_of_the_same_process_is_heard(env: dict[str, str], two_parts: Robot) -> None:
-    """A clock in the container drives rules and gate, as one outside would."""
+def test_simulated_time_of_the_same_process_is_used(env: dict[str, str], two_parts: Robot) -> None:
+    """A clock in the container drives rules and gate, like one outside."""
     from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
 
     base, peer = two_parts.base, two_parts.peer
@@ -397,6 +397,6 @@ def test_simulated_time_of_the_same_process_is_heard(env: dict[str, str], two_pa
         peer.until(ticking(lambda: base.beats))
         two_parts.tell_until("/measured", 1.0, ticking(lambda: base.is_stopped))
         base.commands.clear()
-        peer.until(ticking(lambda: len(base.commands) > 10))  # zeros, at the rate of this time
+        peer.until(ticking(lambda: len(base.commands) > 10))  # zeros at the rate of simulated time
         output = two_parts.end(container)
         assert "FATAL" not in output, output

@@ -1,6 +1,6 @@
-"""The safety node in C++ on the real middleware, and in the place of the one in Python.
+"""The C++ safety node on real middleware, and in place of the Python one.
 
-What both nodes have to do alike is held by the tests of the Python one, which run with each.
+Behaviour common to both languages is tested with the Python node, in tests that run with each.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ pytestmark = [pytest.mark.ros, needs_rclcpp]
 
 @pytest.fixture
 def start(tmp_path: Path, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs the node in C++."""
+    """Return a function that runs the C++ node."""
     return starting(CppNode(tmp_path / "cpp"), ros_env)
 
 
 @pytest.fixture
 def start_python(tmp_path: Path, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs the node in Python, in the same domain and with the same files."""
+    """Return a function that runs the Python node, in the same domain and with the same files."""
     return starting(PythonNode(tmp_path / "python"), ros_env)
 
 
-def test_each_node_takes_over_what_the_other_has_latched(
+def test_latches_are_shared_between_languages(
     start: Start, start_python: Start, robot: Robot
 ) -> None:
-    """Latched by one and killed, active in the other; reset by that one, inactive in the first."""
+    """Latched by one node and killed, active in the other; reset there, inactive in the first."""
     for first, second in ((start, start_python), (start_python, start)):
         with first() as process:
             robot.meet()
@@ -56,8 +56,10 @@ def test_each_node_takes_over_what_the_other_has_latched(
         robot.forget()
 
 
-def test_neither_runs_beside_the_other(start: Start, start_python: Start, robot: Robot) -> None:
-    """The lock is one: the second ends at once and names the first."""
+def test_nodes_of_both_languages_exclude_each_other(
+    start: Start, start_python: Start, robot: Robot
+) -> None:
+    """They share one lock: the second exits at once and names the first."""
     for first, second in ((start, start_python), (start_python, start)):
         with first() as running:
             robot.event("start")
@@ -68,13 +70,11 @@ def test_neither_runs_beside_the_other(start: Start, start_python: Start, robot:
         robot.forget()
 
 
-def test_both_report_the_same_of_the_same_messages(
-    start: Start, start_python: Start, robot: Robot
-) -> None:
-    """Every status has the same level, message and values, but for the times; and each event."""
+def test_both_languages_report_the_same(start: Start, start_python: Start, robot: Robot) -> None:
+    """Statuses and events have the same level, message and values, except for times."""
     seen = []
     for each in (start, start_python):
-        robot.take_over(0)  # a node that starts is told the last mode
+        robot.take_over(0)  # a starting node gets the last mode
         with each("diagnostics_freq:=20.0"):
             robot.meet()
             robot.event("trigger", action="crawl")  # nobody has driven yet
@@ -131,10 +131,10 @@ def _timeless(values: dict[str, str]) -> dict[str, str]:
         ("state_file:=3", "state_file"),
     ],
 )
-def test_a_bad_parameter_is_a_line_and_not_a_crash(
+def test_invalid_parameter_is_reported_without_a_crash(
     start: Start, parameter: str, fragment: str
 ) -> None:
-    """The program ends with 1 and says what is wrong."""
+    """The program exits with 1 and a message."""
     with start(parameter) as process:
         output, _ = process.communicate(timeout=LIMIT)
     assert process.returncode == 1
@@ -142,8 +142,8 @@ def test_a_bad_parameter_is_a_line_and_not_a_crash(
     assert "terminate called" not in output
 
 
-def test_garbage_collection_is_taken_and_has_no_effect(start: Start, robot: Robot) -> None:
-    """The parameter files of the Python node are valid for this one."""
+def test_garbage_collection_parameter_has_no_effect(start: Start, robot: Robot) -> None:
+    """Parameter files of the Python node are valid for the C++ node."""
     with start("garbage_collection:=false") as process:
         robot.meet()
         code, _ = end(process, robot, signal.SIGTERM)

@@ -1,4 +1,4 @@
-"""Components are unloaded while messages come in: nothing of them is used once it is freed."""
+"""Unloading components while messages arrive: none is used after it is freed."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ TIMES = 20
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give an install folder with a safety node and its gate, which notice freed memory."""
+    """Return an install folder with a safety node and its gate that detect use of freed memory."""
     source = tmp_path_factory.mktemp("workspace")
     context = Context(InterfaceStore(), Repository())
     rules = context.repository.load(RULES).model
@@ -47,7 +47,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @contextmanager
 def flowing(*publish: Callable[[], Any]) -> Iterator[None]:
-    """Publish without a pause, from a thread of its own, until the block ends."""
+    """Publish continuously from another thread until the block ends."""
     over = threading.Event()
 
     def flow() -> None:
@@ -66,10 +66,10 @@ def flowing(*publish: Callable[[], Any]) -> Iterator[None]:
 
 @pytest.mark.parametrize("plugin", ["BaseCommandGate", "BaseSafetyNode"])
 @pytest.mark.parametrize("kind", ["component_container", "component_container_isolated"])
-def test_unloading_frees_nothing_that_is_in_use(
+def test_unloading_under_load_is_safe(
     kind: str, plugin: str, installed: Path, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:
-    """A gate, or a safety node, is loaded and unloaded many times amid what it subscribes to."""
+    """A gate or safety node is loaded and unloaded many times while its topics are published."""
     from geometry_msgs.msg import Twist
     from std_msgs.msg import Float64
 

@@ -1,4 +1,4 @@
-"""Fixtures of the tests that run a generated safety node."""
+"""Fixtures for tests that run a generated safety node."""
 
 from tests.support.safety_node import node, robot, start
 

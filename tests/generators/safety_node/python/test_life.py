@@ -1,4 +1,4 @@
-"""The life of a generated safety node: start, faults, reports, restart; on the real middleware."""
+"""Life cycle of a generated safety node on real middleware: start, faults, reports, restart."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OK, WARN, ERROR, STALE = range(4)
 
 
 def state_file(ros_env: dict[str, str]) -> Path:
-    """Return the file in which the node keeps what is latched."""
+    """Return the file in which the node stores its latches."""
     name = f"{NODE}.{ros_env['ROS_DOMAIN_ID']}.latches"
     return Path(ros_env["ROS_HOME"]) / "deros" / name
 
@@ -38,8 +38,8 @@ def kill(process: Process) -> None:
 # Start ----------------------------------------------------------------------------------------
 
 
-def test_there_is_no_heartbeat_until_the_inputs_have_come(start: Start, robot: Robot) -> None:
-    """Within the grace, whoever heeds the heartbeat holds the robot, and an operator sees why."""
+def test_no_heartbeat_before_the_inputs(start: Start, robot: Robot) -> None:
+    """During the grace period readers of the heartbeat hold the robot, and the status says why."""
     with start("startup_grace:=60.0") as process:
         robot.peer.until(lambda: robot.stop and robot.statuses)
         states = len(robot.stop)
@@ -55,16 +55,16 @@ def test_there_is_no_heartbeat_until_the_inputs_have_come(start: Start, robot: R
     assert not [line for line in lines if line.startswith("crawl")]
 
 
-def test_a_grace_ends_with_inputs_that_are_missing(start: Start, robot: Robot) -> None:
-    """The timeouts count from its end; then the node beats, and has done what the rules say."""
+def test_grace_ends_with_missing_inputs(start: Start, robot: Robot) -> None:
+    """The timeouts count from its end; then the node has a heartbeat and acts by its rules."""
     with start("startup_grace:=0.5"):
         robot.peer.until(lambda: robot.beats)
         robot.peer.until(lambda: robot.limit and robot.limit[-1] == 0.2)
         assert int(robot.event("trigger")["time_ns"]) > 0
 
 
-def test_a_second_instance_is_refused(start: Start, robot: Robot) -> None:
-    """It ends at once and names the first, which goes on."""
+def test_second_instance_is_refused(start: Start, robot: Robot) -> None:
+    """It exits at once and names the first, which continues."""
     with start() as first:
         robot.meet()
         with start() as second:
@@ -79,8 +79,8 @@ def test_a_second_instance_is_refused(start: Start, robot: Robot) -> None:
         assert robot.status().values.keys() == {"state"}
 
 
-def test_a_second_heartbeat_ends_the_younger_node(start: Start, robot: Robot) -> None:
-    """A node on another machine cannot be locked out, but it is seen."""
+def test_second_heartbeat_ends_the_younger_node(start: Start, robot: Robot) -> None:
+    """A node on another machine shares no lock, but is detected."""
     from std_msgs.msg import UInt64
 
     robot.peer.node.create_publisher(UInt64, f"/{NODE}/heartbeat", 10)
@@ -90,8 +90,8 @@ def test_a_second_heartbeat_ends_the_younger_node(start: Start, robot: Robot) ->
     assert "this one started last and ends now" in output
 
 
-def test_what_the_machine_does_not_permit_is_said(start: Start, robot: Robot) -> None:
-    """With all options on, the node runs: with them, or without them and with a warning."""
+def test_missing_permissions_are_reported(start: Start, robot: Robot) -> None:
+    """With all options set the node runs, either with them or with a warning."""
     options = ("realtime_priority:=20", "lock_memory:=true", "garbage_collection:=false")
     with start(*options) as process:
         break_the_rule(robot)
@@ -104,7 +104,7 @@ def test_what_the_machine_does_not_permit_is_said(start: Start, robot: Robot) ->
 
 
 def test_each_trigger_is_one_event_with_its_cause(start: Start, robot: Robot) -> None:
-    """Action, behaviour, place, condition, instant, and the values that made it true."""
+    """The event has action, behaviour, place, condition, time, and the values of the cause."""
     with start():
         break_the_rule(robot)
         event = robot.event("trigger", action="stop")
@@ -126,8 +126,8 @@ def test_each_trigger_is_one_event_with_its_cause(start: Start, robot: Robot) ->
     assert 0 <= int(event["published_ns"]) - int(event["time_ns"]) < 1_000_000_000
 
 
-def test_the_diagnostics_show_rules_actions_and_values(start: Start, robot: Robot) -> None:
-    """An operator sees what is true and why, what is active since when, and what is unknown."""
+def test_diagnostics_show_rules_actions_and_values(start: Start, robot: Robot) -> None:
+    """They show causes of true rules, start times of active actions, and unknown values."""
     with start("diagnostics_freq:=20.0"):
         break_the_rule(robot)
         robot.drive_until(0.9, lambda: robot.status("action stop").level == WARN)
@@ -146,17 +146,15 @@ def test_the_diagnostics_show_rules_actions_and_values(start: Start, robot: Robo
         robot.peer.until(lambda: robot.status("drive.fast").level == OK)
 
 
-def test_a_change_shows_before_the_next_period(start: Start, robot: Robot) -> None:
-    """Who looks at the diagnostics does not wait for seconds."""
+def test_change_is_published_before_the_next_period(start: Start, robot: Robot) -> None:
+    """The diagnostics need no second to show it."""
     with start("diagnostics_freq:=0.001"):
         break_the_rule(robot)
         robot.peer.until(lambda: robot.status("action stop").message == "active")
 
 
-def test_data_that_cannot_be_read_counts_for_nothing(
-    start: Start, robot: Robot, node: Software
-) -> None:
-    """It is reported once, keeps no timeout from passing, and harms nothing."""
+def test_undecodable_data_is_ignored(start: Start, robot: Robot, node: Software) -> None:
+    """It is reported once, does not restart a timeout, and has no other effect."""
     with start() as process:
         robot.meet()
 
@@ -176,10 +174,10 @@ def test_data_that_cannot_be_read_counts_for_nothing(
     assert "Traceback" not in "\n".join(lines)
 
 
-def test_publishers_that_are_not_heard_are_reported(
+def test_incompatible_publishers_are_reported(
     start: Start, robot: Robot, ros_env: dict[str, str]
 ) -> None:
-    """Another type, or a best-effort publisher of a topic that is to be reliable."""
+    """They have another type, or offer best effort on a topic that must be reliable."""
     from rclpy.qos import QoSProfile, ReliabilityPolicy
     from std_msgs.msg import Float64
 
@@ -199,7 +197,7 @@ def test_publishers_that_are_not_heard_are_reported(
 
 
 def stranger(topic: str, env: dict[str, str]) -> Any:
-    """Publish another type on a topic from another process, until the block ends."""
+    """Publish another type on a topic from another process until the block ends."""
     code = (
         "import sys, rclpy; from rclpy.node import Node; from std_msgs.msg import String;"
         "rclpy.init(); node = Node('stranger');"
@@ -211,8 +209,8 @@ def stranger(topic: str, env: dict[str, str]) -> Any:
 # Optional behaviours --------------------------------------------------------------------------
 
 
-def test_an_optional_behaviour_can_be_disabled_and_enabled(start: Start, robot: Robot) -> None:
-    """Disabled it does nothing and the operator is told; enabled it acts at once if it holds."""
+def test_optional_behaviour_can_be_disabled_and_enabled(start: Start, robot: Robot) -> None:
+    """Disabled, it does nothing and is listed as such; enabled, it acts at once if it holds."""
     with start("behaviours.speeding.enabled:=false", "diagnostics_freq:=20.0"):
         robot.meet()
         robot.drive_until(0.9, lambda: robot.status("drive.fast").level != STALE)
@@ -234,8 +232,8 @@ def test_an_optional_behaviour_can_be_disabled_and_enabled(start: Start, robot: 
 # Latched actions ------------------------------------------------------------------------------
 
 
-def test_a_latched_action_survives_the_death_of_the_node(start: Start, robot: Robot) -> None:
-    """Killed or ended, the next process begins with it, until somebody resets it."""
+def test_latched_action_survives_a_restart(start: Start, robot: Robot) -> None:
+    """Killed or ended, the next process starts with it, until a reset."""
     with start() as process:
         break_the_rule(robot)
         kill(process)
@@ -260,10 +258,10 @@ def test_a_latched_action_survives_the_death_of_the_node(start: Start, robot: Ro
         assert not any(robot.stop)
 
 
-def test_a_damaged_state_file_means_active(
+def test_damaged_state_file_means_active(
     start: Start, robot: Robot, ros_env: dict[str, str]
 ) -> None:
-    """The robot stands until a person has looked, and reset it."""
+    """The robot is stopped until an operator resets it."""
     state_file(ros_env).parent.mkdir(parents=True)
     state_file(ros_env).write_text("stop\n")
     with start():
@@ -274,10 +272,8 @@ def test_a_damaged_state_file_means_active(
         robot.peer.until(lambda: not robot.stop[-1])
 
 
-def test_without_a_state_file_nothing_can_be_reset(
-    start: Start, robot: Robot, tmp_path: Path
-) -> None:
-    """What cannot be remembered is taken as active, and the refusal says what to mend."""
+def test_reset_is_refused_without_a_state_file(start: Start, robot: Robot, tmp_path: Path) -> None:
+    """Latches that cannot be stored count as active, and the refusal gives the reason."""
     (tmp_path / "file").write_text("")
     with start(f"state_file:={tmp_path}/file/robot.latches"):
         robot.peer.until(lambda: robot.stop)
@@ -288,12 +284,12 @@ def test_without_a_state_file_nothing_can_be_reset(
         assert robot.stop[-1]
 
 
-def test_a_stopped_node_does_not_beat(start: Start, robot: Robot) -> None:
-    """The heartbeat is the monitor's own: while that does nothing, there is none."""
+def test_suspended_node_has_no_heartbeat(start: Start, robot: Robot) -> None:
+    """The heartbeat comes from the monitor's own thread."""
     with start() as process:
         robot.meet()
         freeze(process.pid)
-        beats = len(robot.beats) + 2  # with those under way
+        beats = len(robot.beats) + 2  # including those in transit
         try:
             with pytest.raises(AssertionError, match="did not come"):
                 robot.peer.until(lambda: len(robot.beats) > beats, limit=1.0)

@@ -1,4 +1,4 @@
-"""An action that only resets others: running it without code of one's own is no error."""
+"""An action that only resets others: running it without user code is not an error."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if not e.far then {{ release; }};
 
 
 class _Node:
-    """Stands for the safety node: it keeps what is logged."""
+    """A stand-in for the safety node that records its log."""
 
     def __init__(self) -> None:
         self.errors: list[str] = []
@@ -31,7 +31,7 @@ class _Node:
 
 
 def _actions(node: _Node, more: str = "", call: str = "") -> Any:
-    """Return the user's class as generated, belonging to a node."""
+    """Return the generated user class, attached to a node."""
     context = Context(embedded_store(), Repository())
     model = load(RULES.format(more=more, call=call))
     files = generate(model, context, {"package": "r_safety"})
@@ -51,8 +51,8 @@ def _actions(node: _Node, more: str = "", call: str = "") -> Any:
     return module.RSafetyNodeActions(node)
 
 
-def test_a_reset_is_no_missing_code() -> None:
-    """Neither at the start nor when it is run."""
+def test_resetting_action_needs_no_code() -> None:
+    """There is no error at the start, nor when it is run."""
     node = _Node()
     actions = _actions(node)
     assert actions.unfilled() == []
@@ -60,8 +60,8 @@ def test_a_reset_is_no_missing_code() -> None:
     assert node.errors == []
 
 
-def test_other_actions_still_are() -> None:
-    """An action that resets nothing is missing until it is written."""
+def test_other_action_without_code_is_an_error() -> None:
+    """An action that resets nothing is reported until it is written."""
     node = _Node()
     actions = _actions(node, "action horn;\n", "horn; ")
     assert actions.unfilled() == ["horn"]

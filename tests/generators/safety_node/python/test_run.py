@@ -1,4 +1,4 @@
-"""The generated safety node on the real middleware."""
+"""The generated safety node on real middleware."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from tests.support.safety_node import Robot, Software, Start, end, result_of
 pytestmark = pytest.mark.ros
 
 
-def test_a_violation_stops_the_robot_until_it_is_reset(start: Start, robot: Robot) -> None:
-    """Violation in, stop out; a reset is refused while the rule is broken, and says by what."""
+def test_violation_stops_the_robot_until_a_reset(start: Start, robot: Robot) -> None:
+    """While the rule is violated, a reset is refused with the reason."""
     with start() as process:
         robot.meet()
         assert robot.stop[-1] is False
@@ -39,8 +39,8 @@ def test_a_violation_stops_the_robot_until_it_is_reset(start: Start, robot: Robo
     assert "stop is reset" in lines
 
 
-def test_an_action_without_code_is_never_silent(start: Start, robot: Robot, node: Software) -> None:
-    """The node says at its start what is not filled in, and again when it would have acted."""
+def test_action_without_code_is_reported(start: Start, robot: Robot, node: Software) -> None:
+    """The node lists it at the start, and again when it should act."""
     with start() as process:
         robot.meet()
         robot.drive_until(0.9, lambda: robot.stop[-1])
@@ -55,8 +55,10 @@ def test_an_action_without_code_is_never_silent(start: Start, robot: Robot, node
     )
 
 
-def test_the_users_code_runs(start: Start, robot: Robot, node: Software) -> None:
-    """A body that the user writes is called with the arguments of the rules."""
+def test_user_code_gets_the_arguments_of_the_rules(
+    start: Start, robot: Robot, node: Software
+) -> None:
+    """A body written by the user is called with them."""
     node.fill_in("tell")
     with start() as process:
         robot.meet()
@@ -66,10 +68,8 @@ def test_the_users_code_runs(start: Start, robot: Robot, node: Software) -> None
     assert not [line for line in lines if line.startswith("action beep")]
 
 
-def test_a_failing_action_does_not_keep_others_from_acting(
-    start: Start, robot: Robot, node: Software
-) -> None:
-    """The rest of the event is done, and then the node ends, so that its heartbeat stops."""
+def test_failing_action_does_not_prevent_others(start: Start, robot: Robot, node: Software) -> None:
+    """The other actions are executed, and then the node exits, so that its heartbeat stops."""
     node.fill_in("fail")
     with start() as process:
         robot.meet()
@@ -80,12 +80,12 @@ def test_a_failing_action_does_not_keep_others_from_acting(
     assert "speed limit exceeded, by speeding" in output
 
 
-def test_a_silent_sensor_and_a_takeover(start: Start, robot: Robot) -> None:
-    """A deadline acts without any message; another action resets it, once all causes are over."""
+def test_silent_sensor_acts_and_takeover_resets(start: Start, robot: Robot) -> None:
+    """A deadline acts without a message; another action resets it once all causes are over."""
     with start() as process:
         robot.meet()
         robot.peer.until(lambda: robot.limit[-1] == 0.2)
-        # A takeover may overtake what ends the causes and be refused; then it is done again.
+        # A takeover may arrive before the causes are over and be refused; then it is repeated.
         modes = itertools.cycle([0, 1])
 
         def released() -> bool:
@@ -100,21 +100,21 @@ def test_a_silent_sensor_and_a_takeover(start: Start, robot: Robot) -> None:
     assert "crawl is reset" in lines
 
 
-def test_it_beats_and_repeats_at_publish_freq(start: Start, robot: Robot) -> None:
-    """Heartbeat and states come again and again, faster when the parameter says so."""
+def test_heartbeat_and_states_repeat_at_publish_freq(start: Start, robot: Robot) -> None:
+    """Both are repeated, faster if the parameter says so."""
     with start("publish_freq:=100.0") as process:
         robot.meet()
         states, beats = len(robot.stop), len(robot.beats)
         robot.peer.until(lambda: len(robot.beats) >= beats + 20)
-        # A state replaces the one before it where the receiver is late: some are never seen.
+        # A state replaces the one before it if the receiver is late: some are never seen.
         robot.peer.until(lambda: len(robot.stop) >= states + 10)
         assert robot.beats == sorted(set(robot.beats))
         code, _ = end(process, robot)
     assert code == 0
 
 
-def test_simulated_time_steps_and_starts_late(start: Start, robot: Robot) -> None:
-    """Deadlines follow /clock; it may begin at any time, and a step back is reported."""
+def test_simulated_time_may_step_and_start_late(start: Start, robot: Robot) -> None:
+    """Deadlines follow /clock; it may start at any time, and a step back is reported."""
     from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
 
     clock = robot.peer.node.create_publisher(Clock, "/clock", 10)

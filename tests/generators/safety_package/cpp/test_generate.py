@@ -1,4 +1,4 @@
-"""The package of the safety node in C++."""
+"""The package of the C++ safety node."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HEAD = 'use "robot.system" import Robot\ninput v = topic /speed.data\n'
 
 
 def files_of(name: str, **options: str) -> Files:
-    """Return what is generated for one of the models."""
+    """Return the generated files of one of the models."""
     context = Context(InterfaceStore(), Repository())
     loaded = context.repository.load(MODELS / f"{name}.deros")
     assert isinstance(loaded.model, Rules)
@@ -30,7 +30,7 @@ def files_of(name: str, **options: str) -> Files:
 
 
 def files_of_text(text: str) -> Files:
-    """Return what is generated for rules that stand beside the models."""
+    """Return the generated files of rules that are next to the models."""
     context = Context(InterfaceStore(), Repository())
     loaded = context.repository.load_text(str(MODELS / "text.deros"), HEAD + text)
     assert isinstance(loaded.model, Rules)
@@ -38,10 +38,10 @@ def files_of_text(text: str) -> Files:
 
 
 @pytest.mark.parametrize("name", ["every_thing", "two_rules"])
-def test_the_files_are_as_kept(name: str, golden: Golden) -> None:
-    """Node, description, messages, metadata and actions have the text that was reviewed.
+def test_files_match_golden(name: str, golden: Golden) -> None:
+    """Node, description, messages, metadata and actions match the reviewed text.
 
-    The rest comes from the generators of nodes and of monitors, and is kept with their tests.
+    Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
     made = ("", "_main", "_messages", "_rule_metadata", "_actions", "_actions_base", "_cpp")
     stems = {f"{name}_safety_node{part}" for part in made}
@@ -53,8 +53,8 @@ def test_the_files_are_as_kept(name: str, golden: Golden) -> None:
     golden.check(f"safety_cpp/{name}", files)
 
 
-def test_the_two_nodes_differ_in_their_types_name_alone() -> None:
-    """Ports and parameters are the same, so that one can stand where the other stood."""
+def test_nodes_of_both_languages_differ_only_in_type_name() -> None:
+    """Ports and parameters are the same, so that one can replace the other."""
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load(MODELS / "every_thing.deros").model
     assert isinstance(model, Rules)
@@ -70,15 +70,15 @@ def test_the_two_nodes_differ_in_their_types_name_alone() -> None:
 
 
 @pytest.mark.parametrize("package", ["guard", "guard_cpp"])
-def test_options_name_the_python_twin(package: str) -> None:
-    """With or without its ending, the package is the same."""
+def test_options_name_the_python_node(package: str) -> None:
+    """With or without its suffix, the package is the same."""
     files = files_of("two_rules", package=package, node="watchdog")
     assert "guard_cpp/watchdog_cpp.rnd" in files
     assert "guard_cpp/src/watchdog.cpp" in files
 
 
-def test_the_user_owns_the_actions_alone() -> None:
-    """All files are refreshed but the manifest and those with the bodies of the actions."""
+def test_user_files_are_the_manifest_and_the_actions() -> None:
+    """All other files are generated again."""
     owned = {path for path, file in files_of("every_thing").items() if file.owner is Owner.USER}
     root = "every_thing_safety_cpp"
     assert owned == {
@@ -88,15 +88,15 @@ def test_the_user_owns_the_actions_alone() -> None:
     }
 
 
-def test_bound_actions_need_no_file_of_actions() -> None:
-    """Nothing to fill in, nothing that could be forgotten."""
+def test_bound_actions_need_no_user_file() -> None:
+    """There is no code to write."""
     rules = "action stop publishes true on /stop : std_msgs.Bool;\n"
     files = files_of_text(f"{rules}entity e {{ r: v > 0.5; }} if e.r then {{ stop; }};")
     assert not [path for path in files if "actions" in path]
 
 
-def test_an_argument_of_two_types_is_refused() -> None:
-    """A method has one type for each parameter, whatever the rules hand over."""
+def test_argument_of_two_types_is_rejected() -> None:
+    """A method has one type for each parameter, whatever the rules pass."""
     rules = (
         'action beep(how); entity e { r: v > 1; s: v > 2; } if e.r then { beep("loud"); };'
         "if e.s then { beep(3); };"
@@ -108,8 +108,8 @@ def test_an_argument_of_two_types_is_refused() -> None:
 
 
 @pytest.mark.parametrize("name", ["node", "Node"])
-def test_an_action_cannot_take_the_name_of_the_accessor(name: str) -> None:
-    """Only the very same name collides."""
+def test_action_cannot_have_the_name_of_the_accessor(name: str) -> None:
+    """Only the identical name collides."""
     rules = f"action {name}; entity e {{ r: v > 1; }} if e.r then {{ {name}; }};"
     if name == "node":
         with pytest.raises(GenerationError, match="both become"):
@@ -118,8 +118,8 @@ def test_an_action_cannot_take_the_name_of_the_accessor(name: str) -> None:
         assert files_of_text(rules)
 
 
-def test_two_packages_have_a_namespace_each() -> None:
-    """Nothing of the runtime is defined outside the package's own namespace."""
+def test_each_package_has_its_own_namespace() -> None:
+    """Nothing of the runtime is defined outside it."""
     files = files_of("two_rules")
     assert not [path for path, file in files.items() if "deros_runtime" in file.text.lower()]
     for path, file in files.items():
@@ -127,8 +127,8 @@ def test_two_packages_have_a_namespace_each() -> None:
             assert "namespace two_rules_safety_cpp::runtime\n" in file.text, path
 
 
-def test_rules_with_an_error_are_not_generated() -> None:
-    """What is wrong with the rules is what the generator says."""
+def test_rules_with_errors_are_rejected() -> None:
+    """The generator reports the errors of the rules."""
     with pytest.raises(GenerationError) as refused:
         files_of_text("entity e { r: w > 1; }")
     assert "DRS310" in [diagnostic.code.name for diagnostic in refused.value.diagnostics]
@@ -138,9 +138,7 @@ def test_rules_with_an_error_are_not_generated() -> None:
     ("name", "options"),
     [("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],
 )
-def test_the_linters_of_ament_find_nothing(
-    name: str, options: dict[str, str], tmp_path: Path
-) -> None:
-    """uncrustify, cpplint and cppcheck with ament's settings pass all files, those in C too."""
+def test_files_pass_the_ament_linters(name: str, options: dict[str, str], tmp_path: Path) -> None:
+    """uncrustify, cpplint and cppcheck with ament's settings accept all files, including C."""
     write(files_of(name, **options), tmp_path)
     assert_cpp_lint_clean(tmp_path / f"{name}_safety_cpp")

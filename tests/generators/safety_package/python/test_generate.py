@@ -1,4 +1,4 @@
-"""The package of the safety node."""
+"""The package of the Python safety node."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ HEAD = 'use "robot.system" import Robot\ninput v = topic /speed.data\n'
 
 
 def files_of_text(text: str, **options: str) -> Files:
-    """Return what is generated for rules that stand beside the models."""
+    """Return the generated files of rules that are next to the models."""
     context = Context(InterfaceStore(), Repository())
     loaded = context.repository.load_text(str(MODELS / "text.deros"), text)
     assert loaded.diagnostics == ()
@@ -33,7 +33,7 @@ def files_of_text(text: str, **options: str) -> Files:
 
 
 def files_of(name: str, **options: str) -> Files:
-    """Return what is generated for one of the models."""
+    """Return the generated files of one of the models."""
     context = Context(InterfaceStore(), Repository())
     loaded = context.repository.load(MODELS / f"{name}.deros")
     assert isinstance(loaded.model, Rules)
@@ -41,10 +41,10 @@ def files_of(name: str, **options: str) -> Files:
 
 
 @pytest.mark.parametrize("name", ["every_thing", "two_rules"])
-def test_the_files_are_as_kept(name: str, golden: Golden) -> None:
-    """Node, description and actions have the text that was reviewed.
+def test_files_match_golden(name: str, golden: Golden) -> None:
+    """Node, description and actions match the reviewed text.
 
-    The rest comes from the generators of nodes and of monitors, and is kept with their tests.
+    Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
     ends = (".rnd", ".py", "_actions.py", "_actions_base.py")
     own = {"origins.py", *(f"{name}_safety_node{end}" for end in ends)}
@@ -57,10 +57,8 @@ def test_the_files_are_as_kept(name: str, golden: Golden) -> None:
     ("name", "options"),
     [("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],
 )
-def test_the_linters_of_ament_find_nothing(
-    name: str, options: dict[str, str], tmp_path: Path
-) -> None:
-    """flake8 and pep257 with ament's settings pass all files."""
+def test_files_pass_the_ament_linters(name: str, options: dict[str, str], tmp_path: Path) -> None:
+    """flake8 and pep257 with ament's settings accept all files."""
     write(files_of(name, **options), tmp_path)
     assert_lint_clean(tmp_path / f"{name}_safety")
 
@@ -90,8 +88,8 @@ def test_every_kind_of_program_is_lint_clean(rules: str, tmp_path: Path) -> None
     assert_lint_clean(tmp_path / "text_safety")
 
 
-def test_the_description_stands_for_the_node() -> None:
-    """The .rnd of the output is read back as the node whose base class is beside it."""
+def test_description_matches_the_node() -> None:
+    """The generated .rnd parses to the node whose base class is generated with it."""
     text = files_of("every_thing")["every_thing_safety/every_thing_safety_node.rnd"].text
     loaded = Repository().load_text("every_thing_safety_node.rnd", text)
     assert loaded.diagnostics == ()
@@ -100,8 +98,8 @@ def test_the_description_stands_for_the_node() -> None:
     assert loaded.model.port("/stop") is not None
 
 
-def test_the_user_owns_the_actions_alone() -> None:
-    """All files are refreshed but the manifest and the bodies of the actions."""
+def test_user_files_are_the_manifest_and_the_actions() -> None:
+    """All other files are generated again."""
     files = files_of("every_thing")
     owned = [path for path, file in files.items() if file.owner is Owner.USER]
     assert sorted(owned) == [
@@ -110,8 +108,8 @@ def test_the_user_owns_the_actions_alone() -> None:
     ]
 
 
-def test_an_action_added_later_is_reported_until_it_has_a_body() -> None:
-    """The user's file, written before, lacks the method; the base class has it, and says so."""
+def test_new_action_is_reported_until_it_is_written() -> None:
+    """The existing user file lacks the method; the method of the base class reports this."""
     pytest.importorskip("rclpy")
     files = files_of("every_thing")
     module = "every_thing_safety/every_thing_safety/every_thing_safety_node_actions_base.py"
@@ -127,14 +125,14 @@ def test_an_action_added_later_is_reported_until_it_has_a_body() -> None:
     assert message.startswith("action beep(1, 'near') should have been carried out now")
 
 
-def test_bound_actions_need_no_file_of_actions() -> None:
-    """Nothing to fill in, nothing that could be forgotten."""
+def test_bound_actions_need_no_user_file() -> None:
+    """There is no code to write."""
     rules = "action stop publishes true on /stop : std_msgs.Bool;\n"
     files = files_of_text(f"{HEAD}{rules}entity e {{ r: v > 0.5; }} if e.r then {{ stop; }};")
     assert not [path for path in files if "actions" in path]
 
 
-def test_the_output_needs_nothing_of_deros() -> None:
+def test_output_does_not_import_deros() -> None:
     """Every import is of ROS 2, the standard library or the package itself."""
     allowed = {
         "__future__", "abc", "collections", "contextlib", "ctypes", "dataclasses", "fcntl",
@@ -156,8 +154,8 @@ def test_the_output_needs_nothing_of_deros() -> None:
 
 
 @pytest.mark.parametrize(("field", "needed"), [("position.max()", True), ("position[0]", False)])
-def test_numpy_is_a_dependency_where_arrays_are_read(field: str, needed: bool) -> None:
-    """The package says what its modules import."""
+def test_numpy_is_a_dependency_if_arrays_are_read(field: str, needed: bool) -> None:
+    """The package lists the imports of its modules."""
     rules = (
         'use "robot.system" import Robot\naction stop;\n'
         f"input j = topic /joints timeout 1 sec\nentity e {{ high: j.{field} > 1; }}\n"
@@ -169,10 +167,10 @@ def test_numpy_is_a_dependency_where_arrays_are_read(field: str, needed: bool) -
     assert any("import numpy" in file.text for file in files.values()) == needed
 
 
-def test_the_output_does_not_depend_on_where_the_rules_are(
+def test_output_does_not_depend_on_the_folder_of_the_rules(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """No path of the machine gets into a file."""
+    """No file contains a path of the machine."""
     monkeypatch.chdir(MODELS)
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load("every_thing.deros").model
@@ -180,8 +178,8 @@ def test_the_output_does_not_depend_on_where_the_rules_are(
     assert generate(model, context, {}) == files_of("every_thing")
 
 
-def test_the_node_shadows_no_attribute_of_rclpy() -> None:
-    """What the class adds to a node is not what rclpy keeps in it."""
+def test_node_shadows_no_attribute_of_rclpy() -> None:
+    """Members of the class differ from those of rclpy's node."""
     rclpy_node = pytest.importorskip("rclpy.node")
     source = Path(rclpy_node.__file__).read_text(encoding="utf-8")
     kept = _attributes(source) | set(dir(rclpy_node.Node))
@@ -219,8 +217,8 @@ def _methods(source: str) -> set[str]:
         ("entity e { r: v > 1; }", {"node": "monitor"}, "module 'monitor'"),
     ],
 )
-def test_names_that_collide_are_refused(rules: str, options: dict[str, str], fragment: str) -> None:
-    """Two things that would get one name end the generation, with their places."""
+def test_colliding_names_are_rejected(rules: str, options: dict[str, str], fragment: str) -> None:
+    """Two elements with one name end the generation, with their places."""
     with pytest.raises(GenerationError, match="both become") as refused:
         files_of_text(HEAD + rules, **options)
     (diagnostic,) = refused.value.diagnostics
@@ -228,8 +226,8 @@ def test_names_that_collide_are_refused(rules: str, options: dict[str, str], fra
     assert fragment in diagnostic.message
 
 
-def test_a_topic_with_both_ends_in_the_node_is_refused() -> None:
-    """A node description could not tell the two ports apart."""
+def test_topic_with_both_ends_in_the_node_is_rejected() -> None:
+    """A node description cannot distinguish the two ports."""
     rules = "action slow publishes 1.0 on /speed : std_msgs.Float64;\n"
     with pytest.raises(GenerationError, match="both publish and watch '/speed'") as refused:
         files_of_text(f"{HEAD}{rules}entity e {{ r: v > 1; }} if e.r then {{ slow; }};")
@@ -238,8 +236,8 @@ def test_a_topic_with_both_ends_in_the_node_is_refused() -> None:
     assert [related.span.line for related in diagnostic.related] == [2]
 
 
-def test_rules_with_an_error_are_not_generated() -> None:
-    """What is wrong with the rules is what the generator says."""
+def test_rules_with_errors_are_rejected() -> None:
+    """The generator reports the errors of the rules."""
     with pytest.raises(GenerationError) as refused:
         files_of_text(f"{HEAD}entity e {{ r: w > 1; }}")
     assert "DRS310" in [diagnostic.code.name for diagnostic in refused.value.diagnostics]

@@ -1,4 +1,4 @@
-"""The launch file, held against the interface of ``launch`` and ``launch_ros``."""
+"""The launch file, checked against the interface of ``launch`` and ``launch_ros``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Parameters = dict[str, bool | int | float | str | list[Any]]
 
 @dataclass(frozen=True, kw_only=True)
 class Node:
-    """Takes what ``launch_ros.actions.Node`` of Jazzy takes and is used here, and nothing else."""
+    """Accepts exactly the used arguments of ``launch_ros.actions.Node`` in Jazzy."""
 
     package: str
     executable: str
@@ -40,19 +40,19 @@ class Node:
 
 
 class LifecycleNode(Node):
-    """A node that is managed."""
+    """A lifecycle node."""
 
 
 @dataclass(frozen=True)
 class LaunchDescription:
-    """What ``launch`` makes of a list of actions."""
+    """The result of ``launch`` for a list of actions."""
 
     entities: list[Node]
 
 
 @pytest.fixture
 def launch(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Put a strict stand-in in the place of ``launch`` and ``launch_ros``."""
+    """Replace ``launch`` and ``launch_ros`` by a strict stand-in."""
     modules: dict[str, list[type]] = {
         "launch": [LaunchDescription],
         "launch_ros": [],
@@ -75,7 +75,7 @@ def actions(system: System) -> list[Node]:
 
 
 def as_action(node: NodeView) -> Node:
-    """Return the action that a node ought to have."""
+    """Return the expected action of a node."""
     listed = {
         name: list(value) if isinstance(value, tuple) else value for name, value in node.parameters
     }
@@ -95,21 +95,21 @@ def as_action(node: NodeView) -> Node:
     )
 
 
-def test_the_launch_file_is_as_kept(golden: Golden) -> None:
-    """The text for a system that uses everything is the golden one."""
+def test_launch_file_matches_golden(golden: Golden) -> None:
+    """The text for a system with every construct matches the reviewed one."""
     golden.check("rossystem_launch", rossystem_launch(load(EVERYTHING), CONTEXT))
 
 
 @pytest.mark.usefixtures("launch")
-def test_every_node_is_an_action_with_all_that_the_system_says() -> None:
-    """The actions are those of the model, in its order, and take only known arguments."""
+def test_every_node_is_an_action_with_all_its_settings() -> None:
+    """The actions are in the order of the model, with known arguments only."""
     system = load(EVERYTHING)
     assert actions(system) == [as_action(node) for node in system_view(system).nodes]
 
 
 @pytest.mark.usefixtures("launch")
-def test_doubles_stay_doubles_and_texts_texts() -> None:
-    """What looks like a number, a truth value or nothing in YAML is still a text."""
+def test_doubles_stay_doubles_and_strings_strings() -> None:
+    """Strings that look like YAML numbers, booleans or null stay strings."""
     eye = actions(load(EVERYTHING))[0]
     assert repr(eye.parameters[0]["exposure"]) == "1.0"
     assert eye.parameters[0]["lens"] == "on"
@@ -117,16 +117,16 @@ def test_doubles_stay_doubles_and_texts_texts() -> None:
 
 
 @pytest.mark.usefixtures("launch")
-def test_an_empty_system_has_a_launch_file(tmp_path: Path) -> None:
-    """Nothing to start is no reason to fail, or to import what is not used."""
+def test_empty_system_has_a_launch_file(tmp_path: Path) -> None:
+    """It does not fail, and has no unused import."""
     system = load_text(tmp_path, "system Empty")
     assert actions(system) == []
     write(rossystem_launch(system, CONTEXT), tmp_path / "out")
     assert_lint_clean(tmp_path / "out")
 
 
-def test_the_launch_file_passes_aments_linters(tmp_path: Path) -> None:
-    """flake8 and pep257 as ament sets them have nothing to say, names of any length included."""
+def test_launch_file_passes_the_ament_linters(tmp_path: Path) -> None:
+    """flake8 and pep257 with ament's settings find nothing, even with long names."""
     write(rossystem_launch(load(EVERYTHING), CONTEXT), tmp_path)
     long = "n" * 200
     system = load_text(
@@ -143,8 +143,8 @@ def test_the_launch_file_passes_aments_linters(tmp_path: Path) -> None:
     assert_lint_clean(tmp_path)
 
 
-def test_the_real_launch_reads_it() -> None:
-    """Where ``launch_ros`` is installed, it makes the same nodes of the file."""
+def test_real_launch_reads_the_file() -> None:
+    """``launch_ros``, if installed, creates the same nodes."""
     actual = pytest.importorskip("launch_ros.actions")
     system = load(EVERYTHING)
     found = actions(system)

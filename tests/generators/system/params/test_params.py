@@ -1,4 +1,4 @@
-"""The parameter file, as YAML and as rcl reads it."""
+"""The parameter file, as YAML and as read by rcl."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ def text_of(system: System) -> str:
 
 
 def settings(folder: Path, *params: str) -> Any:
-    """Return what YAML makes of the parameters of one node."""
+    """Return the parameters of one node, as parsed from YAML."""
     members = "node a : worker parameters " + " ".join(f"param {p}" for p in params)
     system = load_text(folder, f'system T imports import "*.rnd" {members}', worker=NODE)
     return yaml.safe_load(text_of(system))["/a"]["ros__parameters"]
 
 
-def test_the_parameter_file_is_as_kept(golden: Golden) -> None:
-    """The text for a system that uses everything is the golden one."""
+def test_parameter_file_matches_golden(golden: Golden) -> None:
+    """The text for a system with every construct matches the reviewed one."""
     golden.check("rossystem_params", rossystem_params(load(EVERYTHING), CONTEXT))
 
 
 def test_nodes_are_keyed_by_full_name() -> None:
-    """Namespaces are part of the key; nodes without settings are not there."""
+    """Namespaces are part of the key; nodes without settings are omitted."""
     assert list(yaml.safe_load(text_of(load(EVERYTHING)))) == [
         "/front/left/eye",
         "/front/relay_of_pictures",
@@ -54,13 +54,13 @@ def test_nodes_are_keyed_by_full_name() -> None:
 
 
 def test_names_with_dots_are_nested(tmp_path: Path) -> None:
-    """``a.b.x`` and ``a.b.y`` stand together under ``a`` and ``b``."""
+    """``a.b.x`` and ``a.b.y`` are both under ``a`` and ``b``."""
     found = settings(tmp_path, "a.b.x = 2", 'text = "t"', 'a.c = "c"', "a.b.y = 3")
     assert found == {"a": {"b": {"x": 2, "y": 3.0}, "c": "c"}, "text": "t"}
 
 
 def test_doubles_stay_doubles(tmp_path: Path) -> None:
-    """A whole number has its point, and a power of ten what YAML 1.1 asks for."""
+    """A whole number has a decimal point, and a power of ten the form of YAML 1.1."""
     found = settings(tmp_path, "a.b.y = 3", "big = 1e22")
     assert repr(found["a"]["b"]["y"]) == "3.0"
     assert repr(found["big"]) == "1e+22"
@@ -69,8 +69,8 @@ def test_doubles_stay_doubles(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "text", ["", "true", "12", "~", "a: b # c", "it's", '\\"', "ünicode ☃", "\\n\\t", "- x", "{}"]
 )
-def test_texts_stay_texts(tmp_path: Path, text: str) -> None:
-    """Whatever YAML would make of the bare word, it reads the text of the model."""
+def test_strings_stay_strings(tmp_path: Path, text: str) -> None:
+    """YAML reads the string of the model, whatever the bare word would mean."""
     node = f'node a : worker parameters param text = "{text}"'
     system = load_text(tmp_path, f'system T imports import "*.rnd" {node}', worker=NODE)
     (instance,) = system.members
@@ -90,8 +90,8 @@ print(json.dumps({p: list(v) if hasattr(v, "tolist") else v for p, v in values.i
 
 
 @pytest.mark.ros
-def test_a_node_reads_the_file_as_the_system_says(tmp_path: Path, ros_env: dict[str, str]) -> None:
-    """Under its full name a real node gets every value, in the type that it declares."""
+def test_node_reads_the_values_of_the_system(tmp_path: Path, ros_env: dict[str, str]) -> None:
+    """A real node gets every value under its full name, in its declared type."""
     file = tmp_path / "every_thing.params.yaml"
     file.write_text(text_of(load(EVERYTHING)), encoding="utf-8")
     names = ["-r", "__node:=eye", "-r", "__ns:=/front/left"]
@@ -116,10 +116,8 @@ def test_a_node_reads_the_file_as_the_system_says(tmp_path: Path, ros_env: dict[
 
 
 @pytest.mark.ros
-def test_rcl_takes_the_file_of_a_system_that_sets_nothing(
-    tmp_path: Path, ros_env: dict[str, str]
-) -> None:
-    """A file of comments alone is no error."""
+def test_rcl_accepts_a_file_without_settings(tmp_path: Path, ros_env: dict[str, str]) -> None:
+    """A file with only comments is not an error."""
     file = tmp_path / "empty.params.yaml"
     file.write_text(text_of(load_text(tmp_path, "system Empty")), encoding="utf-8")
     done = subprocess.run(

@@ -1,4 +1,4 @@
-"""Where the script finds the programs of packages, and the environment it runs them in."""
+"""Programs of packages: where the script finds them, and their environment."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from tests.support.stand_ins import make_prefix
 VERSION = f"python{sys.version_info.major}.{sys.version_info.minor}"
 
 
-def test_a_program_is_in_the_lib_folder_of_its_package(tmp_path: Path) -> None:
-    """AMENT_PREFIX_PATH is searched in order for lib/PACKAGE/PROGRAM, as ros2 run does."""
+def test_program_is_in_the_lib_folder_of_its_package(tmp_path: Path) -> None:
+    """AMENT_PREFIX_PATH is searched in order for lib/PACKAGE/PROGRAM, as by ros2 run."""
     first = make_prefix(tmp_path / "first", names=["short"])
     second = make_prefix(tmp_path / "second", names=["short", "steady"])
     programs = Programs([], {"AMENT_PREFIX_PATH": f"{first}:{second}"})
@@ -21,8 +21,8 @@ def test_a_program_is_in_the_lib_folder_of_its_package(tmp_path: Path) -> None:
     assert programs.find("demo", "steady") == [str(second / "lib/demo/steady")]
 
 
-def test_a_program_may_lie_deeper_in_that_folder(tmp_path: Path) -> None:
-    """As for ros2 run, folders inside the package's are searched for the name."""
+def test_program_may_be_in_a_subfolder(tmp_path: Path) -> None:
+    """Folders inside the package's are searched for the name, as by ros2 run."""
     prefix = make_prefix(tmp_path, names=["short"])
     deeper = prefix / "lib/demo/tools"
     deeper.mkdir()
@@ -31,8 +31,8 @@ def test_a_program_may_lie_deeper_in_that_folder(tmp_path: Path) -> None:
     assert programs.find("demo", "short") == [str(deeper / "short")]
 
 
-def test_path_or_pattern_finds_no_program(tmp_path: Path) -> None:
-    """Only a file of the package's own folder is started, whatever the description says."""
+def test_path_or_pattern_is_not_a_program_name(tmp_path: Path) -> None:
+    """Only a file in the folder of the package is started, whatever the description says."""
     prefix = make_prefix(tmp_path / "prefix", names=["short"])
     foreign = make_prefix(tmp_path / "foreign", names=["steady"]) / "lib/demo/steady"
     programs = Programs([], {"AMENT_PREFIX_PATH": str(prefix)})
@@ -41,8 +41,8 @@ def test_path_or_pattern_finds_no_program(tmp_path: Path) -> None:
         assert programs.find("demo", name) is None, name
 
 
-def test_what_cannot_be_executed_is_no_program(tmp_path: Path) -> None:
-    """A file without the permission, a folder, and another package's program are passed over."""
+def test_file_that_is_not_executable_is_not_a_program(tmp_path: Path) -> None:
+    """Missing permission, folders and programs of other packages are skipped."""
     prefix = make_prefix(tmp_path, names=["short", "steady"])
     (prefix / "lib/demo/short").chmod(0o644)
     (prefix / "lib/demo/folder").mkdir()
@@ -52,8 +52,8 @@ def test_what_cannot_be_executed_is_no_program(tmp_path: Path) -> None:
     assert programs.find("other", "steady") is None
 
 
-def test_install_spaces_come_before_the_environment_merged_or_not(tmp_path: Path) -> None:
-    """A given folder is a prefix itself, or holds one for each package."""
+def test_install_spaces_precede_the_environment(tmp_path: Path) -> None:
+    """A given folder is a prefix itself, or contains one for each package."""
     ambient = make_prefix(tmp_path / "ambient", names=["short", "steady"])
     merged = make_prefix(tmp_path / "merged", names=["short"])
     make_prefix(tmp_path / "isolated" / "demo", names=["steady"])
@@ -63,7 +63,7 @@ def test_install_spaces_come_before_the_environment_merged_or_not(tmp_path: Path
 
 
 def test_python_packages_run_from_their_sources(tmp_path: Path) -> None:
-    """The entry points of setup.py are programs, run by the interpreter that runs the script."""
+    """Entry points of setup.py are programs, run by the interpreter of the script."""
     package = tmp_path / "src" / "my_robot"
     package.mkdir(parents=True)
     (package / "setup.py").write_text(
@@ -80,8 +80,8 @@ def test_python_packages_run_from_their_sources(tmp_path: Path) -> None:
     assert programs.environment()["PYTHONPATH"] == str(package)
 
 
-def test_nodes_of_an_install_space_need_no_sourced_setup(tmp_path: Path) -> None:
-    """Its folders stand first in the paths that a setup file would set, where they exist."""
+def test_install_space_needs_no_sourced_setup(tmp_path: Path) -> None:
+    """Its folders come first in the paths that a setup file would set, if they exist."""
     prefix = make_prefix(tmp_path / "install" / "demo", names=["short"])
     site = prefix / "lib" / VERSION / "site-packages"
     site.mkdir(parents=True)
@@ -92,7 +92,7 @@ def test_nodes_of_an_install_space_need_no_sourced_setup(tmp_path: Path) -> None
     assert "PATH" not in environment
 
 
-def test_the_environment_is_passed_on_as_it_is_without_install_spaces() -> None:
-    """Only Python's output buffering is changed, unless the user has an opinion."""
+def test_environment_is_passed_on_without_install_spaces() -> None:
+    """Only output buffering of Python is disabled, unless the user sets it."""
     assert Programs([], {"A": "b"}).environment() == {"A": "b", "PYTHONUNBUFFERED": "1"}
     assert Programs([], {"PYTHONUNBUFFERED": ""}).environment() == {"PYTHONUNBUFFERED": ""}

@@ -1,4 +1,4 @@
-"""The generated script with real processes: starting, passing on, restarting, stopping."""
+"""The generated script with real processes: start, arguments, restart, stop."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Start = Callable[..., Run]
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Start]:
-    """Give a function that starts the script of a system with the stand-ins in its path."""
+    """Return a function that starts the script of a system with stand-ins in its path."""
     prefix = make_prefix(tmp_path / "prefix")
     runs: list[Run] = []
 
@@ -30,7 +30,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
         models.mkdir()
         script = make_script(models, members, nodes)
         given = {"PATH": os.environ["PATH"], "AMENT_PREFIX_PATH": str(prefix), **env}
-        # Isolated and without site-packages: the standard library has to be enough.
+        # Isolated and without site-packages: the standard library must suffice.
         runs.append(Run([sys.executable, "-IS", script, *arguments], given))
         return runs[-1]
 
@@ -42,8 +42,8 @@ def start(tmp_path: Path) -> Iterator[Start]:
 # Starting ---------------------------------------------------------------------------------------
 
 
-def test_every_node_is_told_its_names_parameters_remappings_and_log_level(start: Start) -> None:
-    """Names, namespace, typed parameters, remappings and the logger's level are ROS arguments."""
+def test_every_node_gets_its_settings_as_arguments(start: Start) -> None:
+    """Names, namespace, typed parameters, remappings and log level are ROS arguments."""
     node = """
         node listener : demo
           executable "arguments"
@@ -72,8 +72,8 @@ def test_every_node_is_told_its_names_parameters_remappings_and_log_level(start:
     ]
 
 
-def test_what_no_command_line_can_name_is_in_a_file(start: Start) -> None:
-    """The command line of rcl takes no name with '-', or with a part that starts with a digit."""
+def test_unusual_parameter_names_are_passed_in_a_file(start: Start) -> None:
+    """The command line of rcl has no names with '-', or with a part that starts with a digit."""
     node = """
         node listener : demo
           executable "arguments"
@@ -108,7 +108,7 @@ def test_what_no_command_line_can_name_is_in_a_file(start: Start) -> None:
     )
 
 
-def test_all_missing_programs_are_named_before_anything_starts(start: Start) -> None:
+def test_all_missing_programs_are_named_before_the_start(start: Start) -> None:
     """Two of three programs are missing: both are named, the third is not started."""
     nodes = "node ghost : demo --- node stranger : elsewhere"
     run = start("node a : short node b : ghost node c : stranger", nodes=nodes)
@@ -119,8 +119,8 @@ def test_all_missing_programs_are_named_before_anything_starts(start: Start) -> 
     assert "started, process" not in text
 
 
-def test_programs_are_found_where_the_environment_says(start: Start, tmp_path: Path) -> None:
-    """DEROS_PACKAGE_PATH names install spaces, as --package-path does."""
+def test_programs_are_found_through_the_environment(start: Start, tmp_path: Path) -> None:
+    """DEROS_PACKAGE_PATH names install spaces, like --package-path."""
     elsewhere = str(tmp_path / "prefix")
     run = start("node a : short", AMENT_PREFIX_PATH="", DEROS_PACKAGE_PATH=f"/nowhere:{elsewhere}")
     assert run.end() == 0
@@ -128,7 +128,7 @@ def test_programs_are_found_where_the_environment_says(start: Start, tmp_path: P
 
 
 def test_dry_run_prints_the_commands_and_starts_nothing(start: Start, tmp_path: Path) -> None:
-    """The commands can be pasted into a shell, and none of them is run."""
+    """The commands can be pasted into a shell."""
     run = start('subsystem arm "The arm" { node a : short }', "--dry-run")
     assert run.end() == 0
     program = tmp_path / "prefix" / "lib" / "demo" / "short"
@@ -139,10 +139,8 @@ def test_dry_run_prints_the_commands_and_starts_nothing(start: Start, tmp_path: 
     assert (pasted.returncode, pasted.stdout) == (0, "done\n")
 
 
-def test_a_pasted_command_finds_a_package_that_runs_from_its_sources(
-    start: Start, tmp_path: Path
-) -> None:
-    """What the folders given with --package-path add to the environment is part of the command."""
+def test_printed_command_runs_a_package_from_its_sources(start: Start, tmp_path: Path) -> None:
+    """The environment set by --package-path is part of the command."""
     package = tmp_path / "given" / "talk" / "talk"
     package.mkdir(parents=True)
     (package.parent / "setup.py").write_text("entry_points = ['speaker = talk.speaker:main']\n")
@@ -158,8 +156,8 @@ def test_a_pasted_command_finds_a_package_that_runs_from_its_sources(
     assert (pasted.returncode, pasted.stdout) == (0, "spoken\n"), pasted.stderr
 
 
-def test_nodes_are_chosen_by_name_full_name_pattern_and_subsystem(start: Start) -> None:
-    """--only and --except take a name, a full name, a pattern or a subsystem with all below it."""
+def test_nodes_are_selected_by_name_pattern_and_subsystem(start: Start) -> None:
+    """--only and --except accept names, full names, patterns and subsystems with their contents."""
     members = """
         subsystem base {
           subsystem wheels namespace /wheels { node left : short node right : short }
@@ -178,15 +176,15 @@ def test_nodes_are_chosen_by_name_full_name_pattern_and_subsystem(start: Start) 
     assert shown("--except", "base/wheels") == ["/eye"]
 
 
-def test_choosing_a_node_that_is_not_there_names_those_that_are(start: Start) -> None:
-    """A name that fits nothing is a usage error, not an empty system."""
+def test_unknown_selected_node_is_a_usage_error(start: Start) -> None:
+    """The message lists the existing nodes."""
     run = start("node eye : short", "--only", "ear")
     assert run.end() == 2
     assert "no node is called 'ear'; there are: /eye" in run.lines[-1]
 
 
-def test_a_program_that_cannot_be_run_is_a_failure(start: Start, tmp_path: Path) -> None:
-    """A program with a broken interpreter line ends the system with 1 and says why."""
+def test_program_that_cannot_be_run_is_a_failure(start: Start, tmp_path: Path) -> None:
+    """An invalid interpreter line ends the system with 1 and a message."""
     run_later = tmp_path / "prefix" / "lib" / "demo" / "short"
     run_later.write_text("#!/no/such/interpreter\n")
     run = start("node a : steady node b : short")
@@ -198,8 +196,8 @@ def test_a_program_that_cannot_be_run_is_a_failure(start: Start, tmp_path: Path)
 # Output -----------------------------------------------------------------------------------------
 
 
-def test_each_line_carries_the_name_of_its_node(start: Start) -> None:
-    """Lines are prefixed, the last one too when it has no end; equal names are told apart."""
+def test_each_line_has_the_name_of_its_node(start: Start) -> None:
+    """An incomplete last line is prefixed too; equal names are distinguished."""
     run = start("node a : unfinished node b : short namespace /x node b : short namespace /y")
     assert run.end() == 0
     assert [line for line in run.lines if line.startswith("[a]")] == [
@@ -210,8 +208,8 @@ def test_each_line_carries_the_name_of_its_node(start: Start) -> None:
     assert {"[/x/b] done", "[/y/b] done"} <= set(run.lines)
 
 
-def test_nodes_have_colours_on_a_terminal_only(start: Start, tmp_path: Path) -> None:
-    """A terminal gets coloured prefixes, unless NO_COLOR asks for none; a pipe gets none."""
+def test_colours_only_on_a_terminal(start: Start, tmp_path: Path) -> None:
+    """Prefixes are coloured on a terminal without NO_COLOR, and plain in a pipe."""
     script = make_script(tmp_path, "node a : short")
     env = {"PATH": os.environ["PATH"], "AMENT_PREFIX_PATH": str(tmp_path / "prefix")}
     command = [sys.executable, "-IS", str(script)]
@@ -237,8 +235,8 @@ def _on_terminal(command: list[str], env: dict[str, str]) -> bytes:
     return text
 
 
-def test_a_reader_that_takes_nothing_does_not_keep_the_system_from_stopping(start: Start) -> None:
-    """With the pipe full and nobody reading, SIGTERM still ends nodes and script."""
+def test_blocked_reader_does_not_prevent_the_stop(start: Start) -> None:
+    """With a full pipe and no reader, SIGTERM still ends nodes and script."""
     run = start("node a : noisy", "--stop-timeout", "0.2")
     run.until("[a] x")
     (pid,) = run.started().values()
@@ -247,8 +245,8 @@ def test_a_reader_that_takes_nothing_does_not_keep_the_system_from_stopping(star
     assert await_end(run.process.pid)
 
 
-def test_no_line_is_lost_on_a_slow_reader(start: Start, tmp_path: Path) -> None:
-    """Once the script holds back enough, the nodes wait, and go on when somebody reads again."""
+def test_slow_reader_loses_no_line(start: Start, tmp_path: Path) -> None:
+    """When the buffer of the script is full, the nodes wait until the reader continues."""
     mark = tmp_path / "mark"
     os.mkfifo(mark)
     run = start("node a : verbose", MARK=str(mark))
@@ -258,8 +256,8 @@ def test_no_line_is_lost_on_a_slow_reader(start: Start, tmp_path: Path) -> None:
     assert numbers == list(range(40_000))
 
 
-def test_a_reader_that_goes_away_ends_the_system(start: Start) -> None:
-    """As with ``script | head``: nobody sees the nodes any more, so they are stopped."""
+def test_closed_reader_ends_the_system(start: Start) -> None:
+    """As in ``script | head``: nobody sees the output any more, so the nodes are stopped."""
     run = start("node a : noisy", "--stop-timeout", "0.2")
     run.until("[a] x")
     assert run.process.stdout is not None
@@ -272,10 +270,8 @@ def test_a_reader_that_goes_away_ends_the_system(start: Start) -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_told_to_stop_all_nodes_get_sigint_and_the_code_is_0(
-    start: Start, number: signal.Signals
-) -> None:
-    """Ctrl-C, SIGTERM and a closed terminal end in an orderly stop, which is no failure."""
+def test_signal_stops_all_nodes_with_code_0(start: Start, number: signal.Signals) -> None:
+    """Ctrl-C, SIGTERM and a closed terminal lead to an orderly stop, which is not a failure."""
     run = start("node a : steady node b : steady")
     run.until("[a] ready", "[b] ready")
     run.signal(number)
@@ -286,8 +282,8 @@ def test_told_to_stop_all_nodes_get_sigint_and_the_code_is_0(
     )
 
 
-def test_a_node_that_needs_sigterm_has_stopped_well(start: Start) -> None:
-    """After SIGINT comes SIGTERM, and ending on it is still an orderly end."""
+def test_node_that_ends_on_sigterm_has_not_failed(start: Start) -> None:
+    """SIGTERM follows SIGINT, and ending on it is still orderly."""
     run = start("node a : slow", "--stop-timeout", "1")
     run.until("[a] ready")
     run.signal(signal.SIGINT)
@@ -299,8 +295,8 @@ def test_a_node_that_needs_sigterm_has_stopped_well(start: Start) -> None:
     ]
 
 
-def test_a_stubborn_node_is_killed_and_the_code_is_1(start: Start) -> None:
-    """The order is SIGINT, SIGTERM, SIGKILL; having to kill is a failure, but no other node's."""
+def test_node_that_ignores_signals_is_killed_with_code_1(start: Start) -> None:
+    """The order is SIGINT, SIGTERM, SIGKILL; having to kill is a failure of that node only."""
     run = start("node a : stubborn node b : steady", "--stop-timeout", "1")
     run.until("[a] ready", "[b] ready")
     before = time.monotonic()
@@ -318,8 +314,8 @@ def test_a_stubborn_node_is_killed_and_the_code_is_1(start: Start) -> None:
     assert "[Robot] b stopped" in run.lines
 
 
-def test_a_node_told_in_the_middle_of_its_start_has_stopped_well(start: Start) -> None:
-    """Python turns a SIGINT in some of its imports into code 1, and no harm is done."""
+def test_node_interrupted_during_its_start_has_not_failed(start: Start) -> None:
+    """In some imports Python turns a SIGINT into code 1, which is harmless."""
     run = start("node a : starting node b : steady")
     run.until("[a] ready", "[b] ready")
     run.signal(signal.SIGINT)
@@ -327,8 +323,8 @@ def test_a_node_told_in_the_middle_of_its_start_has_stopped_well(start: Start) -
     assert {"[a] got SIGINT in an import", "[Robot] a stopped"} <= set(run.lines)
 
 
-def test_a_node_that_is_up_and_fails_when_told_to_stop_has_failed(start: Start) -> None:
-    """Whatever it had to put in order, it did not."""
+def test_running_node_that_fails_on_sigint_has_failed(start: Start) -> None:
+    """Its own shutdown was not successful."""
     run = start("node a : untidy")
     run.until("[a] ready")
     run.signal(signal.SIGINT)
@@ -343,8 +339,10 @@ time.sleep(60)
 """
 
 
-def test_pythons_own_start_may_be_interrupted(start: Start, tmp_path: Path) -> None:
-    """Before any line of the program runs, SIGINT is a fatal error of the interpreter."""
+def test_interrupt_during_the_start_of_python_is_not_a_failure(
+    start: Start, tmp_path: Path
+) -> None:
+    """Before the program runs, SIGINT is a fatal error of the interpreter."""
     (tmp_path / "sitecustomize.py").write_text(IN_SITE)
     program = tmp_path / "prefix" / "lib" / "demo" / "short"
     program.write_text(f"#!{sys.executable}\nprint('done')\n")
@@ -374,10 +372,8 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 
 @pytest.mark.parametrize("function", ["signal", "set_wakeup_fd"])
 @pytest.mark.parametrize("moment", ["before", "after"])
-def test_no_signal_is_lost_while_the_script_prepares_for_them(
-    tmp_path: Path, function: str, moment: str
-) -> None:
-    """One that comes before any node is there keeps all from starting, or stops them at once."""
+def test_early_signal_is_not_lost(tmp_path: Path, function: str, moment: str) -> None:
+    """A signal before the first node prevents the start, or stops all nodes at once."""
     prefix = make_prefix(tmp_path / "prefix")
     (tmp_path / "models").mkdir()
     script = make_script(tmp_path / "models", "node a : steady")
@@ -404,8 +400,8 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 """
 
 
-def test_a_signal_to_a_child_that_begins_is_not_the_scripts(tmp_path: Path) -> None:
-    """A terminal's Ctrl-C reaches it, too: counted twice, SIGTERM would follow at once."""
+def test_signal_to_a_starting_child_is_not_handled_by_the_script(tmp_path: Path) -> None:
+    """Ctrl-C in a terminal reaches both: counted twice, SIGTERM would follow at once."""
     prefix = make_prefix(tmp_path / "prefix")
     (tmp_path / "models").mkdir()
     script = make_script(tmp_path / "models", "node a : steady")
@@ -419,8 +415,8 @@ def test_a_signal_to_a_child_that_begins_is_not_the_scripts(tmp_path: Path) -> N
         run.close()
 
 
-def test_a_second_signal_hurries(start: Start) -> None:
-    """Each further Ctrl-C goes on to the next signal at once, whatever the patience."""
+def test_second_signal_shortens_the_stop(start: Start) -> None:
+    """Each further Ctrl-C sends the next signal at once, whatever the timeout."""
     run = start("node a : stubborn", "--stop-timeout", "1000")
     run.until("[a] ready")
     run.signal(signal.SIGINT)
@@ -431,8 +427,8 @@ def test_a_second_signal_hurries(start: Start) -> None:
     assert run.end() == 1
 
 
-def test_the_failure_of_a_node_stops_the_others(start: Start) -> None:
-    """A node that exits with 3 takes the system down, which ends with 1."""
+def test_failed_node_stops_the_others(start: Start) -> None:
+    """A node that exits with 3 stops the system, which exits with 1."""
     run = start("node a : steady node b : failing")
     assert run.end() == 1
     assert "[Robot] b exited with code 3" in run.lines
@@ -440,15 +436,15 @@ def test_the_failure_of_a_node_stops_the_others(start: Start) -> None:
     assert "[Robot] a stopped" in run.lines
 
 
-def test_a_crash_is_named_by_its_signal(start: Start) -> None:
+def test_crash_is_named_by_its_signal(start: Start) -> None:
     """A node that dies of SIGSEGV has failed."""
     run = start("node a : crashing")
     assert run.end() == 1
     assert "[Robot] a was killed by SIGSEGV" in run.lines
 
 
-def test_keep_going_leaves_the_others_alone_when_a_node_fails(start: Start) -> None:
-    """The rest runs on until it is told to stop; the failure is in the code all the same."""
+def test_keep_going_continues_after_a_failure(start: Start) -> None:
+    """The other nodes run until they are stopped; the exit code still shows the failure."""
     run = start("node a : steady node b : failing", "--keep-going")
     run.until("[a] ready", "[Robot] b exited with code 3")
     run.signal(signal.SIGINT)
@@ -456,15 +452,15 @@ def test_keep_going_leaves_the_others_alone_when_a_node_fails(start: Start) -> N
     assert "[Robot] stopping: received SIGINT" in run.lines
 
 
-def test_a_system_whose_nodes_all_end_well_ends_with_0(start: Start) -> None:
-    """The end of a node without failure stops nobody; the last one's end is the system's."""
+def test_system_ends_with_0_when_all_nodes_have_ended(start: Start) -> None:
+    """A node that ends without failure stops no other."""
     run = start("node a : short node b : short")
     assert run.end() == 0
     assert {"[Robot] a ended", "[Robot] b ended"} <= set(run.lines)
 
 
-def test_a_node_has_ended_only_when_its_whole_group_has(start: Start) -> None:
-    """What a wrapper started is waited for, gets the next signal, and counts as the node's."""
+def test_node_ends_with_its_whole_process_group(start: Start) -> None:
+    """Children of a wrapper are awaited, get the next signal, and count as the node."""
     run = start("node a : family", "--stop-timeout", "1000")
     run.until("[a] child ")
     run.signal(signal.SIGINT)
@@ -475,16 +471,16 @@ def test_a_node_has_ended_only_when_its_whole_group_has(start: Start) -> None:
     assert run.lines[-2:] == ["[a] child got SIGTERM", "[Robot] a stopped"]
 
 
-def test_what_a_node_leaves_behind_is_stopped(start: Start) -> None:
-    """A program that ends by itself takes its children along, before the node counts as ended."""
+def test_children_of_an_ended_node_are_stopped(start: Start) -> None:
+    """They end before the node counts as ended."""
     run = start("node a : leaving node b : steady", "--stop-timeout", "1000")
     run.until("[a] left behind", "[a] child got SIGINT", "[Robot] a ended", "[b] ready")
     run.signal(signal.SIGINT)
     assert run.end() == 0
 
 
-def test_a_daemon_is_on_its_own(start: Start) -> None:
-    """Who has left the node's session keeps nobody waiting, and no output of the node is lost."""
+def test_daemon_is_independent(start: Start) -> None:
+    """A process outside the node's session is not awaited, and no output is lost."""
     run = start("node a : daemon", "--stop-timeout", "1000")
     assert run.process.wait(LIMIT) == 0
     run.until("[a] unfinished\n[Robot] a ended")
@@ -492,8 +488,8 @@ def test_a_daemon_is_on_its_own(start: Start) -> None:
 
 
 @pytest.mark.parametrize("program", ["steady", "stubborn", "family"])
-def test_nodes_end_when_the_script_itself_is_killed(start: Start, program: str) -> None:
-    """SIGKILL of the script leaves no node, no stubborn one and no grandchild behind."""
+def test_nodes_end_when_the_script_is_killed(start: Start, program: str) -> None:
+    """After SIGKILL of the script no node, stubborn node or grandchild remains."""
     run = start(f"node a : {program}", "--stop-timeout", "0.1")
     run.until("[a] child" if program == "family" else "[a] ready")
     pids = [run.started()["a"], *map(int, re.findall(r"child (\d+)", "\n".join(run.lines)))]
@@ -504,8 +500,8 @@ def test_nodes_end_when_the_script_itself_is_killed(start: Start, program: str) 
     assert await_end(guard[0])
 
 
-def test_a_failed_start_leaves_the_others_guarded(start: Start, tmp_path: Path) -> None:
-    """After a program that could not be run, and a restart, a kill still leaves nothing behind."""
+def test_other_nodes_stay_guarded_after_a_failed_start(start: Start, tmp_path: Path) -> None:
+    """After a failed start and a restart, a kill still leaves no process behind."""
     (tmp_path / "prefix" / "lib" / "demo" / "short").write_text("#!/no/such/interpreter\n")
     arguments = ("--keep-going", "--stop-timeout", "0.1")
     run = start("node a : stubborn node b : short node c : stubborn respawn", *arguments)
@@ -517,8 +513,8 @@ def test_a_failed_start_leaves_the_others_guarded(start: Start, tmp_path: Path) 
     assert all(await_end(pid) for pid in run.started().values())
 
 
-def test_nodes_are_told_even_when_the_guard_is_killed_with_the_script(start: Start) -> None:
-    """The kernel passes the script's end on, so that killing all of its name stops the nodes."""
+def test_nodes_are_signalled_if_guard_and_script_are_killed(start: Start) -> None:
+    """The kernel signals the end of the script to the nodes."""
     run = start("node a : steady")
     run.until("[a] ready")
     guard = next(int(pid) for pid in _children(run.process.pid) if int(pid) != run.started()["a"])
@@ -535,8 +531,8 @@ def _children(pid: int) -> list[str]:
 # Restarting -------------------------------------------------------------------------------------
 
 
-def test_a_node_is_restarted_as_often_as_respawn_says(start: Start) -> None:
-    """With max 2 it runs three times; then its failure is the system's."""
+def test_node_is_restarted_as_often_as_respawn_allows(start: Start) -> None:
+    """With max 2 it runs three times; then its failure is that of the system."""
     run = start("node a : failing respawn max 2 node b : steady")
     assert run.end() == 1
     assert run.lines.count("[a] giving up") == 3
@@ -545,15 +541,15 @@ def test_a_node_is_restarted_as_often_as_respawn_says(start: Start) -> None:
     assert "[Robot] stopping: a has failed" in run.lines
 
 
-def test_a_node_that_ends_well_is_restarted_too(start: Start) -> None:
-    """Respawn means that the node is to be there, however it ended; its last end is no failure."""
+def test_node_that_ends_normally_is_restarted(start: Start) -> None:
+    """Respawn applies to any end, and the last end is not a failure."""
     run = start("node a : short respawn max 1")
     assert run.end() == 0
     assert run.lines.count("[a] done") == 2
 
 
-def test_a_restart_waits_for_the_delay_and_leaves_the_others_alone(start: Start) -> None:
-    """The delay passes between end and new start, and another node never notices."""
+def test_restart_waits_for_the_delay(start: Start) -> None:
+    """The other nodes are not affected."""
     run = start("node a : short respawn delay 300 ms max 1 node b : steady")
     run.until("restart 1 of 1 in 0.3 s")
     before = time.monotonic()
@@ -565,8 +561,8 @@ def test_a_restart_waits_for_the_delay_and_leaves_the_others_alone(start: Start)
     assert run.lines.count("[b] ready") == 1
 
 
-def test_no_node_is_restarted_once_the_system_stops(start: Start) -> None:
-    """A node that waits for its restart does not start, and one that stops does not restart."""
+def test_no_restart_while_the_system_stops(start: Start) -> None:
+    """Neither a node that waits for its restart nor one that stops is started again."""
     run = start("node a : short respawn delay 1000 sec node b : steady respawn")
     run.until("restart 1 in 1000 s", "[b] ready")
     run.signal(signal.SIGINT)
@@ -575,7 +571,7 @@ def test_no_node_is_restarted_once_the_system_stops(start: Start) -> None:
 
 
 def test_restarted_nodes_leave_no_zombies(start: Start) -> None:
-    """Every process that ended is reaped while the system runs."""
+    """Every ended process is reaped while the system runs."""
     run = start("node a : failing respawn max 5 node b : steady", "--keep-going")
     run.until("restart 5 of 5", "[b] ready")
     run.until("[a] giving up\n[Robot] a exited with code 3\n")

@@ -1,4 +1,4 @@
-"""The script as a text: complete, deterministic, clean under ament's linters."""
+"""The text of the script: complete, deterministic, lint-clean."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from tests.support.systems import CONTEXT, EVERYTHING, load
 STANDALONE = "deros/generators/system/script/standalone"
 
 
-def test_the_script_is_as_kept(golden: Golden) -> None:
-    """The text for a system that uses everything is the golden one."""
+def test_script_matches_golden(golden: Golden) -> None:
+    """The text for a system with every construct matches the reviewed one."""
     golden.check("rossystem_script", rossystem_script(load(EVERYTHING), CONTEXT))
 
 
-def test_the_script_needs_the_standard_library_alone() -> None:
-    """Every import is of a module that comes with Python."""
+def test_script_needs_only_the_standard_library() -> None:
+    """Every import is of a module of Python."""
     (file,) = rossystem_script(load(EVERYTHING), CONTEXT).values()
     imported = {
         name.partition(".")[0]
@@ -41,14 +41,14 @@ def test_the_script_needs_the_standard_library_alone() -> None:
     assert imported <= sys.stdlib_module_names
 
 
-def test_the_script_passes_aments_linters(tmp_path: Path) -> None:
-    """flake8 and pep257 as ament sets them have nothing to say, hard values included."""
+def test_script_passes_the_ament_linters(tmp_path: Path) -> None:
+    """flake8 and pep257 with ament's settings find nothing, even with difficult values."""
     write(rossystem_script(load(EVERYTHING), CONTEXT), tmp_path)
     assert_lint_clean(tmp_path)
 
 
-def test_the_script_can_be_run_as_a_program(tmp_path: Path) -> None:
-    """It is written executable, with an interpreter line before the banner."""
+def test_script_is_executable(tmp_path: Path) -> None:
+    """It has an interpreter line before the banner."""
     write(rossystem_script(load(EVERYTHING), CONTEXT), tmp_path)
     script = tmp_path / "every_thing.py"
     assert script.stat().st_mode & stat.S_IXUSR
@@ -59,8 +59,8 @@ def test_the_script_can_be_run_as_a_program(tmp_path: Path) -> None:
     assert "Run the nodes of EveryThing." in done.stdout
 
 
-def test_every_standalone_module_goes_into_the_script() -> None:
-    """A module that somebody adds is not forgotten."""
+def test_every_standalone_module_is_part_of_the_script() -> None:
+    """A new module cannot be forgotten."""
     import deros.generators.system.script.standalone as package
 
     folder = Path(package.__path__[0])
