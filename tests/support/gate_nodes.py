@@ -13,6 +13,7 @@ from typing import Any
 from deros.generators.gate.python.interface import gate_files, gate_nodes
 from deros.generators.node.python.generate import package_files
 from deros.generators.output.writer import write
+from deros.generators.runtime.python.interface import PythonRuntime
 from deros.generators.safety_node.node import safety_node
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
@@ -38,7 +39,8 @@ def write_gates(folder: Path, name: str = "gates") -> Path:
     safety = safety_node(built.program, built.topics, {}, model.source)
     nodes = gate_nodes(built.program, built.topics, safety)
     files = package_files(nodes, {}, raw={node.name for node in nodes})
-    write(files | gate_files(built.program, nodes, safety, store), folder)
+    runtime = PythonRuntime(safety.package)
+    write(files | gate_files(built.program, nodes, safety, store, runtime), folder)
     return folder / safety.package
 
 

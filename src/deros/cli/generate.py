@@ -136,7 +136,7 @@ def generate(
     except ValueError as error:
         raise click.UsageError(str(error)) from error
     show([*written.diagnostics, *lacking])
-    click.echo(_report(written))
+    click.echo(report_written(written))
 
 
 def _apart(arguments: Sequence[str]) -> tuple[list[str], dict[str, str]]:
@@ -162,7 +162,7 @@ def _apart(arguments: Sequence[str]) -> tuple[list[str], dict[str, str]]:
     return words, pairs
 
 
-def _report(written: WriteReport) -> str:
+def report_written(written: WriteReport) -> str:
     """Say what became of the files, naming those that were written."""
     from deros.generators.output.writer import Outcome
 

@@ -29,6 +29,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "generate": ("deros.cli.generate:generate", "Generate code, launch files or parameters."),
     "graph": ("deros.cli.graph:graph", "Show who talks to whom in a system."),
     "new": ("deros.cli.new:new", "Start a new model that checks clean."),
+    "runtime": ("deros.cli.runtime:runtime", "Write the packages that generated ones may share."),
     "simulate": ("deros.cli.simulate:simulate", "Run safety rules over a recorded trace."),
     "up": ("deros.cli.up:up", "Start every node of a system; stop them all on Ctrl-C."),
 }

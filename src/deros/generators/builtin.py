@@ -56,12 +56,17 @@ def rossystem_params(model: System, context: Context, options: Options) -> Files
     return generate(model, context, options)
 
 
+_RUNTIME = Option(
+    "runtime", "'copy': the package carries the runtime (default); 'package': it depends on it"
+)
+
 _SAFETY = (
     Option("package", "name of the generated package (default: the rules' name with _safety)"),
     Option("node", "name of the safety node (default: the package's name with _node)"),
     _MAINTAINER,
     _COPYRIGHT,
     _LICENCE,
+    _RUNTIME,
 )
 
 

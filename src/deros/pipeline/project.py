@@ -28,7 +28,7 @@ else:
     import tomli as tomllib
 
 _LARGEST = 4 << 20
-_TEXTS = ("copyright", "licence", "maintainer")
+_TEXTS = ("copyright", "licence", "maintainer", "runtime")
 _KEYS = ("interfaces", "targets", "output", *_TEXTS, "allow")
 _ALLOW_KEYS = ("code", "path", "reason")
 
@@ -42,7 +42,7 @@ class Project:
         interfaces: folders with message definitions, absolute.
         targets: what ``deros generate`` makes of each language, by the suffix of its files.
         output: the folder to write to, absolute; ``None`` if it is not given.
-        options: options of generators: copyright, licence and maintainer.
+        options: options of generators: copyright, licence, maintainer and runtime.
         allowances: findings that are allowed by code and path.
         diagnostics: what is wrong with the file.
     """

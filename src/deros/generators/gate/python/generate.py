@@ -8,7 +8,7 @@ from deros.generators.api.protocol import File
 from deros.generators.gate.printing import step_printer
 from deros.generators.gate.python.view import Conditions, GateView, gate_view, nanoseconds
 from deros.generators.node.interface import node_description
-from deros.generators.runtime.interface import python_runtime
+from deros.generators.runtime.python.interface import PythonRuntime
 from deros.generators.text.notice import licensed_python
 from deros.generators.text.provenance import comment
 from deros.generators.text.python import Text, call, expression, mark_long_lines
@@ -44,7 +44,7 @@ def gate_files(
     nodes: Sequence[NodeType],
     safety_node: NodeType,
     store: InterfaceStore,
-    copyright_line: str = "",
+    runtime: PythonRuntime,
 ) -> dict[str, File]:
     """Return the modules of the gates of ``program``, and the descriptions of their nodes.
 
@@ -53,21 +53,21 @@ def gate_files(
         nodes: the nodes of its gates, in order.
         safety_node: the node whose states and heartbeat they heed.
         store: the message definitions.
-        copyright_line: years and holder for the headers, or nothing.
+        runtime: the runtime of the package, with the notice for the headers.
 
     Raises:
         GenerationError: if two ports of a gate would get one name.
     """
     files: dict[str, File] = {}
     for gate, node in zip(program.gates, nodes, strict=True):
-        view = gate_view(gate, node, program, store, safety_node)
+        view = gate_view(gate, node, program, store, safety_node, runtime.module)
         root = f"{node.package}/{node.package}/{view.node.module}"
         files[f"{node.package}/{node.name}.rnd"] = File(node_description(node))
-        files[f"{root}.py"] = File(render("node", view, copyright_line))
+        files[f"{root}.py"] = File(render("node", view, runtime.notice))
         for module in MODULES:
-            files[f"{root}_{module}.py"] = File(render(module, view, copyright_line))
+            files[f"{root}_{module}.py"] = File(render(module, view, runtime.notice))
     if nodes:
-        files |= python_runtime(nodes[0].package, RUNTIME, copyright_line)
+        files |= runtime.files(nodes[0].package, RUNTIME)
     return files
 
 

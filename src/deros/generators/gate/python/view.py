@@ -189,7 +189,12 @@ def tuple_of(names: Iterable[str]) -> Call:
 
 
 def gate_view(
-    gate: Gate, node: NodeType, program: Program, store: InterfaceStore, safety_node: NodeType
+    gate: Gate,
+    node: NodeType,
+    program: Program,
+    store: InterfaceStore,
+    safety_node: NodeType,
+    runtime: str = "",
 ) -> GateView:
     """Return the view of a gate.
 
@@ -199,6 +204,7 @@ def gate_view(
         program: the rules that it is of.
         store: the message definitions.
         safety_node: the node whose states and heartbeat it heeds.
+        runtime: the package that the runtime is imported from; by default, the node's own.
 
     Raises:
         GenerationError: if two ports would get one name.
@@ -223,7 +229,15 @@ def gate_view(
         source=_port(base.subscriptions, gate.source),
         target=_port(base.publishers, gate.target),
         heartbeat=_port(base.subscriptions, heartbeat) if node.port(heartbeat) else None,
-        imports=tuple(_imports(base, node, {gate.type, *heard, *called}, is_heeding=bool(heard))),
+        imports=tuple(
+            _imports(
+                base,
+                node,
+                {gate.type, *heard, *called},
+                runtime or node.package,
+                is_heeding=bool(heard),
+            )
+        ),
         fields=tuple(fields),
         states=tuple(_states(steps, base, actions)),
         trigger=dict(base.interfaces)[TRIGGER] if node.port(RESET) else "",
@@ -249,21 +263,22 @@ def _port(ports: Iterable[PortView], name: str) -> PortView:
 
 
 def _imports(
-    base: NodeView, node: NodeType, used: Iterable[InterfaceType], *, is_heeding: bool
+    base: NodeView, node: NodeType, used: Iterable[InterfaceType], runtime: str, *, is_heeding: bool
 ) -> list[str]:
     imports = interface_imports(dict(base.interfaces), used)
     own = {f"{base.module}_{module} as {module}" for module in ("logic", "message")}
     imports |= {
         "rclpy.serialization": {"deserialize_message"},
-        node.package: {*own, "realtime"},
+        node.package: own,
         f"{node.package}.{base.base_module}": {base.base_class},
-        f"{node.package}.gate_report": {"decoded", "GateReport"},
-        f"{node.package}.gate_runner": {"GateRunner"},
-        f"{node.package}.instance": {"claim"},
-        f"{node.package}.process": {"run"},
+        f"{runtime}.gate_report": {"decoded", "GateReport"},
+        f"{runtime}.gate_runner": {"GateRunner"},
+        f"{runtime}.instance": {"claim"},
+        f"{runtime}.process": {"run"},
+        f"{runtime}.realtime": {"configure_process"},
     }
     if is_heeding:
-        imports[f"{node.package}.safety_source"] = {"SafetySource"}
+        imports[f"{runtime}.safety_source"] = {"SafetySource"}
     return import_lines(imports)
 
 

@@ -17,7 +17,7 @@ from deros.generators.node.python.view import (
     PackageView,
     package_view,
 )
-from deros.generators.runtime.interface import python_runtime
+from deros.generators.runtime.python.interface import python_runtime
 from deros.generators.text.identifiers import python_identifier
 from deros.generators.text.notice import licence, licensed_python, notice
 from deros.generators.text.python import call, expression, mark_long_lines, wrapped
@@ -61,7 +61,7 @@ def package_files(
     Args:
         models: one or more nodes; their order does not matter.
         options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder, and
-            ``licence`` as an SPDX identifier.
+            ``licence`` as an SPDX identifier; ``runtime``.
         raw: the names of the nodes whose subscriptions hand over serialized messages. Of such a
             node there is no user's module: the caller adds its class and its ``main``.
         needs: what the modules that the caller adds import, by the keys of rosdep.
@@ -75,8 +75,9 @@ def package_files(
     for model in ordered:
         _check_supported(model)
     copyright_line = notice(options)
+    runtime = python_runtime(ordered[0].package, options, copyright_line)
     package = package_view(
-        ordered, maintainer(options), copyright_line, licence(options), raw, needs
+        ordered, maintainer(options), copyright_line, licence(options), raw, needs, runtime.version
     )
     modules = [(each.module, ordered[0].package_span) for each in package.custom]
     hidden = list(hidden_from_python(ordered, package.dependencies, modules, store))
@@ -85,7 +86,7 @@ def package_files(
     files = _package_level(package)
     root = f"{package.name}/{package.name}"
     for node in package.nodes:
-        needed = base_imports(package.name, node)
+        needed = base_imports(package.name, node, runtime.module)
         base = _module("base.py", package, node=node, imports=needed)
         files[f"{root}/{node.base_module}.py"] = File(base)
         if not node.raw:
@@ -100,7 +101,7 @@ def package_files(
     shared = {GOAL_THREADS for node in package.nodes if node.actions}
     shared |= {MANAGED_NODE for node in package.nodes if node.lifecycle}
     shared |= {QOS_REPORT for node in package.nodes if node.reports_qos}
-    return files | python_runtime(package.name, sorted(shared), copyright_line)
+    return files | runtime.files(package.name, sorted(shared))
 
 
 def _package_level(package: PackageView) -> dict[str, File]:
@@ -119,7 +120,8 @@ def _package_level(package: PackageView) -> dict[str, File]:
     manifest = _render("package.xml", package=package)
     files[f"{package.name}/package.xml"] = File(manifest, Owner.USER)
     files[f"{package.name}/resource/{package.name}"] = File("")
-    files[f"{package.name}/{package.name}/__init__.py"] = File("")
+    init = _module("__init__.py", package) if package.runtime_version else ""
+    files[f"{package.name}/{package.name}/__init__.py"] = File(init)
     return files
 
 

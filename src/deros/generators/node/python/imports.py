@@ -14,8 +14,14 @@ from deros.generators.node.python.view import (
 from deros.generators.text.python import import_lines
 
 
-def base_imports(package: str, node: NodeView) -> tuple[list[str], list[str]]:
-    """Return the import statements of the base class: standard library, then the rest."""
+def base_imports(package: str, node: NodeView, runtime: str) -> tuple[list[str], list[str]]:
+    """Return the import statements of the base class: standard library, then the rest.
+
+    Args:
+        package: the package of the node.
+        node: the node.
+        runtime: the package that the modules of the runtime are imported from.
+    """
     standard: dict[str, set[str]] = {"typing": {"Any"}}
     if not node.raw:
         standard |= {"os": set(), "signal": set(), "threading": {"Thread"}}
@@ -41,9 +47,9 @@ def base_imports(package: str, node: NodeView) -> tuple[list[str], list[str]]:
         add("rclpy.signals", "SignalHandlerOptions")
         add("rclpy.task", "Future")
     if node.reports_qos:
-        add(f"{package}.{QOS_REPORT}", "QosReport")
+        add(f"{runtime}.{QOS_REPORT}", "QosReport")
     if node.lifecycle:
-        add(f"{package}.managed_node", "ManagedNode")
+        add(f"{runtime}.managed_node", "ManagedNode")
         if node.gated:
             add("rclpy.lifecycle.managed_entity", "SimpleManagedEntity")
     else:
@@ -54,7 +60,7 @@ def base_imports(package: str, node: NodeView) -> tuple[list[str], list[str]]:
     if node.actions:
         add("rclpy.action", "CancelResponse", "GoalResponse")
         add("rclpy.action.server", "ServerGoalHandle")
-        add(f"{package}.goal_threads", "GoalServer", "GoalThreads")
+        add(f"{runtime}.goal_threads", "GoalServer", "GoalThreads")
     if node.action_clients:
         add("rclpy.action", "ActionClient")
     if node.clients or node.action_clients:

@@ -344,6 +344,7 @@ class PackageView:
         dependencies: packages needed to run, sorted.
         copyright: the text above each file; empty for none.
         licence: the licence for manifests.
+        runtime_version: of ``deros_runtime``, which the package depends on; empty if it has a copy.
     """
 
     name: str
@@ -355,6 +356,7 @@ class PackageView:
     email: str
     copyright: str
     licence: str
+    runtime_version: str
 
     @property
     def checks_copyright(self) -> bool:
@@ -374,6 +376,7 @@ def package_view(
     licence: str,
     raw: Collection[str] = (),
     needs: Collection[str] = (),
+    runtime_version: str = "",
 ) -> PackageView:
     """Return the view of the package that ``models``, all of one package, make up.
 
@@ -384,6 +387,7 @@ def package_view(
         licence: the licence for manifests.
         raw: the names of the nodes that are raw (see :class:`NodeView`).
         needs: further packages, which the caller's own modules import.
+        runtime_version: of ``deros_runtime``; empty for a package with a copy of the runtime.
 
     Raises:
         GenerationError: if two names collide, in a node or between the nodes' modules.
@@ -421,6 +425,7 @@ def package_view(
         email=maintainer[1],
         copyright=copyright_line,
         licence=licence,
+        runtime_version=runtime_version,
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from deros.generators.decoder.python.interface import Topic
 from deros.generators.monitor.python.interface import monitor_view
 from deros.generators.node.python.interface import NodeView, interface_imports, node_view
+from deros.generators.runtime.python.interface import PythonRuntime
 from deros.generators.safety_node.messages import is_stamped
 from deros.generators.safety_node.node import bound_actions
 from deros.generators.safety_node.view import (
@@ -97,6 +98,7 @@ class SafetyView:
     """All that the templates print.
 
     Attributes:
+        runtime: the package that the modules of the runtime are imported from.
         rules: the file name of the rules.
         imports: the statements that import the interfaces.
         shared: the watched topics that may have several publishers.
@@ -109,6 +111,7 @@ class SafetyView:
     """
 
     package: str
+    runtime: str
     node: NodeView
     rules: str
     name: str
@@ -128,7 +131,7 @@ class SafetyView:
     rule_count: int
 
     @property
-    def runtime(self) -> tuple[str, ...]:
+    def runtime_modules(self) -> tuple[str, ...]:
         """The modules that are the same for every program that needs them."""
         needed = {
             "latches": bool(self.latched),
@@ -167,6 +170,7 @@ def safety_view(
     node: NodeType,
     store: InterfaceStore,
     shared: frozenset[str],
+    runtime: PythonRuntime,
 ) -> SafetyView:
     """Return the view of the safety node ``node`` that runs ``program``.
 
@@ -176,6 +180,7 @@ def safety_view(
         node: the node type.
         store: for the fields of the messages.
         shared: the watched topics that may have several publishers.
+        runtime: where the package takes the runtime from.
 
     Raises:
         GenerationError: if two topics, actions or modules would get one name.
@@ -191,10 +196,11 @@ def safety_view(
     )
     view = SafetyView(
         package=node.package,
+        runtime=runtime.module,
         node=base,
         rules=origin_file(model),
         name=printable_line(program.name),
-        imports=tuple(_imports(program, base, node, channels, bool(actions))),
+        imports=tuple(_imports(program, base, node, channels, bool(actions), runtime.module)),
         handlers=handlers,
         shared=tuple(sorted(shared)),
         channels=channels,
@@ -221,7 +227,7 @@ def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
     ]
     methods = [Emitted(a.method, f"action {a.name!r}", spans[a.name]) for a in view.actions]
     check_collisions([*reserved, *methods], f"the class {view.actions_class}")
-    modules = ["monitor", "origins", *view.runtime, view.node.module, view.node.base_module]
+    modules = ["monitor", "origins", *view.runtime_modules, view.node.module, view.node.base_module]
     if view.handlers:
         modules.append("decoding")
     if view.actions:
@@ -236,6 +242,7 @@ def _imports(
     node: NodeType,
     channels: tuple[ChannelView, ...],
     has_actions: bool,
+    runtime: str,
 ) -> list[str]:
     named = {channel.topic for channel in channels} | {HEARTBEAT, RESET}
     used = [port.type for port in node.ports if port.name in named]
@@ -244,25 +251,27 @@ def _imports(
     imports |= {
         "rclpy.clock": {"Clock"},
         "rclpy.clock_type": {"ClockType"},
-        package: {"monitor", "process", "realtime"},
-        f"{package}.one_shot_timer": {"OneShotTimer"},
-        f"{package}.diagnostics": {"Diagnostics"},
-        f"{package}.event_reporter": {"EventReporter", "OK", "WARN", "ERROR"},
-        f"{package}.instance": {"claim"},
+        package: {"monitor"},
+        f"{runtime}.one_shot_timer": {"OneShotTimer"},
+        f"{runtime}.diagnostics": {"Diagnostics"},
+        f"{runtime}.event_reporter": {"EventReporter", "OK", "WARN", "ERROR"},
+        f"{runtime}.instance": {"claim"},
         f"{package}.origins": {"ACTIONS", "BEHAVIOURS", "RULES"},
-        f"{package}.publishers": {"PublisherCheck"},
-        f"{package}.report_queue": {"ReportQueue"},
-        f"{package}.duplicate_instance": {"DuplicateInstanceDetector"},
-        f"{package}.monitor_runner": {"MonitorRunner"},
+        f"{runtime}.process": {"run"},
+        f"{runtime}.publishers": {"PublisherCheck"},
+        f"{runtime}.realtime": {"configure_process"},
+        f"{runtime}.report_queue": {"ReportQueue"},
+        f"{runtime}.duplicate_instance": {"DuplicateInstanceDetector"},
+        f"{runtime}.monitor_runner": {"MonitorRunner"},
         f"{package}.{base.base_module}": {base.base_class},
     }
     if base.subscriptions:
         imports[package].add("decoding")
     if channels:
-        imports[f"{package}.states"] = {"StateTopic"}
+        imports[f"{runtime}.states"] = {"StateTopic"}
     if any(action.latched for action in program.actions):
-        imports[f"{package}.instance"].add("file_stem")
-        imports[f"{package}.latches"] = {"LatchFile", "Latches", "default_path"}
+        imports[f"{runtime}.instance"].add("file_stem")
+        imports[f"{runtime}.latches"] = {"LatchFile", "Latches", "default_path"}
         imports[f"{package}.origins"] |= {"CALLERS", "LATCHED"}
     if any(each.optional for each in walk.behaviours(program)):
         imports[f"{package}.{base.base_module}"].add("Parameters")

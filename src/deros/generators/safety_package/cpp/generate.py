@@ -10,6 +10,7 @@ from deros.generators.monitor.c.interface import render_monitor
 from deros.generators.node.cpp.interface import package_files
 from deros.generators.node.interface import node_description
 from deros.generators.runtime.cpp.interface import CppRuntime
+from deros.generators.runtime.interface import RuntimeSource, runtime_source
 from deros.generators.safety_node.cpp.interface import (
     RUNTIME,
     node_files,
@@ -33,6 +34,8 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
         GenerationError: if the rules have an error, cannot be told in C, or names collide.
         ValueError: if an option cannot be read.
     """
+    if runtime_source(options) is RuntimeSource.PACKAGE:
+        raise ValueError("the target cpp has no runtime package yet: leave out --runtime")
     built = context.build(model)
     if built.program is None:
         raise GenerationError(built.diagnostics)

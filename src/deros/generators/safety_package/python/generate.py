@@ -8,7 +8,7 @@ from deros.generators.gate.python.interface import gate_files, gate_nodes
 from deros.generators.monitor.python.interface import render_monitor
 from deros.generators.node.interface import node_description
 from deros.generators.node.python.interface import package_files
-from deros.generators.runtime.interface import python_runtime
+from deros.generators.runtime.python.interface import python_runtime
 from deros.generators.safety_node.interface import package_options, safety_node, shared_topics
 from deros.generators.safety_node.python.interface import node_files, safety_view
 from deros.generators.text.notice import licensed_python, notice
@@ -32,8 +32,9 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     options = package_options(model, options, "python")
     node = safety_node(built.program, built.topics, options, model.source)
     shared = shared_topics(built.program, built.topics)
-    view = safety_view(model, built.program, node, context.store, shared)
     copyright_line = notice(options)
+    runtime = python_runtime(node.package, options, copyright_line)
+    view = safety_view(model, built.program, node, context.store, shared, runtime)
     gates = gate_nodes(built.program, built.topics, node)
     nodes = [node, *gates]
     monitor = render_monitor(built.program)
@@ -44,7 +45,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     files[f"{view.package}/{node.name}.rnd"] = File(node_description(node))
     files[f"{root}/monitor.py"] = File(licensed_python(monitor, copyright_line))
     files |= node_files(view, copyright_line)
-    files |= python_runtime(view.package, view.runtime, copyright_line)
+    files |= runtime.files(view.package, view.runtime_modules)
     if view.handlers:
         files[f"{root}/decoding.py"] = File(licensed_python(decoders, copyright_line))
-    return files | gate_files(built.program, gates, node, context.store, copyright_line)
+    return files | gate_files(built.program, gates, node, context.store, runtime)

@@ -1,0 +1,76 @@
+"""``deros runtime``, and the option ``--runtime`` by every way that options take."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.cli import deros
+
+
+@pytest.fixture
+def rules(tmp_path: Path) -> Path:
+    """Give rules that check clean."""
+    assert deros("new", "rules", "robot", "-o", tmp_path / "models").code == 0
+    return tmp_path / "models/robot.deros"
+
+
+def test_the_runtime_package_is_written_and_refreshed(tmp_path: Path) -> None:
+    """A second run changes nothing; a file that was edited by hand is kept."""
+    outcome = deros("runtime", tmp_path)
+    assert outcome.code == 0, outcome.err
+    module = tmp_path / "deros_runtime/deros_runtime/process.py"
+    assert f"wrote {module}\n" in outcome.out
+    assert "wrote" not in deros("runtime", tmp_path).out
+    text = module.read_text()
+    module.write_text(f"{text}# mine\n")
+    outcome = deros("runtime", tmp_path)
+    assert outcome.code == 0
+    assert "1 file edited by hand, kept" in outcome.out
+    assert deros("runtime", tmp_path, "--overwrite").code == 0
+    assert module.read_text() == text
+
+
+def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
+    """The message says what is in the way."""
+    (tmp_path / "deros_runtime").write_text("not a folder")
+    outcome = deros("runtime", tmp_path)
+    assert outcome.code == 2
+    assert "cannot write" in outcome.err
+
+
+def _depends(folder: Path) -> bool:
+    return "deros_runtime" in (folder / "robot_safety/package.xml").read_text()
+
+
+def test_the_command_line_and_the_project_choose_the_runtime(rules: Path, tmp_path: Path) -> None:
+    """What the command line says wins."""
+    command = ("generate", rules, "--target", "python")
+    assert deros(*command, "--runtime", "package", "-o", tmp_path / "a").code == 0
+    assert _depends(tmp_path / "a")
+    (rules.parent / "deros.toml").write_text('runtime = "package"\n')
+    assert deros(*command, "-o", tmp_path / "b").code == 0
+    assert _depends(tmp_path / "b")
+    assert deros(*command, "--runtime", "copy", "-o", tmp_path / "c").code == 0
+    assert not _depends(tmp_path / "c")
+
+
+def test_textx_generate_takes_the_option(rules: Path, tmp_path: Path) -> None:
+    """As it takes every option of a generator."""
+    textx = str(Path(sys.executable).with_name("textx"))
+    command = [textx, "generate", str(rules), "--target", "python", "--runtime", "package"]
+    done = subprocess.run([*command, "-o", str(tmp_path / "out")], capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert _depends(tmp_path / "out")
+
+
+def test_an_unknown_runtime_is_a_mistake_on_the_command_line(rules: Path, tmp_path: Path) -> None:
+    """The message names the two that there are; nothing is written."""
+    command = ("generate", rules, "--target", "python", "--runtime", "link")
+    outcome = deros(*command, "-o", tmp_path / "out")
+    assert outcome.code == 2
+    assert "runtime 'link' is neither 'copy' nor 'package'" in outcome.err
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,26 @@
+"""The version check of ``deros_runtime``."""
+
+from __future__ import annotations
+
+import pytest
+
+from deros.generators.runtime.python.deros_runtime import (
+    RuntimeVersionError,
+    __version__,
+    require,
+)
+
+
+def test_the_same_version_is_accepted() -> None:
+    """Nothing happens."""
+    require(__version__, "robot_safety")
+
+
+@pytest.mark.parametrize("version", ["0.0.9", f"{__version__}.1", ""])
+def test_any_other_version_is_refused(version: str) -> None:
+    """The error names the package and both versions."""
+    with pytest.raises(RuntimeVersionError) as raised:
+        require(version, "robot_safety")
+    assert str(raised.value).startswith(
+        f"robot_safety was generated for deros_runtime {version}, but {__version__} is installed"
+    )

@@ -1,0 +1,108 @@
+"""The runtime as a copy in generated packages, and as a ROS 2 package."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from deros import __version__
+from deros.generators.api.protocol import Context, Files
+from deros.generators.builtin import deros_python
+from deros.generators.runtime.interface import (
+    PYTHON_RUNTIME,
+    RuntimeSource,
+    runtime_package,
+    runtime_source,
+)
+from deros.generators.runtime.python.interface import python_runtime
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+
+MODELS = Path(__file__).parents[1]
+EVERY_THING = MODELS / "safety_node/python/models/every_thing.deros"
+GATES = MODELS / "gate/python/models/gates.deros"
+
+
+def generated(path: Path, **options: str) -> Files:
+    """Return the files of a safety package."""
+    repository = Repository()
+    model = repository.load(path).model
+    return deros_python(model, Context(InterfaceStore(), repository), options)
+
+
+def imported(text: str) -> set[str]:
+    """Return the modules that a text imports."""
+    statements = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom)]
+    return {node.module for node in statements if node.module and not node.level}
+
+
+def test_the_versions_of_the_runtime_package_are_that_of_deros() -> None:
+    """Manifest, setup.py and module say the same."""
+    files = runtime_package(PYTHON_RUNTIME)
+    for name, pattern in (
+        ("package.xml", "<version>(.*)</version>"),
+        ("setup.py", "version='(.*)'"),
+        ("deros_runtime/__init__.py", "__version__ = '(.*)'"),
+    ):
+        assert re.findall(pattern, files[f"{PYTHON_RUNTIME}/{name}"].text) == [__version__]
+
+
+def test_the_runtime_package_holds_nothing_of_this_repository() -> None:
+    """Settings of linters and compiled modules stay out; the marker of types is there."""
+    files = runtime_package(PYTHON_RUNTIME)
+    assert f"{PYTHON_RUNTIME}/deros_runtime/py.typed" in files
+    assert not [path for path in files if path.endswith((".toml", ".pyc"))]
+    assert not {f"{PYTHON_RUNTIME}/__init__.py", f"{PYTHON_RUNTIME}/interface.py"} & set(files)
+
+
+@pytest.mark.parametrize("rules", [EVERY_THING, GATES], ids=["every_thing", "gates"])
+def test_a_package_without_a_copy_imports_the_runtime_package(rules: Path) -> None:
+    """Both variants have the same files otherwise, and use the same modules of the runtime."""
+    copied, bare = generated(rules), generated(rules, runtime="package")
+    package = next(iter(copied)).split("/")[0]
+    runtime = {
+        path.removeprefix(f"{PYTHON_RUNTIME}/deros_runtime/")
+        for path in runtime_package(PYTHON_RUNTIME)
+        if path.startswith(f"{PYTHON_RUNTIME}/deros_runtime/")
+    }
+    folder = f"{package}/{package}/"
+    carried = {path for path in copied if path.removeprefix(folder) in runtime - {"__init__.py"}}
+    assert carried
+    assert set(copied) - set(bare) == carried
+    assert set(bare) <= set(copied)
+    for path, file in bare.items():
+        if not path.startswith(folder) or not path.endswith(".py"):
+            continue
+        ours = imported(file.text)
+        theirs = imported(copied[path].text)
+        moved = {name.replace("deros_runtime", package) for name in ours}
+        assert moved == theirs or path.endswith("__init__.py")
+
+
+def test_the_manifest_asks_for_the_very_version() -> None:
+    """A package that depends on the runtime says so; one with a copy does not."""
+    manifest = generated(EVERY_THING, runtime="package")["every_thing_safety/package.xml"].text
+    assert f'<depend version_eq="{__version__}">deros_runtime</depend>' in manifest
+    assert PYTHON_RUNTIME not in generated(EVERY_THING)["every_thing_safety/package.xml"].text
+
+
+def test_copying_is_the_default() -> None:
+    """To say so changes nothing."""
+    assert runtime_source({}) is RuntimeSource.COPY
+    assert generated(EVERY_THING, runtime="copy") == generated(EVERY_THING)
+
+
+def test_another_source_is_refused() -> None:
+    """The message names the two that there are."""
+    with pytest.raises(ValueError, match="'link' is neither 'copy' nor 'package'"):
+        runtime_source({"runtime": "link"})
+
+
+def test_a_package_with_the_name_of_the_runtime_is_refused() -> None:
+    """It would hide what it depends on; with a copy it may be called so."""
+    with pytest.raises(ValueError, match="has the name of the runtime"):
+        python_runtime(PYTHON_RUNTIME, {"runtime": "package"})
+    assert python_runtime(PYTHON_RUNTIME, {}).version == ""
