@@ -22,4 +22,4 @@ profiles.register()
 pytest_plugins = ("tests.support.golden", "tests.support.ros")
 
 collect_ignore = ["golden"]
-"""Generated packages bring tests of their own, to be run where they are built."""
+"""Generated packages have their own tests, which run where they are built."""

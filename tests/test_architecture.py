@@ -24,7 +24,7 @@ HOMES = {
     "rich": {"cli", "report"},
     "rclpy": set[str](),
 }
-"""The rooms that may import a library; generated code is text, so ``rclpy`` has none."""
+"""Packages that may import a library; generated code is text, so ``rclpy`` has none."""
 
 
 def _modules() -> list[Path]:

@@ -135,7 +135,7 @@ def _script(project: str, target: str = "counted") -> str:
     )
 
 
-def _told(project: Project) -> str:
+def _output_of_program(project: Project) -> str:
     project.built()
     (program,) = project.build_folder.rglob("tell")
     return subprocess.run([program], capture_output=True, text=True, check=True).stdout
@@ -147,16 +147,16 @@ def _told(project: Project) -> str:
 def test_generated_and_hand_written_files_are_built(counted: Path, tool: str) -> None:
     """A changed model or user file is in the next build; nothing else is rebuilt."""
     project = configured(counted, tool, _script("odometry"))
-    assert _told(project) == "2 ports\n"
+    assert _output_of_program(project) == "2 ports\n"
     assert "Configuring" not in project.built()
     replace(counted / "models/odometer.rnd", "publishes", "publishes\n  topic x : std_msgs.Bool")
-    assert _told(project) == "3 ports\n"
+    assert _output_of_program(project) == "3 ports\n"
     assert "Configuring" not in project.built()
     replace(counted / "src/tell.c", '"%d "', '"%d of "')
     assert "Configuring" not in project.built(), "sources are links: the compiler sees the edit"
-    assert _told(project) == "3 of ports\n"
+    assert _output_of_program(project) == "3 of ports\n"
     replace(counted / "include/word.h", "ports", "entries")
-    assert _told(project) == "3 of entries\n"
+    assert _output_of_program(project) == "3 of entries\n"
     listed = subprocess.run(
         ["ctest", "-N"], cwd=project.build_folder, capture_output=True, text=True, check=True
     )
@@ -169,7 +169,7 @@ def test_generated_and_hand_written_files_are_built(counted: Path, tool: str) ->
 def test_model_error_fails_the_build(counted: Path, tool: str) -> None:
     """The build ends with the diagnostic and its place until the model is fixed."""
     project = configured(counted, tool, _script("odometry"))
-    assert _told(project) == "2 ports\n"
+    assert _output_of_program(project) == "2 ports\n"
     model = counted / "models/odometer.rnd"
     replace(model, "std_msgs.Int32", "std_msgs.Int23")
     for _ in range(2):
@@ -177,7 +177,7 @@ def test_model_error_fails_the_build(counted: Path, tool: str) -> None:
         assert failed.returncode != 0
         assert f"{model}:3:17: error[DRS102 unknown-type]" in failed.stdout
     replace(model, "std_msgs.Int23", "std_msgs.Int32")
-    assert _told(project) == "2 ports\n"
+    assert _output_of_program(project) == "2 ports\n"
     (counted / "src/tell.c").rename(counted / "src/other.c")
     failed = project.build()
     assert failed.returncode != 0

@@ -1,8 +1,8 @@
-"""Rewrite the expectations of all cases, or of those named, to what is found now.
+"""Replace the expectations of all cases, or of those named, by the current findings.
 
     python tests/cases/refresh.py [NAME…]
 
-Review the difference: it is the change in what users are told.
+Review the difference: it is the change in the messages for users.
 """
 
 from __future__ import annotations

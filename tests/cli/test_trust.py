@@ -20,7 +20,7 @@ HOSTILE_NAMES = {
     "line": "evil name\\",
     "cmake": 'a"\n${evil}\n"',
 }
-"""File names that end a docstring, a string or a line, and go on with code, or join lines."""
+"""File names that end a docstring, string or line and continue with code, or join lines."""
 
 
 def _without_safety(models: Path) -> Path:

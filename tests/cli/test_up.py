@@ -252,10 +252,10 @@ def test_generated_nodes_communicate_as_described(
     (tmp_path / "talk.system").write_text(SYSTEM)
     answers: list[tuple[str, float]] = []
 
-    def hear(message: String, info: dict[str, int]) -> None:
+    def receive(message: String, info: dict[str, int]) -> None:
         answers.append((message.data, info["source_timestamp"] / 1e9))
 
-    ros_peer.node.create_subscription(String, "/answers", hear, 10)
+    ros_peer.node.create_subscription(String, "/answers", receive, 10)
     run = Run([DEROS, "up", tmp_path / "talk.system", "--install", tmp_path], ros_env)
     try:
         ros_peer.until(lambda: answers)

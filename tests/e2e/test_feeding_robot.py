@@ -17,7 +17,7 @@ from tests.support.processes import processes_with
 
 DEMO = EXAMPLES / "feeding_robot/demo.py"
 LONGEST = 900.0
-"""Seconds after which the demo is taken to hang."""
+"""Seconds after which the demo is considered hung."""
 
 
 def start(

@@ -22,7 +22,7 @@ WATCHFUL = {
     "entity space { blocked:": "entity space { failsafe blocked:",
     "numb: orientation.missing();": "numb: orientation.tilt().unknown();",
 }
-"""What the rules of the other tests become, so that the robot heeds what it does not know."""
+"""Replacements in the rules of the other tests that make the robot react to unknown values."""
 
 NEAREST = "scan.nearest(-0.523599, 0.523599)"
 CLEAR = 5.0

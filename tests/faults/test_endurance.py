@@ -24,17 +24,17 @@ pytestmark = pytest.mark.ros
 TOGGLER = Path(__file__).resolve().parents[1] / "support" / "toggler.py"
 TRIGGERS = 10_000
 UNREAD = 200 * mmap.PAGESIZE // 4096
-"""So many triggers say more than a pipe takes that nobody reads."""
+"""Enough triggers for more output than an unread pipe holds."""
 
 SOAK_MESSAGES = int(os.environ.get("DEROS_SOAK_MESSAGES", "50_000"))
-"""How many messages the soak lasts; hours find what seconds do not."""
+"""Number of messages of the soak test; hours find leaks that seconds do not."""
 
 EVENTS_KEPT = 1000
-"""How many events the node keeps for those who ask late: until then its memory does grow."""
+"""Number of events that the node stores for late readers: until then its memory does grow."""
 
 STRETCHES = 5
 LEAST_OBJECT = 16
-"""The bytes that the least of Python's objects takes; whatever keeps one takes more."""
+"""Size in bytes of the smallest Python object; a leaked object takes at least as much."""
 
 
 def leak(node: Process, count: Callable[[], int], stretch: int, go_on: Callable[[], None]) -> float:

@@ -19,13 +19,13 @@ from tests.support.victims import Process, Sensors
 pytestmark = pytest.mark.ros
 
 LOST_HEARTBEAT, LOST_INPUT = 0.3, 0.5
-"""When the gate takes somebody for lost, in s; see the rules."""
+"""Times after which the gate considers heartbeat or input lost, in s; see the rules."""
 
 LIMIT = 0.1
 """The speed, in m/s, to which the gate limits commands while the arm is overloaded."""
 
 LATE = 0.05
-"""By how much, in s, a zero may come later."""
+"""Maximum delay of a zero, in s."""
 
 PERIOD = 0.05
 DAY = 86400

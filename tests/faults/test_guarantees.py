@@ -17,7 +17,7 @@ TABLES = {
     "## What the safety node depends on": "tests/faults",
     "### What it depends on": "tests/generators/gate/python",
 }
-"""The headings above the tables, and where a test is to be found if its cell does not say."""
+"""The headings above the tables, and the folder or file of tests for cells that name none."""
 
 FAILURES = ["wrong data", "duplicated", "stops", "late", "from a foreign node"]
 

@@ -15,7 +15,7 @@ from tests.support.victims import Process
 pytestmark = pytest.mark.ros
 
 EARLY = 5.0
-"""Seconds from its start in which a node that finds another one of its name gives way."""
+"""Seconds after its start during which a node exits if it finds another one of its name."""
 
 
 def locks(folder: Path) -> Path:

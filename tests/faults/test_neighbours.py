@@ -16,19 +16,19 @@ pytestmark = pytest.mark.ros
 
 HEARTBEAT = f"/{NODE}/heartbeat"
 EARLY = 5.0
-"""Seconds from its start in which a node that finds another one of its name gives way."""
+"""Seconds after its start during which a node exits if it finds another one of its name."""
 
 
 def until_fault(robot: Robot, topic: str, *texts: str) -> None:
     """Wait until the diagnostics and an event report such a fault of a topic."""
 
-    def is_told() -> bool:
+    def is_reported() -> bool:
         # The publisher may not be identified at first.
         events = robot.fault_events.get(topic, [])[-1:]
         told = [robot.faults.get(topic, ""), *events]
         return bool(events) and all(text in each for text in texts for each in told)
 
-    robot.until(is_told)
+    robot.until(is_reported)
 
 
 def until_no_fault(robot: Robot, topic: str) -> None:

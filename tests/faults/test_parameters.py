@@ -20,7 +20,7 @@ FIXED = {
     "lock_memory": True,
     "garbage_collection": False,
 }
-"""All that the node reads at its start, with other values than it has."""
+"""All parameters that the node reads at its start, with other values."""
 
 
 @pytest.mark.parametrize(

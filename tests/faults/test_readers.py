@@ -14,7 +14,7 @@ from tests.support.ros import Peer
 pytestmark = pytest.mark.ros
 
 OWN = ("/stop", "/halt", "/slow", f"/{NODE}/heartbeat", f"/{NODE}/events", "/diagnostics")
-"""What the node publishes."""
+"""Topics published by the node."""
 
 
 def test_node_does_not_read_its_own_topics(robot: Robot) -> None:
@@ -47,13 +47,13 @@ def test_late_readers_get_the_states(robot: Robot) -> None:
         strangers = [Peer(int(robot.env["ROS_DOMAIN_ID"]), f"reader_{n}") for n in range(5)]
         for stranger in strangers:
             states: list[bool] = []
-            hear = functools.partial(_hear, states)
-            stranger.node.create_subscription(Bool, "/stop", hear, kept)
+            receive = functools.partial(_receive, states)
+            stranger.node.create_subscription(Bool, "/stop", receive, kept)
             stranger.until(states.copy)
             assert states == [True]
             stranger.close()
         node.end()
 
 
-def _hear(states: list[bool], message: Any) -> None:
+def _receive(states: list[bool], message: Any) -> None:
     states.append(message.data)

@@ -15,7 +15,7 @@ from tests.support.ros import Peer, short_lease
 pytestmark = pytest.mark.ros
 
 CLEAR, BLOCKED = 5.0, 0.1
-"""Distances ahead, in m, with which the robot may drive and may not."""
+"""Distances ahead, in m, at which the robot may drive and may not."""
 
 
 def refused(robot: Robot, unknown: str) -> bool:

@@ -209,12 +209,12 @@ def test_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
         robot.violate()
         disk.fill()
 
-        def is_told_why() -> bool:
+        def is_refused_for_space() -> bool:
             success, message = robot.reset()
             assert not success
             return "No space left on device" in message
 
-        robot.until(is_told_why)  # once it knows that the rule is satisfied again
+        robot.until(is_refused_for_space)  # once it knows that the rule is satisfied again
         assert robot.is_active("/stop")
         disk.clear()
         robot.until(lambda: robot.reset()[0])

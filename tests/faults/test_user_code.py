@@ -23,7 +23,7 @@ FAILURES = {
     "shutdown": "shut down",
     "start a thread and throw": "action interfere failed",
 }
-"""What the code does, and a part of the reason that the node prints."""
+"""Modes of failure, and a part of the reason that the node prints."""
 
 
 @pytest.mark.parametrize("how", FAILURES)

@@ -76,7 +76,7 @@ SHAPES: dict[str, tuple[Callable[[int], Program], int]] = {
     "behaviour": (_behaviour, 100),
     "rules": (_rules, 40),
 }
-"""Programs of a size, by name, and the smallest size that is looked at."""
+"""Programs of variable size by name, and the smallest size to test."""
 
 
 @pytest.mark.parametrize("name", SHAPES)

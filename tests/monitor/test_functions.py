@@ -266,7 +266,7 @@ WINDOW = f"""typedef struct
 """
 
 OF_ELEMENTS = (("BASE", "float64"), ("ELEMENT", "double"), ("RESULT", "double"), ("NONE", "NAN"))
-"""What the texts of arrays are made for here: the placeholders, and what stands for them."""
+"""Element types used here for the texts of arrays: placeholders and their replacements."""
 
 
 @pytest.fixture(scope="module")

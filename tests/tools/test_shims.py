@@ -16,7 +16,7 @@ from tests.support.preload import Disk, WallClock, build_shim, compiler
 HARNESS = Path(__file__).resolve().parents[1] / "support" / "c" / "signal_stack.c"
 
 STACK = 800
-"""Bytes of the stack that a function of a shim may use, of the two thousand that are certain."""
+"""Maximum stack size in bytes of a function of a shim; two thousand are guaranteed."""
 
 WRITES = slice(2, 6)
 MAKES = slice(6, 9)

@@ -137,7 +137,7 @@ REFERENCES = {
     "NameTerm.name": "names what the rules declare",
     "Call.function": "names a function of the table",
 }
-"""Places where only what is declared elsewhere can be named: anything else is unknown."""
+"""Places where only names declared elsewhere are valid: any other name is unknown."""
 
 _ATTRIBUTE = re.compile(
     r"(\w+)[*+?]?=(?:GraphName\b|MarkedGraphName\b|Name\b|RosParameterName\b|PortName\b|TermName\b|\[\w+:Name\])"

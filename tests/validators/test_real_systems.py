@@ -23,7 +23,7 @@ LISTED: list[dict[str, Any]] = json.loads(
 )
 
 EVERY = 1 if os.environ.get("DEROS_ALL_FAULTS") else 4
-"""Of the faults of each kind in each system, every one of so many is planted."""
+"""One of so many faults of each kind is planted in each system."""
 
 
 def _listed(finding: Diagnostic) -> dict[str, str]:

@@ -37,7 +37,7 @@ def _check(directory: Path, *names: str, **files: str) -> list[Diagnostic]:
     return check(named, repository, InterfaceStore((), prefixes=()))
 
 
-def _said(findings: list[Diagnostic]) -> list[tuple[str, str]]:
+def _files_and_codes(findings: list[Diagnostic]) -> list[tuple[str, str]]:
     return [(Path(d.span.file).name, d.code.name) for d in findings]
 
 
@@ -51,9 +51,9 @@ subsystem left : Arm namespace /left
 node guard : source wirings connect out to /estop
 """
     alone = _check(tmp_path, "arm.system", **{"arm.system": ARM})
-    assert _said(alone) == [("arm.system", "DRS211"), ("arm.system", "DRS210")]
+    assert _files_and_codes(alone) == [("arm.system", "DRS211"), ("arm.system", "DRS210")]
     whole = _check(tmp_path, "robot.system", **{"robot.system": robot})
-    assert _said(whole) == [("arm.system", "DRS211")]
+    assert _files_and_codes(whole) == [("arm.system", "DRS211")]
     assert "/left/state" in whole[0].message
 
 
@@ -67,7 +67,7 @@ entity arm { failsafe far: state > 1.0; }
 if arm.far then { halt; };
 """
     findings = _check(tmp_path, "arm.deros", **{"arm.system": ARM, "arm.deros": rules})
-    assert _said(findings) == []
+    assert _files_and_codes(findings) == []
 
 
 def test_findings_of_imports_are_reported_once(tmp_path: Path) -> None:
@@ -96,9 +96,9 @@ subsystem right : Arm{right}
     external = "external topic /left/state external topic /right/state"
     apart = template.format(left=" namespace /left", right=" namespace /right", topics=external)
     files = {"arm.system": ARM, "robot.system": apart}
-    assert _said(_check(tmp_path, "robot.system", **files)) == []
+    assert _files_and_codes(_check(tmp_path, "robot.system", **files)) == []
     files["robot.system"] = template.format(left="", right="", topics="external topic /state")
-    codes = [code for _, code in _said(_check(tmp_path, "robot.system", **files))]
+    codes = [code for _, code in _files_and_codes(_check(tmp_path, "robot.system", **files))]
     assert codes == ["DRS215", "DRS215"]
 
 

@@ -1,4 +1,4 @@
-// What a user may write into an action: read from a file, and done once.
+// User code of an action: it does what a file says, once.
 
 #ifndef INTERFERENCE_HPP_
 #define INTERFERENCE_HPP_
@@ -17,7 +17,7 @@
 
 #include "rclcpp/rclcpp.hpp"
 
-/// Do what the file says, and remove it, so that the next process is left alone.
+/// Do what the file says, and remove it, so that the next process is not affected.
 inline void interfere_with(rclcpp::Node & node)
 {
   const char * path = std::getenv("INTERFERENCE");

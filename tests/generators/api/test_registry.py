@@ -24,7 +24,7 @@ from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 
 METAMODEL = rosnode.metamodel()
-"""What textX hands to a generator beside the model: the metamodel of our language."""
+"""The metamodel of our language, which textX passes to a generator along with the model."""
 
 NODE = "node talker : chat\npublishes\n  topic chatter : std_msgs.String\n"
 

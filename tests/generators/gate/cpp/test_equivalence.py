@@ -29,7 +29,7 @@ from tests.support.profiles import draws_new_examples, scaled
 pytestmark = needs_compiler
 
 EXAMPLES = scaled(3000)
-"""Traces in all."""
+"""Total number of traces."""
 
 SEED = random.randrange(2**32) if draws_new_examples() else 4
 START_NS = 100

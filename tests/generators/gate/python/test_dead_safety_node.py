@@ -34,10 +34,10 @@ from tests.support.ros import DEFAULT_LEASE_S, Peer, running
 pytestmark = pytest.mark.ros
 
 REPEATS = int(os.environ.get("DEROS_REPEATS", "5"))
-"""How often each thing happens; a proof takes a hundred."""
+"""Number of repetitions; a proof takes a hundred."""
 
 LIMIT_S = 0.3 + 0.05
-"""The time of the line about the heartbeat, and what the machine may add."""
+"""The time of the heartbeat line, plus a margin for the machine."""
 
 StartSafety = Callable[..., AbstractContextManager[Popen[str]]]
 

@@ -21,7 +21,7 @@ from tests.support.ros import LIMIT, Peer, set_parameter
 pytestmark = pytest.mark.ros
 
 PROMPT = 1.0
-"""What a busy machine may add, in s."""
+"""Margin for a busy machine, in s."""
 
 # States and heartbeat ---------------------------------------------------------------------------
 
@@ -39,7 +39,7 @@ def test_undecodable_state_stops(world: World) -> None:
     world.until_driving()
 
 
-def told_without_states(world: World) -> set[tuple[float, float, float]]:
+def commands_without_states(world: World) -> set[tuple[float, float, float]]:
     """Return the commands at the drive during a second with heartbeats but without states.
 
     If the machine delays the heartbeats for so long that they are lost, another second is used.
@@ -70,7 +70,7 @@ def test_state_counts_from_its_arrival(
         world.assert_stands(1.0)  # the heartbeat alone opens nothing
         world.stop(False)
         world.mode(0)
-        told = told_without_states(world)
+        told = commands_without_states(world)
         assert told == {(0.3, 0.0, 0.0)}
         world.stop(True)
         world.wish_until(0.3, lambda: world.last == STILL)

@@ -28,7 +28,7 @@ PACKAGES = (
     "trajectory_msgs",
 )
 NO_COMMANDS = {message_type("std_msgs.Header"), message_type("std_msgs.MultiArrayLayout")}
-"""Parts of messages that say how to read the rest."""
+"""Parts of messages that determine how to read the rest."""
 
 TYPES = [kind for kind in message_types(*PACKAGES) if kind not in NO_COMMANDS]
 STAMP_NS = 1_234_567_890_123

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.ros
 
 PERIOD = 0.05
 PROMPT = 1.0
-"""What a busy machine may add, in s, where the question is whether something happens at all."""
+"""Margin for a busy machine, in s, if only the result matters and not its time."""
 ON_CLOCK = ("use_sim_time:=true", "losses_in_simulated_time:=true")
 
 

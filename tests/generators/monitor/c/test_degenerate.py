@@ -38,7 +38,7 @@ PROGRAMS = {
     + SPEED
     + 'entity e { r: v > 0.5; } if e.r then { log_state("fast"); };',
 }
-"""Rules, by what there is of them."""
+"""Rules by the only construct that they contain."""
 
 
 @needs_c

@@ -30,7 +30,7 @@ bool radio_attitude(double q[4]) { (void)q; return true; }
 void brake(void);
 void brake(void) { exit((now >= 3000000000) ? 0 : 2); }
 """
-"""A machine that drives too fast from the first second on; the brake is right from the third."""
+"""A machine that drives too fast from the first second on; braking is correct from the third."""
 
 
 @needs_c

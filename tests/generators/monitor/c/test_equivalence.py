@@ -13,9 +13,9 @@ from tests.support.c_library import Loaded, needs_c
 from tests.support.profiles import scaled
 
 PROGRAMS = scaled(90)
-"""Programs that are drawn per property, of each of which five traces are compared.
+"""Number of programs drawn per property; five traces are compared for each.
 
-The programs are the same in every run; others are drawn by ``make property``.
+The programs are the same in every run; ``make property`` draws others.
 """
 
 KEPT = sorted([*counterexamples.FOLDER.glob("*.json"), *c_pairs.FOLDER.glob("*.json")])

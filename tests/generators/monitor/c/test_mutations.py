@@ -64,16 +64,16 @@ SLIPS = {
     "a line is wrong": (r"(_BEHAVIOUR_\d+, \d+)U", r"\g<1>1U"),
     "an argument is wrong": (r"_NUMBER, false, 0, 2\.5", "_NUMBER, false, 0, 2.0"),
 }
-"""Slips by name: a pattern of the generated text, and what it is replaced by."""
+"""Mutations by name: a pattern of the generated text, and its replacement."""
 
 PROGRAMS = 40
-"""Programs that are drawn for each choice of inputs."""
+"""Number of programs drawn for each choice of inputs."""
 
 LIMIT_S = 60.0
-"""Time for a batch: what takes longer, and ends in a second without a slip, does not end."""
+"""Time for a batch; without a mutation it takes a second, so a longer run is an endless loop."""
 
 BATCH = 8
-"""Programs with a slip that are compiled at once."""
+"""Number of mutated programs compiled at once."""
 
 
 @functools.cache

@@ -32,7 +32,7 @@ geometry_msgs/Quaternion o
 float64 o_last_rate
 float64 new_o_total
 """
-"""Fields named as what is passed beside the elements of others, before and after these."""
+"""Fields with the names of generated parameters, declared before and after their arrays."""
 _LOCAL = re.compile(r"^ +(?:const )?(?:bool|double|int64_t|uint32_t|size_t) (\w+) =", re.MULTILINE)
 _FIELD = re.compile(r"[a-z](?:_?[a-z0-9])*")
 

@@ -16,7 +16,7 @@ from tools import prove
 needs_frama_c = pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
 
 PROVED = ("lasting", "judge_drive_system_max_speed_exceeded", "expire_speed", "settle_stop")
-"""Functions of the smallest example that take seconds; `make prove` proves all."""
+"""Functions of the smallest example that are proved within seconds; `make prove` proves all."""
 
 SLIPS = {
     "a wrong comparison": ("lasting", "(now - *since) >= duration", "(now - *since) > duration"),
@@ -113,7 +113,7 @@ SLIPS = {
     "an input that came at once": ("restart", "m->speed_came = false;", "m->speed_came = true;"),
     "a reset that does nothing": ("intelligent_one_reset", "  settle_stop(m);\n", ""),
 }
-"""Slips by name: the function that each is in, what is right, and what is wrong."""
+"""Mutations by name: the function, the right text, and the wrong text."""
 
 
 @pytest.fixture(scope="module")

@@ -36,7 +36,7 @@ COMPILERS = {
 }
 
 LIBM = {"fabs", "sqrt", "atan2", "asin", "fmod", "remainder"}
-"""What the functions of rules need of the mathematical library."""
+"""Functions of the mathematical library that rules may use."""
 
 
 @functools.cache

@@ -89,7 +89,7 @@ SLIPS = {
     "a loop does not end": ("m->speed_missing = true;", "(void)m;"),
     "what is missing is known": ("news = store_truth(&m->speed_known, false, news);", "(void)m;"),
 }
-"""Slips by name, and what the invariants say of them."""
+"""Mutations by name, and the violated invariants."""
 
 
 @pytest.mark.parametrize("slip", SLIPS)

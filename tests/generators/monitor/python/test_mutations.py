@@ -42,7 +42,7 @@ SLIPS = {
     "a rule's change has no time": (r"^( {12,})self\._\w+_since = t$", r"\g<1>pass"),
     "rates look at the wrong time": (r"t - self\._(\w+_last_t)", r"t + self._\1"),
 }
-"""Slips by name: a pattern of the generated text, and what it is replaced by."""
+"""Mutations by name: a pattern of the generated text, and its replacement."""
 
 
 @pytest.mark.parametrize("slip", SLIPS)

@@ -57,10 +57,10 @@ def test_parameters_match_the_python_node(
     env = {**ros_env, "PYTHONPATH": str(tmp_path / package)}
     names = [parameter.name for parameter in loaded.parameters]
     with start(package, node):
-        cpp = _told(ros_peer, node, names)
+        cpp = _descriptions(ros_peer, node, names)
     ros_peer.until(lambda: node not in ros_peer.node.get_node_names())
     with running([sys.executable, "-c", script], env):
-        python = _told(ros_peer, node, names)
+        python = _descriptions(ros_peer, node, names)
     for parameter in loaded.parameters:
         (descriptor, value), (other, other_value) = (n[parameter.name] for n in (cpp, python))
         assert descriptor == other
@@ -68,7 +68,7 @@ def test_parameters_match_the_python_node(
         assert parameter.default == () or value == other_value
 
 
-def _told(peer: Peer, node: str, names: list[str]) -> dict[str, Any]:
+def _descriptions(peer: Peer, node: str, names: list[str]) -> dict[str, Any]:
     """Return descriptor and value of each parameter from the services of a node."""
     from rcl_interfaces.srv import DescribeParameters, GetParameters
 

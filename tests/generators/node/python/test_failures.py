@@ -64,9 +64,9 @@ class Client:
         self.actions = ActionClient(peer.node, Fibonacci, "count")
         self._ask = peer.node.create_client(Trigger, "ask")
         self._poke = peer.node.create_publisher(Empty, "poke", 10)
-        peer.node.create_subscription(Empty, "echo", self._hear, 10)
+        peer.node.create_subscription(Empty, "echo", self._receive, 10)
 
-    def _hear(self, _: Any) -> None:
+    def _receive(self, _: Any) -> None:
         self.echoes += 1
 
     def poke(self) -> None:

@@ -105,7 +105,7 @@ def test_node_handles_messages_parameters_and_termination(
 
 PEER = "/test_peer"
 UNKNOWN = "a node that is not known yet"
-"""What a node is called whose topics have been discovered before its name."""
+"""Placeholder for the name of a node whose topics are discovered first."""
 
 
 def until_printed(process: Popen[str], text: str) -> str:
@@ -409,7 +409,7 @@ CONSTRAINTS: list[tuple[str, list[Any], str, list[Any]]] = [
     ("limits.elbow", [[1.0] * 3], "must have at most 2 elements", [[1.0, 2.0]]),
     ("joints", [["wrist"]], "read-only", []),
 ]
-"""Parameter, values that are refused, the reason, and values that are not."""
+"""Parameter, rejected values, the reason, and accepted values."""
 
 
 def test_each_constraint_is_enforced(start: Start, ros_peer: Peer) -> None:

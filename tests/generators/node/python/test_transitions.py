@@ -24,7 +24,7 @@ BEFORE = {
     "cleanup": ("configure",),
     "shutdown": ("configure", "activate"),
 }
-"""The transitions that lead to where one starts."""
+"""The transitions that lead to the start state of each transition."""
 
 
 @pytest.fixture(
@@ -69,9 +69,9 @@ class Client:
         self._get = node.create_client(GetState, "/leaver/get_state")
         self._ask = node.create_client(Trigger, "/ask")
         self._poke = node.create_publisher(Empty, "/poke", 10)
-        node.create_subscription(Empty, "/echo", self._hear, 10)
+        node.create_subscription(Empty, "/echo", self._receive, 10)
 
-    def _hear(self, _: Any) -> None:
+    def _receive(self, _: Any) -> None:
         self.echoes += 1
 
     def change(self, name: str) -> bool:
@@ -106,12 +106,12 @@ class Client:
         self.peer.until(self._poke.get_subscription_count)
         self._poke.publish(self._empty())
 
-    def hear(self) -> None:
+    def await_message(self) -> None:
         """Wait for a message from the timer of the node."""
         self.echoes = 0
         self.peer.until(lambda: self.echoes)
 
-    def hear_nothing(self) -> None:
+    def assert_silent(self) -> None:
         """Check that neither the timer nor a service publishes, for ten periods of the timer."""
         self.peer.call(self._ask, self._trigger.Request())  # messages in transit have arrived
         self.echoes = periods = 0
@@ -143,12 +143,12 @@ def test_transition_with_an_error_leaves_the_node_unconfigured(
         client.lead_to(place)
         assert not client.change(place)
         assert client.state() == "unconfigured"
-        client.hear_nothing()
+        client.assert_silent()
         (mended,) = set_parameter(client.peer, "leaver", place="")
         assert mended.successful
         assert client.change("configure")
         assert client.change("activate")
-        client.hear()
+        client.await_message()
         code, output = stop(process, signal.SIGINT)
     assert code == 0, output
     assert way == "ERROR" or leaver.reasons["error"] in output
@@ -190,7 +190,7 @@ def test_inactive_node_is_idle(place: str, state: str, start: Start, client: Cli
         client.lead_to(place)
         assert not client.change(place)
         assert client.state() == state
-        client.hear_nothing()
+        client.assert_silent()
         code, output = stop(process, signal.SIGINT)
     assert code == 0, output
 
@@ -201,7 +201,7 @@ def test_failed_deactivation_changes_nothing(start: Start, client: Client) -> No
         client.lead_to("deactivate")
         assert not client.change("deactivate")
         assert client.state() == "active"
-        client.hear()
+        client.await_message()
         code, output = stop(process, signal.SIGINT)
     assert code == 0, output
 
@@ -210,9 +210,9 @@ def test_shutdown_leaves_nothing_running(start: Start, client: Client) -> None:
     """A node that is shut down while active is idle."""
     with start("nowhere", "error") as process:
         client.lead_to("shutdown")
-        client.hear()
+        client.await_message()
         assert client.change("shutdown")
         assert client.state() == "finalized"
-        client.hear_nothing()
+        client.assert_silent()
         code, output = stop(process, signal.SIGINT)
     assert code == 0, output

@@ -71,7 +71,7 @@ def test_node_without_subscriptions_checks_nothing() -> None:
     PublisherCheck(Mock(subscriptions=[]), Mock(side_effect=AssertionError)).check()
 
 
-def _told(found: Mock, topic: str) -> list[str]:
+def _reports(found: Mock, topic: str) -> list[str]:
     """Return the report about a topic."""
     return [call.args[1] for call in found.call_args_list if call.args[0] == topic]
 
@@ -86,7 +86,9 @@ def test_second_heartbeat_is_reported_and_ends_the_later_node() -> None:
     detector._order.gives_way.return_value = False
     detector.check()
     assert detector._order.gives_way.call_args.args[0]
-    assert _told(found, "/safety/heartbeat")[-1].startswith("another node publishes this heartbeat")
+    assert _reports(found, "/safety/heartbeat")[-1].startswith(
+        "another node publishes this heartbeat"
+    )
     detector._order.gives_way.return_value = True
     with pytest.raises(Refusal, match="this one started last"):
         detector.check()
@@ -94,7 +96,7 @@ def test_second_heartbeat_is_reported_and_ends_the_later_node() -> None:
     node.count_publishers.return_value = 1
     detector.check()
     assert not detector._order.gives_way.call_args.args[0]
-    assert _told(found, "/safety/heartbeat")[-1] == ""
+    assert _reports(found, "/safety/heartbeat")[-1] == ""
 
 
 def test_other_publisher_of_a_state_is_named() -> None:
@@ -110,5 +112,5 @@ def test_other_publisher_of_a_state_is_named() -> None:
     for _ in range(3):
         detector.check()
     text = "published by /arm/driver, too: whoever obeys it cannot tell them apart"
-    assert _told(found, "/stop") == [text, text]
-    assert _told(found, "/slow") == [""]
+    assert _reports(found, "/stop") == [text, text]
+    assert _reports(found, "/slow") == [""]

@@ -7,7 +7,7 @@ import pytest
 from deros.generators.runtime.python.deros_runtime.start_order import PATIENCE, YOUNG, StartOrder
 
 LOOK = 100_000_000
-"""From one look at the graph to the next, in ns."""
+"""Interval between two checks of the graph, in ns."""
 
 SEC = 1_000_000_000
 

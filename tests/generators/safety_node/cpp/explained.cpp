@@ -1,4 +1,4 @@
-// The monitor in C and its explanation: takes speeds and modes in lines, and tells what it is worth.
+// The C monitor and its explanation: reads input values line by line, and prints its state.
 
 #include <cstdint>
 #include <iostream>

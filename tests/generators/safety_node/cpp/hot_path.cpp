@@ -1,4 +1,4 @@
-// A node without ROS: it is handed messages by another thread, and must not allocate any memory.
+// A node without ROS: it gets messages from another thread, and must not allocate any memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -85,7 +85,7 @@ public:
     active_[EVERY_THING_ACTION_STOP] = event.kind == runtime::EventKind::Trigger;
     every_thing_safety_cpp::show_stop(state_, active_);
     shown_ += state_.data ? 1 : 0;
-    return event.site % 2 == 0;  // the others as if they were robot code
+    return event.site % 2 == 0;  // the others act like user code
   }
 
   void run_code(const runtime::Event & /*event*/) override
@@ -123,7 +123,7 @@ public:
 private:
   void take_speed()
   {
-    // Of the time that is told the clock goes on by 60 ms a message, so that every 'for' passes.
+    // The simulated clock advances by 60 ms per message, so that every 'for' elapses.
     now_ += 60'000'000;
     speed_.data = taken_ % 8 < 4 ? 0.9 : 0.1;
     runner_.catch_up();

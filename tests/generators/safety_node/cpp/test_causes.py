@@ -20,7 +20,7 @@ from tests.support.strategies import ALL_KINDS
 pytestmark = [needs_c, needs_compiler]
 
 PROGRAMS = 60
-"""Programs that are drawn per property, of each of which five traces are compared."""
+"""Number of programs drawn per property; five traces are compared for each."""
 
 # The C monitor stores no text that its rules do not contain, and so reports none.
 KINDS = {

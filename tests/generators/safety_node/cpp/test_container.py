@@ -192,7 +192,7 @@ class Robot:
         self._float = Float64
         self._publishers: dict[str, Any] = {}
 
-    def tell_until(self, topic: str, value: float, condition: Callable[[], Any]) -> None:
+    def publish_until(self, topic: str, value: float, condition: Callable[[], Any]) -> None:
         """Publish a number repeatedly until a condition holds."""
         if topic not in self._publishers:
             self._publishers[topic] = self.peer.node.create_publisher(self._float, topic, 10)
@@ -253,7 +253,7 @@ def test_each_package_monitors_its_own_rules(
             part.wish_until(0.7, passed=0.7)
 
         # Both receive the speed, and each acts according to its rules.
-        two_parts.tell_until("/speed", 1.0, lambda: base.actions() and arm.actions())
+        two_parts.publish_until("/speed", 1.0, lambda: base.actions() and arm.actions())
         assert (base.actions(), arm.actions()) == ({"stop"}, {"slow"})
         base.wish_until(0.7, passed=0.0)
         arm.wish_until(0.7, passed=0.1)
@@ -262,10 +262,12 @@ def test_each_package_monitors_its_own_rules(
         assert (latched(env, base), latched(env, arm)) == (True, False)
 
         # Only one receives the load; the reset is for one of them, too.
-        two_parts.tell_until("/load", 11.0, lambda: "stop" in arm.actions())
+        two_parts.publish_until("/load", 11.0, lambda: "stop" in arm.actions())
         arm.wish_until(0.7, passed=0.0)
         assert arm.is_stopped
-        two_parts.tell_until("/speed", 0.0, lambda: any(e["kind"] == "reset" for e in arm.events))
+        two_parts.publish_until(
+            "/speed", 0.0, lambda: any(e["kind"] == "reset" for e in arm.events)
+        )
         assert base.reset().message == "stop is reset"
         base.wish_until(0.6, passed=0.6)
         arm.wish_until(0.6, passed=0.0)
@@ -287,7 +289,7 @@ def test_other_package_continues_after_an_unload(env: dict[str, str], two_parts:
         number = base.load_node(container)
         arm.load_node(container)
         base.wish_until(0.7, passed=0.7)
-        two_parts.tell_until("/speed", 1.0, lambda: base.actions() and arm.actions())
+        two_parts.publish_until("/speed", 1.0, lambda: base.actions() and arm.actions())
 
         with pytest.raises(LoadError, match="base_safety_node runs already in domain"):
             base.load_node(container)
@@ -299,17 +301,17 @@ def test_other_package_continues_after_an_unload(env: dict[str, str], two_parts:
         )
         arm.await_beats()  # by then, messages in transit have arrived
         base.forget()
-        two_parts.tell_until("/load", 11.0, lambda: arm.is_stopped)
+        two_parts.publish_until("/load", 11.0, lambda: arm.is_stopped)
         arm.await_beats()
         assert [base.beats, base.stops, base.events] == [[], [], []]
 
         base.load_node(container)
         two_parts.peer.until(lambda: base.stops)
         assert base.stops[0]
-        two_parts.tell_until("/speed", 0.0, lambda: base.beats)
+        two_parts.publish_until("/speed", 0.0, lambda: base.beats)
         assert base.reset().message == "stop is reset"
         base.wish_until(0.6, passed=0.6)
-        two_parts.tell_until("/speed", 1.0, lambda: base.is_stopped)
+        two_parts.publish_until("/speed", 1.0, lambda: base.is_stopped)
         output = two_parts.end(container)
         assert "FATAL" not in output, output
 
@@ -321,11 +323,11 @@ def test_other_package_continues_after_a_failure(env: dict[str, str], two_parts:
         base.load_gate(container)
         for part in (base, arm):
             part.load_node(container)
-        two_parts.tell_until("/speed", 0.0, lambda: base.beats and arm.beats)
+        two_parts.publish_until("/speed", 0.0, lambda: base.beats and arm.beats)
         base.wish_until(0.7, passed=0.7)
-        two_parts.tell_until("/speed", 60.0, lambda: "honk" in base.actions())
+        two_parts.publish_until("/speed", 60.0, lambda: "honk" in base.actions())
         base.wish_until(0.7, passed=0.0)
-        two_parts.tell_until("/load", 11.0, lambda: arm.is_stopped)
+        two_parts.publish_until("/load", 11.0, lambda: arm.is_stopped)
         arm.await_beats()
         base.forget()
         arm.await_beats()
@@ -351,20 +353,20 @@ def test_intra_process_messages_are_received(env: dict[str, str], two_parts: Rob
             part.load_node(container, *SHARED)
             part.load_gate(container, *SHARED)
         base.wish_until(0.7, passed=0.7)
-        two_parts.tell_until("/measured", 1.0, lambda: base.is_stopped)
+        two_parts.publish_until("/measured", 1.0, lambda: base.is_stopped)
         base.wish_until(0.7, passed=0.0)
         peer.until(lambda: "slow" in arm.actions())
         assert "stop" not in arm.actions()
 
         heard: list[float] = []
         peer.node.create_subscription(Float64, "/speed", lambda m: heard.append(m.data), 100)
-        two_parts.tell_until("/measured", 0.0, lambda: heard)
+        two_parts.publish_until("/measured", 0.0, lambda: heard)
         assert base.reset().message == "stop is reset"
-        two_parts.tell_until("/measured", 1.0, lambda: base.is_stopped)
+        two_parts.publish_until("/measured", 1.0, lambda: base.is_stopped)
         peer.until(lambda: 1.0 in heard)
 
         # Messages from outside are received as before.
-        two_parts.tell_until("/load", 11.0, lambda: arm.is_stopped)
+        two_parts.publish_until("/load", 11.0, lambda: arm.is_stopped)
         output = two_parts.end(container)
         assert "FATAL" not in output, output
 
@@ -395,7 +397,7 @@ def test_simulated_time_of_the_same_process_is_used(env: dict[str, str], two_par
         base.load_gate(container, *simulated)
         peer.until(ticks.get_subscription_count)
         peer.until(ticking(lambda: base.beats))
-        two_parts.tell_until("/measured", 1.0, ticking(lambda: base.is_stopped))
+        two_parts.publish_until("/measured", 1.0, ticking(lambda: base.is_stopped))
         base.commands.clear()
         peer.until(ticking(lambda: len(base.commands) > 10))  # zeros at the rate of simulated time
         output = two_parts.end(container)

@@ -27,7 +27,7 @@ RULES = Path(__file__).resolve().parent / "models/base/robot.deros"
 GATE = ("base_command_gate.cpp", "base_command_gate_logic.cpp", "runtime/gate_runner.cpp")
 NODE = ("base_safety_node.cpp", "runtime/safety_node_core.cpp", "runtime/ports.cpp")
 TIMES = 20
-"""How often a component is loaded and unloaded; what was wrong showed within three times."""
+"""Number of times that a component is loaded and unloaded; former errors showed within three."""
 
 
 @pytest.fixture(scope="module")
