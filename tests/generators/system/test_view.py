@@ -8,8 +8,9 @@ import pytest
 
 from deros import codes
 from deros.generators.api.protocol import GenerationError
-from deros.generators.system.literals import WIDTH, python_literal
+from deros.generators.system.literals import python_literal
 from deros.generators.system.view import SystemView, collapse_whitespace, snake_case, system_view
+from deros.generators.text.python import LINE_LENGTH
 from tests.support.systems import EVERYTHING, load, load_text
 
 NODE = """
@@ -155,8 +156,8 @@ def test_literals_keep_the_value_and_fit_the_line(value: object, column: int) ->
     text = python_literal(value, column, 12)  # type: ignore[arg-type]
     assert _as_lists(eval(text)) == _as_lists(value)
     first, *others = f"{text},".split("\n")
-    assert column + len(first) <= WIDTH
-    assert all(len(line) <= WIDTH for line in others)
+    assert column + len(first) <= LINE_LENGTH
+    assert all(len(line) <= LINE_LENGTH for line in others)
 
 
 @pytest.mark.parametrize("value", [float("inf"), float("-inf")])

@@ -1,45 +1,58 @@
-"""Python text in ament's style: single quotes, no line over 99 columns."""
+"""Values and comments as Python text in ament's style, for files that start systems."""
 
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Mapping
 
+from deros.generators.text.document import (
+    HARDLINE,
+    Document,
+    breakable,
+    concat,
+    join,
+    nest,
+    render,
+    render_lines,
+)
+from deros.generators.text.prose import paragraph
+from deros.generators.text.python import LINE_LENGTH, bracketed
 from deros.metamodels.common import Value
 
-WIDTH = 99
 Literal = Value | None | Mapping[str, Value] | Mapping[str, str]
 
 
 def python_literal(value: Literal, column: int = 0, indent: int = 0, after: int = 1) -> str:
-    """Return ``value`` as Python text that starts at ``column`` of a line indented by ``indent``.
+    """Return ``value`` as Python text.
 
-    Where a line would be longer than :data:`WIDTH`, with ``after`` characters to follow, the value
-    is broken: arrays (which become lists) into one element on a line, texts into pieces in
-    parentheses.
+    Where it is too long for a line, arrays (which become lists) and mappings have one element on
+    each line, and texts become several literals in brackets.
+
+    Args:
+        value: the value.
+        column: where it starts in its first line.
+        indent: the blanks in front of that line.
+        after: how many characters follow the value on its last line.
     """
-    flat = _flat(value)
-    if column + len(flat) + after <= WIDTH:
-        return flat
-    inner = indent + 4
-    margin = "\n" + " " * inner
-    end = "\n" + " " * indent
+    document = concat(_document(value), "," * after)
+    text = render(document, LINE_LENGTH, indent, column)
+    return text[: len(text) - after]
+
+
+def _document(value: Literal) -> Document:
     if isinstance(value, str):
-        room = WIDTH - inner - 2
-        pieces = "".join(margin + _flat(piece) for piece in _pieces(value, room))
-        return f"({pieces}{end})"
+        return breakable(_flat(value), lambda indent: _literals(value, indent + 4))
     if isinstance(value, tuple):
-        items = "".join(f"{margin}{python_literal(item, inner, inner)}," for item in value)
-        return f"[{items}{end}]"
+        return bracketed("", "[", [_document(item) for item in value], "]")
     if isinstance(value, Mapping):
-        items = ""
-        for key, item in value.items():
-            head = f"{python_literal(key, inner, inner)}: "
-            column = inner + len(head.rpartition("\n")[2])
-            items += f"{margin}{head}{python_literal(item, column, inner)},"
-        return f"{{{items}{end}}}"
-    return flat
+        pairs = ((_document(key), _document(item)) for key, item in value.items())
+        return bracketed("", "{", [concat(key, ": ", item) for key, item in pairs], "}")
+    return _flat(value)
+
+
+def _literals(text: str, indent: int) -> Document:
+    pieces = join(HARDLINE, map(_flat, _pieces(text, LINE_LENGTH - indent - 2)))
+    return concat("(", nest(4, HARDLINE, pieces), HARDLINE, ")")
 
 
 def _flat(value: Literal) -> str:
@@ -68,8 +81,6 @@ def _pieces(text: str, room: int) -> list[str]:
 
 
 def comment(text: str, indent: int = 0) -> str:
-    """Return a text as comment lines, each after ``indent`` blanks."""
-    margin = " " * indent + "# "
-    return textwrap.fill(
-        text, WIDTH, initial_indent=margin, subsequent_indent=margin, break_on_hyphens=False
-    )
+    """Return a text as comment lines, each behind ``indent`` blanks."""
+    longest = LINE_LENGTH - indent - len("# ")
+    return "\n".join(render_lines(paragraph(text, "# ", "# ", longest), LINE_LENGTH, indent))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from deros.generators.api.protocol import Context, File, Files, Options
-from deros.generators.system.literals import WIDTH, comment, python_literal
+from deros.generators.system.literals import comment, python_literal
 from deros.generators.system.script.assemble import runtime
 from deros.generators.system.script.standalone.node import Node
 from deros.generators.system.view import SystemView, system_view
-from deros.generators.text.python import mark_long_lines
+from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.metamodels.system import System
 
@@ -54,4 +54,4 @@ def table(view: SystemView) -> tuple[Node, ...]:
 
 def rule(title: str) -> str:
     """Return the comment line that opens a part of a file."""
-    return f"# {title} ".ljust(WIDTH, "-")
+    return f"# {title} ".ljust(LINE_LENGTH, "-")
