@@ -11,8 +11,16 @@ from deros.generators.decoder.python.field_selection import tree
 from deros.generators.decoder.python.module import Parts
 from deros.generators.decoder.python.position import START
 from deros.generators.decoder.python.writer import Writer
-from deros.generators.text.document import concat, if_broken, render_lines
-from deros.generators.text.python import LINE_LENGTH, filled, lay_out_call, mark_long_lines, wrapped
+from deros.generators.text.document import (
+    HARDLINE,
+    breakable,
+    concat,
+    if_broken,
+    join,
+    render_lines,
+)
+from deros.generators.text.prose import paragraph
+from deros.generators.text.python import LINE_LENGTH, filled, lay_out_call, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.fields import FieldPath, ResolvedField, format_path, resolve
@@ -147,16 +155,10 @@ def _signature(function: str, result: str) -> list[str]:
 def _documentation(topic: Topic, paths: Sequence[FieldPath]) -> list[str]:
     """Return the docstring: in one line if it fits."""
     fields = ", ".join(map(format_path, paths)) or "nothing"
-    line = f"Return {fields} of a {topic.type}."
-    if len(line) + 10 <= LINE_LENGTH:
-        return [f'"""{line}"""']
-    return [
-        '"""',
-        f"Return fields of a {topic.type}.",
-        "",
-        *wrapped(f"In order: {fields}.", indent=4),
-        '"""',
-    ]
+    lines = ['"""', f"Return fields of a {topic.type}.", "", f"In order: {fields}.", '"""']
+    several = join(HARDLINE, map(paragraph, lines))
+    one = f'"""Return {fields} of a {topic.type}."""'
+    return render_lines(breakable(one, lambda _: several), LINE_LENGTH, 4)
 
 
 def _with_return(lines: Sequence[str], variables: Sequence[str]) -> list[str]:

@@ -9,7 +9,7 @@ from itertools import groupby
 from deros.generators.decoder.python.field_selection import FieldSelection
 from deros.generators.decoder.python.position import ENCAPSULATION, Position, moved
 from deros.generators.decoder.python.writer import Writer
-from deros.generators.text.python import LINE_LENGTH
+from deros.generators.text.document import HARDLINE, breakable, join
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +121,8 @@ class Steps:
         """Set all values of an element that may not be there to NaN."""
         names = [name for name in part.names() if name not in self._defaulted]
         self._defaulted.update(names)
-        line = " = ".join([*names, self.nan()])
-        if len(line) + 20 <= LINE_LENGTH:
-            names = [" = ".join(names)] if names else []
-        for name in names:
-            self._writer.line(f"{name} = {self.nan()}")
+        if names:
+            nan = self.nan()
+            each_alone = join(HARDLINE, (f"{name} = {nan}" for name in names))
+            together = " = ".join([*names, nan])
+            self._writer.add(breakable(together, lambda _: each_alone))

@@ -42,13 +42,14 @@ class Writer:
         """Add a line, with a comment behind it, or above it where the line gets too long."""
         above = if_broken(concat("# ", comment, LINE)) if comment else ""
         behind = if_broken("", f"  # {comment}") if comment else ""
-        self._add(group(above, text, behind))
+        self.add(group(above, text, behind))
 
     def assign(self, names: Sequence[str], value: str) -> None:
         """Add the assignment of several values at once."""
-        self._add(filled(if_broken("("), names, concat(if_broken(")"), f" = {value}")))
+        self.add(filled(if_broken("("), names, concat(if_broken(")"), f" = {value}")))
 
-    def _add(self, document: Document) -> None:
+    def add(self, document: Document) -> None:
+        """Add the lines of a document."""
         self.lines += render_lines(document, LINE_LENGTH, 4 * self._depth)
 
     def group(self, letters: str, fields: list[str]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from deros.diagnostics import Span
+from deros.generators.text.c import lay_out_if
 from deros.generators.text.cpp import (
     LINE_LENGTH,
     Text,
@@ -46,12 +47,7 @@ def string_lines(text: str, indent: int) -> str:
 
 def if_head(operands: Sequence[str], indent: int) -> str:
     """Return the head of an ``if`` whose operands all have to hold."""
-    line = f"if ({' && '.join(operands)}) {{"
-    if indent + len(line) <= LINE_LENGTH:
-        return line
-    blanks = " " * indent
-    glue = f" &&\n{blanks}  "
-    return f"if ({glue.join(operands)})\n{blanks}{{"
+    return "\n".join(lay_out_if(" && ", operands, indent, LINE_LENGTH)).lstrip()
 
 
 def origin_comment(indent: int, title: str, span: Span) -> list[str]:

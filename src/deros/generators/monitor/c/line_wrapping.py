@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-import textwrap
 
 from deros.generators.text.c import LINE_LENGTH
+from deros.generators.text.document import HARDLINE, concat, fill, nest, render_lines
+from deros.generators.text.prose import paragraph
 
 _TRAILING_COMMENT = re.compile(r"( *)(\S.*[;{])  (/\*.*\*/)")
 _LITERAL = re.compile(r'"((?:\\.|[^"\\])*)"')
@@ -31,16 +32,8 @@ def wrap_long_lines(text: str) -> str:
 def _comment(line: str) -> list[str]:
     opening = re.match(r" *(?:/\*| \*) *", line)
     first = opening.group() if opening else ""
-    words = line[len(first) :]
-    further = first.replace("/*", " *")
-    return textwrap.wrap(
-        words,
-        LINE_LENGTH,
-        initial_indent=first,
-        subsequent_indent=further,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    document = paragraph(line[len(first) :], first, first.replace("/*", " *"))
+    return render_lines(document, LINE_LENGTH)
 
 
 def _code(line: str) -> list[str]:
@@ -59,27 +52,29 @@ def _code(line: str) -> list[str]:
 
 
 def _filled(before: str, items: list[str], after: str) -> list[str]:
-    """Return what stands before and after items, which are filled into lines between them."""
+    """Return the lines of ``before``, items that fill lines, and ``after``."""
     blank = " " * (len(before) - len(before.lstrip()))
-    indent = f"{blank}  "
-    lines = [before, ""]
-    closing = [f"{blank}{after}"] if before.endswith("{") else []
-    for number, item in enumerate(items):
-        *pieces, last = _pieces(item)
-        ending = ("" if closing else after) if number == len(items) - 1 else ","
-        for piece in (*pieces, f"{last}{ending}"):
-            if lines[-1] and len(lines[-1]) + 1 + len(piece) > LINE_LENGTH:
-                lines.append("")
-            lines[-1] = f"{lines[-1]} {piece}" if lines[-1] else f"{indent}{piece}"
-    return [*lines, *closing]
+    last = len(items) - 1
+    texts = [
+        f"{piece}{',' if is_last and number < last else ''}"
+        for number, item in enumerate(items)
+        for piece, is_last in _pieces(item)
+    ]
+    is_closed_below = before.endswith("{")
+    inner = nest(2, HARDLINE, fill(texts), "" if is_closed_below else after)
+    document = concat(
+        before, nest(blank, inner, concat(HARDLINE, after) if is_closed_below else "")
+    )
+    return render_lines(document, LINE_LENGTH)
 
 
-def _pieces(item: str) -> list[str]:
-    """Return an item, a text being cut in pieces, which C puts together."""
+def _pieces(item: str) -> list[tuple[str, bool]]:
+    """Return an item, a long text in pieces, which C joins; and whether each is the last one."""
     if len(item) < LINE_LENGTH - 10 or not item.startswith('"'):
-        return [item]
-    contents = [each[1] for each in _LITERAL.finditer(item)]
-    return [f'"{piece}"' for each in contents for piece in _CHARACTERS.findall(each)]
+        return [(item, True)]
+    contents = [literal[1] for literal in _LITERAL.finditer(item)]
+    *pieces, last = [f'"{piece}"' for text in contents for piece in _CHARACTERS.findall(text)]
+    return [*((piece, False) for piece in pieces), (last, True)]
 
 
 def _items(line: str, start: int) -> tuple[int, list[str]]:
