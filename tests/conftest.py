@@ -1,4 +1,4 @@
-"""What all tests share: the repository's root on the path, so that they find ``tests.support``."""
+"""Configuration of all tests; it adds the repository's root to the path for ``tests.support``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parent.parent
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 
-# What a shell runs in the background is started deaf to SIGINT, and so would be the tests' nodes.
+# A shell starts background jobs with SIGINT ignored; the nodes of the tests would inherit this.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 

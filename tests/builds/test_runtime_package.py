@@ -44,16 +44,17 @@ def _generate(rules: Path, source: Path) -> None:
 
 
 def _program(workspace: Path, name: str) -> list[str]:
-    """Return the command that runs an installed program as a user does."""
+    """Return the command that runs an installed program, as a user would."""
     program = workspace / "install/robot_safety/lib/robot_safety" / name
     return ["sh", "-c", f". '{workspace}/install/setup.sh'; exec '{program}'"]
 
 
 @contextmanager
 def _another_version(folder: Path) -> Iterator[None]:
-    """Have the runtime in a folder be of another version for a while.
+    """Give the runtime in a folder another version for a while.
 
-    Times are restored, too: setuptools installs only what is newer than what is installed.
+    Modification times are restored too: setuptools installs only files newer than the installed
+    ones.
     """
     (module,) = folder.glob("**/deros_runtime/__init__.py")
     ours, other = f"__version__ = '{__version__}'", f"__version__ = '{OTHER}'"
@@ -67,10 +68,10 @@ def _another_version(folder: Path) -> Iterator[None]:
 
 
 @pytest.mark.ros
-def test_a_safety_node_runs_on_the_runtime_package(
+def test_safety_node_runs_with_the_runtime_package(
     workspace: Path, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:
-    """Its heartbeat arrives, from a program that carries no copy of the runtime."""
+    """Its heartbeat arrives, from a package without a copy of the runtime."""
     from std_msgs.msg import UInt64
 
     beats: list[int] = []
@@ -82,10 +83,8 @@ def test_a_safety_node_runs_on_the_runtime_package(
 
 
 @pytest.mark.ros
-def test_a_node_refuses_to_start_with_another_version(
-    workspace: Path, ros_env: dict[str, str]
-) -> None:
-    """It names both versions and ends with exit code 1, before it is a node at all."""
+def test_node_does_not_start_with_another_version(workspace: Path, ros_env: dict[str, str]) -> None:
+    """It names both versions and exits with 1 before it creates a ROS node."""
     for program in ("robot_safety_node", "cmd_vel_gate"):
         with _another_version(workspace / "install/deros_runtime"):
             ended = subprocess.run(
@@ -101,8 +100,8 @@ def test_a_node_refuses_to_start_with_another_version(
         assert "watching" not in ended.stdout + ended.stderr
 
 
-def test_a_build_without_the_runtime_is_refused(tmp_path: Path) -> None:
-    """The package is named that is missing."""
+def test_build_without_the_runtime_fails(tmp_path: Path) -> None:
+    """The error names the missing package."""
     source = tmp_path / "src"
     _generate(models(tmp_path / "models"), source)
     (source / "deros_runtime/COLCON_IGNORE").touch()
@@ -111,8 +110,8 @@ def test_a_build_without_the_runtime_is_refused(tmp_path: Path) -> None:
     assert "cannot build robot_safety: No module named 'deros_runtime'" in done.stdout
 
 
-def test_a_package_generated_during_the_build_checks_the_version(tmp_path: Path) -> None:
-    """The option is kept in the setup.py that the package starts with."""
+def test_package_generated_during_the_build_checks_the_version(tmp_path: Path) -> None:
+    """The scaffolded setup.py contains the option."""
     source = tmp_path / "src"
     rules = models(source / "safety/models")
     assert deros("runtime", source).code == 0
@@ -130,8 +129,8 @@ def test_a_package_generated_during_the_build_checks_the_version(tmp_path: Path)
     assert not list((tmp_path / "install/robot_safety").rglob("process.py"))
 
 
-def test_a_build_refuses_another_version(workspace: Path) -> None:
-    """The output of colcon has both versions, and what to do.
+def test_build_with_another_version_fails(workspace: Path) -> None:
+    """The output of colcon has both versions, and the remedy.
 
     It runs last, because it leaves another version installed.
     """

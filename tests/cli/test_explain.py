@@ -35,7 +35,7 @@ def test_code_is_found_by_number_or_slug(word: str) -> None:
 
 
 def test_every_code_has_one_slug() -> None:
-    """A slug is the name of the constant in words; at least two words, so that it stands out."""
+    """A slug is the name of the constant in words, of which there are at least two."""
     assert set(SLUGS.values()) == set(ALL_CODES.values())
     assert len(SLUGS) == len(ALL_CODES)
     constants = {name: each for name, each in vars(codes).items() if isinstance(each, Code)}

@@ -1,4 +1,4 @@
-"""``deros runtime``, and the option ``--runtime`` by every way that options take."""
+"""``deros runtime``, and all ways to set the option ``--runtime``."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from tests.support.cli import deros
 
 @pytest.fixture
 def rules(tmp_path: Path) -> Path:
-    """Give rules that check clean."""
+    """Create rules without findings."""
     assert deros("new", "rules", "robot", "-o", tmp_path / "models").code == 0
     return tmp_path / "models/robot.deros"
 
 
-def test_the_runtime_package_is_written_and_refreshed(tmp_path: Path) -> None:
-    """A second run changes nothing; a file that was edited by hand is kept."""
+def test_runtime_package_is_written_and_refreshed(tmp_path: Path) -> None:
+    """A second run changes nothing; an edited file is kept."""
     outcome = deros("runtime", tmp_path)
     assert outcome.code == 0, outcome.err
     module = tmp_path / "deros_runtime/deros_runtime/process.py"
@@ -34,8 +34,8 @@ def test_the_runtime_package_is_written_and_refreshed(tmp_path: Path) -> None:
     assert module.read_text() == text
 
 
-def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
-    """The message says what is in the way."""
+def test_folder_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
+    """The message gives the reason."""
     (tmp_path / "deros_runtime").write_text("not a folder")
     outcome = deros("runtime", tmp_path)
     assert outcome.code == 2
@@ -46,8 +46,8 @@ def _depends(folder: Path) -> bool:
     return "deros_runtime" in (folder / "robot_safety/package.xml").read_text()
 
 
-def test_the_command_line_and_the_project_choose_the_runtime(rules: Path, tmp_path: Path) -> None:
-    """What the command line says wins."""
+def test_runtime_is_chosen_by_command_line_and_project(rules: Path, tmp_path: Path) -> None:
+    """The command line has precedence."""
     command = ("generate", rules, "--target", "python")
     assert deros(*command, "--runtime", "package", "-o", tmp_path / "a").code == 0
     assert _depends(tmp_path / "a")
@@ -58,8 +58,8 @@ def test_the_command_line_and_the_project_choose_the_runtime(rules: Path, tmp_pa
     assert not _depends(tmp_path / "c")
 
 
-def test_textx_generate_takes_the_option(rules: Path, tmp_path: Path) -> None:
-    """As it takes every option of a generator."""
+def test_textx_generate_has_the_option(rules: Path, tmp_path: Path) -> None:
+    """It is passed on like every option of a generator."""
     textx = str(Path(sys.executable).with_name("textx"))
     command = [textx, "generate", str(rules), "--target", "python", "--runtime", "package"]
     done = subprocess.run([*command, "-o", str(tmp_path / "out")], capture_output=True, check=False)
@@ -67,8 +67,8 @@ def test_textx_generate_takes_the_option(rules: Path, tmp_path: Path) -> None:
     assert _depends(tmp_path / "out")
 
 
-def test_an_unknown_runtime_is_a_mistake_on_the_command_line(rules: Path, tmp_path: Path) -> None:
-    """The message names the two that there are; nothing is written."""
+def test_unknown_runtime_is_a_usage_error(rules: Path, tmp_path: Path) -> None:
+    """The message names both valid values; nothing is written."""
     command = ("generate", rules, "--target", "python", "--runtime", "link")
     outcome = deros(*command, "-o", tmp_path / "out")
     assert outcome.code == 2

@@ -50,8 +50,8 @@ def test_language_follows_from_the_suffix() -> None:
     assert language_of("x.txt") is None
 
 
-def test_entry_points_of_textx_are_the_declared_languages() -> None:
-    """The distribution offers textX each language under its name, and no other."""
+def test_textx_entry_points_match_the_languages() -> None:
+    """The distribution registers each language under its name, and no other."""
     points = Distribution.from_name("deros").entry_points.select(group="textx_languages")
     described = {point.name: point.load() for point in points}
     assert sorted(described) == sorted(each.name for each in LANGUAGES)

@@ -1,4 +1,4 @@
-"""What gates of all languages do to the fields of a command."""
+"""Operations on the fields of a command, common to gates of all languages."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ STORE = InterfaceStore()
 
 
 def names(kind: str) -> dict[str, tuple[list[str], list[str]]]:
-    """Return, of each type in a command, the fields to look at and those that zero changes."""
+    """Return for each type in a command the fields to check and the fields that zero changes."""
     return {
         each.type.name: ([name for name, _ in each.finite], [name for name, _ in each.zeros])
         for each in command_types(STORE, message_type(kind))
     }
 
 
-def test_the_types_in_a_command_come_innermost_first() -> None:
-    """Of a header zero changes the stamp; the header itself is no command."""
+def test_types_in_a_command_are_listed_innermost_first() -> None:
+    """Zero changes only the stamp of a header."""
     assert list(names("geometry_msgs.TwistStamped").items()) == [
         ("Vector3", (["x", "y", "z"], ["x", "y", "z"])),
         ("Twist", (["linear", "angular"], ["linear", "angular"])),
@@ -29,14 +29,14 @@ def test_the_types_in_a_command_come_innermost_first() -> None:
     ]
 
 
-def test_texts_and_layouts_stay() -> None:
-    """Nobody looks at them, and zero changes nothing of them."""
+def test_strings_and_layouts_are_unchanged() -> None:
+    """They are neither checked nor changed by zero."""
     assert names("std_msgs.String") == {}
     assert names("std_msgs.Int32MultiArray") == {"Int32MultiArray": ([], ["data"])}
 
 
-def test_a_message_around_a_stamped_one_is_stamped() -> None:
-    """Whoever makes zeros of it has to know the time."""
+def test_message_that_contains_a_stamped_one_is_stamped() -> None:
+    """Creating a zero of it requires the time."""
     types = command_types(STORE, message_type("nav_msgs.Path"))
     assert {each.type.name: each.stamped for each in types} == {
         "Point": False,
@@ -47,7 +47,7 @@ def test_a_message_around_a_stamped_one_is_stamped() -> None:
     }
 
 
-def test_zero_says_no_rotation() -> None:
+def test_zero_of_a_quaternion_is_the_identity() -> None:
     """Only the w of a quaternion becomes 1."""
     types = {e.type.name: e for e in command_types(STORE, message_type("geometry_msgs.Pose"))}
     assert [name for name, _ in types["Quaternion"].zeros if types["Quaternion"].is_one(name)] == [
@@ -56,8 +56,8 @@ def test_zero_says_no_rotation() -> None:
     assert not types["Point"].is_one("x")
 
 
-def test_each_limited_field_counts_once() -> None:
-    """Several lines may limit the same one."""
+def test_each_limited_field_is_listed_once() -> None:
+    """Several lines may limit the same field."""
     kind = message_type("geometry_msgs.Twist")
 
     def line(*paths: tuple[str, ...]) -> GateLine:

@@ -1,4 +1,4 @@
-"""The engine, which runs steps, does what the lines say when they are read one by one."""
+"""The engine, which runs steps, agrees with an interpretation of the lines one by one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ START_NS = 100
 
 @settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(st.data())
-def test_steps_mean_what_the_lines_say(data: st.DataObject) -> None:
+def test_steps_agree_with_the_lines(data: st.DataObject) -> None:
     """Both publish the same messages at the same nanosecond, and report the same reasons."""
     gate = data.draw(gates())
     engine = GateEngine(gate, ACTIONS, STORE, START_NS)

@@ -1,4 +1,4 @@
-"""The steps that the lines of a gate mean."""
+"""Lowering of the lines of a gate to steps."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def loss(source: form.Source, ns: int, *limits: Limit) -> GateLine:
 
 
 def choices(program: form.GateProgram) -> dict[str, list[tuple[form.Condition, Limit | None]]]:
-    """Return the limits that each field may have, with their conditions."""
+    """Return the possible limits of each field, with their conditions."""
     steps = (step for step in program.settle if isinstance(step, form.ChooseLimits))
     return {
         ".".join(map(str, field.path)): [(each.condition, each.limit) for each in field.choices]
@@ -39,16 +39,16 @@ def choices(program: form.GateProgram) -> dict[str, list[tuple[form.Condition, L
     }
 
 
-def test_actions_are_ordered_by_the_topics_of_their_states() -> None:
-    """Topics and actions are listed once, as first named; actions that no line names are not."""
+def test_actions_are_grouped_by_state_topic() -> None:
+    """Topics and actions are listed once, in the order of the lines; unused actions are not."""
     program = lowered(*(line(index) for index in (3, 0, 2, 3)))
     states = [(state.topic, state.actions) for state in program.states]
     assert states == [("/mode", (3, 2)), ("/stop", (0,))]
     assert program.actions == (3, 2, 0)
 
 
-def test_zero_lines_decide_only_before_a_limit() -> None:
-    """A zero line after the last limit of a field changes nothing for it."""
+def test_zero_line_has_an_effect_only_before_a_limit() -> None:
+    """A zero line after the last limit of a field does not change that field."""
     program = lowered(
         line(0), line(1, SLOW, STRAIGHT), line(2), line(3, SLOW), loss("heartbeat", 5)
     )
@@ -64,8 +64,8 @@ def test_zero_lines_decide_only_before_a_limit() -> None:
     }
 
 
-def test_held_zeros_have_no_limits() -> None:
-    """A latch or a wait holds every number at zero, so its lines choose no limits."""
+def test_latched_and_waiting_zeros_have_no_limits() -> None:
+    """A latch or a wait makes every field zero, so their lines select no limits."""
     latching = lowered(line(0, until_reset=True), line(1, SLOW))
     assert choices(latching) == {"linear.x": [(form.IsAnyLatched(), None), (form.Applies(1), SLOW)]}
     waiting = lowered(line(0), line(1, SLOW), resume_on_zero=True)
@@ -73,7 +73,7 @@ def test_held_zeros_have_no_limits() -> None:
 
 
 def test_limits_of_actions_do_not_apply_during_a_loss() -> None:
-    """Only the losses that the gate has lines about count."""
+    """Only losses with a line in the gate count."""
     program = lowered(line(0, SLOW), line(1), loss("input", 7))
     found = {
         step.line: step.condition for step in program.settle if isinstance(step, form.FindLine)
@@ -85,8 +85,8 @@ def test_limits_of_actions_do_not_apply_during_a_loss() -> None:
     }
 
 
-def test_events_that_change_nothing_have_no_steps() -> None:
-    """A gate with a loss of the input alone does not depend on the safety node."""
+def test_events_without_effect_have_no_steps() -> None:
+    """A gate with only an input line does not depend on the safety node."""
     program = lowered(loss("input", 7))
     assert program.on_refused == (form.Forget("input"), form.Settle())
     assert not program.states
@@ -95,7 +95,7 @@ def test_events_that_change_nothing_have_no_steps() -> None:
 
 
 def test_zeros_keep_limited_fields_unless_the_input_is_lost() -> None:
-    """Where a limit precedes a zero line, the zeros have gaps; a wait leaves none."""
+    """A limit before a zero line exempts its fields from the zeros, except while the gate waits."""
     lines = (line(2, SLOW), line(0), loss("input", 7))
     publication = lowered(*lines).publication
     assert publication == form.Publish(form.IsZero(), True, True, form.IsLost(("input",)))
@@ -105,7 +105,7 @@ def test_zeros_keep_limited_fields_unless_the_input_is_lost() -> None:
     assert lowered(line(0)).publication == form.Publish(form.IsZero(), False)
 
 
-def test_a_reset_is_refused_by_zero_lines_and_losses() -> None:
-    """Limits of actions do not stand against it."""
+def test_reset_is_refused_by_zero_lines_and_losses() -> None:
+    """Limits of actions do not refuse it."""
     program = lowered(line(0, until_reset=True), line(1, SLOW), loss("heartbeat", 5, SLOW))
     assert program.on_reset == (form.Reset((0, 2), (0,)),)

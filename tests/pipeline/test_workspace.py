@@ -1,4 +1,4 @@
-"""One run loads, checks and builds its models once, whichever command it is."""
+"""Each command loads, checks and builds its models once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.support.cli import deros
 
 @pytest.fixture
 def built(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The names of the rules that have been built so far, one entry for each time."""
+    """Return the names of the rules built so far, one entry per build."""
     names: list[str] = []
     genuine = builder.build
 
@@ -30,16 +30,16 @@ def built(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 @pytest.fixture
 def models(tmp_path: Path) -> Path:
-    """A folder with rules, their system and its node."""
+    """Create a folder with rules, their system and its node."""
     assert deros("new", "rules", "courier", "-o", tmp_path / "models").code == 0
     return tmp_path / "models"
 
 
 @pytest.mark.parametrize("target", ["python", "cpp", "c"])
-def test_generating_builds_rules_once(
+def test_generate_builds_rules_once(
     built: list[str], models: Path, tmp_path: Path, target: str
 ) -> None:
-    """The generator gets the result that the checks have built."""
+    """The generator gets the result of the checks."""
     outcome = deros(
         "generate", models / "courier.deros", "--target", target, "-o", tmp_path / "out"
     )
@@ -47,17 +47,17 @@ def test_generating_builds_rules_once(
     assert built == ["courier"]
 
 
-def test_checking_builds_rules_once(built: list[str], models: Path) -> None:
-    """Rules that are named, and that a system of the same folder names too, are built once."""
+def test_check_builds_rules_once(built: list[str], models: Path) -> None:
+    """This includes rules that are given and also named by a system in the folder."""
     assert deros("check", models).code == 0
     assert built == ["courier"]
 
 
 @pytest.mark.parametrize("monitor", ["reference", "python"])
-def test_simulating_builds_rules_once(
+def test_simulate_builds_rules_once(
     built: list[str], models: Path, tmp_path: Path, monitor: str
 ) -> None:
-    """The program of the simulation is the only one that is built."""
+    """The program of the simulation is the only one built."""
     trace = tmp_path / "trace.jsonl"
     trace.write_text('{"t": "1", "topic": "/resume", "data": {"data": true}}\n')
     outcome = deros("simulate", models / "courier.deros", "--trace", trace, "--monitor", monitor)
@@ -66,7 +66,7 @@ def test_simulating_builds_rules_once(
 
 
 def test_workspace_shares_its_builds_with_generators(models: Path) -> None:
-    """The context of generators returns the very result of the checks."""
+    """The context of generators returns the result of the checks."""
     workspace = load([str(models / "courier.deros")])
     assert workspace.check().findings == []
     model = workspace.files[0].model

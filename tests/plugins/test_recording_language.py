@@ -25,14 +25,14 @@ def declared(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def _deros(*arguments: object) -> subprocess.CompletedProcess[str]:
-    """Run ``deros`` with the fourth language in a process of its own."""
+    """Run ``deros`` with the fourth language in a separate process."""
     command = [sys.executable, "-m", "tests.plugins.recording_language", *map(str, arguments)]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.usefixtures("declared")
 def test_repository_loads_the_language() -> None:
-    """The loader parses a text with the grammar and hands it to the converter."""
+    """The loader parses a text with the grammar and calls the converter."""
     model = Repository().load_text("a.recording", "recording a topics /odom /scan").model
     assert isinstance(model, Recording)
     assert [topic for topic, _ in model.topics] == ["/odom", "/scan"]
@@ -47,8 +47,8 @@ def test_syntax_errors_have_a_position() -> None:
 
 
 @pytest.mark.usefixtures("declared")
-def test_general_habits_of_other_languages_are_explained() -> None:
-    """Habits that belong to no language apply to a new one, too."""
+def test_common_mistakes_are_explained() -> None:
+    """Explanations that belong to no language apply to a new one as well."""
     text = "# all of it\nrecording a topics /odom"
     (finding,) = Repository().load_text("a.recording", text).diagnostics
     assert finding.message == "'#' does not begin a comment here"
@@ -64,8 +64,8 @@ def test_pipeline_runs_the_checks_of_the_language(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("declared")
-def test_textx_is_given_the_language() -> None:
-    """The object for the entry point describes the language to textX, metamodel included."""
+def test_textx_knows_the_language() -> None:
+    """The object for the entry point describes the language to textX, including the metamodel."""
     description = textx_plugin.recording
     assert (description.name, description.pattern) == ("recording", "*.recording")
     assert description.metamodel().model_from_str("recording a topics /odom").name == "a"
@@ -82,8 +82,8 @@ def test_commands_know_the_language(tmp_path: Path) -> None:
     assert "recordings (*.recording)" in " ".join(_deros("--help").stdout.split())
 
 
-def test_a_finding_of_the_language_fails_the_command(tmp_path: Path) -> None:
-    """``deros check`` exits with 1 and names the position."""
+def test_finding_of_the_language_fails_the_command(tmp_path: Path) -> None:
+    """``deros check`` exits with 1 and gives the position."""
     file = tmp_path / "a.recording"
     file.write_text("recording a topics /odom /odom\n")
     checked = _deros("check", file)
@@ -91,7 +91,7 @@ def test_a_finding_of_the_language_fails_the_command(tmp_path: Path) -> None:
     assert f"{file}:1:26: error[DRS218 duplicate-topic]" in checked.stdout, checked.stdout
 
 
-def test_an_undeclared_language_is_refused(tmp_path: Path) -> None:
+def test_undeclared_language_is_rejected(tmp_path: Path) -> None:
     """Without the declaration, the same file is not a model."""
     file = tmp_path / "a.recording"
     file.write_text("recording a topics /odom\n")

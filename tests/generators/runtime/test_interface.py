@@ -39,8 +39,8 @@ def imported(text: str) -> set[str]:
     return {node.module for node in statements if node.module and not node.level}
 
 
-def test_the_versions_of_the_runtime_package_are_that_of_deros() -> None:
-    """Manifest, setup.py and module say the same."""
+def test_runtime_package_has_the_version_of_deros() -> None:
+    """Manifest, setup.py and module agree."""
     files = runtime_package(PYTHON_RUNTIME)
     for name, pattern in (
         ("package.xml", "<version>(.*)</version>"),
@@ -50,8 +50,8 @@ def test_the_versions_of_the_runtime_package_are_that_of_deros() -> None:
         assert re.findall(pattern, files[f"{PYTHON_RUNTIME}/{name}"].text) == [__version__]
 
 
-def test_the_runtime_package_holds_nothing_of_this_repository() -> None:
-    """Settings of linters and compiled modules stay out; the marker of types is there."""
+def test_runtime_package_contains_only_its_own_files() -> None:
+    """Linter settings and compiled modules are omitted; the py.typed marker is included."""
     files = runtime_package(PYTHON_RUNTIME)
     assert f"{PYTHON_RUNTIME}/deros_runtime/py.typed" in files
     assert not [path for path in files if path.endswith((".toml", ".pyc"))]
@@ -59,8 +59,8 @@ def test_the_runtime_package_holds_nothing_of_this_repository() -> None:
 
 
 @pytest.mark.parametrize("rules", [EVERY_THING, GATES], ids=["every_thing", "gates"])
-def test_a_package_without_a_copy_imports_the_runtime_package(rules: Path) -> None:
-    """Both variants have the same files otherwise, and use the same modules of the runtime."""
+def test_package_without_a_copy_imports_the_runtime_package(rules: Path) -> None:
+    """Both variants otherwise have the same files, and use the same modules of the runtime."""
     copied, bare = generated(rules), generated(rules, runtime="package")
     package = next(iter(copied)).split("/")[0]
     runtime = {
@@ -82,27 +82,27 @@ def test_a_package_without_a_copy_imports_the_runtime_package(rules: Path) -> No
         assert moved == theirs or path.endswith("__init__.py")
 
 
-def test_the_manifest_asks_for_the_very_version() -> None:
-    """A package that depends on the runtime says so; one with a copy does not."""
+def test_manifest_requires_the_exact_version() -> None:
+    """A package with a copy has no such dependency."""
     manifest = generated(EVERY_THING, runtime="package")["every_thing_safety/package.xml"].text
     assert f'<depend version_eq="{__version__}">deros_runtime</depend>' in manifest
     assert PYTHON_RUNTIME not in generated(EVERY_THING)["every_thing_safety/package.xml"].text
 
 
-def test_copying_is_the_default() -> None:
-    """To say so changes nothing."""
+def test_copy_is_the_default() -> None:
+    """Stating it changes nothing."""
     assert runtime_source({}) is RuntimeSource.COPY
     assert generated(EVERY_THING, runtime="copy") == generated(EVERY_THING)
 
 
-def test_another_source_is_refused() -> None:
-    """The message names the two that there are."""
+def test_unknown_source_is_rejected() -> None:
+    """The message names both valid values."""
     with pytest.raises(ValueError, match="'link' is neither 'copy' nor 'package'"):
         runtime_source({"runtime": "link"})
 
 
-def test_a_package_with_the_name_of_the_runtime_is_refused() -> None:
-    """It would hide what it depends on; with a copy it may be called so."""
+def test_package_with_the_name_of_the_runtime_is_rejected() -> None:
+    """It would hide its own dependency; with a copy the name is valid."""
     with pytest.raises(ValueError, match="has the name of the runtime"):
         python_runtime(PYTHON_RUNTIME, {"runtime": "package"})
     assert python_runtime(PYTHON_RUNTIME, {}).version == ""

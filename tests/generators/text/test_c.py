@@ -1,4 +1,4 @@
-"""Pieces of C text: however they are laid out, they fit and are the same C."""
+"""Elements of C text: on one line or several, they fit and have the same tokens."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def _fit(lines: list[str], indent: int) -> bool:
 
 
 @given(_expressions, _indents)
-def test_broken_expression_has_same_tokens(expression: Expression, indent: int) -> None:
-    """The lines of a statement fit and differ from one line in white space only."""
+def test_broken_expression_has_the_same_tokens(expression: Expression, indent: int) -> None:
+    """The lines of a statement fit and differ from one line only in white space."""
     lines = lay_out(indent, "value = ", expression)
     assert _fit(lines, indent)
     assert _tokens(lines) == _tokens([f"value = {flat(expression)};"])
@@ -49,8 +49,8 @@ def test_broken_expression_has_same_tokens(expression: Expression, indent: int) 
 
 
 @given(st.lists(_words, min_size=1, max_size=8), _indents)
-def test_broken_list_and_condition_have_same_tokens(words: list[str], indent: int) -> None:
-    """Arguments fill their lines; the brace of a broken condition is on a line of its own."""
+def test_broken_list_and_condition_have_the_same_tokens(words: list[str], indent: int) -> None:
+    """Arguments fill their lines; the brace of a broken condition is on its own line."""
     arguments = lay_out_list(indent, "function(", words, ");")
     assert _fit(arguments, indent)
     assert _tokens(arguments) == f"function({','.join(words)});"
@@ -61,8 +61,8 @@ def test_broken_list_and_condition_have_same_tokens(words: list[str], indent: in
 
 
 @given(st.text("ab */?\\\n", max_size=300), _indents)
-def test_comment_holds_any_text(text: str, indent: int) -> None:
-    """No text ends a comment early or makes a line of it too long."""
+def test_comment_may_contain_any_text(text: str, indent: int) -> None:
+    """No text ends a comment early or makes a line too long."""
     lines = comment(indent, "Rule", Span(SourceFile("r.deros", text), 0, len(text)))
     assert _fit(lines, indent)
     whole = "\n".join(lines).strip()

@@ -18,27 +18,27 @@ from tests.support.safety_cpp import RUNTIME
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Path:
-    """Copy the package without its Python files into a folder of packages."""
+    """Copy the package without its Python files into a workspace."""
     shutil.copytree(RUNTIME, tmp_path / PACKAGE, ignore=shutil.ignore_patterns("*.py", "__py*"))
     return tmp_path
 
 
 def test_package_has_the_version_of_deros() -> None:
-    """Packages that deros generates for another version of the runtime would not build."""
+    """Generated packages require this version of the runtime."""
     manifest = ET.parse(RUNTIME / "package.xml").getroot()
     assert manifest.findtext("name") == PACKAGE
     assert manifest.findtext("version") == __version__
 
 
-def test_build_script_names_every_source() -> None:
-    """No source is forgotten, and none is named that does not exist."""
+def test_build_script_lists_every_source() -> None:
+    """No source is missing, and every listed source exists."""
     script = (RUNTIME / "CMakeLists.txt").read_text(encoding="utf-8")
     named = re.findall(r"^  src/(\w+\.cpp)$", script, re.MULTILINE)
     assert named == sorted(path.name for path in (RUNTIME / "src").iterdir())
 
 
-def test_build_script_and_manifest_name_the_same_dependencies() -> None:
-    """The manifest is what rosdep and colcon read, the script what CMake reads."""
+def test_build_script_and_manifest_have_the_same_dependencies() -> None:
+    """The manifest is read by rosdep and colcon, the script by CMake."""
     script = (RUNTIME / "CMakeLists.txt").read_text(encoding="utf-8")
     manifest = ET.parse(RUNTIME / "package.xml").getroot()
     depends = [each.text for each in manifest.findall("depend")]
@@ -49,8 +49,8 @@ def test_build_script_and_manifest_name_the_same_dependencies() -> None:
     assert exported[1].split() == depends
 
 
-def test_sources_pass_the_linters_of_ament(workspace: Path) -> None:
-    """Copies in generated packages are held to the same rules."""
+def test_sources_pass_the_ament_linters(workspace: Path) -> None:
+    """Copies in generated packages must pass the same linters."""
     assert_cpp_lint_clean(workspace / PACKAGE)
 
 

@@ -11,13 +11,13 @@ from deros.generators.runtime.python.deros_runtime import (
 )
 
 
-def test_the_same_version_is_accepted() -> None:
-    """Nothing happens."""
+def test_same_version_is_accepted() -> None:
+    """The check does not raise."""
     require(__version__, "robot_safety")
 
 
 @pytest.mark.parametrize("version", ["0.0.9", f"{__version__}.1", ""])
-def test_any_other_version_is_refused(version: str) -> None:
+def test_other_version_is_rejected(version: str) -> None:
     """The error names the package and both versions."""
     with pytest.raises(RuntimeVersionError) as raised:
         require(version, "robot_safety")
