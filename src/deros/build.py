@@ -104,7 +104,9 @@ def _generate(request: Request, source: Path) -> _Outcome:
         findings = made.findings
         package = package_folder(made.files)
         if f"{package}/setup.py" not in made.files:
-            raise ValueError(f"the target {request.target} makes no ament_python package")
+            raise ValueError(
+                f"the target {request.target} does not generate an ament_python package"
+            )
         _, lacking = write(made, where, started)
         findings = (*findings, *lacking)
         if lacking:  # said again by the next build, unless it is mended
@@ -112,7 +114,7 @@ def _generate(request: Request, source: Path) -> _Outcome:
     except Refused as refused:
         return _Outcome(None, refused.diagnostics, refused.code)
     except SourceTreeError as error:
-        hint = f"\n  to mend it: {scaffold_command(request, source)}"
+        hint = f"\n  to fix it: {scaffold_command(request, source)}"
         failure = f"deros: {error}{hint if error.mended_by_scaffold else ''}"
         return _Outcome(None, findings, failure)
     except (OSError, ValueError, WriteError) as error:

@@ -144,7 +144,7 @@ def test_missing_user_file_fails_the_build(package: Path) -> None:
     done = colcon(_workspace(package))
     assert done.returncode != 0
     assert f"lacks {ACTIONS}" in done.stdout
-    (command,) = (line for line in done.stdout.splitlines() if "to mend it:" in line)
+    (command,) = (line for line in done.stdout.splitlines() if "to fix it:" in line)
     assert command.endswith(f"--target python --scaffold {package}")
     assert not (package / ".deros" / ACTIONS).exists()
 
@@ -180,4 +180,4 @@ def test_target_must_generate_a_setuptools_package(package: Path) -> None:
     command = [sys.executable, "setup.py", "build"]
     done = subprocess.run(command, cwd=package, capture_output=True, text=True, check=False)
     assert done.returncode != 0
-    assert done.stderr == "deros: the target c makes no ament_python package\n"
+    assert done.stderr == "deros: the target c does not generate an ament_python package\n"

@@ -227,11 +227,11 @@ def test_other_file_is_not_overwritten_as_a_stamp(tmp_path: Path) -> None:
     command = ["generate", "robot.deros", "--target", "c", "-o", "out"]
     outcome = run(*command, "--stamp", "robot.deros")
     assert outcome.code == 2
-    assert "robot.deros: it is no stamp of deros" in outcome.err
+    assert "robot.deros: it is not a stamp of deros" in outcome.err
     assert rules.read_bytes() == before
     outcome = run(*command, "--stamp", "s", "--scaffold", "x")
     assert outcome.code == 2
-    assert "--scaffold goes without" in outcome.err
+    assert "--scaffold cannot be combined with" in outcome.err
 
 
 def test_unwritable_stamp_is_an_error(tmp_path: Path) -> None:

@@ -98,7 +98,7 @@ def _accepted(validate: object, name: str) -> bool:
         ("a//b", "empty part"),
         ("a/1b", "starts with a digit"),
         ("~x", "without '/' behind it"),
-        ("a/~", "elsewhere than at its start"),
+        ("a/~", "'~' after its start"),
         ("/" + "a" * 300, "longer than"),
     ],
 )

@@ -152,7 +152,7 @@ def test_impossible_path_is_an_unreadable_file(name: str) -> None:
 def test_hint_for_an_import_from_a_missing_folder(tmp_path: Path) -> None:
     """If the folder is missing too, the hint says so."""
     _write(tmp_path, x_system='system X imports import "nix/camera.rnd"')
-    assert "no folder" in _only(Repository().load(tmp_path / "x.system")).hint
+    assert "does not exist either" in _only(Repository().load(tmp_path / "x.system")).hint
 
 
 def test_rules_cannot_be_imported_into_a_system(tmp_path: Path) -> None:

@@ -36,7 +36,7 @@ CASES = [
     ("a.deros", "entity e { r: a in [1, 2«;» }", "']' or ')'"),
     ("a.deros", "entity e { r: a «&» b; }", "expected"),
     ("a.deros", "entity e { r: x > -«-»3; }", "a name"),
-    ("a.deros", "use «robot» import Robot", 'a text in "quotes"'),
+    ("a.deros", "use «robot» import Robot", 'a string in "quotes"'),
     ("a.deros", "const x = «;»", "a number"),
     ("a.deros", 'entity «"a\u00a0b"» {', r'found "a\u00a0b"'),
     ("a.deros", "gate /a -> /b : c.D rate 1 Hz { stop: limit x «ot» [0, 1]; }", "'to'"),

@@ -192,7 +192,7 @@ def test_type_with_an_unknown_part_is_an_error(tmp_path: Path) -> None:
     assert isinstance(rules, Rules)
     found = build(rules, InterfaceStore((tmp_path,), prefixes=())).diagnostics
     assert [(each.code.name, each.message) for each in found] == [
-        ("DRS101", "no interface package 'other_msgs' is known"),
+        ("DRS101", "unknown interface package 'other_msgs'"),
     ]
 
 

@@ -97,7 +97,7 @@ DIFFERENCES = {
         "connect /wish to /wish",
         "connect /wish to /elsewhere",
         "DRS354",
-        "the gate of the rules takes commands from '/wish'",
+        "the gate of the rules reads commands from '/wish'",
     ),
     "target of the gate": (
         "connect /command to /command",
@@ -109,13 +109,13 @@ DIFFERENCES = {
         "connect /stop to /stop   // of the gate",
         "connect /stop to /elsewhere",
         "DRS354",
-        "the gate of the rules obeys '/stop'",
+        "the gate of the rules reads '/stop'",
     ),
     "states of the gate swapped": (
         "connect /stop to /stop   // of the gate\n    connect /slow to /slow   //",
         "connect /stop to /slow\n    connect /slow to /stop   //",
         "DRS354",
-        "the gate of the rules obeys '/stop'",
+        "the gate of the rules reads '/stop'",
     ),
     "heartbeat of the gate": (
         "_node/heartbeat to /beat",
@@ -139,7 +139,7 @@ DIFFERENCES = {
         "node gate : command_gate\n  wirings\n    connect /wish to /wish",
         "node gate : command_gate namespace /n\n  wirings\n    connect /wish to wish",
         "DRS354",
-        "the gate of the rules takes commands from '/wish'",
+        "the gate of the rules reads commands from '/wish'",
     ),
     "second gate": (
         "  node gate :",

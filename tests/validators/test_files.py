@@ -44,10 +44,10 @@ def _findings(folder: Path, prefix: Path, value: str, name: str = "file") -> lis
     [
         ('"maps/ofice.yaml"', "did you mean 'office.yaml'?"),
         ('"./maps/ofice.yaml"', "did you mean 'office.yaml'?"),
-        ('"maps/deep/office.YAML"', "there is no such folder either"),
+        ('"maps/deep/office.YAML"', "its folder does not exist either"),
         ('"package://arm/urdf/amr.urdf"', "did you mean 'arm.urdf'?"),
         ('"share:arm/urdf/amr.urdf"', "did you mean 'arm.urdf'?"),
-        ('["maps/office.yaml", "maps/x/y.pgm"]', "there is no such folder either"),
+        ('["maps/office.yaml", "maps/x/y.pgm"]', "its folder does not exist either"),
     ],
 )
 def test_missing_file_is_reported(tmp_path: Path, prefix: Path, value: str, hint: str) -> None:

@@ -88,7 +88,7 @@ def test_lowered_rate_is_too_slow_for_the_timeout() -> None:
     """At five heartbeats per second, 0.3 s are only one and a half."""
     (finding,) = _findings(_safety(publish_freq=5.0) + _gate())
     assert finding.code.name == "DRS345"
-    assert "heartbeats of '/guard', of which there are 5 per second" in finding.message
+    assert "periods of the heartbeat of '/guard', which is published at 5 Hz" in finding.message
     assert finding.hint == (
         "write 0.5 sec or more, or set 'publish_freq' of '/guard' to 9.0 in the system"
     )
@@ -113,7 +113,7 @@ def test_default_rate_comes_from_the_node_description() -> None:
     """The default in the description applies where the system sets no rate."""
     Path("guard.rnd").write_text(SAFETY.replace("= 10.0", "= 4.0"), encoding="utf-8")
     (finding,) = _findings(_safety() + _gate())
-    assert "4 per second" in finding.message
+    assert "published at 4 Hz" in finding.message
     assert [each.span.text for each in finding.related] == ["guard"]
 
 
@@ -124,7 +124,7 @@ def test_each_gate_uses_the_rate_of_its_own_safety_node() -> None:
     slow = "subsystem right namespace /right {\n" + _safety(publish_freq=2.0) + "}\n"
     members = fine + slow + _gate("/left/guard/heartbeat") + _gate("/right/guard/heartbeat", "g2")
     (finding,) = _findings(members, topics=topics)
-    assert "'/right/guard', of which there are 2 per second" in finding.message
+    assert "'/right/guard', which is published at 2 Hz" in finding.message
     assert _findings(fine + slow + _gate("/left/guard/heartbeat"), topics=topics) == []
 
 

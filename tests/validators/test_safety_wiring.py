@@ -320,7 +320,7 @@ def test_bypass_around_an_imported_system_is_reported() -> None:
         "subsystem one : Robot\nnode joystick : joystick wirings connect out to /command\n"
     )
     found = {each.code.name: each for each in findings("fleet.system")}
-    assert "/joystick (out) is wired past the gate '/command_gate'" in found["DRS339"].message
+    assert "/joystick (out) bypasses the gate '/command_gate'" in found["DRS339"].message
 
 
 def test_rules_using_two_systems_run_in_only_one() -> None:

@@ -46,7 +46,7 @@ node compass : compass wirings connect in to /imu/data_compass
 """,
         )
     )
-    assert finding.message.startswith("nobody publishes '/imu/data_compass', but '/imu/data'")
+    assert finding.message.startswith("no node publishes '/imu/data_compass', but '/imu/data'")
     assert finding.hint == "connect /compass to '/imu/data'"
 
 

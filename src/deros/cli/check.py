@@ -33,7 +33,7 @@ FORMATS = ("text", "json", "sarif", "github")
     """
 )
 @click.argument("files", nargs=-1, required=True, type=click.Path())
-@click.option("--strict", is_flag=True, help="Let warnings fail the run, too.")
+@click.option("--strict", is_flag=True, help="Fail the run on warnings, too.")
 @click.option(
     "--format",
     "output_format",
@@ -42,14 +42,14 @@ FORMATS = ("text", "json", "sarif", "github")
     show_default=True,
     help="How to report findings.",
 )
-@click.option("--show-allowed", is_flag=True, help="Report what the models allow, too.")
+@click.option("--show-allowed", is_flag=True, help="Report allowed findings, too.")
 @click.option(
     "--baseline",
     metavar="FILE",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Report only what this file does not list, and what it lists and is no more.",
+    help="Report only findings that are not in this file, and entries of it that no longer occur.",
 )
-@click.option("--write-baseline", is_flag=True, help="Write what is found to --baseline FILE.")
+@click.option("--write-baseline", is_flag=True, help="Write the findings to --baseline FILE.")
 @interfaces_option
 @click.pass_context
 def check(

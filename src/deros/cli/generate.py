@@ -50,30 +50,30 @@ class _GenerateCommand(click.Command):
     "-o",
     "--output",
     type=click.Path(file_okay=False, path_type=Path),
-    help="Folder to write to; made if it is not there.  [default: what the project file says, or "
-    "the current folder]",
+    help="Folder to write to; created if it does not exist.  [default: what the project file "
+    "says, or the current folder]",
 )
 @click.option("--overwrite", is_flag=True, help="Replace generated files that were edited by hand.")
 @interfaces_option
 @click.option(
     "--depfile",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Write what the output rests on as a rule of Make, for build systems.",
+    help="Write the dependencies of the output as a Make rule, for build systems.",
 )
 @click.option(
     "--stamp",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Write this file last, for build systems; what only an earlier run made is removed.",
+    help="Write this file last, for build systems; files made only by an earlier run are removed.",
 )
 @click.option(
     "--source",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Folder of the package's hand-written files, which are joined with the output.",
+    help="Folder of the package's hand-written files, which are combined with the output.",
 )
 @click.option(
     "--scaffold",
     type=click.Path(file_okay=False, path_type=Path),
-    help="Write to this folder only what a package generated at build time keeps in its source.",
+    help="Write only the source tree of a package that is generated when built, to this folder.",
 )
 @click.pass_context
 def generate(
@@ -90,9 +90,9 @@ def generate(
 ) -> None:
     """Generate code, launch files or parameters from the models in FILES.
 
-    FILES are models, and folders, of which all models are taken that the target is made from. They
-    are checked first, and nothing is written if an error is found. Files that are made for you to
-    fill in are written once and never again.
+    FILES are models, and folders, of which every model that has the target is used. Models are
+    checked first, and nothing is written if an error is found. Files for you to fill in are written
+    once and never overwritten.
     """
     from deros.cli.plan import output_of, plan
     from deros.generators.output import writer
@@ -103,13 +103,15 @@ def generate(
     from deros.pipeline.scaffold import scaffold_command, scaffold_files
 
     if scaffold is not None and (depfile or stamp or source):
-        raise click.UsageError("--scaffold goes without --depfile, --stamp and --source")
+        raise click.UsageError("--scaffold cannot be combined with --depfile, --stamp or --source")
     started = now_ns()
     models, options = _apart(files)
     requests = plan(models, target, options, interfaces)
     request = requests[0]
     if len(requests) > 1 and (depfile or stamp or source or scaffold):
-        raise click.UsageError("--depfile, --stamp, --source and --scaffold are for one model")
+        raise click.UsageError(
+            "--depfile, --stamp, --source and --scaffold apply to one model only"
+        )
     if output is None:
         output = output_of(requests)
     try:
@@ -129,7 +131,7 @@ def generate(
         raise click.NoSuchOption(error.option, str(error)) from error
     except SourceTreeError as error:
         hint = scaffold_command(request, source or Path())
-        mend = f"\n  to mend it: {hint}" if error.mended_by_scaffold else ""
+        mend = f"\n  to fix it: {hint}" if error.mended_by_scaffold else ""
         raise click.ClickException(f"{error}{mend}") from error
     except WriteError as error:
         raise click.ClickException(str(error)) from error
@@ -169,7 +171,7 @@ def report_written(written: WriteReport) -> str:
     lines = [f"wrote {written.directory / path}" for path in written.of(Outcome.WRITTEN)]
     for outcome, text in (
         (Outcome.UNCHANGED, "unchanged"),
-        (Outcome.USER, "yours, left as they are"),
+        (Outcome.USER, "yours, left unchanged"),
         (Outcome.HAND_EDITED, "edited by hand, kept (--overwrite replaces them)"),
     ):
         if count := len(written.of(outcome)):

@@ -1,4 +1,4 @@
-"""``deros graph``: show who talks to whom in a system."""
+"""``deros graph``: show how the nodes of a system are connected."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 def graph(ctx: click.Context, file: str, form: str, interfaces: tuple[Path, ...]) -> None:
     """Show the wiring of the system in FILE: its topics, services and actions, and their ends.
 
-    Ports that nobody connected talk on their own names; these ends are marked, or dashed. Findings
-    go to standard error, and errors fail the command, but what can be shown is shown.
+    Ports that are not connected use their own names; their ends are marked, or dashed. Findings go
+    to standard error. Errors fail the command, but the wiring is shown as far as it is known.
     """
     from deros.metamodels.flatten import flatten
     from deros.metamodels.languages import ROSSYSTEM

@@ -27,7 +27,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "cmake-dir": ("deros.cli.cmake_dir:cmake_dir", "Print the folder for CMake's deros_DIR."),
     "explain": ("deros.cli.explain:explain", "Explain a finding by its code."),
     "generate": ("deros.cli.generate:generate", "Generate code, launch files or parameters."),
-    "graph": ("deros.cli.graph:graph", "Show who talks to whom in a system."),
+    "graph": ("deros.cli.graph:graph", "Show how the nodes of a system are connected."),
     "new": ("deros.cli.new:new", "Start a new model that checks clean."),
     "runtime": ("deros.cli.runtime:runtime", "Write the packages that generated ones may share."),
     "simulate": ("deros.cli.simulate:simulate", "Run safety rules over a recorded trace."),

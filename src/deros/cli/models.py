@@ -47,7 +47,9 @@ def named_models(paths: Sequence[str]) -> list[Named]:
             continue
         models = sorted(_models_below(path, project_of(path).output))
         if not models:
-            raise click.UsageError(f"the folder '{path}' has no model ({', '.join(suffixes())})")
+            raise click.UsageError(
+                f"the folder '{path}' contains no model ({', '.join(suffixes())})"
+            )
         for each in models:
             found.setdefault(each, Named(each, True))
     return list(found.values())

@@ -18,13 +18,13 @@ from deros.cli.scaffolds import KINDS, scaffold
     "--output",
     type=click.Path(file_okay=False, path_type=Path),
     default=Path(),
-    help="Folder to write to; made if it is not there.  [default: the current folder]",
+    help="Folder to write to; created if it does not exist.  [default: the current folder]",
 )
 def new(kind: str, name: str, package: str | None, output: Path) -> None:
     """Start a new model called NAME that checks clean.
 
-    A node is one file; a system comes with two nodes, rules with a system that they watch. Files
-    that are there already are never replaced: then nothing is written.
+    A node is one file; a system comes with two nodes, rules with a system that they monitor. If one
+    of the files exists already, nothing is written.
     """
     from deros.interfaces.names import check_node_name, check_package_name
 
@@ -34,10 +34,10 @@ def new(kind: str, name: str, package: str | None, output: Path) -> None:
         ("package", package, check_package_name(package)),
     ):
         if fault is not None:
-            raise click.UsageError(f"ROS 2 refuses '{text}' as {word}: it {fault}")
+            raise click.UsageError(f"ROS 2 rejects '{text}' as {word}: it {fault}")
     files = {output / path: text for path, text in scaffold(kind, name, package).items()}
     if there := [str(path) for path in files if path.exists() or path.is_symlink()]:
-        raise click.UsageError(f"not replacing {', '.join(there)}")
+        raise click.UsageError(f"not overwriting {', '.join(there)}")
     try:
         output.mkdir(parents=True, exist_ok=True)
         for path, text in files.items():

@@ -48,8 +48,8 @@ def plan(
         for name in _targets(each, target)
     ]
     if not requests:
-        what = f"'{target}' is made" if target else "a target is given in the project file"
-        raise click.UsageError(f"there is no model from which {what} in {', '.join(paths)}")
+        what = f"the target '{target}'" if target else "a target in the project file"
+        raise click.UsageError(f"no model in {', '.join(paths)} has {what}")
     return requests
 
 

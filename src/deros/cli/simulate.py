@@ -32,7 +32,7 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
 
     t_ns = nanoseconds(value)
     if t_ns is None:
-        raise click.BadParameter(f"'{value}' is no time in seconds, as 12.5")
+        raise click.BadParameter(f"'{value}' is not a time in seconds, such as 12.5")
     return t_ns
 
 
@@ -60,14 +60,14 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
     default="0",
     show_default=True,
     callback=_seconds,
-    help="For how many seconds inputs may be late at the start, as 'startup_grace' of the node.",
+    help="How many seconds inputs may be late at startup, like 'startup_grace' of the node.",
 )
 @click.option("--gates", "with_gates", is_flag=True, help="Show what the gates do, and why.")
 @click.option(
     "--commands",
     "all_commands",
     is_flag=True,
-    help="Of the gates, show each command that they publish, not only what changes.",
+    help="Show every command that the gates publish, not only changes.",
 )
 @click.option(
     "--publish-freq",
@@ -75,7 +75,7 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
     type=click.FloatRange(0, 1000, min_open=True),
     default=10.0,
     show_default=True,
-    help="How often the gates are told states and heartbeat, as 'publish_freq' of the node.",
+    help="How often the gates receive states and heartbeat, like 'publish_freq' of the node.",
 )
 @click.option(
     "--format",
@@ -91,7 +91,7 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
     type=click.Choice(MONITORS),
     default="reference",
     show_default=True,
-    help="What runs the rules: the reference engine, or the Python code generated from them.",
+    help="Engine that runs the rules: the reference engine, or the generated Python code.",
 )
 @interfaces_option
 @click.pass_context

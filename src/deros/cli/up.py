@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    epilog="Exit codes: 0 when every node has ended well, by itself or because it was told to; 1 "
-    "when the model has errors, or a node has failed or did not stop as told; 2 when nothing was "
-    "started, because an argument is wrong or a program is not found."
+    epilog="Exit codes: 0 if every node ended normally, by itself or on request; 1 if the model "
+    "has errors, or a node failed or did not stop on request; 2 if nothing was started, because an "
+    "argument is wrong or a program was not found."
 )
 @click.argument("file", type=click.Path())
 @click.argument("arguments", nargs=-1)

@@ -104,26 +104,26 @@ class _Part:
         if not stripped:
             return None
         if found := not_text(stripped):
-            return f"the line holds the character U+{ord(found[0]):04X}"
+            return f"the line contains the character U+{ord(found[0]):04X}"
         type_text, *more = stripped.split(maxsplit=1)
         kind = parse_field_type(type_text, self._package)
         if kind is None:
-            return f"'{type_text}' is no field type"
+            return f"'{type_text}' is not a field type"
         rest = more[0] if more else ""
         if constant := _CONSTANT.fullmatch(rest):
             return self._add_constant(kind, constant["name"], constant["value"])
         if field := _FIELD.fullmatch(rest):
             return self._add_field(kind, field["name"], field["value"])
-        return f"'{rest}' is no field name"
+        return f"'{rest}' is not a field name"
 
     def _add_constant(self, kind: FieldType, name: str, text: str) -> str | None:
         if len(name) > _LONGEST_NAME:
             return f"a name has at most {_LONGEST_NAME} characters"
         if kind.is_array or not isinstance(kind.base, str):
-            return f"constant '{name}' is of type {kind}, which is no primitive"
+            return f"constant '{name}' is of type {kind}, which is not a primitive type"
         value = _primitive(kind.base, text)
         if value is None:
-            return f"'{text}' is no value of type {kind}"
+            return f"'{text}' is not a value of type {kind}"
         self._constants.append(Constant(name, kind.base, value))
         return None
 
@@ -131,7 +131,7 @@ class _Part:
         if len(name) > _LONGEST_NAME:
             return f"a name has at most {_LONGEST_NAME} characters"
         if name in self._fields:
-            return f"field '{name}' is there twice"
+            return f"field '{name}' is declared twice"
         if name in _RESERVED:
             return f"field '{name}' has the name of a keyword of Python or C++"
         self._fields[name] = kind
@@ -139,7 +139,7 @@ class _Part:
             return None
         value = _value(kind, text)
         if value is None:
-            return f"'{text}' is no value of type {kind}"
+            return f"'{text}' is not a value of type {kind}"
         self._defaults[name] = value
         return None
 

@@ -100,9 +100,9 @@ class _Refusal:
 def _element(here: ResolvedField, index: int, before: FieldPath) -> ResolvedField | _Refusal:
     kind = here.type
     if not kind.is_array:
-        return _Refusal(f"{_named(here, before)} is no array")
+        return _Refusal(f"{_named(here, before)} is not an array")
     if index < 0:
-        return _Refusal("an index counts from 0")
+        return _Refusal("indices start at 0")
     if kind.size is not None and index >= kind.size:
         at_most = "has" if kind.array == "fixed" else "has at most"
         return _Refusal(

@@ -87,7 +87,7 @@ def not_text(text: str) -> re.Match[str] | None:
 def check_identifier(name: str) -> str | None:
     """Say why a name cannot be one in generated code of every language, or return ``None``."""
     if found := _FORBIDDEN.search(name):
-        return f"contains '{found[0]}'; a name has only the letters A to Z and a to z, digits, '_'"
+        return f"contains '{found[0]}'; a name may contain only A to Z, a to z, digits and '_'"
     if len(name) > _NODE_LIMIT:
         return f"is longer than {_NODE_LIMIT} characters"
     return None
@@ -98,7 +98,7 @@ def check_node_name(name: str) -> str | None:
     if not name:
         return "is empty"
     if found := _FORBIDDEN.search(name):
-        return f"contains '{found[0]}'; a node name has only letters, digits and '_'"
+        return f"contains '{found[0]}'; a node name may contain only letters, digits and '_'"
     if name[0].isdigit():
         return "starts with a digit"
     if len(name) > _NODE_LIMIT:
@@ -132,9 +132,9 @@ def check_namespace(name: str) -> str | None:
 
 def _check_path(path: str, whole: str) -> str | None:
     if "~" in path:
-        return "has '~' elsewhere than at its start"
+        return "has '~' after its start"
     if found := _FORBIDDEN_IN_PATH.search(path):
-        return f"contains '{found[0]}'; a graph name has only letters, digits, '_' and '/'"
+        return f"contains '{found[0]}'; a graph name may contain only letters, digits, '_' and '/'"
     if path.endswith("/"):
         return "ends with '/'"
     if "//" in path:
@@ -152,7 +152,8 @@ def check_package_name(name: str) -> str | None:
     if len(name) < 2:
         return "is shorter than two characters"
     if found := re.search(r"[^a-z0-9_]", name):
-        return f"contains '{found[0]}'; a package name has only lower-case letters, digits and '_'"
+        allowed = "lower-case letters, digits and '_'"
+        return f"contains '{found[0]}'; a package name may contain only {allowed}"
     if not name[0].isalpha():
         return "does not start with a letter"
     if "__" in name:
@@ -171,9 +172,8 @@ def check_parameter_name(name: str) -> str | None:
     if not name:
         return "is empty"
     if found := _FORBIDDEN_IN_PARAMETER.search(name):
-        return (
-            f"contains '{found[0]}'; a parameter name has only letters, digits, '_', '.', '/', '-'"
-        )
+        allowed = "letters, digits, '_', '.', '/', '-'"
+        return f"contains '{found[0]}'; a parameter name may contain only {allowed}"
     if not all(name.split(".")):
         return "has an empty part"
     if len(name) > _PARAMETER_LIMIT:
@@ -195,9 +195,8 @@ def check_program_name(name: str) -> str | None:
     if not name:
         return "is empty"
     if found := _FORBIDDEN_IN_PROGRAM.search(name):
-        return (
-            f"contains {found[0]!r}; a program's name has only letters, digits, '_', '.', '+', '-'"
-        )
+        allowed = "letters, digits, '_', '.', '+', '-'"
+        return f"contains {found[0]!r}; a program's name may contain only {allowed}"
     if name[0] in ".-":
         return f"starts with '{name[0]}'"
     if len(name) > _NODE_LIMIT:

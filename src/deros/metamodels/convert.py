@@ -158,7 +158,7 @@ class Converter:
         unit = _TIME_UNITS.parse(text)
         second = _TIME_UNITS.parse("sec")
         if unit is None or second is None or not _TIME_UNITS.compatible(unit, second):
-            message = f"'{text}' is no unit of time"
+            message = f"'{text}' is not a unit of time"
             hint = "units of time are ns, us, ms, sec, min and h"
             if text == "Hz" and (rate := self.decimal(found.value)) > 0:
                 hint = f"write the period: '{1000 / rate:g} ms'"
@@ -184,7 +184,7 @@ class Converter:
         if len(self.diagnostics) > before:
             return None
         if duration == 0:
-            message = f"{what} of 0 is none: {zero}"
+            message = f"{what} of 0 has no effect: {zero}"
             hint = "give a longer time, or leave it out"
             self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found), hint)
         self.check_longest(duration, what, found)
@@ -193,7 +193,7 @@ class Converter:
     def check_longest(self, duration_ns: int, what: str, found: Any) -> None:
         """Report a duration that is longer than ROS 2 can keep."""
         if duration_ns > _LONGEST_S * 10**9:
-            message = f"{what} is longer than the {_LONGEST_S} seconds that the middleware knows"
+            message = f"{what} is longer than the {_LONGEST_S} seconds that the middleware supports"
             self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found))
 
     def qos(self, found: Any) -> QosProfile:
@@ -208,8 +208,8 @@ class Converter:
                 settings.setdefault(field, value)
         empty = settings.get("depth") == 0 and "keep_all" not in settings
         if empty and len(self.diagnostics) == before:
-            message = "a depth of 0 keeps no message: ROS 2 takes it for the middleware's own"
-            hint = "the least is 'depth 1'; 'keep_all' keeps as many as there is room for"
+            message = "a depth of 0 keeps no message: ROS 2 treats it as the middleware's default"
+            hint = "the minimum is 'depth 1'; 'keep_all' keeps as many as memory allows"
             self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found), hint)
             settings["depth"] = None
         return QosProfile(**settings, span=self.span(found))
@@ -219,12 +219,12 @@ class Converter:
         if kind == "QosDepth":
             return [("depth", self.integer(policy.depth))]
         if kind == "QosTime":
-            what, zero = f"a {policy.policy}", f"ROS 2 takes it for no {policy.policy}"
+            what, zero = f"a {policy.policy}", f"ROS 2 treats it as no {policy.policy}"
             return [(f"{policy.policy}_ns", self.effective_ns(policy.time, what, zero))]
         if kind == "QosLiveliness":
             settings: list[tuple[str, Any]] = [("liveliness", str(policy.kind))]
             if policy.lease is not None:
-                what, zero = "a lease", "ROS 2 takes it for a lease without end"
+                what, zero = "a lease", "ROS 2 treats it as an infinite lease"
                 settings.append(("lease_ns", self.effective_ns(policy.lease, what, zero)))
             return settings
         word = str(policy.word)

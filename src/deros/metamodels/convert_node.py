@@ -268,7 +268,7 @@ class NodeConverter(Converter):
         before = len(self.diagnostics)
         period = self.duration_ns(found.period)
         if period == 0 and len(self.diagnostics) == before:
-            message = "a timer's period is longer than nothing"
+            message = "a timer's period must be positive"
             self.report(codes.BAD_DURATION, message, self.span(found.period))
         self.check_longest(period, "a period", found.period)
         return Timer(

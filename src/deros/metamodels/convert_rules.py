@@ -222,7 +222,7 @@ class RulesConverter(Converter):
     def _gate(self, found: Any) -> Gate:
         resumes = [self.span(each) for each in found.resumes]
         if not found.lines:
-            message = "a gate needs a line that says when it holds commands back"
+            message = "a gate needs a line that states when it holds commands back"
             hint = "write for instance 'lost heartbeat for 0.3 sec: zero until reset;'"
             self.report(codes.SYNTAX_ERROR, message, resumes[0], hint)
         return Gate(

@@ -148,7 +148,7 @@ class SystemConverter(Converter):
         if not pinned_policies(qos) and len(self.diagnostics) == before:
             self.report(
                 codes.EMPTY_QOS_PIN,
-                "this pins nothing: of system_default, the middleware chooses every policy",
+                "this pins nothing: with system_default, the middleware chooses every policy",
                 self.span(found),
                 "write the policies that the ends have to meet, as 'qos reliable'",
             )

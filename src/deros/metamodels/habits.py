@@ -91,10 +91,10 @@ _NODE, _SYSTEM, _RULES = (ROSNODE,), (ROSSYSTEM,), (DEROS,)
 _NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
 _UNIT = r"(?:[ ]*(?!(?:or|and|not|for|then|in)\b)[A-Za-z][\w/^]*)?"
 _OPERAND = r"[A-Za-z/][\w/.]*(?:\(\))?"
-_UPPER = "keywords are in lower case"
+_UPPER = "keywords are lower case"
 _COMMENT = "a comment begins with '//'"
-_ELSE = "write 'if' with a condition of its own: each behaviour holds for itself"
-_NO_ELSE = "there is no 'else' in the rules"
+_ELSE = "write a separate 'if' with its own condition: behaviours are independent"
+_NO_ELSE = "rules have no 'else'"
 
 _ROWS = (
     # Characters
@@ -102,15 +102,15 @@ _ROWS = (
         '[\u201c\u201d\u201e\u00ab](?P<said>[^"\u201c\u201d\u201e\u00ab\u00bb\n]*)[\u201c\u201d\u00bb]',
         r'"\g<said>"',
         "write plain quotes: '\"'",
-        "typographic quotes are not quotes here",
+        "typographic quotes do not delimit strings",
     ),
     _row(
         r"'(?P<said>[^'\"\n]*)'",
         r'"\g<said>"',
         "write double quotes: '\"'",
-        "a text stands in double quotes",
+        "strings are written in double quotes",
     ),
-    _row("[\u00a0\u2002-\u200a\u202f\u3000]+", " ", "write a plain blank"),
+    _row("[\u00a0\u2002-\u200a\u202f\u3000]+", " ", "write a plain space"),
     _row("[\u2010-\u2014\u2212]", "-", "write a plain '-'"),
     _row("\u2264", "<="),
     _row("\u2265", ">="),
@@ -132,7 +132,7 @@ _ROWS = (
     _row(
         r"<!--(?P<said>[^\n]*?)-->",
         r"/*\g<said>*/",
-        "a comment stands between '/*' and '*/'",
+        "write comments between '/*' and '*/'",
         "'<!--' does not begin a comment here",
         (),
         " ",
@@ -174,15 +174,15 @@ _ROWS = (
         "a comparison has two sides",
         _RULES,
     ),
-    _row(r"\s*(?P<at>)\.\.+\s*", ", ", "write ',' between the ends", languages=_RULES + _NODE),
-    _row(r"\s+to\s+(?P<at>)", ", ", "write ',' between the ends", languages=_RULES),
+    _row(r"\s*(?P<at>)\.\.+\s*", ", ", "write ',' between the bounds", languages=_RULES + _NODE),
+    _row(r"\s+to\s+(?P<at>)", ", ", "write ',' between the bounds", languages=_RULES),
     # Behaviours
     _row(r"(?::|->|do\b)\s*(?=\{)", " then ", languages=_RULES),
     _row(
         r"(?P<call>[a-z_]\w*(?:\([^()\n]*\))?)\s*;?(?=[ \t\r]*(?:\n|\Z))",
         r"{ \g<call>; }",
-        "actions stand in braces",
-        "the actions of a behaviour stand in braces",
+        "write actions in braces",
+        "the actions of a behaviour are written in braces",
         _RULES,
     ),
     _row(r"when\b|whenever\b", "if", languages=_RULES),
@@ -191,21 +191,21 @@ _ROWS = (
     _row(
         rf"then\s+(?P<at>)(?P<hold>for\s+{_NUMBER}{_UNIT})",
         r"\g<hold> then",
-        "the duration stands before 'then'",
+        "write the duration before 'then'",
         "",
         _RULES,
     ),
     _row(
         r"until\b",
         None,
-        "'for T' at the end asks that the condition holds for so long",
-        "a rule has no end in time",
+        "'for T' at the end requires the condition to hold for that long",
+        "rules have no 'until'",
         _RULES,
     ),
     _row(
         rf"(?P<hold>for\s+{_NUMBER}\s*(?:ns|us|ms|sec|s|min|h)\b)\s*(?P<what>[^;{{}}\n]+)",
         r"\g<what> \g<hold>",
-        "the duration stands behind the condition: 'CONDITION for T'",
+        "write the duration after the condition: 'CONDITION for T'",
         "",
         _RULES,
     ),
@@ -214,7 +214,7 @@ _ROWS = (
         r"(?P<whole>\d+)\s*(?P<at>),(?P<part>\d+)\b",
         r"\g<whole>.\g<part>",
         r"write '\g<whole>.\g<part>'",
-        "a decimal point is a point",
+        "decimals are written with a point",
     ),
     _row(r"to\b", "on", languages=_RULES),
     _row(r"to\b", "->", languages=_RULES),
@@ -258,17 +258,17 @@ _ROWS = (
     _row(
         rf"=\s*{_NUMBER}\s*(?P<at>)[A-Za-z][A-Za-z/^0-9]*(?=\s*\[)",
         None,
-        "write the number in the parameter's own unit, which stands in brackets",
-        "a value does not have a unit of its own",
+        "write the number in the parameter's own unit, which is in brackets",
+        "values are written without a unit",
         _NODE,
     ),
     _row(
         rf"(?P<value>=\s*{_NUMBER})\s*(?P<at>)(?P<unit>(?!in\b)[A-Za-z][A-Za-z/^0-9]*)",
         r"\g<value> [\g<unit>]",
-        r"the unit of a parameter stands in brackets: '[\g<unit>]'",
+        r"the unit of a parameter is written in brackets: '[\g<unit>]'",
         languages=_NODE,
     ),
-    _row(r"\{(?P<items>[^{}\n]*)\}", r"[\g<items>]", "a list stands in brackets", "", _NODE),
+    _row(r"\{(?P<items>[^{}\n]*)\}", r"[\g<items>]", "lists are written in brackets", "", _NODE),
     _row(
         r":\s*(?P<at>)(?P<name>[A-Z]\w*)(?![\w./:])",
         None,
@@ -278,13 +278,13 @@ _ROWS = (
     _row(
         r"=\s*(?P<value>[^:\n]*?)\s*:\s*(?P<type>\w+)",
         r": \g<type> = \g<value>",
-        r"the type stands before the value: ': \g<type> = \g<value>'",
+        r"write the type before the value: ': \g<type> = \g<value>'",
         languages=_NODE,
     ),
     _row(
         r"=\s*(?P<at>)(?P<word>[A-Za-z_][\w/]*)(?![\w.(])",
         r'= "\g<word>"',
-        r"write '\"\g<word>\"': a text stands in quotes",
+        r"write '\"\g<word>\"': strings are written in quotes",
         languages=_NODE + _SYSTEM,
     ),
     # System descriptions
@@ -309,7 +309,7 @@ _ROWS = (
         rf"=\s*{_NUMBER}\s*(?P<at>)[A-Za-z]",
         None,
         "write the number in the unit of the parameter, without a unit",
-        "a value does not have a unit of its own",
+        "values are written without a unit",
         _SYSTEM,
     ),
     _row(r"\(\)", "", "remove '()'", languages=_SYSTEM),

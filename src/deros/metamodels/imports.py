@@ -84,5 +84,5 @@ def _hint(path: Path, suffixes: tuple[str, ...]) -> str:
     try:
         names = sorted(each.name for each in path.parent.iterdir())
     except OSError:
-        return f"there is no folder '{shown_path(str(path.parent))}' either"
+        return f"its folder '{shown_path(str(path.parent))}' does not exist either"
     return did_you_mean(near(path.name, (name for name in names if name.endswith(suffixes))))

@@ -270,7 +270,7 @@ def _cycle(chain: list[_Open]) -> Diagnostic:
     names = " → ".join(f"'{each.path}'" for each in [*chain, chain[0]])
     *before, last = chain
     related = tuple(Related(each.follows, "imported from here") for each in before)
-    message = f"the import leads back to its own beginning: {names}"
+    message = f"import cycle: {names}"
     return report(codes.CYCLIC_IMPORT, message, last.follows, "", related)
 
 

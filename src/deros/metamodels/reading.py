@@ -61,7 +61,11 @@ def read(path: Path, shown: str, *, streams: bool = True) -> SourceFile:
     except (OSError, ValueError) as error:
         if isinstance(error, OSError) and error.errno == errno.EFBIG:
             message = f"'{shown}' is larger than {most >> 20} MB"
-            hint = "split it into files that one imports" if not streams else "cut it into parts"
+            hint = (
+                "split it into several files, and import them"
+                if not streams
+                else "cut it into parts"
+            )
             raise Unreadable(report(codes.FILE_TOO_LARGE, message, start, hint)) from error
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         message = f"cannot read '{shown}': {reason}"
@@ -70,11 +74,11 @@ def read(path: Path, shown: str, *, streams: bool = True) -> SourceFile:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        message = f"'{shown}' is not UTF-8 text: byte {error.start}, in line {line}, fits nowhere"
+        message = f"'{shown}' is not UTF-8 text: byte {error.start}, in line {line}, is invalid"
         hint = "save the file with the encoding UTF-8"
         raise Unreadable(report(codes.NOT_UTF8, message, start, hint)) from error
     if "\0" in text:
-        message = f"'{shown}' holds a NUL character, so it is no text file"
+        message = f"'{shown}' contains a NUL character, so it is not a text file"
         raise Unreadable(report(codes.NOT_UTF8, message, start))
     return SourceFile(shown, text)
 
@@ -139,7 +143,9 @@ def _check_words(source: SourceFile, text: str) -> None:
     for found in _LONG_WORD.finditer(_QUOTED.sub(lambda quoted: " " * len(quoted[0]), text)):
         span = Span(source, found.start(), found.end())
         if not found[0][0].isdecimal():
-            message = f"a name of {len(found[0])} characters: {_LONGEST_WORD} is the most"
+            message = (
+                f"a name of {len(found[0])} characters is longer than the limit of {_LONGEST_WORD}"
+            )
             raise Unreadable(report(codes.NAME_TOO_LONG, message, span, "choose a shorter name"))
         if len(found[0]) > _MOST_DIGITS:
             raise Unreadable(report(codes.SYNTAX_ERROR, "number out of range", span))
@@ -149,8 +155,8 @@ def forbidden_character(character: str, span: Span) -> Diagnostic:
     """Make the diagnostic for a character, written as such or as an escape, at a place."""
     name = unicodedata.name(character, "control character").lower()
     if "\ud800" <= character <= "\udfff":
-        name = "half a character"
-    message = f"the character U+{ord(character):04X} ({name}) is not for texts"
+        name = "unpaired surrogate"
+    message = f"the character U+{ord(character):04X} ({name}) is not allowed in a text"
     return report(codes.FORBIDDEN_CHARACTER, message, span, "remove it")
 
 

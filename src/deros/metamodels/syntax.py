@@ -25,8 +25,8 @@ _WORDS = {
     "MarkedGraphName": "a topic name",
     "InterfaceName": "a type such as std_msgs.Bool",
     "ParameterTypeName": "a parameter type such as double",
-    "Text": 'a text in "quotes"',
-    "LiteralText": "true, false or a text",
+    "Text": 'a string in "quotes"',
+    "LiteralText": "true, false or a string",
     "Scalar": "a value",
     "Number": "a number",
     "Integer": "a whole number",
@@ -80,7 +80,7 @@ def explain(
         return _at_the_end(Span(source, end, end), expected, hint, fix)
     span = Span(source, position, position + len(text))
     if text == '"':
-        message = "this text is not closed"
+        message = "this string is not closed"
         return report(codes.SYNTAX_ERROR, message, span, "close it with '\"' on the same line")
     words = [word[1:-1] for word in expected if word.startswith("'")]
     if not hint and text[0].isalpha():
@@ -91,14 +91,14 @@ def explain(
 
 def _at_the_end(span: Span, expected: list[str], hint: str, fix: Fix | None) -> Diagnostic:
     if not span.source.text.strip():
-        return report(codes.SYNTAX_ERROR, "the file holds no model: it is empty", span)
+        return report(codes.SYNTAX_ERROR, "the file is empty: it contains no model", span)
     message = f"the file ends {_missing(expected)}"
     return report(codes.SYNTAX_ERROR, message, span, hint, fix=fix)
 
 
 def _missing(expected: list[str]) -> str:
     if not expected:
-        return "where it makes no sense"
+        return "where it is not expected"
     if len(expected) > _MOST_NAMED:
         # Past a few, the first ones tell what kind of thing is wanted.
         return f"where something else is expected: {', '.join(expected[:_MOST_NAMED])}, …"

@@ -307,7 +307,7 @@ class Scope:
             self.fault(codes.UNKNOWN_TYPE, message, span, hint)
             return None
         hint = did_you_mean(near(kind.package, self.store.packages()))
-        message = f"no interface package '{kind.package}' is known"
+        message = f"unknown interface package '{kind.package}'"
         hint = hint or "name the folder that has it with --interfaces PATH"
         self.fault(codes.UNKNOWN_PACKAGE, message, span, hint)
         return None

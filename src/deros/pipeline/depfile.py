@@ -116,7 +116,7 @@ def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
             _STAMP.encode(),
             b"",
         ):
-            raise WriteError(f"refused to write {path}: it is no stamp of deros")
+            raise WriteError(f"refused to write {path}: it is not a stamp of deros")
         write_if_changed(path, _STAMP + "".join(f"{each}\n" for each in made))
         os.utime(path, ns=(started_ns, started_ns))
     except OSError as error:

@@ -246,7 +246,7 @@ class _Reader:
     def _text(self, table: dict[str, Any], key: str) -> str | None:
         value = table.get(key)
         if value is not None and not (isinstance(value, str) and value.strip()):
-            self._wrong(key, "is not a text")
+            self._wrong(key, "is not a string")
             return None
         return value
 

@@ -115,7 +115,8 @@ def read(path: Path) -> Baseline:
         if not isinstance(data, dict) or data.get("kind") != _KIND:
             raise _unusable(path, f"'{path}' is not a baseline of deros")
         if data["version"] != _VERSION:
-            message = f"the baseline '{path}' is of version {data['version']}, known is {_VERSION}"
+            found = f"has version {data['version']}; the supported version is {_VERSION}"
+            message = f"the baseline '{path}' {found}"
             raise _unusable(path, message, "write it again with --write-baseline")
         entries = tuple(
             Entry(

@@ -191,17 +191,17 @@ def _read(rest: Span, line: int) -> Iterator[Allowance | Diagnostic]:
     if verb is None or verb[0] != "allow":
         place = Span(source, rest.start, rest.start + (verb.end() if verb else 0))
         hint = did_you_mean(verb[0], ["allow"], _USAGE) if verb else _USAGE
-        message = "a comment that begins 'deros:' is an allowance"
+        message = "a comment that begins with 'deros:' must be an allowance"
         yield report(codes.BAD_ALLOWANCE, message, place, hint)
         return
     named, at = _named_codes(rest, verb.end())
     if not named:
-        message = "an allowance names the code of the finding"
+        message = "an allowance must name the code of the finding"
         yield report(codes.BAD_ALLOWANCE, message, _first(rest, verb.end()), _USAGE)
         return
     reason = " ".join(text[at:].strip(_FILLING).split())
     if not re.search(r"\w", reason):
-        message = "an allowance gives the reason why the finding may stand"
+        message = "an allowance must give the reason why the finding is acceptable"
         hint = f"write '// deros: allow {named[0].text} reason'"
         yield report(codes.BAD_ALLOWANCE, message, Span(source, named[0].start, rest.end), hint)
         return

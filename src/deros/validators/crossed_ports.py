@@ -41,7 +41,7 @@ def check_crossed(flat: FlatSystem) -> Iterator[Diagnostic]:
             yield report(
                 codes.LIKELY_SWAPPED,
                 f"'{first.port.name}' of '{node.instance.name}' is connected to '{first.topic}',"
-                f" and '{second.port.name}' to '{second.topic}': probably the other way round",
+                f" and '{second.port.name}' to '{second.topic}': they are probably swapped",
                 first.wiring.span,
                 f"connect '{first.port.name}' to '{second.wiring.target}' and"
                 f" '{second.port.name}' to '{first.wiring.target}'",

@@ -83,7 +83,7 @@ def _hint(path: Path) -> str:
     try:
         names = sorted(entry.name for entry in os.scandir(path.parent))
     except (OSError, ValueError):
-        return "there is no such folder either"
+        return "its folder does not exist either"
     return did_you_mean(near(path.name, (each for each in names if each.endswith(path.suffix))))
 
 

@@ -13,6 +13,7 @@ from deros.interfaces.types import InterfaceKind, InterfaceType
 from deros.validators.hints import did_you_mean
 
 _WORD: dict[InterfaceKind, str] = {"msg": "message", "srv": "service", "action": "action"}
+_A: dict[InterfaceKind, str] = {"msg": "a message", "srv": "a service", "action": "an action"}
 
 
 def type_finding(store: InterfaceStore, wanted: InterfaceType, span: Span) -> Iterator[Diagnostic]:
@@ -37,8 +38,7 @@ def type_finding(store: InterfaceStore, wanted: InterfaceType, span: Span) -> It
 
 
 _OF_OTHERS = (
-    "for interfaces of your own name their folder with --interfaces PATH, "
-    "or source the workspace that has them"
+    "for your own interfaces, pass their folder with --interfaces PATH or source their workspace"
 )
 
 
@@ -48,7 +48,7 @@ def _unknown_package(store: InterfaceStore, package: str, span: Span) -> Diagnos
     One whose name is that of an interface package may well exist: where to find it comes first.
     """
     meant = near(package, _like(package, store.packages()))
-    message = f"no interface package '{package}' is known"
+    message = f"unknown interface package '{package}'"
     nearly = did_you_mean(package, meant)
     if _stem(package) != package and nearly:
         return report(codes.UNKNOWN_PACKAGE, message, span, f"{_OF_OTHERS}; {nearly}")
@@ -71,8 +71,8 @@ def _stem(package: str) -> str:
 
 def _elsewhere(store: InterfaceStore, wanted: InterfaceType) -> str:
     """Tell where a type of this name is: as another kind of interface, or in another package."""
-    for kind, word in _WORD.items():
+    for kind in _WORD:
         if kind != wanted.kind and wanted.name in store.names(wanted.package, kind):
-            return f"'{wanted.short}' is a type of {word}, not of {_WORD[wanted.kind]}"
+            return f"'{wanted.short}' is {_A[kind]} type, not {_A[wanted.kind]} type"
     owners = sorted(p for p in store.packages() if wanted.name in store.names(p, wanted.kind))
     return f"there is {' and '.join(f'{p}.{wanted.name}' for p in owners[:3])}" if owners else ""

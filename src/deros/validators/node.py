@@ -54,7 +54,7 @@ def check(node: NodeType, context: CheckContext) -> Iterator[Diagnostic]:
 
 def _refused(fault: str | None, name: str, span: Span) -> Iterator[Diagnostic]:
     if fault is not None:
-        yield report(codes.INVALID_ROS_NAME, f"ROS 2 refuses the name '{name}': it {fault}", span)
+        yield report(codes.INVALID_ROS_NAME, f"ROS 2 rejects the name '{name}': it {fault}", span)
 
 
 def _program(node: NodeType) -> Iterator[Diagnostic]:
@@ -127,7 +127,7 @@ def _key(node: NodeType, parameter: Parameter) -> Iterator[Diagnostic]:
             codes.UNKNOWN_KEY_PARAMETER,
             f"'{parameter.name}' has more than one '<…>'",
             parameter.name_span,
-            "a parameter is declared for the entries of one list",
+            "a parameter can be declared for the entries of one list only",
         )
         return
     for key in parameter.keys:
@@ -138,7 +138,7 @@ def _key(node: NodeType, parameter: Parameter) -> Iterator[Diagnostic]:
         fault = "is not declared" if of is None else f"is {of.type.value}"
         yield report(
             codes.UNKNOWN_KEY_PARAMETER,
-            f"'{parameter.name}' is for each entry of '{key}', which {fault}",
+            f"'{parameter.name}' is declared for each entry of '{key}', which {fault}",
             parameter.name_span,
             hint=did_you_mean(key, lists, f"declare it: 'name {key or 'joints'} : string[]'"),
         )
@@ -151,7 +151,7 @@ def _constraints(parameter: Parameter) -> Iterator[Diagnostic]:
     for fault in _size_faults(parameter):
         yield _bad_constraint(parameter, fault, parameter.span)
     if parameter.unit is not None and not is_numeric(parameter.type):
-        fault = f"{parameter.type.value} has no unit"
+        fault = f"a parameter of type {parameter.type.value} has no unit"
         yield _bad_constraint(parameter, fault, parameter.unit_span or parameter.span)
     for fault in _choice_faults(parameter):
         yield _bad_constraint(parameter, f"'one_of' {fault}", parameter.span)
@@ -159,9 +159,9 @@ def _constraints(parameter: Parameter) -> Iterator[Diagnostic]:
         if _FUNCTION.fullmatch(function.text) is None:
             yield report(
                 codes.BAD_CUSTOM_FUNCTION,
-                f"constraint of '{parameter.name}': '{function.text}' names no function",
+                f"constraint of '{parameter.name}': '{function.text}' does not name a function",
                 function.span,
-                'a function of yours is named with its namespace: custom "limits::is_even"',
+                'name the function with its namespace: custom "limits::is_even"',
             )
 
 
@@ -170,11 +170,11 @@ def _range_faults(parameter: Parameter) -> Iterator[str]:
     if interval is None:
         return
     if not is_numeric(kind):
-        yield f"a range says nothing of {kind.value}; use 'one_of' for a choice of values"
+        yield f"a range does not apply to {kind.value}; use 'one_of' for a choice of values"
     elif interval.lower > interval.upper:
         yield f"the range runs from {interval.lower} down to {interval.upper}"
     elif interval.lower == interval.upper and interval.lower not in interval:
-        yield f"no number is in {interval.spelled()}"
+        yield f"no number lies in {interval.spelled()}"
 
 
 def _size_faults(parameter: Parameter) -> Iterator[str]:
@@ -190,19 +190,19 @@ def _size_faults(parameter: Parameter) -> Iterator[str]:
     stated = [word for word, value in sizes.items() if value is not None]
     if not has_size:
         for word in stated:
-            yield f"'{word}' is for lists and texts, and {kind.value} is neither"
+            yield f"'{word}' applies to lists and strings, not to {kind.value}"
     if parameter.unique and not kind.is_array:
-        yield f"'unique' is for lists, and {kind.value} is none"
+        yield f"'unique' applies to lists, not to {kind.value}"
     most = [each for each in (parameter.size, parameter.max_size) if each is not None]
     if has_size and most and parameter.least_size > min(most):
-        yield f"{', '.join(map(repr, stated))} exclude each other: no size is left"
+        yield f"{', '.join(map(repr, stated))} contradict each other: no size satisfies all of them"
 
 
 def _choice_faults(parameter: Parameter) -> Iterator[str]:
     if parameter.choices is None:
         return
     if not parameter.choices:
-        yield "leaves no value"
+        yield "lists no values"
     element = _ELEMENT.get(parameter.type, parameter.type)
     for choice in parameter.choices:
         wrong = type_fault(element, choice)
@@ -274,7 +274,7 @@ def _via(node: NodeType, port: Port) -> Iterator[Diagnostic]:
             codes.UNKNOWN_VIA_PARAMETER,
             f"parameter '{port.via}' is {parameter.type.value} and cannot hold the name of a port",
             span,
-            hint="a topic's name is a string",
+            hint="use a string parameter",
             related=(Related(parameter.span, "declared here"),),
         )
     elif isinstance(parameter.default, str) and parameter.default:
@@ -301,7 +301,7 @@ def _field_unit(
     if annotation.wrapping and dict(unit.exponents) != {"rad": 1}:
         yield report(
             codes.WRAPPING_NOT_AN_ANGLE,
-            f"'{annotation.path}' is in {unit.text} ({unit.dimension}): only an angle begins anew"
+            f"'{annotation.path}' is in {unit.text} ({unit.dimension}): only an angle wraps around"
             " after a full turn",
             annotation.unit_span,
             f"write '[{annotation.unit}]'",
@@ -311,10 +311,10 @@ def _field_unit(
     if expected is not None and not units.compatible(unit, expected):
         yield report(
             codes.UNIT_CONFLICTS_WITH_REP103,
-            f"'{annotation.path}' of {port.type.short} is in {expected.text} by REP 103, "
-            f"which {unit.text} does not measure",
+            f"REP 103 gives '{annotation.path}' of {port.type.short} in {expected.text}, and"
+            f" {unit.text} has another dimension",
             annotation.unit_span,
-            hint=f"publish the field in {expected.text}, and leave the unit out",
+            hint=f"publish the field in {expected.text}, and omit the unit",
         )
 
 

@@ -54,7 +54,7 @@ def _violation(
     if isinstance(end, RulesEnd) or is_of_safety(end.node):
         change = "its QoS is generated: change the pin"
     elif end.is_assumed:
-        change = "its program is not described further: state its QoS, or change the pin"
+        change = "its node description states no QoS: state it, or change the pin"
     yield report(
         code,
         f"'{pin.name}' is pinned to '{pinned}', but {end.name} has {actual}",
@@ -69,7 +69,7 @@ def _violation(
 
 def _actual(policy: Policy, value: PolicyValue) -> str:
     if value is None and policy == "depth":
-        return "a depth that only the middleware's settings tell"
+        return "a depth that depends on the middleware's settings"
     if value == "system_default":
-        return f"a {policy} that only the middleware's settings tell"
+        return f"a {policy} that depends on the middleware's settings"
     return words(policy, value)

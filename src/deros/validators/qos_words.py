@@ -84,12 +84,10 @@ def difference(shortfall: Shortfall, offering: Side, requesting: Side) -> str:
     """Say what is offered and what is requested: "the publisher offers a sample every 2 sec, …"."""
     policy, offer, request = shortfall.policy, shortfall.offered, shortfall.requested
     if policy in ("deadline", "lease"):
-        noun = "sample" if policy == "deadline" else "sign of life"
+        noun = "sample" if policy == "deadline" else "liveliness assertion"
         asked = f"asks for {'one' if offer is not None else f'a {noun}'} every {_time(request)}"
         offered = (
-            f"offers a {noun} every {_time(offer)}"
-            if offer is not None
-            else f"promises no {policy}"
+            f"offers a {noun} every {_time(offer)}" if offer is not None else f"offers no {policy}"
         )
     else:
         offered = f"offers {_kind(policy, offer)}{_origin(offering, policy)}"
@@ -104,7 +102,7 @@ def _time(value: PolicyValue) -> str:
 
 def _kind(policy: Policy, value: PolicyValue) -> str:
     if value == SYSTEM_DEFAULT:
-        return f"a {policy} that only the middleware's settings tell"
+        return f"a {policy} that depends on the middleware's settings"
     return words(policy, value)
 
 

@@ -55,10 +55,10 @@ def _order(gate: Gate) -> Iterator[Diagnostic]:
             fields = ", ".join(f"'{format_path(each.path)}'" for each in limit.limits)
             yield report(
                 codes.GATE_LIMIT_OVERRIDES_ZERO,
-                f"while the limit for {_condition(limit)} applies too, it decides about {fields},"
-                " not this zero",
+                f"while the limit for {_condition(limit)} applies, too, it determines {fields}"
+                " instead of this zero",
                 line.span,
-                "earlier lines win: write those with 'zero' first",
+                "earlier lines take precedence: write those with 'zero' first",
                 (Related(limit.span, "the limit"),),
             )
 
@@ -72,14 +72,14 @@ def _watching(gate: Gate, hint: str) -> Iterator[Diagnostic]:
     if "heartbeat" not in lost:
         yield report(
             codes.GATE_WITHOUT_HEARTBEAT,
-            f"commands to '{gate.target}' go on unchecked when the safety node dies",
+            f"commands to '{gate.target}' still pass unchecked when the safety node dies",
             gate.target.span,
             hint,
         )
     if "input" not in lost:
         yield report(
             codes.GATE_WITHOUT_INPUT,
-            f"when '{gate.source}' falls silent, its last command stays in force",
+            f"when messages on '{gate.source}' stop, the last command stays in effect",
             gate.target.span,
             "add 'lost input for 0.5 sec: zero;'",
         )
@@ -102,7 +102,7 @@ def _resuming(gate: ir.Gate, written: Gate, program: ir.Program) -> Iterator[Dia
         listed = " and ".join([", ".join(ends[:-1]), ends[-1]] if ends[1:] else ends)
         yield report(
             codes.GATE_RESUMES_BY_ITSELF,
-            f"commands to '{gate.target}' pass again by themselves after {listed}",
+            f"commands to '{gate.target}' resume by themselves after {listed}",
             written.target.span,
             "add 'resume on zero command;', or write 'zero until reset' for a loss",
             tuple(Related(line.span, "this zero ends by itself") for line in lines),
@@ -121,10 +121,10 @@ def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
         if line.limits and all(limit.lower == limit.upper == 0 for limit in line.limits):
             yield report(
                 codes.GATE_LIMIT_TO_ZERO,
-                "a limit to 0 stops as a zero does, but ends by itself: neither 'until reset' nor"
-                " 'resume on zero command' holds for it",
+                "a limit of 0 stops like a zero, but ends by itself: neither 'until reset' nor"
+                " 'resume on zero command' applies to it",
                 line.span,
-                "write 'zero' if the robot is to stand",
+                "write 'zero' if the robot is to stand still",
             )
 
 
@@ -153,10 +153,10 @@ def _wiring(gate: Gate, flat: FlatSystem, rules: Rules) -> Iterator[Diagnostic]:
         if not _is_gate(end.node, target):
             yield report(
                 codes.GATE_BYPASSED,
-                f"{end.node.full_name} ({end.port.port.name}) is wired past the gate: it publishes"
-                f" '{target}' itself",
+                f"{end.node.full_name} ({end.port.port.name}) bypasses the gate: it publishes"
+                f" '{target}' directly",
                 end.span,
-                f"connect {end.port.port.name} to {source}, which the gate lets through",
+                f"connect {end.port.port.name} to {source}, the input of the gate",
                 (Related(gate.span, "the gate"),),
             )
     if source == target or not (commanding or obeying):
@@ -210,9 +210,9 @@ def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic
     elif source not in fed and not _open(known) and not known.publishers:
         yield report(
             codes.RULE_TOPIC_NOT_PUBLISHED,
-            f"nobody in the system publishes '{source}'",
+            f"no node in the system publishes '{source}'",
             gate.source.span,
-            f"if it comes from outside: 'external topic {source}'",
+            f"if it is published outside the model, declare 'external topic {source}'",
             (Related(known.place, "the topic"),),
         )
     known = topics.get(target)
@@ -221,9 +221,10 @@ def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic
     heard = [each.name for each in topics if each.subscriptions or _open(each)]
     yield report(
         codes.GATE_UNREAD,
-        f"nobody in the system subscribes to '{target}'",
+        f"no node in the system subscribes to '{target}'",
         gate.target.span,
-        did_you_mean(near(target, heard)) or f"if it is read outside: 'external topic {target}'",
+        did_you_mean(near(target, heard))
+        or f"if it is read outside the model, declare 'external topic {target}'",
         (Related(known.place, "the topic"),) if known is not None else (),
     )
 

@@ -74,8 +74,8 @@ def check_heartbeats(
                 whose = f" of '{pace.node}'" if pace.node else ""
                 yield report(
                     codes.HEARTBEAT_TIMEOUT_TOO_SHORT,
-                    f"this is less than {float(FEWEST_PERIODS)} heartbeats{whose}, of which there"
-                    f" are {pace.hz} per second: a late one would be taken for a lost one",
+                    f"this is less than {float(FEWEST_PERIODS)} periods of the heartbeat{whose},"
+                    f" which is published at {pace.hz} Hz: a late heartbeat would count as lost",
                     line.span,
                     _remedy(pace, line.lost_ns),
                     pace.related,

@@ -46,7 +46,7 @@ def check_ranges(rules: Rules, comparisons: Sequence[ResolvedComparison]) -> Ite
                 codes.EXACT_FLOAT_COMPARISON,
                 f"'{each.condition.span.text}' compares floating-point values exactly",
                 each.condition.span,
-                "the least rounding decides it; compare with an interval: 'in [a, b]'",
+                "the result depends on rounding; compare with an interval: 'in [a, b]'",
             )
 
 

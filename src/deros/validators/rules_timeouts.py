@@ -45,8 +45,8 @@ def check_timeouts(rules: Rules) -> Iterator[Diagnostic]:
             shown += f" and {len(names) - _SHOWN} more"
         yield report(
             codes.INPUT_WITHOUT_TIMEOUT,
-            f"'{each.name}' has no timeout: when {each.topic} falls silent,"
-            f" {shown} still {'see' if len(names) > 1 else 'sees'} its last value",
+            f"'{each.name}' has no timeout: when messages on {each.topic} stop,"
+            f" {shown} still {'use' if len(names) > 1 else 'uses'} the last value",
             each.span,
             each.hint,
         )

@@ -51,9 +51,10 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
     fed = [each.name for each in topics if _has_end(each, each.publishers)]
     yield report(
         codes.RULE_TOPIC_NOT_PUBLISHED,
-        f"nobody in the system publishes '{topic}'",
+        f"no node in the system publishes '{topic}'",
         name.span,
-        did_you_mean(near(topic, fed)) or f"if it comes from outside: 'external topic {topic}'",
+        did_you_mean(near(topic, fed))
+        or f"if it is published outside the model, declare 'external topic {topic}'",
         (Related(known.place, "the topic"),),
     )
 
@@ -70,8 +71,9 @@ def _unread(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic
     heard = [each.name for each in topics if _has_end(each, each.subscriptions)]
     yield report(
         codes.ACTION_TOPIC_NOT_IN_SYSTEM,
-        f"nobody in the system subscribes to '{topic}'",
+        f"no node in the system subscribes to '{topic}'",
         name.span,
-        did_you_mean(near(topic, heard)) or f"if it is read outside: 'external topic {topic}'",
+        did_you_mean(near(topic, heard))
+        or f"if it is read outside the model, declare 'external topic {topic}'",
         (Related(known.place, "the topic"),) if known else (),
     )

@@ -90,10 +90,10 @@ def _unnoticed(
             owner = program.inputs[each.expression.input]
             yield report(
                 codes.UNHANDLED_UNKNOWN,
-                f"'{rule.full_name}' is unknown while {_reason(each)}, and nothing acts on that",
+                f"'{rule.full_name}' is unknown while {_reason(each)}, and no rule reacts to that",
                 each.span,
                 f"write 'failsafe {rule.name}: …', or use '{each.span.text}.unknown()' in a rule",
-                (Related(owner.span, "its messages count all the while: it is not missing"),),
+                (Related(owner.span, "its messages still arrive: it is not missing"),),
             )
 
 
@@ -119,7 +119,7 @@ def _reason(function: AppliedFunction) -> str:
         case Argument.SCAN:
             return "no beam of the sector is valid"
         case Argument.NUMBER:
-            return "the headers have no stamps that go forward"
+            return "the header stamps do not advance"
         case _:
             return "the array is empty"
 
@@ -202,14 +202,14 @@ def _unasked(written: rules.Rules, program: ir.Program, used: _Used) -> Iterator
         if each.index in (firmly if each.index in read_firmly else everywhere):
             continue
         # Before the first message there is no age, so age() does not tell that none comes.
-        when = "never comes" if each.index in aged else "falls silent"
+        when = "never arrive" if each.index in aged else "stop"
         yield report(
             codes.UNUSED_TIMEOUT,
-            f"no rule asks for the timeout of '{each.name}': when {each.topic} {when},"
-            " nothing acts",
+            f"no rule uses the timeout of '{each.name}': when messages on {each.topic} {when},"
+            " nothing reacts",
             names[each.name].span,
-            f"a rule with '{each.name}.missing()' or '{each.name}.unknown()', or a failsafe rule"
-            " on it, says what is to happen",
+            f"react to '{each.name}.missing()' or '{each.name}.unknown()', or declare a rule on it"
+            " 'failsafe'",
         )
 
 
@@ -248,7 +248,7 @@ def _negated(written: rules.Rules, program: ir.Program) -> Iterator[Diagnostic]:
                     f"'{rule.full_name}' counts as true while it is unknown, so"
                     f" '{behaviour.name}' does not run {', '.join(acts)} then",
                     term.span,
-                    "turn the rule round, so that it is true where there is a danger",
+                    "invert the rule, so that it is true when there is a danger",
                     (Related(rule.span, "the failsafe rule"),),
                 )
 

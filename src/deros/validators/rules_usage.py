@@ -25,7 +25,7 @@ def check_usage(rules: Rules) -> Iterator[Diagnostic]:
     used = _names(read)
     for each in rules.inputs:
         if each.name.text not in used:
-            message = f"input '{each.name}' is read by no rule"
+            message = f"no rule reads input '{each.name}'"
             yield report(codes.UNUSED_INPUT, message, each.name.span)
     yield from _unused_rules(rules)
     yield from _actions(rules)
@@ -78,9 +78,9 @@ def _actions(rules: Rules) -> Iterator[Diagnostic]:
         if reset is None or reset.text not in declared:
             continue
         if reset.text == name:
-            message = f"'{name}' resets itself: what triggers it keeps it active"
+            message = f"'{name}' resets itself: its trigger keeps it active"
             yield report(codes.RESET_WITHOUT_TRIGGER, message, reset.span)
         elif reset.text not in triggered:
             message = f"no behaviour triggers '{reset}', so '{name}' is never reset"
-            hint = f"a behaviour must run '{reset};', or '{name}' be 'latched'"
+            hint = f"run '{reset};' in a behaviour, or declare '{name}' as 'latched'"
             yield report(codes.RESET_WITHOUT_TRIGGER, message, reset.span, hint)

@@ -129,8 +129,8 @@ def _not_generated(finding: Diagnostic, name: str, rules: Rules) -> Diagnostic:
         codes.SAFETY_NOT_GENERATED,
         f"'{name}' has not been generated from the rules '{rules.name}' yet",
         finding.span,
-        f"'deros generate {path} --target {target}' makes {name}.rnd; with"
-        f" 'safety \"{PurePath(path).name}\"' in its place no description is needed",
+        f"'deros generate {path} --target {target}' makes {name}.rnd; a"
+        f" statement 'safety \"{PurePath(path).name}\"' needs no description",
         (Related(rules.uses[0].span, "the rules use the system"),) if rules.uses else (),
     )
 

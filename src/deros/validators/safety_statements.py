@@ -42,7 +42,7 @@ def _names(statement: SafetyInstance) -> Iterator[Diagnostic]:
         (statement.package, statement.package_span, check_package_name),
     ):
         if name is not None and span is not None and (fault := check(name)) is not None:
-            message = f"ROS 2 refuses the name '{name}': it {fault}"
+            message = f"ROS 2 rejects the name '{name}': it {fault}"
             yield report(codes.INVALID_SYSTEM_NAME, message, span)
 
 
@@ -53,7 +53,7 @@ def _uses(statement: SafetyInstance, rules: Rules, system: System) -> Iterator[D
     places = [Related(use.span, "the rules use this system") for use in rules.uses]
     yield report(
         codes.RULES_DO_NOT_USE_SYSTEM,
-        f"the rules '{rules.name}' are not about the system '{system.name}': they do not use it",
+        f"the rules '{rules.name}' do not use the system '{system.name}'",
         statement.path_span,
         "name this system in the rules, or put the statement into the system that they use",
         tuple(places) or (Related(Span(rules.source, 0, 0), "the rules use no system"),),
@@ -71,9 +71,9 @@ def _wirings(statement: SafetyInstance, rules: Rules, flat: FlatSystem) -> Itera
         place = end.port.span if end is not None else Span(rules.source, 0, 0)
         yield report(
             codes.CONNECTED_BY_RULES,
-            f"the rules '{rules.name}' connect '{wiring.port}'"
+            f"the rules '{rules.name}' already connect '{wiring.port}'"
             + (f" to '{end.topic}'" if end is not None else ""),
             wiring.span,
-            "remove the connection; rules that are to read or publish another topic name it",
+            "remove the connection; to use another topic, name it in the rules",
             (Related(place, "connected by this"),),
         )

@@ -167,7 +167,7 @@ def _twice(own: Sequence[HandWired], flat: FlatSystem) -> Iterator[Diagnostic]:
                 codes.RULES_RUN_TWICE,
                 f"'{each.node.full_name}' is a second {what} of the rules '{each.rules.name}'",
                 span,
-                "keep one of the two; a robot of its own needs rules of its own",
+                "keep one of the two; a second robot needs its own rules",
                 (Related(other, "the other one"),),
             )
 
@@ -181,7 +181,7 @@ def _strangers(found: Sequence[HandWired], flat: FlatSystem) -> Iterator[Diagnos
         if is_safety_node(node.type):
             yield report(
                 codes.RULES_NOT_LOADED,
-                f"the rules of the safety node '{node.full_name}' are not loaded, so that its"
+                f"the rules of the safety node '{node.full_name}' are not loaded, so its"
                 " connections are not checked against them",
                 node.instance.name_span,
                 "check them with the system, 'deros check FILE.system FILE.deros', or write"
@@ -238,12 +238,12 @@ def _differences(
         other = described.pop(_port_key(port, each), None)
         yield from ((text, port.span) for text in _port_differences(port, other))
     for port in described.values():
-        yield f"it has {_shown(port)}, which the rules do not give it", None
+        yield f"it has {_shown(port)}, which is not in the rules", None
     parameters = {parameter.name: parameter for parameter in expected.parameters}
     for parameter in actual.parameters:
         wanted = parameters.get(parameter.name)
         if wanted is None:
-            yield f"it has a parameter '{parameter.name}', which the rules do not give it", None
+            yield f"it has a parameter '{parameter.name}', which is not in the rules", None
         elif (wanted.type, wanted.default) != (parameter.type, parameter.default):
             yield f"parameter '{parameter.name}' has another type or default", None
 
@@ -321,7 +321,7 @@ def _words(each: HandWired, port: Port, topic: str) -> str:
     if publishes:
         return f"the rules let the gate publish '{topic}'"
     is_source = port is next(each.expected.ports_of(PortKind.SUBSCRIPTION))
-    return f"the gate of the rules {'takes commands from' if is_source else 'obeys'} '{topic}'"
+    return f"the gate of the rules {'reads commands from' if is_source else 'reads'} '{topic}'"
 
 
 def _misconnected(each: HandWired, end: FlatPort, topic: str, says: tuple[str, Span]) -> Diagnostic:
@@ -331,9 +331,9 @@ def _misconnected(each: HandWired, end: FlatPort, topic: str, says: tuple[str, S
         codes.SAFETY_CONNECTED_DIFFERENTLY,
         f"{words}, but {End(each.node, end).name} is connected to '{end.topic}'",
         wiring.target_span if wiring is not None else each.node.instance.name_span,
-        f"connect {end.port.name} to {topic}, or let the nodes connect themselves:"
+        f"connect {end.port.name} to {topic}, or replace the nodes by a statement"
         f' safety "{each.rules.name}.deros"',
-        (Related(place, "this says which topic it is"),),
+        (Related(place, "the topic is given here"),),
     )
 
 
@@ -390,7 +390,7 @@ def check_gate_targets(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[
                 continue
             yield report(
                 codes.GATE_BYPASSED,
-                f"{End(node, end).name} is wired past the gate '{past[0].full_name}': it publishes"
+                f"{End(node, end).name} bypasses the gate '{past[0].full_name}': it publishes"
                 f" '{end.topic}' itself",
                 End(node, end).span,
                 "give it a topic of its own, by a relative name under the namespace of its system",

@@ -34,7 +34,7 @@ def check_names(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]
 def _refused(fault: str | None, name: str, span: Span | None) -> Iterator[Diagnostic]:
     if fault is not None and span is not None:
         yield report(
-            codes.INVALID_SYSTEM_NAME, f"ROS 2 refuses the name '{name}': it {fault}", span
+            codes.INVALID_SYSTEM_NAME, f"ROS 2 rejects the name '{name}': it {fault}", span
         )
 
 
@@ -57,7 +57,7 @@ def _members(
         if first is not member:
             yield report(
                 codes.DUPLICATE_SUBSYSTEM,
-                f"a subsystem '{member.name}' stands here already",
+                f"there is already a subsystem '{member.name}' here",
                 member.name_span,
                 hint="give one of them another name, or put their nodes into one subsystem",
                 related=(Related(first.name_span, "the first one"),),
@@ -74,7 +74,7 @@ def _topics(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
             continue
         fault = check_topic_name(declaration.name)
         if fault is None and declaration.name.startswith("~"):
-            fault = "is private, which only a node's own topic can be"
+            fault = "is private ('~'), and only a topic of a node can be"
         yield from _refused(fault, declaration.name, declaration.name_span)
         if declaration.type is not None and declaration.type_span is not None:
             yield from type_finding(store, declaration.type, declaration.type_span)
@@ -122,7 +122,7 @@ def _unused_imports(system: System) -> Iterator[Diagnostic]:
         if files and used.isdisjoint(files):
             yield report(
                 codes.UNUSED_IMPORT,
-                f'nothing from "{line.path}" is used',
+                f'the import of "{line.path}" is not used',
                 line.span,
                 hint="remove the import, or add the node that it was meant for",
             )

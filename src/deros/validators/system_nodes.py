@@ -70,7 +70,7 @@ def _setting(
             yield from _override(node, node_type, setting)
             fault = check_parameter_name(setting.name)
             if fault is not None:
-                message = f"ROS 2 refuses the name '{setting.name}': it {fault}"
+                message = f"ROS 2 rejects the name '{setting.name}': it {fault}"
                 yield report(codes.INVALID_SYSTEM_NAME, message, setting.name_span)
         elif kind is None:
             names = [p.name for p in node_type.parameters]
@@ -105,11 +105,11 @@ def _override(
             continue
         yield report(
             codes.QOS_OVERRIDE_UNREAD,
-            f"'{node.full_name}' does not read this: the QoS of '{port.port.name}' is that of its"
-            " description",
+            f"'{node.full_name}' does not read this override: the QoS of '{port.port.name}' is"
+            " fixed by its node description",
             setting.name_span,
-            "write the 'qos' of the port in the node description; for a program that exists"
-            " already, say so there by 'executable'",
+            "state the 'qos' of the port in the node description; if the program exists already,"
+            " declare it there with 'executable'",
             (Related(port.port.span, f"'{port.port.name}' is declared here"),),
         )
         return
@@ -146,7 +146,7 @@ def _topic_setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[D
     if any(port.via == setting.name for port in node_type.ports):
         fault = check_topic_name(value)
         if fault is not None:
-            message = f"ROS 2 refuses the name '{value}': it {fault}"
+            message = f"ROS 2 rejects the name '{value}': it {fault}"
             yield report(codes.INVALID_SYSTEM_NAME, message, setting.value_span)
 
 
@@ -235,7 +235,7 @@ def _wirings(
             if target not in declared and not is_standard:
                 yield report(
                     codes.UNKNOWN_TOPIC,
-                    f"no topic '{target}' is declared",
+                    f"topic '{target}' is not declared",
                     wiring.target_span,
                     hint=index.did_you_mean(
                         target, f"declare it: 'topic {wiring.target}' under 'topics'"
@@ -325,9 +325,9 @@ def _conflict(node: FlatNode, parameter: str, wiring: Wiring) -> Iterator[Diagno
     if full(setting.value) != full(wiring.target):
         yield report(
             codes.TOPIC_PARAMETER_CONFLICT,
-            f"parameter '{setting.name}' says \"{setting.value}\", "
+            f"parameter '{setting.name}' is set to \"{setting.value}\", "
             f"but is connected to '{wiring.target}'",
             setting.value_span,
-            hint="the wiring alone is enough: remove the param",
+            hint="remove the param: the wiring sets it",
             related=(Related(wiring.span, "connected here"),),
         )

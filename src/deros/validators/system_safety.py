@@ -52,7 +52,7 @@ def _seconds(code: Code, topic: str, what: str, publishers: Sequence[End]) -> It
                 f"'{each.node.full_name}' publishes '{topic}', {what}, besides"
                 f" '{first.node.full_name}'",
                 each.span,
-                "give each safety node topics of its own, and other nodes none of these",
+                "give each safety node its own topics, and publish them from no other node",
                 (Related(first.span, "the other publisher"),),
             )
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from deros.interfaces.types import InterfaceType
 
 _COMPARED = 20
-"""So many topics of a type that nobody subscribes to are looked at to find one for another."""
+"""So many topics of a type that no node subscribes to are looked at to find one for another."""
 
 
 def check_topics(
@@ -149,7 +149,7 @@ def _missing_ends(
         if not topic.sources and not topic.sinks:
             yield report(
                 codes.UNUSED_TOPIC,
-                f"nobody publishes or subscribes to '{topic.name}'",
+                f"no node publishes or subscribes to '{topic.name}'",
                 topic.span,
                 hint="remove the declaration, or connect ports to it",
             )
@@ -157,14 +157,14 @@ def _missing_ends(
             other = next((t for t in fed[topic.type] if partners.can_join(t, topic)), None)
             yield _one_sided(
                 codes.NO_PUBLISHER,
-                f"nobody publishes '{topic.name}', "
+                f"no node publishes '{topic.name}', "
                 f"which {_names(topic.sinks)} subscribe{_s(topic.sinks)} to",
                 topic,
                 topic.sinks,
-                f"'{other.name}' has the same type and nobody subscribes to it; " if other else "",
+                f"'{other.name}' has the same type and no node subscribes to it; " if other else "",
             )
         elif topic.sources and _is_unread(topic) and not is_shown_only(topic.type):
-            somebody = "nobody else subscribes" if topic.sinks else "nobody subscribes"
+            somebody = "no other node subscribes" if topic.sinks else "no node subscribes"
             yield _one_sided(
                 codes.NO_SUBSCRIBER,
                 f"{somebody} to '{topic.name}', which {_names(topic.sources)} "
@@ -189,7 +189,7 @@ def _subscribed_instead(topic: Channel, partners: Partners[Channel]) -> str:
 
 
 def _one_sided(code: Code, message: str, topic: Channel, ends: list[End], hint: str) -> Diagnostic:
-    direction = "fed from" if code is codes.NO_PUBLISHER else "read"
+    direction = "published" if code is codes.NO_PUBLISHER else "read"
     return report(
         code,
         message,
@@ -226,7 +226,7 @@ def _missing_server(channel: Channel, nodes: Mapping[str, FlatNode]) -> Iterator
                 yield report(
                     codes.TYPE_MISMATCH,
                     f"'{name}' joins two types: {end.name} has {end.type.short}, "
-                    f"'{owner}' serves {served.short} as every node of its kind",
+                    f"'{owner}' serves {served.short} like every node of its kind",
                     end.span,
                     related=(Related(end.port.port.type_span, "the client is declared here"),),
                 )
@@ -284,10 +284,15 @@ def _misspelling(read: Channel, matches: list[Channel]) -> Diagnostic:
     names = f"{', '.join(others)} or {last}" if others else last
     kind = fed.type.short
     if fed.sinks or fed.open:
-        message = f"nobody publishes '{read.name}', but '{fed.name}' with its type, {kind}"
+        message = (
+            f"no node publishes '{read.name}', but '{fed.name}' is published with the same type,"
+            f" {kind}"
+        )
         hint = f"connect {_names(read.sinks)} to {names}"
     else:
-        message = f"'{read.name}' is only subscribed and '{fed.name}' only published, both {kind}"
+        message = (
+            f"'{read.name}' is only subscribed to and '{fed.name}' only published, both {kind}"
+        )
         hint = f"connect {_names(read.sinks)} to {names}, or the other way round"
     return report(
         codes.LIKELY_MISSPELLING,

@@ -156,11 +156,11 @@ def _hint(name: str, port: FlatPort, by_vertex: Mapping[Vertex, Channel]) -> str
     topic = port.topic
     channel = by_vertex.get(("topic", topic))
     if channel is not None and channel.declared is not None:
-        return f"'{topic}' is declared and has its name: add 'connect {name} to {topic}'"
+        return f"'{topic}' is declared with this name: add 'connect {name} to {topic}'"
     if CHANNEL[port.port.kind] != "topic":
-        return f"it calls its own name, '{topic}', unless a 'connect {name} to …' says otherwise"
-    way = "goes out of" if port.port.kind is PortKind.PUBLISHER else "comes from outside"
+        return f"it uses its own name, '{topic}'; 'connect {name} to …' changes that"
+    way = "read" if port.port.kind is PortKind.PUBLISHER else "published"
     return (
-        f"it talks on its own name, '{topic}', unless a 'connect {name} to …' says otherwise; what"
-        f" {way} the model is an 'external topic'"
+        f"it uses its own name, '{topic}'; write 'connect {name} to …', and declare an 'external"
+        f" topic' if that is {way} outside the model"
     )

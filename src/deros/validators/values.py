@@ -68,14 +68,16 @@ def type_fault(kind: ParameterType, value: Value) -> str | None:
     fits = _FITS[kind]
     if isinstance(value, tuple):
         if not kind.is_array:
-            return f"a list is no {kind.value}"
+            return f"a list is not of type {kind.value}"
         wrong = next((element for element in value if not fits(element)), None)
         if wrong is None:
             return None
-        return f"{show(wrong)} is no element of {kind.value}{_because(kind, wrong)}"
+        return f"{show(wrong)} is not an element of {kind.value}{_because(kind, wrong)}"
     if kind.is_array:
-        return f"{show(value)} is no list, {kind.value} needs one in brackets"
-    return None if fits(value) else f"{show(value)} is no {kind.value}{_because(kind, value)}"
+        return f"{show(value)} is not a list; {kind.value} needs a list in brackets"
+    return (
+        None if fits(value) else f"{show(value)} is not of type {kind.value}{_because(kind, value)}"
+    )
 
 
 def constraint_fault(parameter: Parameter, value: Value) -> str | None:
@@ -87,7 +89,7 @@ def constraint_fault(parameter: Parameter, value: Value) -> str | None:
     if parameter.unique:
         twice = next((one for one, other in combinations(elements, 2) if one == other), None)
         if twice is not None:
-            return f"{show(twice)} comes twice where the declaration says unique"
+            return f"{show(twice)} occurs twice, but the declaration says unique"
     if parameter.interval is not None and is_numeric(parameter.type):
         for element in elements:
             if not isinstance(element, str) and element not in parameter.interval:
@@ -95,7 +97,7 @@ def constraint_fault(parameter: Parameter, value: Value) -> str | None:
     if parameter.choices is not None:
         for element in elements:
             if element not in parameter.choices:
-                return f"{show(element)} is none of {', '.join(map(show, parameter.choices))}"
+                return f"{show(element)} is not one of {', '.join(map(show, parameter.choices))}"
     return None
 
 
@@ -107,7 +109,7 @@ def entry_faults(node: NodeType, key: Parameter, value: Value) -> Iterator[str]:
     entries = [entry for entry in value if isinstance(entry, str)]
     twice = sorted({entry for entry in entries if entries.count(entry) > 1})
     for entry in twice:
-        yield f"the entry {show(entry)} comes twice, and names '{declared[0].name_for(entry)}'"
+        yield f"the entry {show(entry)} occurs twice, and both name '{declared[0].name_for(entry)}'"
     for entry in dict.fromkeys(entries):
         for parameter in declared:
             name = parameter.name_for(entry)
@@ -115,7 +117,7 @@ def entry_faults(node: NodeType, key: Parameter, value: Value) -> Iterator[str]:
             if why is not None:
                 yield f"the entry {show(entry)} names the parameter '{name}', which {why}"
             elif node.parameter(name) is not None:
-                yield f"the entry {show(entry)} names the parameter '{name}', which is another one"
+                yield f"the entry {show(entry)} names '{name}', which is declared separately"
 
 
 def _size_fault(parameter: Parameter, value: Value) -> str | None:
@@ -123,15 +125,15 @@ def _size_fault(parameter: Parameter, value: Value) -> str | None:
     if not isinstance(value, (tuple, str)):
         return None
     size = len(value)
-    has = f"{size} {'elements' if isinstance(value, tuple) else 'characters'}"
+    has = f"it has {size} {'elements' if isinstance(value, tuple) else 'characters'}"
     if parameter.size is not None and size != parameter.size:
-        return f"{has} where the declaration says size {parameter.size}"
+        return f"{has}, but the declaration says size {parameter.size}"
     if parameter.not_empty and not size:
-        return "it is empty where the declaration says not_empty"
+        return "it is empty, but the declaration says not_empty"
     if parameter.min_size is not None and size < parameter.min_size:
-        return f"{has} where the declaration says min_size {parameter.min_size}"
+        return f"{has}, but the declaration says min_size {parameter.min_size}"
     if parameter.max_size is not None and size > parameter.max_size:
-        return f"{has} where the declaration says max_size {parameter.max_size}"
+        return f"{has}, but the declaration says max_size {parameter.max_size}"
     return None
 
 
