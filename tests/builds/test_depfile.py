@@ -80,7 +80,7 @@ build/robot_monitor.c: build/robot.stamp ;
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make")
-def test_makefile_with_a_depfile(tmp_path: Path) -> None:
+def test_makefile_with_a_depfile_rebuilds_only_changes(tmp_path: Path) -> None:
     """Make generates exactly when an imported model changes."""
     models(tmp_path)
     (tmp_path / "Makefile").write_text(MAKEFILE.format(deros=frozen_program()))

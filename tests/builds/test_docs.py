@@ -94,7 +94,7 @@ def test_every_snippet_has_a_test() -> None:
 @needs_c
 @needs_cmake
 @pytest.mark.parametrize("kind", ["", "STATIC", "OBJECT"])
-def test_monitor_library_snippet(folder: Path, kind: str) -> None:
+def test_monitor_library_snippet_builds_and_runs(folder: Path, kind: str) -> None:
     """The project of the page compiles, links and runs, with each kind of library."""
     script = _snippet("cmake", "deros_add_monitor").replace(
         "MODEL models/robot.deros", f"MODEL models/robot.deros {kind}".rstrip()
@@ -106,7 +106,7 @@ def test_monitor_library_snippet(folder: Path, kind: str) -> None:
 
 
 @needs_cmake
-def test_generate_snippet(folder: Path) -> None:
+def test_generate_snippet_builds_the_launch_file(folder: Path) -> None:
     """The target of the page generates the launch file that it installs."""
     script = HEAD + _snippet("cmake", "deros_generate")
     project: Project = configured(folder, GENERATORS[1], script)
@@ -143,7 +143,7 @@ def test_scaffold_matches_the_page(
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make")
-def test_make_snippet(folder: Path) -> None:
+def test_make_snippet_rebuilds_only_changes(folder: Path) -> None:
     """The rules for Make generate once, and again when a model changes."""
     (folder / "Makefile").write_text(_snippet("make", "--depfile"), encoding="utf-8")
     program = frozen_program().parent

@@ -61,7 +61,7 @@ def test_unknown_code_gets_suggestions(word: str, hint: str) -> None:
     assert hint in outcome.err
 
 
-def test_several_codes_or_none() -> None:
+def test_several_codes_are_explained_and_no_code_lists_all() -> None:
     """The pages follow each other; without a code, all are listed."""
     both = deros("explain", "DRS317", "DRS210").out
     assert both.index("# DRS317") < both.index("# DRS210")

@@ -252,7 +252,7 @@ def test_file_names_that_are_not_utf8(tmp_path: Path) -> None:
         assert b"bug in deros" not in done.stderr
 
 
-def test_lone_surrogate_in_a_trace(tmp_path: Path) -> None:
+def test_lone_surrogate_in_a_trace_is_reported(tmp_path: Path) -> None:
     """JSON may contain a character that no stream accepts; it is still reported."""
     (tmp_path / "r.deros").write_text("action stop")
     (tmp_path / "t").write_text('{"t": 1, "topic": "\\ud800", "data": {}}\n')

@@ -47,7 +47,7 @@ def test_edited_files_are_kept_without_overwrite() -> None:
     assert file.read_text() == generated
 
 
-def test_generator_options() -> None:
+def test_options_reach_the_generator() -> None:
     """``--name value`` and ``--name=value`` reach the generator; unknown options are reported."""
     for given in (["--maintainer", "Jo <jo@example.com>"], ["--maintainer=Jo <jo@example.com>"]):
         outcome = deros("generate", "courier_base.rnd", "--target", "python", "-o", "out", *given)

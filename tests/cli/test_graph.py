@@ -68,7 +68,7 @@ def test_text_lists_the_ends_of_each_channel(models: Path) -> None:
     ]
 
 
-def test_mermaid_frames_and_dashed_edges(models: Path) -> None:
+def test_mermaid_has_nested_frames_and_dashed_edges(models: Path) -> None:
     """Subsystems are nested frames, unconnected ports dashed edges."""
     result = run(models / "chat.system", "--format", "mermaid")
     assert result.stdout.splitlines() == [

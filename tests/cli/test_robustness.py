@@ -82,7 +82,7 @@ def test_undamaged_models_are_clean() -> None:
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_truncated_models(models: Path, name: str) -> None:
+def test_truncated_models_give_findings(models: Path, name: str) -> None:
     """A model cut off anywhere gives findings with valid places."""
     text = MODELS[name]
     for length in range(0, len(text), 7):
@@ -93,7 +93,7 @@ def test_truncated_models(models: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_damaged_bytes(models: Path, name: str) -> None:
+def test_damaged_bytes_give_findings(models: Path, name: str) -> None:
     """Random changes of bytes give findings, or another valid model."""
     chance = random.Random(name)
     for _ in range(60):
@@ -106,7 +106,7 @@ def test_damaged_bytes(models: Path, name: str) -> None:
 
 @settings(max_examples=scaled(80))
 @given(content=st.binary(max_size=300), suffix=st.sampled_from([".rnd", ".system", ".deros"]))
-def test_random_bytes(
+def test_random_bytes_give_findings(
     tmp_path_factory: pytest.TempPathFactory, content: bytes, suffix: str
 ) -> None:
     """Random bytes are not a model, and do not crash."""
@@ -135,7 +135,7 @@ def test_random_bytes(
     ],
     ids=lambda content: repr(content[:12]),
 )
-def test_unusual_files(tmp_path: Path, suffix: str, content: bytes) -> None:
+def test_unusual_files_give_findings(tmp_path: Path, suffix: str, content: bytes) -> None:
     """Empty, binary, unfinished, deeply nested and exotic files give findings."""
     path = tmp_path / f"odd.{suffix}"
     path.write_bytes(content)
@@ -144,7 +144,7 @@ def test_unusual_files(tmp_path: Path, suffix: str, content: bytes) -> None:
 
 
 @pytest.mark.parametrize("depth", [50, 5000])
-def test_nested_conditions(models: Path, depth: int) -> None:
+def test_nesting_of_conditions_is_limited(models: Path, depth: int) -> None:
     """Realistic nesting is accepted, extreme nesting is rejected."""
     condition = "(" * depth + "speed > limit" + ")" * depth
     text = MODELS["robot.deros"].replace("speed.abs() > limit for", f"{condition} for")
@@ -153,7 +153,7 @@ def test_nested_conditions(models: Path, depth: int) -> None:
     assert codes == (set() if depth == 50 else {"DRS004"})
 
 
-def test_long_conditions(models: Path) -> None:
+def test_long_condition_is_accepted(models: Path) -> None:
     """A condition of thousands of terms is long, not deeply nested."""
     condition = " or ".join(["speed > limit"] * 3000)
     text = MODELS["robot.deros"].replace("speed.abs() > limit for", f"({condition}) for")
@@ -161,7 +161,7 @@ def test_long_conditions(models: Path) -> None:
     assert {finding["code"] for finding in _findings("robot.deros")[1]} <= {"DRS004"}
 
 
-def test_import_cycles(models: Path) -> None:
+def test_import_cycle_is_one_finding(models: Path) -> None:
     """A system that imports itself, directly or indirectly, is one finding."""
     (models / "robot.system").write_text('system Robot\nimports import "robot.system"\n')
     assert "DRS202" in {finding["code"] for finding in _findings("robot.system")[1]}

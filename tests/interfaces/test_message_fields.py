@@ -9,7 +9,7 @@ from deros.interfaces.types import FieldType, InterfaceType
 STORE = InterfaceStore()
 
 
-def test_element_type_of_an_array() -> None:
+def test_type_of_an_array_element_is_that_of_one_number() -> None:
     """The type of an indexed element is that of one number."""
     imu = InterfaceType("sensor_msgs", "msg", "Imu")
     assert field_type(STORE, imu, ("orientation_covariance", 8)) == FieldType("float64")

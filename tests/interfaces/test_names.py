@@ -110,25 +110,25 @@ def test_invalid_topic_name_has_a_reason(name: str, reason: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["/scan", "scan", "~/reset", "a/b_1", "~", "_x"])
-def test_valid_topic_names(name: str) -> None:
+def test_valid_topic_names_are_accepted(name: str) -> None:
     """Absolute, relative and private names are accepted."""
     assert check_topic_name(name) is None
 
 
 @pytest.mark.parametrize("name", ["std_msgs", "a1", "my_robot_2"])
-def test_valid_package_names(name: str) -> None:
+def test_valid_package_names_are_accepted(name: str) -> None:
     """Names that conform to REP 144 are accepted."""
     assert check_package_name(name) is None
 
 
 @pytest.mark.parametrize("name", ["", "a", "Upper", "a-b", "1ab", "a__b", "ab_", "_ab"])
-def test_invalid_package_names(name: str) -> None:
+def test_invalid_package_names_have_a_reason(name: str) -> None:
     """Names that REP 144 or rosidl rejects have a reason."""
     assert check_package_name(name)
 
 
 @pytest.mark.parametrize("name", ["", "a b", "a..b", ".a", "a.", "a:b", "ü", "a" * 2000])
-def test_invalid_parameter_names(name: str) -> None:
+def test_invalid_parameter_names_have_a_reason(name: str) -> None:
     """Names that some ROS 2 tool cannot handle have a reason."""
     assert check_parameter_name(name)
 
@@ -136,19 +136,19 @@ def test_invalid_parameter_names(name: str) -> None:
 @pytest.mark.parametrize(
     "name", ["pid.gains.p", "qos_overrides./tf.publisher.depth", "a-b", "3d", "/", "a.1", "x/"]
 )
-def test_valid_parameter_names(name: str) -> None:
+def test_valid_parameter_names_are_accepted(name: str) -> None:
     """Letters, digits and ``_ . / -`` are accepted, in parts separated by dots."""
     assert check_parameter_name(name) is None
 
 
 @pytest.mark.parametrize(("name", "passes"), [("tick", True), ("2nd", False), ("a.b", False)])
-def test_timer_names(name: str, passes: bool) -> None:
+def test_timer_name_must_be_valid_in_a_method_name(name: str, passes: bool) -> None:
     """The name of a timer becomes part of a method name."""
     assert (check_timer_name(name) is None) is passes
 
 
 @pytest.mark.parametrize("name", ["/", "/a/b", "front", "a/b"])
-def test_valid_namespaces(name: str) -> None:
+def test_valid_namespaces_are_accepted(name: str) -> None:
     """A namespace may be the root, absolute or relative."""
     assert check_namespace(name) is None
 

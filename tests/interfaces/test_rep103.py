@@ -37,7 +37,9 @@ TABLE = json.loads(Path(rep103.__file__).with_suffix(".json").read_text(encoding
         ("no_such/Thing", ("x", "y"), None),
     ],
 )
-def test_unit_of_a_field(kind: str, path: tuple[str | int, ...], unit: str | None) -> None:
+def test_unit_applies_to_nested_fields_and_elements(
+    kind: str, path: tuple[str | int, ...], unit: str | None
+) -> None:
     """A unit applies wherever its message is nested, and to the elements of an array."""
     package, _, name = kind.partition("/")
     assert rep103.unit_of(STORE, InterfaceType(package, "msg", name), path) == unit

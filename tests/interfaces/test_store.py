@@ -34,7 +34,7 @@ def embedded() -> InterfaceStore:
     return InterfaceStore(prefixes=())
 
 
-def test_embedded_messages_services_and_actions(embedded: InterfaceStore) -> None:
+def test_embedded_interfaces_are_known_without_ros(embedded: InterfaceStore) -> None:
     """The common interfaces are known without ROS 2 on the machine."""
     message = embedded.message(BOOL)
     assert message is not None
@@ -54,7 +54,7 @@ def test_services_of_every_node_are_embedded(embedded: InterfaceStore) -> None:
             assert embedded.service(kind), kind
 
 
-def test_embedded_arrays_bounds_constants_and_defaults(embedded: InterfaceStore) -> None:
+def test_embedded_definitions_keep_bounds_constants_and_defaults(embedded: InterfaceStore) -> None:
     """The embedded definitions contain all that the checks need."""
     solid = embedded.message(InterfaceType("shape_msgs", "msg", "SolidPrimitive"))
     quaternion = embedded.message(InterfaceType("geometry_msgs", "msg", "Quaternion"))
@@ -95,7 +95,7 @@ def test_unknown_interface_is_none(embedded: InterfaceStore) -> None:
 
 
 @pytest.mark.parametrize("root", ["", "src", "src/deep/my_msgs", "src/deep/my_msgs/msg"])
-def test_interface_folder_at_any_level(tmp_path: Path, root: str) -> None:
+def test_interface_folder_may_be_given_at_any_level(tmp_path: Path, root: str) -> None:
     """A workspace, a package and its msg folder all work as ``--interfaces``."""
     write(tmp_path / "src/deep/my_msgs/msg/Thing.msg", "int8 x\n")
     store = InterfaceStore([tmp_path / root], prefixes=())

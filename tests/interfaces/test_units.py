@@ -78,7 +78,7 @@ def test_table_agrees_with_pint(word: str) -> None:
         ("furlong", "length"),
     ],
 )
-def test_dimension_of_units(text: str, dimension: str) -> None:
+def test_units_have_a_dimension(text: str, dimension: str) -> None:
     """Products, quotients and powers are parsed in the usual spellings."""
     assert unit(text).dimension == dimension
 
@@ -213,7 +213,7 @@ def test_conversion_to_the_same_unit_is_exact(word: str, value: Decimal) -> None
     assert REGISTRY.factor(unit(word), unit(word)) == (1.0, 0.0)
 
 
-def test_user_defined_units() -> None:
+def test_user_defined_units_may_refer_to_each_other() -> None:
     """They may refer to each other in any order, be part of compounds, and hide known ones."""
     registry = UnitRegistry(
         {

@@ -123,7 +123,7 @@ def test_reset_and_resume_clauses() -> None:
     assert _gate(PRINTED).resume is None
 
 
-def test_gate_description() -> None:
+def test_gate_may_have_a_description() -> None:
     """A text after the rate describes the gate."""
     assert _gate('gate a -> b : x.Y rate 1 Hz "The drive" { a: zero; }').description == "The drive"
 
@@ -134,7 +134,7 @@ def _limit(text: str) -> GateLimit:
     return limit
 
 
-def test_limit_bounds() -> None:
+def test_limit_bounds_may_have_names_and_units() -> None:
     """Bounds may be names, have their own units, and be open or closed."""
     limit = _limit("position[2].x to (-low, 3 cm] m")
     assert limit.path == ("position", 2, "x")
@@ -145,7 +145,7 @@ def test_limit_bounds() -> None:
     assert (limit.upper.unit, limit.unit) == ("cm", "m")
 
 
-def test_limit_spans() -> None:
+def test_limit_has_exact_spans() -> None:
     """A limit stores the spans of its field, interval and unit."""
     limit = _limit("linear.x to [-1, 1] m/s")
     spans = (limit.span, limit.path_span, limit.interval_span, limit.unit_span)
@@ -223,7 +223,7 @@ def test_gate_keywords_after_a_number_are_not_units() -> None:
     assert [limit.unit for limit in rules.gates[0].lines[0].limits] == [None]
 
 
-def test_optional_behaviour() -> None:
+def test_keyword_makes_a_behaviour_optional() -> None:
     """``optional`` before a named behaviour, nested or not, makes it optional."""
     (outer,) = _rules(
         "optional behaviour a: if e.r then { stop; optional behaviour b: if e.s then { stop; } };"
@@ -263,7 +263,7 @@ def test_optional_behaviour_needs_a_name() -> None:
         ("gate a -> b : x.Y rate 1 Hz { lost command for 1 s: zero; }", "found 'command' where"),
     ],
 )
-def test_gate_syntax_errors(text: str, message: str) -> None:
+def test_gate_syntax_error_names_the_missing_token(text: str, message: str) -> None:
     """The message names the missing token at its place."""
     (error,) = _errors(text)
     assert error[0].startswith(message)

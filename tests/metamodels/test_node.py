@@ -36,7 +36,7 @@ def _findings(body: str) -> list[tuple[Code, str]]:
     return [(found.code, found.span.text) for found in loaded.diagnostics]
 
 
-def test_node_header() -> None:
+def test_node_header_has_description_executable_and_lifecycle() -> None:
     """Description, executable and lifecycle follow the package."""
     node = _node('"Turns ticks into odometry" executable "odometry" lifecycle')
     assert node.description == "Turns ticks into odometry"
@@ -67,7 +67,9 @@ def test_executable_defaults_to_the_node_name() -> None:
         ("double", ParameterType.DOUBLE, None),
     ],
 )
-def test_parameter_types_and_defaults(text: str, kind: ParameterType, default: object) -> None:
+def test_parameters_have_types_and_defaults(
+    text: str, kind: ParameterType, default: object
+) -> None:
     """Every ROS 2 type is read; a whole number for a double becomes one."""
     parameter = _parameter(text)
     assert parameter.type is kind
@@ -75,7 +77,7 @@ def test_parameter_types_and_defaults(text: str, kind: ParameterType, default: o
     assert type(parameter.default) is type(default)
 
 
-def test_parameter_attributes_in_any_order() -> None:
+def test_parameter_attributes_may_have_any_order() -> None:
     """Unit, bounds, description and read_only may follow the default in any order."""
     for text in (
         'double = 0.52 [m] in [0.1, 2.0) "Distance" read_only',
@@ -88,7 +90,7 @@ def test_parameter_attributes_in_any_order() -> None:
         assert parameter.read_only
 
 
-def test_parameter_choices_and_size() -> None:
+def test_parameter_may_have_choices_or_a_size() -> None:
     """``one_of`` lists values, ``size`` gives the length of an array."""
     assert _parameter('string = "a" one_of ["a", "b"]').choices == ("a", "b")
     assert _parameter("double = 1 one_of [1, 2.5]").choices == (1.0, 2.5)
@@ -96,7 +98,7 @@ def test_parameter_choices_and_size() -> None:
 
 
 @pytest.mark.parametrize("spelling", ["std_msgs.Bool", "std_msgs/Bool", "std_msgs/msg/Bool"])
-def test_three_spellings_of_an_interface_type(spelling: str) -> None:
+def test_interface_type_has_three_spellings(spelling: str) -> None:
     """All three spellings are one type."""
     assert _port(f"topic x : {spelling}").type == InterfaceType("std_msgs", "msg", "Bool")
 
@@ -120,7 +122,7 @@ def test_sections_determine_kinds_of_ports(
     assert (port.kind, port.name, port.type.kind) == (kind, "~/x", interface)
 
 
-def test_qos_policies() -> None:
+def test_qos_policies_are_parsed() -> None:
     """Every QoS keyword is read, durations as nanoseconds."""
     port = _port(
         "topic x : a.B qos best_effort transient_local depth 5 deadline 100 ms "
@@ -141,7 +143,7 @@ def test_qos_policies() -> None:
     )
 
 
-def test_qos_presets_named_like_sections() -> None:
+def test_qos_presets_may_have_names_of_sections() -> None:
     """``services`` and ``parameters`` are presets after ``qos``, unless they open a section."""
     node = _node("publishes topic x : a.B qos services parameters name y : int")
     assert node.ports[0].qos == QosProfile(preset="services")
@@ -151,7 +153,7 @@ def test_qos_presets_named_like_sections() -> None:
     assert [p.name for p in node.ports] == ["x", "y"]
 
 
-def test_field_units_and_topic_parameter() -> None:
+def test_port_may_have_field_units_and_a_topic_parameter() -> None:
     """Units of fields are in braces; ``via`` names the parameter with the topic name."""
     port = _port(
         "topic odom : nav_msgs.Odometry { twist.twist.linear.x [m/s], position[2] [ rad ] } "
@@ -164,7 +166,7 @@ def test_field_units_and_topic_parameter() -> None:
     assert (port.via, port.description) == ("odom_topic", "Where we are")
 
 
-def test_timer_period() -> None:
+def test_timer_period_is_in_nanoseconds() -> None:
     """The period of a timer is in whole nanoseconds."""
     (timer,) = _node('timers timer control every 20 ms "The control loop"').timers
     assert (timer.name, timer.period_ns, timer.description) == (
@@ -254,7 +256,7 @@ def test_repeated_section_is_kept() -> None:
         ("<joints>", "<joints>"),
     ],
 )
-def test_parameter_names(text: str, name: str) -> None:
+def test_special_parameter_names_are_quoted(text: str, name: str) -> None:
     """Quotes are needed where the name would be read as a comment or a number."""
     node = _node(f"parameters name {text} : double publishes topic t : std_msgs.Bool via {text}")
     assert [each.name for each in node.parameters] == [name]
@@ -272,7 +274,7 @@ def test_parameter_names(text: str, name: str) -> None:
         ("< 2 > 0", 0, 2, False, False),
     ],
 )
-def test_parameter_bounds(
+def test_parameter_bounds_may_be_one_sided(
     text: str, lower: float, upper: float, lower_closed: bool, upper_closed: bool
 ) -> None:
     """A bound on one side leaves the other unbounded; two make a range."""
@@ -288,7 +290,7 @@ def test_second_bound_on_one_side_is_a_finding() -> None:
         assert code is codes.DUPLICATE_SECTION
 
 
-def test_sizes_and_element_constraints() -> None:
+def test_parameters_may_have_sizes_and_element_constraints() -> None:
     """Sizes, uniqueness and custom functions are read, the latter with their places."""
     text = 'not_empty unique min_size 1 max_size 3 custom "a::b" custom "c::d::e" "The joints"'
     parameter = _parameter(f'string[] = ["x"] {text}')
@@ -303,7 +305,7 @@ def test_sizes_and_element_constraints() -> None:
 
 
 @pytest.mark.parametrize("text", ["nan", "inf", "-inf", "+inf"])
-def test_nan_and_infinite_doubles(text: str) -> None:
+def test_doubles_may_be_nan_or_infinite(text: str) -> None:
     """They are written as in Python and C++, alone or in arrays."""
     assert repr(_parameter(f"double = {text}").default) == repr(float(text))
     assert repr(_parameter(f"double[] = [{text}, 1]").default) == repr((float(text), 1.0))
@@ -325,7 +327,7 @@ def test_one_name_for_ports_of_all_kinds() -> None:
     assert node.ports_named("z", PortKind.PUBLISHER) == ()
 
 
-def test_map_parameters() -> None:
+def test_map_parameters_have_names_and_keys() -> None:
     """A parameter has a name for each map key, and finds the key of a name."""
     node = _node("parameters name joints : string[] name gains.<joints>.p : double")
     gains = node.parameters[1]

@@ -62,7 +62,7 @@ def test_every_listing_checks_without_errors(system: Path, listing: str) -> None
     assert {found.code for found in findings} == {codes.INPUT_WITHOUT_TIMEOUT, *blind}
 
 
-def test_figure_2_constants_and_inputs(system: Path) -> None:
+def test_figure_2_constants_and_inputs_are_exact(system: Path) -> None:
     """Constants keep their exact number and unit; an input is a topic and a field path."""
     rules = _rules(system, paper.FIGURE_2)
     tilt, speed = rules.constants
@@ -79,7 +79,7 @@ def test_figure_2_constants_and_inputs(system: Path) -> None:
     assert linear_speed.path == ("twist", "twist", "linear", "x")
 
 
-def test_figure_2_rules(system: Path) -> None:
+def test_figure_2_rules_have_the_described_conditions(system: Path) -> None:
     """``not in`` is a membership of negated constants; ``for`` closes the whole rule."""
     tilt, speed = (entity.rules[0] for entity in _rules(system, paper.FIGURE_2).entities)
     assert isinstance(tilt.condition, Or)
@@ -98,7 +98,7 @@ def test_figure_2_rules(system: Path) -> None:
     assert speed.condition.duration.unit == "sec"
 
 
-def test_figure_2_behaviours(system: Path) -> None:
+def test_figure_2_behaviours_name_rules(system: Path) -> None:
     """A behaviour's condition names a rule of an entity, with its own ``for``."""
     first, second = _rules(system, paper.FIGURE_2).behaviours
     assert isinstance(first.condition, Truth)
@@ -115,7 +115,7 @@ def test_section_4_2_delays_the_other_behaviour(system: Path) -> None:
     assert isinstance(second.condition, Truth)
 
 
-def test_figure_9_topic_term_across_lines(system: Path) -> None:
+def test_figure_9_topic_term_may_span_lines(system: Path) -> None:
     """A topic term may break after a dot, and ``=topic`` needs no space."""
     (linear_speed,) = _rules(system, paper.FIGURE_9).inputs
     assert linear_speed.term.path == ("twist", "twist", "linear", "x")
@@ -172,7 +172,7 @@ def test_figure_12_is_a_system(system: Path) -> None:
     assert odometry.type is not None
 
 
-def test_section_6_3_conditions_and_bodies(system: Path) -> None:
+def test_section_6_3_conditions_nest_as_written(system: Path) -> None:
     """``if((a and b and c) or d)`` nests as its parentheses say; bodies keep their order."""
     rules = _rules(system, paper.SECTION_6_3)
     tilt = rules.entities[0].rules[0].condition

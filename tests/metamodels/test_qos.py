@@ -124,7 +124,7 @@ PINS = [
 
 
 @pytest.mark.parametrize(("pin", "profile", "wrong"), PINS)
-def test_pinned_qos_violations(
+def test_violations_of_pinned_qos_are_found(
     pin: QosProfile, profile: QosProfile | None, wrong: tuple[str, str]
 ) -> None:
     """A publisher must offer at least the pinned QoS, a subscription request exactly that."""
@@ -155,7 +155,7 @@ def test_open_policy_is_not_a_certain_violation() -> None:
         ("scan.subscription.reliability", None),
     ],
 )
-def test_override_parameter_names(parameter: str, policy: str | None) -> None:
+def test_override_parameters_are_recognised_by_name(parameter: str, policy: str | None) -> None:
     """The name has topic, kind of end, an optional identifier and policy."""
     assert overridden_policy(parameter, "/scan", "subscription") == policy
 

@@ -130,7 +130,7 @@ def _words(found: Condition | Term) -> str:
         ("notable and orderly or informed", "((notable and orderly) or informed)"),
     ],
 )
-def test_conditions(text: str, tree: str) -> None:
+def test_conditions_are_parsed_with_their_precedence(text: str, tree: str) -> None:
     """Precedence, ``for``, intervals, terms and units."""
     assert _words(_condition(text)) == tree
 
@@ -164,7 +164,7 @@ def test_sections_come_in_any_order() -> None:
     assert len(rules.behaviours) == len(rules.entities) == len(rules.actions) == 1
 
 
-def test_action_declarations() -> None:
+def test_action_declarations_are_parsed() -> None:
     """Plain actions, arguments, bindings, resets and latches."""
     plain, beep, stop, motor, described = _rules(
         "action plain; action beep(times, pitch); "
@@ -191,7 +191,7 @@ def test_action_declarations() -> None:
     assert described.description == "Says something"
 
 
-def test_input_declarations() -> None:
+def test_input_declarations_are_parsed() -> None:
     """Timeout, description and ``=`` are optional, and the term may be a whole message."""
     field, whole, bare = _rules(
         'input a = topic /odom.twist.twist.linear.x timeout 0.5 sec "Speed" '
@@ -222,7 +222,7 @@ def test_behaviours() -> None:
     assert last.action.text == "halt"
 
 
-def test_units_and_constants() -> None:
+def test_units_and_constants_may_refer_to_others() -> None:
     """A unit is a multiple of another; a constant is a number, a conversion or another constant."""
     rules = _rules("unit knot = 0.514444 m/s const a = toRad(-8 deg) const b = a const c = -a")
     (knot,) = rules.units
@@ -243,7 +243,7 @@ def test_keywords_are_valid_names_where_unambiguous() -> None:
     assert _words(behaviour.condition) == "(entity.topic and topic.for)"
 
 
-def test_descriptions_of_entities_and_rules() -> None:
+def test_entities_and_rules_may_have_descriptions() -> None:
     """A text after the name describes an entity or a rule."""
     (entity,) = _rules('entity e "The body" { r "It leans": x; }').entities
     assert (entity.description, entity.rules[0].description) == ("The body", "It leans")

@@ -90,7 +90,7 @@ def test_loading_either_file_loads_both(first: str) -> None:
     assert repository.diagnostics == []
 
 
-def test_nodes_of_a_statement_and_their_connections() -> None:
+def test_statement_has_the_generated_names_and_topics_of_the_rules() -> None:
     """Safety node and gates have the generated names and the topics of the rules."""
     nodes = nodes_with('safety "robot.deros"')
     assert list(nodes) == ["/robot_safety_node", "/command_gate"]
@@ -293,7 +293,7 @@ def test_nodes_of_the_statement_match_the_generated_ones(
         assert (found.package, found.name) == (node.package, node.name)
 
 
-def test_statement_attributes_in_any_order() -> None:
+def test_statement_attributes_may_have_any_order() -> None:
     """Each attribute may be given once, as for nodes."""
     attributes = ['"A text"', "respawn", "as guard", "target cpp", "namespace /n"]
     for shift in range(len(attributes)):

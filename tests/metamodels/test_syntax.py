@@ -53,7 +53,7 @@ def _load(name: str, marked: str) -> tuple[tuple[Diagnostic, ...], tuple[int, in
 
 
 @pytest.mark.parametrize(("name", "marked", "words"), CASES, ids=[case[1] for case in CASES])
-def test_syntax_error_position_and_message(name: str, marked: str, words: str) -> None:
+def test_syntax_error_has_position_and_expected_token(name: str, marked: str, words: str) -> None:
     """The error starts exactly where the text goes wrong, and names the expected token."""
     diagnostics, (start, end) = _load(name, marked)
     (found,) = diagnostics

@@ -50,7 +50,7 @@ def _node(folder: Path, text: str) -> NodeInstance:
     return node
 
 
-def test_topic_declarations(folder: Path) -> None:
+def test_topic_declarations_are_parsed(folder: Path) -> None:
     """A topic may have a type, a QoS and a description, and be external."""
     plain, pinned, outside = _system(
         folder,
@@ -66,7 +66,7 @@ def test_topic_declarations(folder: Path) -> None:
     assert outside.span.text.startswith("external topic /tf")
 
 
-def test_nodes_and_nested_subsystems(folder: Path) -> None:
+def test_subsystems_may_be_nested(folder: Path) -> None:
     """Subsystems nest, and have topics, a namespace and a description."""
     outer, node = _system(
         folder,
@@ -82,7 +82,7 @@ def test_nodes_and_nested_subsystems(folder: Path) -> None:
     assert node.name == "n"
 
 
-def test_node_attributes_in_any_order(folder: Path) -> None:
+def test_node_attributes_may_have_any_order(folder: Path) -> None:
     """Namespace, respawn, log level and description follow the node type in any order."""
     for text in (
         'namespace /front respawn delay 1.5 sec max 3 log_level debug "Looks ahead"',
@@ -97,7 +97,7 @@ def test_node_attributes_in_any_order(folder: Path) -> None:
     assert _node(folder, "").respawn is None
 
 
-def test_settings_and_wirings(folder: Path) -> None:
+def test_settings_and_wirings_are_parsed(folder: Path) -> None:
     """Values keep their type; whole numbers become doubles where the parameter is a double."""
     node = _node(
         folder,

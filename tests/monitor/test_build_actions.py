@@ -55,7 +55,7 @@ def test_indistinguishable_active_state_is_a_warning() -> None:
     assert result.program is not None
 
 
-def test_reset_and_latch_of_actions() -> None:
+def test_actions_may_have_a_reset_or_a_latch() -> None:
     """A reset is the index of another action, declared before or after."""
     built = program(
         """

@@ -57,7 +57,7 @@ def test_constant_is_converted_to_the_unit_of_the_field(text: str, value: float)
     assert bound(text) == value
 
 
-def test_user_defined_unit() -> None:
+def test_user_defined_unit_is_converted() -> None:
     """A unit defined in the rules converts like any other."""
     declarations = "unit knot = 0.514444 m/s  const limit = 2 knot"
     assert bound(f"{SPEED} > limit", declarations) == 1.028888
@@ -87,7 +87,7 @@ def test_integer_bound_is_equivalent(value: int, number: Fraction, operator: ir.
     assert COMPARE[brought](value, limit) is COMPARE[operator](Fraction(value), number)
 
 
-def test_integer_bound_beyond_doubles() -> None:
+def test_integer_bounds_are_exact_beyond_doubles() -> None:
     """A number that only rounds to an integer is not treated as one."""
     operator, limit = integer_bound("=", Fraction(2**60) + Fraction(1, 2))
     assert (operator, limit) == ("=", 0.5)
@@ -108,7 +108,9 @@ def test_integer_bound_beyond_doubles() -> None:
         (f"2 != {MODE}", "!=", 2),
     ],
 )
-def test_comparison_with_an_integer_field(text: str, operator: str, value: float) -> None:
+def test_bound_of_an_integer_field_becomes_an_integer(
+    text: str, operator: str, value: float
+) -> None:
     """The bound becomes an integer, and a constant on the left moves to the right."""
     assert condition(text) == ir.Compare(ir.Read(0), operator, ir.Const(value))  # type: ignore[arg-type]
     assert type(bound(text)) is type(value)
@@ -123,7 +125,9 @@ def test_comparison_with_an_integer_field(text: str, operator: str, value: float
         ("topic /speed.data in [1, 2)", (1.0, 2.0, True, False)),
     ],
 )
-def test_interval_bounds(text: str, within: tuple[float, float, bool, bool]) -> None:
+def test_interval_bounds_of_integers_are_narrowed(
+    text: str, within: tuple[float, float, bool, bool]
+) -> None:
     """Bounds stay as written; those of integers are narrowed to integers."""
     lower, upper, lower_closed, upper_closed = within
     expected = ir.Within(ir.Read(0), ir.Const(lower), ir.Const(upper), lower_closed, upper_closed)
@@ -131,13 +135,13 @@ def test_interval_bounds(text: str, within: tuple[float, float, bool, bool]) -> 
     assert condition(text.replace(" in ", " not in ")) == ir.Not(expected)
 
 
-def test_interval_between_fields() -> None:
+def test_interval_bounds_may_be_fields() -> None:
     """The bounds may be read from topics."""
     found = condition(f"topic /speed.data in [{MODE}, 3]")
     assert found == ir.Within(ir.Read(0), ir.Read(1), ir.Const(3.0), True, True)
 
 
-def test_comparison_of_two_fields() -> None:
+def test_two_fields_are_compared_in_one_unit() -> None:
     """Fields of one unit compare directly, others through a factor."""
     same = condition(f"{SPEED} > topic /odom.twist.twist.linear.y")
     assert same == ir.Compare(ir.Read(0), ">", ir.Read(1))
@@ -160,7 +164,7 @@ def test_numeric_message_constants_are_ordered() -> None:
     assert found == ir.Compare(ir.Read(0), ">=", ir.Const(1))
 
 
-def test_comparison_of_booleans_and_strings() -> None:
+def test_booleans_and_strings_can_be_compared() -> None:
     """A boolean may stand alone or be compared; a string is compared."""
     flag = "topic /flag.data"
     assert condition(flag) == ir.Truth(ir.Read(0))
@@ -169,7 +173,7 @@ def test_comparison_of_booleans_and_strings() -> None:
     assert condition("true") == ir.Truth(ir.Const(True))
 
 
-def test_missing_compared_with_a_boolean() -> None:
+def test_missing_can_be_compared_with_a_boolean() -> None:
     """`missing()` may be compared with true and false."""
     declared = "input v = topic /speed.data timeout 1 sec"
     assert condition("v.missing() = false", declared) == ir.Not(ir.Missing(0))
@@ -193,7 +197,7 @@ def test_missing_compared_with_a_boolean() -> None:
         ),
     ],
 )
-def test_comparison_of_an_age(text: str, expected: ir.Condition) -> None:
+def test_age_is_compared_in_nanoseconds(text: str, expected: ir.Condition) -> None:
     """An age is compared in whole nanoseconds; a plain number is in seconds."""
     assert condition(text, "input v = topic /speed.data timeout 9 sec") == expected
 
@@ -212,7 +216,7 @@ def test_duration_is_exact(duration: str, nanoseconds: int) -> None:
 # Functions ------------------------------------------------------------------------------------
 
 
-def test_functions_of_functions() -> None:
+def test_functions_may_be_nested() -> None:
     """The rate of an angle is an angle per second; each rate has its own memory."""
     declared = "input q = topic /imu.orientation"
     found = condition("q.yaw().rate().abs() > 90 deg/s or q.yaw().rate() > 1", declared)
@@ -269,7 +273,7 @@ def test_count_applies_to_any_array() -> None:
     ]
 
 
-def test_unit_from_a_node_description(tmp_path: Path) -> None:
+def test_unit_may_come_from_a_node_description(tmp_path: Path) -> None:
     """A node description gives the unit of a field without a convention, also of elements."""
     (tmp_path / "gauge.rnd").write_text(
         "node gauge : gauges publishes"
@@ -293,7 +297,7 @@ def test_unit_from_a_node_description(tmp_path: Path) -> None:
     assert bounds == [ir.Const(200.0), ir.Const(2000.0), ir.Const(10.0)]
 
 
-def test_user_defined_messages(tmp_path: Path) -> None:
+def test_functions_apply_to_user_defined_messages(tmp_path: Path) -> None:
     """A message with only x and y is a plane vector, and a bounded array has a maximum length."""
     (tmp_path / "shapes" / "msg").mkdir(parents=True)
     definition = "float64 x\nfloat64 y\n"

@@ -71,7 +71,7 @@ def test_zero_of_a_quaternion_is_the_identity() -> None:
     assert zero["position"] == {"x": 0.0, "y": 0.0, "z": 0.0}
 
 
-def test_zero_in_arrays_of_messages() -> None:
+def test_zero_keeps_the_length_of_message_arrays() -> None:
     """The number of points stays, and each is zero, including durations."""
     stamp = {"sec": 3, "nanosec": 4}
     point = {
@@ -89,7 +89,7 @@ def test_zero_in_arrays_of_messages() -> None:
     ]
 
 
-def test_zero_of_flags_and_integers() -> None:
+def test_zero_of_flags_is_false_and_of_integers_0() -> None:
     """Booleans are false and integers 0."""
     command = {"x_offset": 1, "y_offset": 2, "height": 3, "width": 4, "do_rectify": True}
     assert zero_after("sensor_msgs.RegionOfInterest", command) == {

@@ -93,7 +93,7 @@ def about(axis: tuple[float, float, float], angle: float) -> tuple[float, float,
     ("name", "axis"), [("roll", (1, 0, 0)), ("pitch", (0, 1, 0)), ("yaw", (0, 0, 1))]
 )
 @given(angle=st.floats(-1.5, 1.5), scale=st.floats(1e-3, 1e3))
-def test_angle_of_a_rotation_about_one_axis(
+def test_rotation_about_one_axis_has_that_angle(
     name: str, axis: tuple[float, float, float], angle: float, scale: float
 ) -> None:
     """The result does not depend on the length of the quaternion."""
@@ -123,13 +123,13 @@ def test_invalid_quaternion_gives_no_angle(name: str, quaternion: tuple[float, .
     assert evaluate(*quaternion) is None
 
 
-def test_pitch_at_the_pole() -> None:
+def test_pitch_at_the_pole_is_a_quarter_turn() -> None:
     """A sine rounded to more than 1 still gives a quarter turn."""
     half = math.sqrt(0.5)
     assert values.pitch(0.0, half + 1e-16, 0.0, half) == pytest.approx(math.pi / 2.0)
 
 
-def test_rate_of_change() -> None:
+def test_rate_is_change_over_time() -> None:
     """A change of 3 in half a second is 6 per second; equal times and inf to inf give None."""
     assert values.rate(5.0, 2.0, 500_000_000) == 6.0
     assert values.rate(5.0, 2.0, 0) is None
@@ -137,7 +137,7 @@ def test_rate_of_change() -> None:
     assert values.rate(math.inf, 1.0, 1) == math.inf
 
 
-def test_functions_of_an_empty_array() -> None:
+def test_empty_array_has_no_minimum_or_maximum() -> None:
     """An empty array has no minimum and no maximum, and 0 elements."""
     assert (values.least([]), values.greatest([]), values.count([])) == (None, None, 0)
 
@@ -147,14 +147,14 @@ def scan(*ranges: float, start: float = -1.0, end: float = 1.0) -> float | None:
     return values.nearest(ranges, -1.0, 0.5, 0.1, 10.0, start, end)
 
 
-def test_nearest_in_a_sector() -> None:
+def test_nearest_includes_the_bounds_of_the_sector() -> None:
     """Beams between the bearings count, including those on the bounds."""
     assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.5, end=0.5) == 2.0
     assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.6, end=-0.4) == 2.0
     assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.4, end=-0.1) is None
 
 
-def test_nearest_through_the_rear() -> None:
+def test_nearest_sector_may_include_the_rear() -> None:
     """A sector whose end is less than its start includes the rear, as do angles beyond pi."""
     quarter = math.pi / 2.0
     ranges = [1.0, 2.0, 3.0, 4.0]  # ahead, left, behind, right
@@ -164,7 +164,7 @@ def test_nearest_through_the_rear() -> None:
     assert values.nearest(*ask, -math.pi, math.pi) == 1.0
 
 
-def test_nearest_with_special_beams() -> None:
+def test_nearest_handles_invalid_and_infinite_beams() -> None:
     """NaN and short beams are invalid, -inf is the minimum range, far and inf mean no obstacle."""
     nan, inf = math.nan, math.inf
     assert scan(nan, 0.05, 3.0, nan, nan) == 3.0

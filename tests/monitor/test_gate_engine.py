@@ -380,7 +380,7 @@ def test_limit_before_a_zero_line_is_zero_with_a_lost_input() -> None:
     assert gate.wait(650)[-2:] == [(600, "zero", 0.0), (650, "zero", 0.0)]
 
 
-def test_two_loss_lines_of_one_heartbeat() -> None:
+def test_two_loss_lines_apply_in_sequence() -> None:
     """First slower, then zero; limits of actions end with the first."""
     gate = Driver(
         "lost heartbeat for 0.6 sec: zero;",

@@ -40,7 +40,7 @@ def _findings(text: str) -> list[tuple[str, str, str]]:
     return [(each.code.name, each.span.text, each.message) for each in found]
 
 
-def test_gate_of_the_program() -> None:
+def test_gate_is_built_with_topics_and_lines() -> None:
     """Relative topics are put under the root; lines keep their order, actions are indices."""
     gate = _gate(
         """gate nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz "The drive" {
@@ -224,7 +224,7 @@ def test_optional_behaviours_are_marked() -> None:
         ("/_", "topic_gate"),
     ],
 )
-def test_gate_node_name(target: str, name: str) -> None:
+def test_gate_node_is_named_after_its_target(target: str, name: str) -> None:
     """It is derived from the target."""
     assert gate_node_name(target) == name
     assert check_node_name(name) is None

@@ -78,7 +78,7 @@ def test_unwrapping_restarts_after_an_invalid_angle() -> None:
 # Spans ------------------------------------------------------------------------------------------
 
 
-def test_rate_over_a_span() -> None:
+def test_rate_over_a_span_needs_messages_that_cover_it() -> None:
     """It is unknown until messages cover the span, then the change over the last of them."""
     assert rates((0, 0.0), (50, 1.0), (100, 2.0), (150, 9.0)) == [None, None, 20.0, 80.0]
 

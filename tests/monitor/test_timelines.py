@@ -110,7 +110,7 @@ def _expected(case: Timeline) -> list[tuple[str, str, str]]:
     return [(seconds(t_ns), action, event) for t_ns, action, event in case.expect]
 
 
-def test_trace_from_standard_input(tmp_path: Path) -> None:
+def test_trace_may_come_from_standard_input(tmp_path: Path) -> None:
     """``--trace -`` reads the output of another program."""
     case = next(each for each in timelines.GIVEN if each.name == "immediate")
     arguments = [*_arguments(case, tmp_path)[:2], "--trace", "-", "--until", case.until]

@@ -93,7 +93,7 @@ def test_times_are_exact(text: str, expected: int | None) -> None:
         ("2E1", 20 * 10**9),
     ],
 )
-def test_json_numbers_as_times(text: str, expected: int) -> None:
+def test_times_may_be_json_numbers(text: str, expected: int) -> None:
     """A JSON number is read as exactly as a string."""
     trace = read(f'{{"t": {text}, "topic": "/speed"}}')
     assert [each.t_ns for each in trace.messages] == [expected]
@@ -125,14 +125,14 @@ def test_missing_fields_have_their_defaults() -> None:
         {"orientation.w": 0.25, "orientation": {"x": 0.5}},
     ],
 )
-def test_nested_and_dotted_fields(data: dict[str, Any]) -> None:
+def test_fields_may_be_nested_or_dotted(data: dict[str, Any]) -> None:
     """Fields may be nested, dotted, or both in one message."""
     given = values("/imu", data)
     assert (given["orientation.x"], given["orientation.w"]) == (0.5, 0.25)
     assert given["orientation.y"] == 0.0
 
 
-def test_array_elements() -> None:
+def test_array_elements_may_be_set_one_by_one() -> None:
     """A single element is set among defaults; an array may be given as a whole."""
     assert values("/scan", {"ranges[1]": 2})["ranges"] == [0.0, 2.0]
     assert values("/scan", {"ranges": [1, 2], "ranges[0]": 3})["ranges"] == [3.0, 2.0]
@@ -142,7 +142,7 @@ def test_array_elements() -> None:
     ] == pytest.approx(2.5)
 
 
-def test_non_finite_numbers() -> None:
+def test_non_finite_numbers_may_be_strings() -> None:
     """NaN and the infinities are strings, or as in Python's JSON."""
     assert values("/speed", {"data": "Infinity"}) == {"data": math.inf}
     assert values("/speed", {"data": "-Infinity"}) == {"data": -math.inf}
@@ -217,7 +217,7 @@ def test_faulty_line_is_reported_and_skipped(text: str, code: str, message: str)
         ('{"t": 1 "topic": "/speed"}', '"'),
     ],
 )
-def test_span_of_a_fault(text: str, place: str | None) -> None:
+def test_span_of_a_fault_is_its_key_or_line(text: str, place: str | None) -> None:
     """The span is the faulty key, or the whole line if the key is not found as written."""
     (found,) = read(text).diagnostics
     assert found.span.text == (place or text)
@@ -295,7 +295,7 @@ def run(folder: Path, *arguments: str, trace: str = "") -> Result:
     return CliRunner().invoke(simulate, given)
 
 
-def test_events_in_json(folder: Path) -> None:
+def test_json_events_have_action_cause_and_place(folder: Path) -> None:
     """An event has time, action, behaviour, arguments and place."""
     result = run(folder, "--until", "9", trace=line("/speed", {"data": 1}))
     records = [json.loads(each) for each in result.stdout.splitlines()]

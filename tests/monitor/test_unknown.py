@@ -41,7 +41,7 @@ def _verdicts(engine: Engine) -> list[bool | None]:
 
 
 @monitors
-def test_documented_timeline(monitor: Monitor) -> None:
+def test_documented_timeline_holds(monitor: Monitor) -> None:
     """During the grace nothing is unknown yet; afterwards every kind of blindness acts at once."""
     engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
     engine.advance(1799 * MS)
@@ -118,7 +118,7 @@ def test_explain_shows_the_unknown_term(monitor: Monitor) -> None:
     assert blind.reads == (("scan.nearest(-0.523599, 0.523599).unknown()", True),)
 
 
-def test_operand_of_unknown() -> None:
+def test_unknown_applies_to_inputs_and_functions() -> None:
     """A field stands for its input; a function stands for itself, whatever its operand."""
     declared = "input v = topic /odom timeout 1 sec"
     assert condition("v.unknown()", declared) == ir.Unknown(0)

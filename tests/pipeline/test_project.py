@@ -93,7 +93,7 @@ def test_command_line_overrides_the_project_file() -> None:
 
 
 @pytest.mark.parametrize("target", ["python", "cpp"])
-def test_licence_of_the_project(target: str) -> None:
+def test_licence_is_that_of_the_project(target: str) -> None:
     """It is in the manifest, and above each file if there is a copyright holder."""
     _project('licence = "BSD-3-Clause"\ncopyright = "2020 P"\n')
     assert deros("generate", "models/plain.rnd", "--target", target, "-o", "ws").code == 0
@@ -194,7 +194,7 @@ def test_faults_in_the_project_file_are_findings(text: str, code: Code) -> None:
         ('tool = "deros\n', None),
     ],
 )
-def test_table_in_pyproject_in_any_notation(text: str, expected: Code | None) -> None:
+def test_table_in_pyproject_may_have_any_notation(text: str, expected: Code | None) -> None:
     """A value that is not a table is a finding; a file without the table is ignored."""
     Path("pyproject.toml").write_text(text)
     found = [(code, file) for code, file, _ in _findings("models/plain.rnd")]

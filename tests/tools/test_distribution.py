@@ -21,7 +21,7 @@ Requires-Dist: pytest>=8; extra == 'dev'
 """
 
 
-def test_floors_of_required_packages() -> None:
+def test_floors_are_those_of_required_packages() -> None:
     """Upper bounds and extras are ignored, and 3.9 comes before 3.13."""
     promises = distribution.read_promises(METADATA)
     assert promises.floors == {"click": "8.2.0", "textx": "4.3.0"}

@@ -200,7 +200,9 @@ def test_generate_respects_allowances() -> None:
     ("pattern", "matches"),
     [("a/*.system", True), ("**", True), ("**/x.system", True), ("a", False), ("*", False)],
 )
-def test_project_allowance_pattern_matching(tmp_path: Path, pattern: str, matches: bool) -> None:
+def test_project_allowance_covers_matching_paths(
+    tmp_path: Path, pattern: str, matches: bool
+) -> None:
     """Patterns are relative to the project; ``**`` matches any number of folders."""
     source = SourceFile("a/x.system", "topic")
     finding = report(codes.UNUSED_TOPIC, "unused", Span(source, 0, 5))

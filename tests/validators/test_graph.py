@@ -120,7 +120,7 @@ def test_vertices_carry_node_or_topic(flat: FlatSystem, graph: nx.MultiDiGraph[V
     assert untyped.node is flat.nodes[0]
 
 
-def test_publishers_and_subscribers_of_a_channel(graph: nx.MultiDiGraph[Vertex]) -> None:
+def test_channel_has_publishers_and_subscribers(graph: nx.MultiDiGraph[Vertex]) -> None:
     """Both sides of a topic and of a service can be queried."""
     assert [e.node.full_name for e in publishers(graph, topic_vertex("/image"))] == [
         "/vision/camera"

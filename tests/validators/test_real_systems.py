@@ -34,7 +34,7 @@ def _listed(finding: Diagnostic) -> dict[str, str]:
     }
 
 
-def test_fourteen_systems_of_three_to_fifteen_nodes() -> None:
+def test_there_are_fourteen_systems_of_three_to_fifteen_nodes() -> None:
     """The collection keeps its size; a system of two robots counts per robot."""
     sizes = {name: len(real_systems.flat_system(name).nodes) for name in SYSTEMS}
     print(sizes)
@@ -60,7 +60,7 @@ def _is_of(entry: dict[str, Any], name: str) -> bool:
     return str(entry["file"]).startswith(f"{name}/")
 
 
-def test_fewer_than_three_unfixed_findings_per_system() -> None:
+def test_each_system_has_fewer_than_three_unfixed_findings() -> None:
     """Each finding that would stay unfixed has a reason, and none is an error."""
     left = Counter(str(each["file"]).split("/")[0] for each in LISTED if not each["fixed"])
     for name in SYSTEMS:

@@ -94,14 +94,14 @@ def test_cpp_gate_has_no_findings() -> None:
     assert _findings(PLANNER + GATE.replace(": cmd_vel_gate", ": cmd_vel_gate_cpp") + DRIVE) == []
 
 
-def test_gate_with_external_target() -> None:
+def test_external_target_has_no_findings() -> None:
     """An external drive is declared as such; the gate may then be external too."""
     topics = TOPICS.replace("topic /cmd_vel", "external topic /cmd_vel")
     assert _codes(PLANNER + GATE, topics) == []
     assert _codes(PLANNER, topics.replace("  topic /stop\n", "")) == []
 
 
-def test_gate_with_external_source() -> None:
+def test_external_source_has_no_findings() -> None:
     """An external source topic is not a fault of the rules."""
     topics = TOPICS.replace("topic /nav", "external topic /nav")
     assert _codes(GATE + DRIVE, topics) == []

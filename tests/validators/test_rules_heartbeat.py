@@ -149,7 +149,7 @@ def _watching(term: str, timeout: str) -> str:
 
 
 @pytest.mark.parametrize("topic", ["/other/heartbeat.data", "/other_stop.data"])
-def test_timeout_for_an_input_from_another_safety_node(topic: str) -> None:
+def test_timeout_must_fit_the_period_of_another_safety_node(topic: str) -> None:
     """Rules that read topics of a safety node must wait for its period, as a gate must."""
     topics = TOPICS + "  topic /other_stop\n"
     wired = "wirings\n  connect /stop to /other_stop\n"
@@ -162,7 +162,7 @@ def test_timeout_for_an_input_from_another_safety_node(topic: str) -> None:
     assert finding.hint.startswith("write 2.5 sec or more, or set 'publish_freq' of '/other'")
 
 
-def test_timeout_for_an_input_from_diagnostics() -> None:
+def test_timeout_must_fit_the_rate_of_diagnostics() -> None:
     """Diagnostics have a rate of their own, and other publishers may fill the gaps."""
     topics = TOPICS + "  topic /state_of_other\n  external topic /other_stop\n"
     rules = _watching("/state_of_other.status", "1 sec")

@@ -55,7 +55,7 @@ PAIRS: list[tuple[str, list[str], list[str]]] = [
 
 
 @pytest.mark.parametrize(("wanted", "published", "advice"), PAIRS)
-def test_suggested_topics(wanted: str, published: list[str], advice: list[str]) -> None:
+def test_best_topics_are_suggested(wanted: str, published: list[str], advice: list[str]) -> None:
     """The right partner comes first, and unrelated topics are not suggested."""
     assert LikelyTopics(published).best(wanted, lambda _: 0.0) == advice
 

@@ -140,6 +140,8 @@ def printers() -> list[ConditionPrinter]:
         ),
     ],
 )
-def test_conditions_in_each_language(condition: form.Condition, expected: list[str]) -> None:
+def test_conditions_are_printed_in_each_language(
+    condition: form.Condition, expected: list[str]
+) -> None:
     """Operands keep their order, with parentheses where precedence requires them."""
     assert [printer(condition) for printer in printers()] == expected

@@ -57,13 +57,13 @@ def test_actions_share_a_field_in_declaration_order(built: Program) -> None:
     assert states_by_path(built, "/scan") == {}
 
 
-def test_kinds_of_actions(built: Program) -> None:
+def test_bound_actions_have_a_state_and_others_need_code(built: Program) -> None:
     """Bound actions have a state, others are user code; the built-in one is neither."""
     assert [each.name for each in built.actions if needs_code(each)] == ["release", "beep"]
     assert [each.name for each in built.actions if lasts(each)] == ["stop", "crawl", "creep"]
 
 
-def test_refusing_behaviours_of_resettable_actions(built: Program) -> None:
+def test_reset_is_refused_by_behaviours_that_trigger_the_action(built: Program) -> None:
     """These are the behaviours that trigger the action."""
     refusing = {each.name: refusing_behaviours(each) for each in built.actions}
     assert {name: found for name, found in refusing.items() if found} == {

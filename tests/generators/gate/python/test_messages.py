@@ -62,7 +62,7 @@ def _plain(value: Any, field: FieldType) -> Any:
 
 
 @pytest.mark.parametrize("kind", TYPES, ids=lambda kind: kind.short)
-def test_zeros_and_nan_of_every_type(kind: InterfaceType) -> None:
+def test_zeros_and_nan_agree_with_the_reference_for_every_type(kind: InterfaceType) -> None:
     """Each float is checked, each number zeroed, and the rest is unchanged."""
     from builtin_interfaces.msg import Time
 

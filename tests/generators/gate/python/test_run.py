@@ -313,7 +313,9 @@ def test_clock_source_cannot_change_at_run_time(
         world.peer.until(lambda: world.reports > seen + 1)
 
 
-def test_gate_for_integers(run_gate: RunGate, ros_env: dict[str, str], ros_peer: Peer) -> None:
+def test_integer_gate_needs_no_nan_check(
+    run_gate: RunGate, ros_env: dict[str, str], ros_peer: Peer
+) -> None:
     """Int32: commands pass without NaN checks, and zeros are periodic without a loss line."""
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import Bool, Int32

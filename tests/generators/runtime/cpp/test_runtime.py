@@ -30,7 +30,7 @@ def latch_file(folder: Path) -> LatchFile:
     return LatchFile(folder / "deros" / "robot.latches", OWNER)
 
 
-def test_event_loop(tmp_path: Path) -> None:
+def test_event_loop_serves_sources_and_timers_in_order(tmp_path: Path) -> None:
     """Sources are served in order, timers fire when they are due, and nothing is lost."""
     program = compiled(RUNTIME / "test/test_event_loop.cpp", tmp_path)
     done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=False)

@@ -208,7 +208,7 @@ def test_each_line_has_the_name_of_its_node(start: Start) -> None:
     assert {"[/x/b] done", "[/y/b] done"} <= set(run.lines)
 
 
-def test_colours_only_on_a_terminal(start: Start, tmp_path: Path) -> None:
+def test_colours_are_used_only_on_a_terminal(start: Start, tmp_path: Path) -> None:
     """Prefixes are coloured on a terminal without NO_COLOR, and plain in a pipe."""
     script = make_script(tmp_path, "node a : short")
     env = {"PATH": os.environ["PATH"], "AMENT_PREFIX_PATH": str(tmp_path / "prefix")}
