@@ -12,7 +12,6 @@ from deros.metamodels.qos import (
     DEFAULT,
     SYSTEM_DEFAULT,
     Policies,
-    duration_text,
     excess,
     is_met_by_default,
     overridden,
@@ -219,12 +218,3 @@ def test_met_by_default_agrees_with_every_middleware() -> None:
 def test_default_ends_match() -> None:
     """Two ends without stated QoS are compatible."""
     assert shortfalls(DEFAULT, DEFAULT) == ()
-
-
-@pytest.mark.parametrize(
-    ("nanoseconds", "text"),
-    [(1, "1 ns"), (1500, "1500 ns"), (100 * MS, "100 ms"), (60_000 * MS, "1 min")],
-)
-def test_durations_use_the_largest_whole_unit(nanoseconds: int, text: str) -> None:
-    """The largest unit without a fraction is used."""
-    assert duration_text(nanoseconds) == text

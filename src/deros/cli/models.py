@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from deros.generators.output.source_tree import NOT_SEARCHED
 from deros.metamodels.globbing import MOST_FOLDERS
 from deros.metamodels.languages import ROSSYSTEM, language_of, suffixes
 from deros.pipeline.project import project_of
@@ -17,7 +18,6 @@ from deros.pipeline.project import project_of
 if TYPE_CHECKING:
     from deros.metamodels.load import LoadedFile, Repository
 
-_NOT_SEARCHED = frozenset({"__pycache__", "build", "install", "log", "node_modules"})
 _IGNORED = ("CMakeCache.txt", "COLCON_IGNORE", "AMENT_IGNORE")
 
 
@@ -71,7 +71,7 @@ def _models_below(folder: str, output: Path | None) -> Iterator[str]:
 def _is_searched(folder: Path, output: Path | None) -> bool:
     if output is not None and folder.resolve() == output.resolve():
         return False
-    if folder.name.startswith(".") or folder.name in _NOT_SEARCHED:
+    if folder.name.startswith(".") or folder.name in NOT_SEARCHED:
         return False
     return not any((folder / name).exists() for name in _IGNORED)
 

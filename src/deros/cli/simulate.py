@@ -10,6 +10,7 @@ import click
 
 from deros.cli.findings import show, wrong_language
 from deros.cli.options import interfaces_option
+from deros.metamodels.safety_nodes import FASTEST_PUBLISH_HZ, PUBLISH_HZ
 from deros.pipeline.outcome import exit_code
 
 if TYPE_CHECKING:
@@ -72,8 +73,8 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
 @click.option(
     "--publish-freq",
     "publish_hz",
-    type=click.FloatRange(0, 1000, min_open=True),
-    default=10.0,
+    type=click.FloatRange(0, int(FASTEST_PUBLISH_HZ), min_open=True),
+    default=PUBLISH_HZ,
     show_default=True,
     help="How often the gates receive states and heartbeat, like 'publish_freq' of the node.",
 )

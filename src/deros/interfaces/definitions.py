@@ -14,8 +14,10 @@ from dataclasses import dataclass
 from deros.interfaces.keywords import CPP, PYTHON
 from deros.interfaces.names import not_text
 from deros.interfaces.types import (
+    FLOAT32_MAX,
     FLOAT_TYPES,
     INTEGER_RANGES,
+    MOST_DIGITS,
     PRIMITIVES,
     STRING_TYPES,
     Constant,
@@ -45,11 +47,9 @@ _COMMENT = re.compile(rf"((?:{_TEXT})*)(?:\#.*)?")
 _LINE_END = re.compile(r"\r\n|\n|\r")
 _INTEGER = re.compile(r"[+-]?\d+", re.ASCII)
 _NOT_FINITE = re.compile(r"[+-]?(?:inf(?:inity)?|nan)", re.IGNORECASE)
-_MOST_DIGITS = 400
 _SIZE_LIMIT = 2**32
 _LONGEST_NAME = 255
 _LONGEST_TEXT = 1 << 20
-_FLOAT32_MAX = (2 - 2**-23) * 2.0**127
 
 _RESERVED = CPP | PYTHON  # no generator of ROS 2 could make a field of that name either
 
@@ -209,7 +209,7 @@ def _primitive(base: str, text: str) -> Primitive | None:
         return {"true": True, "1": True, "false": False, "0": False}.get(text.lower())
     if base in STRING_TYPES:
         return _unquote(text)
-    if len(text) > _MOST_DIGITS or not text.isascii() or "_" in text:
+    if len(text) > MOST_DIGITS or not text.isascii() or "_" in text:
         return None
     try:
         if base in FLOAT_TYPES:
@@ -226,7 +226,7 @@ def _float(base: str, text: str) -> float | None:
     value = float(text)
     if _NOT_FINITE.fullmatch(text):
         return value
-    fits = math.isfinite(value) and (base == "float64" or abs(value) <= _FLOAT32_MAX)
+    fits = math.isfinite(value) and (base == "float64" or abs(value) <= FLOAT32_MAX)
     return value if fits else None
 
 

@@ -22,6 +22,12 @@ INTEGER_RANGES: dict[str, tuple[int, int]] = {
 }
 """Least and greatest value of each integer primitive; ``byte`` and ``char`` are octets in ROS 2."""
 
+FLOAT32_MAX = (2 - 2**-23) * 2.0**127
+"""The greatest finite value of a ``float32``."""
+
+MOST_DIGITS = 400
+"""The number of digits beyond which a number is refused, in definitions and models alike."""
+
 FLOAT_TYPES = frozenset({"float32", "float64"})
 STRING_TYPES = frozenset({"string", "wstring"})
 Primitive = bool | int | float | str

@@ -21,13 +21,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from deros.interfaces.durations import whole_nanoseconds
 from deros.interfaces.names import near
+from deros.interfaces.types import MOST_DIGITS
 
 Exponents = tuple[tuple[str, Fraction], ...]
 """Powers of base units, sorted by base, none of them zero."""
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
-_NS_PER_S = 10**9
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _TOKEN = re.compile(
     r"\s*(?:(?P<word>[^\W\d]\w*|°\w*|%)|(?P<one>1(?![\d.]))|(?P<power>\*\*|\^)"
@@ -36,7 +37,6 @@ _TOKEN = re.compile(
 _SUPERSCRIPT_RUN = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
 _MAX_EXPONENT = 99
 _MAX_DEPTH = 50
-_MAX_DIGITS = 400
 _MOST_BITS = 20_000
 _LONGEST_UNIT = 200
 _LONGEST_WORD = 40
@@ -137,10 +137,10 @@ class UnitRegistry:
         exact = _fraction(value)
         if exact is None or unit.exponents != (("s", Fraction(1)),):
             return None
-        nanoseconds = exact * unit.factor * _NS_PER_S
-        if not 0 <= nanoseconds < 2**63 or nanoseconds.denominator != 1:
+        try:
+            return whole_nanoseconds(exact * unit.factor)
+        except ValueError:
             return None
-        return int(nanoseconds)
 
     def suggest(self, text: str) -> list[str]:
         """Return known unit words that resemble ``text``, best first."""
@@ -266,7 +266,7 @@ def _exact_factor(source: Unit, target: Unit) -> tuple[Fraction, Fraction]:
 def _fraction(value: Decimal | float) -> Fraction | None:
     """Return the exact value, or ``None`` where a double holds infinity, NaN or nothing like it."""
     if isinstance(value, Decimal):
-        if value.is_finite() and abs(value.adjusted()) > _MAX_DIGITS:
+        if value.is_finite() and abs(value.adjusted()) > MOST_DIGITS:
             return None if value else Fraction(0)
         return Fraction(value) if value.is_finite() else None
     return Fraction(value) if math.isfinite(value) else None

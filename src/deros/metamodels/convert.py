@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, SourceFile, Span, report
+from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.names import not_text
-from deros.interfaces.types import InterfaceKind, InterfaceType
+from deros.interfaces.types import MOST_DIGITS, InterfaceKind, InterfaceType
 from deros.interfaces.units import UnitRegistry
 from deros.metamodels.common import Interval, Name, QosProfile, Scalar, Value
 from deros.metamodels.reading import forbidden_character
@@ -23,7 +24,6 @@ _PAIR = re.compile("[\ud800-\udbff][\udc00-\udfff]")
 _ESCAPES = {'"': '"', "\\": "\\", "/": "/", "n": "\n", "t": "\t", "r": "\r"}
 _INTEGER = re.compile(r"[+-]?\d+\Z")
 _EXPONENT = re.compile(r"[eE]([+-]?\d+)\Z")
-_MOST_DIGITS = 400
 _GREATEST_COUNT = 2**31 - 1
 _LONGEST_S = 2**31 - 1  # of DDS; rmw would shorten what is longer
 _TIME_UNITS = UnitRegistry()
@@ -93,7 +93,7 @@ class Converter:
     def decimal(self, token: Token) -> Decimal:
         """Return a number exactly; one beyond any physical quantity is reported and reads as 0."""
         exponent = _EXPONENT.search(token)
-        if len(token) > _MOST_DIGITS or (exponent and len(exponent[1].lstrip("+-0")) > 3):
+        if len(token) > MOST_DIGITS or (exponent and len(exponent[1].lstrip("+-0")) > 3):
             return self._out_of_range(token)
         value = Decimal(token)
         return value if math.isfinite(float(value)) else self._out_of_range(token)
@@ -192,7 +192,7 @@ class Converter:
 
     def check_longest(self, duration_ns: int, what: str, found: Any) -> None:
         """Report a duration that is longer than ROS 2 can keep."""
-        if duration_ns > _LONGEST_S * 10**9:
+        if duration_ns > _LONGEST_S * NS_PER_S:
             message = f"{what} is longer than the {_LONGEST_S} seconds that the middleware supports"
             self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found))
 

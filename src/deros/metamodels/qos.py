@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal
 
+from deros.interfaces.durations import duration_text
 from deros.metamodels.common import QosProfile, Value
 
 Policy = Literal[
@@ -25,9 +26,6 @@ PolicyValue = str | float | None
 
 SYSTEM_DEFAULT = "system_default"
 """The kind of a policy that the middleware chooses by its own settings."""
-
-LONGEST_NS = 9_223_372_036_854_775_807
-"""The longest duration of ROS 2 (``RMW_DURATION_INFINITE``)."""
 
 _KINDS = {
     "reliability": ("best_effort", "reliable"),
@@ -290,21 +288,6 @@ def overridden(profile: QosProfile | None, overrides: Mapping[str, Value]) -> Qo
 
 
 # Words ------------------------------------------------------------------------------------------
-
-_UNITS_OF_TIME = (
-    (3_600 * 10**9, "h"),
-    (60 * 10**9, "min"),
-    (10**9, "sec"),
-    (10**6, "ms"),
-    (10**3, "us"),
-    (1, "ns"),
-)
-
-
-def duration_text(nanoseconds: int) -> str:
-    """Return a duration as the languages write it, in the greatest unit without a fraction."""
-    size, unit = next((s, u) for s, u in _UNITS_OF_TIME if nanoseconds % s == 0)
-    return f"{nanoseconds // size} {unit}"
 
 
 def words(policy: Policy, value: PolicyValue) -> str:

@@ -12,6 +12,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.interfaces.files import read_regular
 from deros.interfaces.names import not_text
+from deros.interfaces.types import MOST_DIGITS
 
 MAX_DEPTH = 100
 """How deep brackets and other nested constructs may go; hand-written models stay below ten."""
@@ -32,7 +33,6 @@ LARGEST_STREAM = 256 << 20
 
 _LONGEST_WORD = 255
 _LONG_WORD = re.compile(rf"\w{{{_LONGEST_WORD + 1},}}")
-_MOST_DIGITS = 400
 _QUOTED = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"')
 _NOT_LINE_END = re.compile(r"[^\r\n]")
 
@@ -147,7 +147,7 @@ def _check_words(source: SourceFile, text: str) -> None:
                 f"a name of {len(found[0])} characters is longer than the limit of {_LONGEST_WORD}"
             )
             raise Unreadable(report(codes.NAME_TOO_LONG, message, span, "choose a shorter name"))
-        if len(found[0]) > _MOST_DIGITS:
+        if len(found[0]) > MOST_DIGITS:
             raise Unreadable(report(codes.SYNTAX_ERROR, "number out of range", span))
 
 

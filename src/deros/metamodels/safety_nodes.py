@@ -32,6 +32,12 @@ TRIGGER = InterfaceType("std_srvs", "srv", "Trigger")
 _STATUS = InterfaceType("diagnostic_msgs", "msg", "DiagnosticStatus")
 DIAGNOSTICS_TYPE = InterfaceType("diagnostic_msgs", "msg", "DiagnosticArray")
 
+PUBLISH_HZ, FASTEST_PUBLISH_HZ = 10.0, 1000.0
+"""The default and the maximum of ``publish_freq``, the rate of the heartbeat and the states."""
+
+DIAGNOSTICS_HZ, FASTEST_DIAGNOSTICS_HZ = 1.0, 100.0
+"""The default and the maximum of ``diagnostics_freq``."""
+
 PROCESS_PARAMETERS = ("realtime_priority", "lock_memory", "garbage_collection")
 """The parameters that a gate has in common with the safety node."""
 
@@ -223,10 +229,10 @@ def _parameters(outline: Outline) -> Iterator[Parameter]:
     yield fixed(
         "publish_freq",
         kinds.DOUBLE,
-        10.0,
+        PUBLISH_HZ,
         "How often the states of the actions and the heartbeat are published",
         "Hz",
-        Interval(0.0, 1000.0, lower_closed=False),
+        Interval(0.0, FASTEST_PUBLISH_HZ, lower_closed=False),
     )
     yield fixed(
         "startup_grace",
@@ -246,10 +252,10 @@ def _parameters(outline: Outline) -> Iterator[Parameter]:
     yield fixed(
         "diagnostics_freq",
         kinds.DOUBLE,
-        1.0,
+        DIAGNOSTICS_HZ,
         "How often the state is published without a change",
         "Hz",
-        Interval(0.0, 100.0, lower_closed=False),
+        Interval(0.0, FASTEST_DIAGNOSTICS_HZ, lower_closed=False),
     )
     yield fixed(
         "realtime_priority",

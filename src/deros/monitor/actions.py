@@ -8,7 +8,7 @@ from deros import codes
 from deros.diagnostics import Related
 from deros.interfaces.keywords import CPP_20, PYTHON, C
 from deros.interfaces.names import did_you_mean, near
-from deros.interfaces.types import FLOAT_TYPES, FieldType, MessageDefinition
+from deros.interfaces.types import FLOAT32_MAX, FLOAT_TYPES, FieldType, MessageDefinition
 from deros.interfaces.units import Unit
 from deros.metamodels import rules
 from deros.metamodels.common import Name
@@ -29,7 +29,6 @@ from deros.monitor.terms import Terms
 LOG_STATE = "log_state"
 """The action that is built in: it writes a text to the log."""
 
-_FLOAT32_MAX = (2 - 2**-23) * 2.0**127
 
 _WORDS = C | CPP_20 | PYTHON  # rules are to generate for every target
 
@@ -149,7 +148,7 @@ class Actions:
             if kind.base == "float64":
                 return rounded(number)
             # What is published must be what a reader, such as a gate, finds in the message.
-            return as_float32(rounded(number)) if abs(number) <= _FLOAT32_MAX else None
+            return as_float32(rounded(number)) if abs(number) <= FLOAT32_MAX else None
         least, greatest = type_bounds(kind)
         fits = number.denominator == 1 and least <= number <= greatest
         return int(number) if fits else None

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from deros.interfaces.durations import seconds_text
 from deros.monitor import walk
 from deros.monitor.evaluate import evaluate_condition
 from deros.monitor.ir import (
+    OPPOSITE,
     Age,
     And,
     Behaviour,
@@ -22,7 +24,6 @@ from deros.monitor.ir import (
     For,
     Missing,
     Not,
-    Operator,
     Or,
     Program,
     RuleRef,
@@ -36,16 +37,6 @@ from deros.monitor.ir import (
 from deros.monitor.reads import Term, plain_term, strip_comments, term_name, term_value, terms
 from deros.monitor.state import State
 from deros.monitor.wordings import constant
-
-OPPOSITE: dict[Operator, Operator] = {
-    "=": "!=",
-    "!=": "=",
-    "<": ">=",
-    "<=": ">",
-    ">": "<=",
-    ">=": "<",
-}
-
 
 _LONGEST_TEXT = 40
 _MORE = " …"
@@ -182,7 +173,7 @@ def plan_of(program: Program, condition: Condition, holds: bool, suffix: str = "
 
 def _plan_of_interval(program: Program, condition: For, holds: bool, suffix: str) -> Plan:
     """Return the plan of an interval; however deep they are nested, each adds as much text."""
-    duration = condition.wording or f"{condition.duration_ns / 1e9:.9g} sec"
+    duration = condition.wording or seconds_text(condition.duration_ns)
     is_deep = suffix.count(" for ") > 1 or suffix.endswith(_MORE)
     further = f" for {duration}{_MORE if is_deep else suffix}"
     if holds:
@@ -234,7 +225,7 @@ def _pieces(
         case Age():
             shown = condition.wording
             operator = shown.operator if shown else condition.operator
-            bound = shown.right[0] if shown else f"{condition.bound_ns / 1e9:.9g} sec"
+            bound = shown.right[0] if shown else seconds_text(condition.bound_ns)
             value = _valued(program, plain_term(condition), shown.unit if shown else "")
             return [*value, f" {operator if holds else OPPOSITE[operator]} {bound}"]
 

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import (
     FLOAT_TYPES,
@@ -113,7 +114,7 @@ def _zero_message(store: InterfaceStore, kind: InterfaceType, last: Message, t_n
         name: _zero_field(store, field, last.get(name), t_ns) for name, field in definition.fields
     }
     if kind == HEADER:
-        seconds, nanoseconds = divmod(t_ns, 10**9)
+        seconds, nanoseconds = divmod(t_ns, NS_PER_S)
         made["stamp"] = {"sec": seconds, "nanosec": nanoseconds}
     return made
 

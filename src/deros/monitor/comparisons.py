@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Span
+from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.types import FieldType
 from deros.metamodels import rules
 from deros.monitor import ir
@@ -34,14 +35,6 @@ from deros.monitor.term_names import describe
 from deros.monitor.terms import Terms
 from deros.monitor.wordings import wording
 
-_MIRRORED: dict[ir.Operator, ir.Operator] = {
-    "=": "=",
-    "!=": "!=",
-    "<": ">",
-    "<=": ">=",
-    ">": "<",
-    ">=": "<=",
-}
 _EQUALITY = frozenset({"=", "!="})
 _FIXED = (Quantity, Plain, MessageConstant)
 
@@ -109,7 +102,7 @@ class Comparisons:
                 self._scope.fault(codes.WRONG_OPERAND, message, node.span)
                 return None
             first, second, left, right = second, first, right, left
-            operator = _MIRRORED[operator]
+            operator = ir.MIRRORED[operator]
         match first, second:
             case (AgeOf(), _) | (_, AgeOf()):
                 return self._age(node, (left, first), operator, (right, second))
@@ -357,7 +350,7 @@ class Comparisons:
         second: tuple[rules.Term, Resolved],
     ) -> ir.Condition | None:
         if not isinstance(first[1], AgeOf):
-            first, second, operator = second, first, _MIRRORED[operator]
+            first, second, operator = second, first, ir.MIRRORED[operator]
         age, (term, bound) = first[1], second
         assert isinstance(age, AgeOf)
         if operator in _EQUALITY:
@@ -427,4 +420,4 @@ def _brackets(node: rules.Membership) -> str:
 
 
 def _seconds(nanoseconds: int) -> Fraction:
-    return Fraction(nanoseconds, 10**9)
+    return Fraction(nanoseconds, NS_PER_S)

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Related, Span
+from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.fields import FieldPath, ResolvedField, format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import (
@@ -116,7 +117,7 @@ class GateResolver:
             message = f"the rate of a gate is {SLOWEST_HZ} to {FASTEST_HZ} Hz"
             self._scope.fault(codes.GATE_RATE, message, rate.span)
             return None
-        return math.floor(10**9 / hertz)
+        return math.floor(NS_PER_S / hertz)
 
     # Lines --------------------------------------------------------------------------------------
 

@@ -6,7 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.store import InterfaceStore
+from deros.metamodels.safety_nodes import PUBLISH_HZ
 from deros.monitor.commands import Message, is_finite
 from deros.monitor.engine import Event
 from deros.monitor.gate_engine import GateEngine, Output
@@ -58,7 +60,7 @@ class GateSimulation:
         program: Program,
         store: InterfaceStore,
         grace_ns: int = 0,
-        publish_hz: float = 10.0,
+        publish_hz: float = PUBLISH_HZ,
         *,
         tell_all: bool = False,
     ) -> None:
@@ -75,7 +77,7 @@ class GateSimulation:
         self._gates = [_Gate(each, program.actions, store, tell_all) for each in program.gates]
         self._states = _States(program, store)
         self._grace_ns = grace_ns
-        self._period_ns = round(1e9 / publish_hz)
+        self._period_ns = round(NS_PER_S / publish_hz)
         self._publish_ns = 0  # when it publishes next
         self._is_starting = True
         self._has_begun = False

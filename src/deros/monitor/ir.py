@@ -17,6 +17,26 @@ from deros.interfaces.types import FieldType, InterfaceType
 Operator = Literal["=", "!=", "<", "<=", ">", ">="]
 Scalar = bool | int | float | str
 
+OPPOSITE: dict[Operator, Operator] = {
+    "=": "!=",
+    "!=": "=",
+    "<": ">=",
+    "<=": ">",
+    ">": "<=",
+    ">=": "<",
+}
+"""The operator that holds where another one does not, of numbers that are known."""
+
+MIRRORED: dict[Operator, Operator] = {
+    "=": "=",
+    "!=": "!=",
+    "<": ">",
+    "<=": ">=",
+    ">": "<",
+    ">=": "<=",
+}
+"""The operator that means the same when its operands change sides."""
+
 
 # What is read from messages ---------------------------------------------------------------------
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from deros.interfaces.durations import NS_PER_S
 from deros.monitor.function_values import rate, shortest_way
 
 SAMPLES = 9
@@ -15,8 +16,6 @@ SAMPLES = 9
 
 SPACINGS = SAMPLES - 1
 """Into so many parts the span is divided; two samples lie at least one of them apart."""
-
-_NS_PER_S = 10**9
 
 
 class Memory(Protocol):
@@ -130,6 +129,6 @@ def _stamp_ns(sec: float | None, nanosec: float | None) -> int | None:
     """Return the time of a header; none for zero, which means that nobody has stamped it."""
     if not isinstance(sec, int) or not isinstance(nanosec, int):
         return None
-    if sec < 0 or not 0 <= nanosec < _NS_PER_S:
+    if sec < 0 or not 0 <= nanosec < NS_PER_S:
         return None
-    return (sec * _NS_PER_S + nanosec) or None
+    return (sec * NS_PER_S + nanosec) or None

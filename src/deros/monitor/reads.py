@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from deros.interfaces.durations import seconds_text
 from deros.monitor import walk
 from deros.monitor.evaluate import evaluate_condition, evaluate_value
 from deros.monitor.ir import (
@@ -103,7 +104,7 @@ def _rate_over_name(subject: str, function: Apply) -> str:
     span = function.arguments[1]
     assert isinstance(span, Const)
     assert isinstance(span.value, int)
-    return f"{subject}.rate({span.value / 1e9:.9g} sec)"
+    return f"{subject}.rate({seconds_text(span.value)})"
 
 
 def _operand_name(program: Program, value: ValueExpression) -> str:

@@ -12,6 +12,7 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Fix, Related, Span, report
+from deros.interfaces.durations import whole_nanoseconds
 from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
 from deros.interfaces.names import check_identifier, check_topic_name, did_you_mean, near
 from deros.interfaces.rep103 import is_wrapping, unit_of
@@ -153,17 +154,11 @@ class Scope:
 
     def nanoseconds(self, seconds: Fraction, span: Span) -> int | None:
         """Return seconds in whole nanoseconds; report what does not fit 64 bits of them."""
-        exact = seconds * 10**9
-        if exact < 0:
-            wrong = "is negative"
-        elif exact.denominator != 1:
-            wrong = "is no whole number of nanoseconds"
-        elif exact >= 2**63:
-            wrong = "is longer than 292 years"
-        else:
-            return int(exact)
-        self.fault(codes.BAD_DURATION, f"the duration '{span.text}' {wrong}", span)
-        return None
+        try:
+            return whole_nanoseconds(seconds)
+        except ValueError as error:
+            self.fault(codes.BAD_DURATION, f"the duration '{span.text}' {error}", span)
+            return None
 
     def unit_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> Unit | None:
         """Return a field's unit: as a node description annotates it, else as REP 103 has it."""

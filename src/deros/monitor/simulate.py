@@ -8,6 +8,7 @@ from pathlib import PurePath
 from typing import Any, Protocol
 
 from deros.diagnostics import Span
+from deros.interfaces.durations import NS_PER_S
 from deros.monitor.engine import Event
 from deros.monitor.explain import Explanation
 from deros.monitor.gate_simulation import GateAnswer, GateSimulation
@@ -232,4 +233,4 @@ def file_label(span: Span) -> str:
 
 def seconds(t_ns: int) -> str:
     """Return nanoseconds as seconds with all nine digits."""
-    return f"{t_ns // 10**9}.{t_ns % 10**9:09d}"
+    return f"{t_ns // NS_PER_S}.{t_ns % NS_PER_S:09d}"

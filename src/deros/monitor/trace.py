@@ -22,6 +22,7 @@ from typing import Any
 
 from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
+from deros.interfaces.durations import LONGEST_NS, NS_PER_S
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.store import InterfaceStore
 from deros.monitor import walk
@@ -32,8 +33,6 @@ from deros.monitor.trace_values import DataError, MessageReader
 
 _SECONDS = re.compile(r"\d{1,30}(\.\d{0,30})?", re.ASCII)
 _KINDS = ("topic", "reset", "enable", "disable", "heartbeat")
-_NS_PER_S = 10**9
-_LAST_NS = 2**63 - 1  # of ROS's time
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,8 +112,8 @@ def nanoseconds(seconds: str) -> int | None:
     whole, _, fraction = seconds.partition(".")
     if fraction[9:].strip("0"):
         return None
-    result = int(whole) * _NS_PER_S + int(fraction[:9].ljust(9, "0"))
-    return result if result <= _LAST_NS else None
+    result = int(whole) * NS_PER_S + int(fraction[:9].ljust(9, "0"))
+    return result if result <= LONGEST_NS else None
 
 
 class _Fault(Exception):  # noqa: N818 - it carries a finding, and is no fault of the program

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from deros.diagnostics import Related
+from deros.interfaces.durations import duration_text
 from deros.metamodels.common import QosProfile
 from deros.metamodels.qos import (
     DEFAULT,
@@ -14,7 +15,6 @@ from deros.metamodels.qos import (
     Policy,
     PolicyValue,
     Shortfall,
-    duration_text,
     policies,
     stated,
     words,

@@ -9,10 +9,17 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.interfaces.durations import NS_PER_S
 from deros.metamodels.flatten import FlatNode, FlatSystem
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Gate
-from deros.metamodels.safety_nodes import HEARTBEAT, is_gate_node
+from deros.metamodels.safety_nodes import (
+    FASTEST_DIAGNOSTICS_HZ,
+    FASTEST_PUBLISH_HZ,
+    HEARTBEAT,
+    PUBLISH_HZ,
+    is_gate_node,
+)
 from deros.monitor import ir
 from deros.monitor.build import BuildResult
 from deros.validators.system_safety import is_safety_node, is_state
@@ -20,10 +27,11 @@ from deros.validators.system_safety import is_safety_node, is_state
 FEWEST_PERIODS = Fraction(5, 2)
 """How many periods of what is expected must have passed before its silence means something."""
 
-_DEFAULT_HZ = Fraction(10)  # of every generated safety node
-_HIGHEST_HZ = {"publish_freq": 1000, "diagnostics_freq": 100}
+_HIGHEST_HZ = {
+    "publish_freq": FASTEST_PUBLISH_HZ,
+    "diagnostics_freq": FASTEST_DIAGNOSTICS_HZ,
+}
 _HINTED_NS = 300_000_000
-_NS_PER_S = 10**9
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +53,7 @@ class _Pace:
     @property
     def shortest_ns(self) -> int:
         """The least time in which enough of them must have come."""
-        return math.ceil(FEWEST_PERIODS * _NS_PER_S / self.hertz)
+        return math.ceil(FEWEST_PERIODS * NS_PER_S / self.hertz)
 
     @property
     def related(self) -> tuple[Related, ...]:
@@ -115,7 +123,7 @@ def _heartbeats(target: str, states: set[str], systems: Iterable[FlatSystem]) ->
                 port.port.kind is PortKind.PUBLISHER and port.topic in wanted for port in node.ports
             )
         ]
-    return found or [_Pace(_DEFAULT_HZ)]
+    return found or [_Pace(Fraction(PUBLISH_HZ))]
 
 
 # Inputs -----------------------------------------------------------------------------------------
@@ -162,7 +170,7 @@ def _pace(node: FlatNode, parameter: str) -> _Pace:
     declared = node.type.parameter(parameter) if node.type is not None else None
     value = dict(node.parameters).get(parameter, declared.default if declared else None)
     setting = next((each for each in node.instance.parameters if each.name == parameter), None)
-    hertz = _DEFAULT_HZ  # what no safety node accepts is a finding of its own
+    hertz = Fraction(PUBLISH_HZ)  # what no safety node accepts is a finding of its own
     if isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value < math.inf:
         hertz = Fraction(value)
     return _Pace(
@@ -175,7 +183,7 @@ def _pace(node: FlatNode, parameter: str) -> _Pace:
 
 def _remedy(pace: _Pace, given_ns: int) -> str:
     hint = f"write {_seconds(pace.shortest_ns)} sec or more"
-    needed = FEWEST_PERIODS * _NS_PER_S / given_ns
+    needed = FEWEST_PERIODS * NS_PER_S / given_ns
     if needed > _HIGHEST_HZ[pace.parameter]:
         return hint
     whose = f" of '{pace.node}'" if pace.node else " of the safety node"

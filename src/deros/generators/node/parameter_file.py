@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
 
 from deros.generators.node.parameter_maps import parameter_maps, plain_parameters
 from deros.generators.node.parameters import comment, is_fixed
 from deros.generators.text.python import wrapped
+from deros.generators.text.yaml import is_plain_key
 from deros.metamodels.common import Scalar
 from deros.metamodels.node import NodeType, Parameter, ParameterType
 
 _DOUBLES = (ParameterType.DOUBLE, ParameterType.DOUBLE_ARRAY)
-_PLAIN_KEY = re.compile(r"[A-Za-z_/][A-Za-z0-9_./-]*")
-_YAML_WORDS = frozenset(("true", "false", "yes", "no", "on", "off", "y", "n", "null"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +71,7 @@ def _value(parameter: Parameter) -> str:
 
 def _key(name: str) -> str:
     """Return a name as a key, in quotes where YAML could read it as something else."""
-    plain = _PLAIN_KEY.fullmatch(name) and name.lower() not in _YAML_WORDS
-    return name if plain else f'"{name}"'
+    return name if is_plain_key(name) else f'"{name}"'
 
 
 def _scalar(value: Scalar, kind: ParameterType) -> str:

@@ -9,17 +9,13 @@ from typing import Generic, TypeVar
 from deros.generators.node.parameter_maps import emitted_fields, emitted_members, parameter_maps
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.generators.text.prose import sentence
+from deros.generators.user_files.classes import LIFECYCLE_HOOKS, NODE_HOOKS
+from deros.interfaces.durations import greatest_unit
 from deros.metamodels.node import NodeType, Parameter, Port, PortKind, Timer
 
-_HOOKS = ("on_parameters_changed",)
-_LIFECYCLE_HOOKS = (
-    "on_activate",
-    "on_cleanup",
-    "on_configure",
-    "on_deactivate",
-    "on_error",
-    "on_shutdown",
-)
+MAX_GOALS = 8
+"""The number of goals that a node executes at the same time, unless its class sets another."""
+
 _METHODS = {
     PortKind.PUBLISHER: ("publish_{}",),
     PortKind.SUBSCRIPTION: ("on_{}",),
@@ -29,7 +25,6 @@ _METHODS = {
     PortKind.ACTION_CLIENT: ("send_{}",),
 }
 _HANDLES = (PortKind.CLIENT, PortKind.ACTION_CLIENT)
-_UNITS_OF_TIME = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
 
 PortT = TypeVar("PortT")
 TimerT = TypeVar("TimerT")
@@ -113,7 +108,7 @@ def _methods(
     model: NodeType, identifier: Callable[[str], str], hooks: Iterable[str]
 ) -> Iterator[Emitted]:
     """Yield every method that the base class gets, the hooks first."""
-    for hook in (*_HOOKS, *hooks, *(_LIFECYCLE_HOOKS if model.lifecycle else ())):
+    for hook in (*NODE_HOOKS, *hooks, *(LIFECYCLE_HOOKS if model.lifecycle else ())):
         yield Emitted(hook, f"the hook {hook!r}", model.name_span)
     for port in model.ports:
         origin = f"{port.kind.word} {port.name!r}"
@@ -163,7 +158,7 @@ def timer_notes(timer: Timer) -> tuple[str, ...]:
     return tuple(filter(None, [sentence(timer.description)]))
 
 
-def duration_text(nanoseconds: int) -> str:
-    """Return a duration in the greatest unit that needs no fraction, ``20 ms``."""
-    size, unit = next((s, u) for s, u in _UNITS_OF_TIME if nanoseconds % s == 0)
-    return f"{nanoseconds // size} {unit}"
+def period_text(nanoseconds: int) -> str:
+    """Return the period of a timer in SI units: ``20 ms``."""
+    count, unit = greatest_unit(nanoseconds, "sec")
+    return f"{count} {'s' if unit == 'sec' else unit}"

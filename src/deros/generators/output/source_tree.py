@@ -27,7 +27,7 @@ BUILD_SCRIPTS = frozenset({"CMakeLists.txt", "setup.py", "setup.cfg"})
 """Files that the source tree has for itself: they are what calls deros."""
 
 _MODELS = (".rnd", ".system", ".deros")
-_NOT_SEARCHED = frozenset({"__pycache__", "build", "install", "log", "node_modules"})
+NOT_SEARCHED = frozenset({"__pycache__", "build", "install", "log", "node_modules"})
 _OTHERS_PLACE = ("CMakeCache.txt", "COLCON_IGNORE", "AMENT_IGNORE", MANIFEST)
 
 
@@ -211,7 +211,7 @@ def _hand_written(source: Path, output: Path, folders: list[Path]) -> Iterator[s
 def _belongs(folder: Path) -> bool:
     if folder.name.startswith(".") or folder.name.endswith(".egg-info"):
         return False
-    if folder.name in _NOT_SEARCHED:
+    if folder.name in NOT_SEARCHED:
         return False
     return not any((folder / name).exists() for name in _OTHERS_PLACE)
 

@@ -11,13 +11,12 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.generators.api.protocol import GenerationError
 from deros.generators.text.identifiers import Emitted, check_collisions
+from deros.interfaces.durations import NS_PER_S
 from deros.metamodels.common import Value
 from deros.metamodels.flatten import FlatNode, flatten, resolve_name
 from deros.metamodels.node import NodeType, Parameter, ParameterType
 from deros.metamodels.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
 from deros.metamodels.system import NodeInstance, Subsystem, System
-
-NANOSECONDS = 1_000_000_000
 
 ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
 """Services and topics that an action consists of (ROS 2 design, "Actions")."""
@@ -137,7 +136,7 @@ def _node(node: FlatNode, node_type: NodeType) -> NodeView:
         parameters=tuple(_parameters(node, node_type)),
         remappings=tuple(_remappings(node)),
         log_level=instance.log_level,
-        respawn_delay=respawn.delay_ns / NANOSECONDS if respawn else None,
+        respawn_delay=respawn.delay_ns / NS_PER_S if respawn else None,
         respawn_max=respawn.max_restarts if respawn else None,
         description=collapse_whitespace(instance.description or node_type.description),
     )

@@ -6,17 +6,16 @@ from dataclasses import dataclass
 
 from deros.diagnostics import Span
 
-HOOKS = frozenset(
-    {
-        "on_activate",
-        "on_cleanup",
-        "on_configure",
-        "on_deactivate",
-        "on_error",
-        "on_parameters_changed",
-        "on_shutdown",
-    }
+NODE_HOOKS = ("on_parameters_changed",)
+LIFECYCLE_HOOKS = (
+    "on_activate",
+    "on_cleanup",
+    "on_configure",
+    "on_deactivate",
+    "on_error",
+    "on_shutdown",
 )
+HOOKS = frozenset((*NODE_HOOKS, *LIFECYCLE_HOOKS))
 """Methods of ROS 2 and of the generated classes that a node may override, whatever its ports."""
 
 

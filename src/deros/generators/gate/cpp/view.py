@@ -25,14 +25,12 @@ from deros.generators.text.cpp import (
 from deros.generators.text.cpp_fields import number, scalar
 from deros.generators.text.identifiers import camel_case
 from deros.generators.text.prose import sentence
+from deros.interfaces.durations import LATEST_NS
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.safety_nodes import CPP_SUFFIX, heartbeat_port
 from deros.monitor import gate_program as form
 from deros.monitor.ir import Gate, Limit, Program
-
-LATEST = 2**62 - 1
-"""The greatest time, and the greatest duration, in nanoseconds: sums of two stay in 64 bits."""
 
 _MESSAGE_TESTS = ActionWords("message->", "!", lambda field, value: scalar(str(field.base), value))
 
@@ -226,7 +224,7 @@ def _states(
 
 def nanoseconds(count: int) -> str:
     """Return a time as a literal; durations beyond the last of times, in 2116, are all the same."""
-    return f"{min(count, LATEST):_}".replace("_", "'")
+    return f"{min(count, LATEST_NS):_}".replace("_", "'")
 
 
 def _port(port: Port) -> PortView:

@@ -41,9 +41,6 @@ ELEMENTS = {
 }
 """The C type of an array's element, by the primitive type of ROS 2."""
 
-LATEST = 2**62 - 1
-"""The greatest time, and the greatest duration, in nanoseconds: sums of two stay in 64 bits."""
-
 
 @dataclass(frozen=True, slots=True)
 class Term:

@@ -8,8 +8,9 @@ from typing import NoReturn
 from deros import codes
 from deros.diagnostics import Span, report
 from deros.generators.api.protocol import GenerationError
-from deros.generators.monitor.c.layout import LATEST, MEMORIES, compared, rule_parts, type_of
+from deros.generators.monitor.c.layout import MEMORIES, compared, rule_parts, type_of
 from deros.generators.monitor.functions import refuse_unknown
+from deros.interfaces.durations import LATEST_NS
 from deros.monitor import walk
 from deros.monitor.functions import FUNCTIONS, Argument, Function, Result
 from deros.monitor.ir import (
@@ -44,7 +45,7 @@ def refuse_unsupported(program: Program) -> None:
         _refuse_wide(program, condition, span)
         _refuse_mixed(program, condition, span)
     for duration_ns, span in _durations(program):
-        if duration_ns > LATEST:
+        if duration_ns > LATEST_NS:
             _refuse("a duration is longer than 146 years", span)
     for behaviour in walk.behaviours(program):
         for item in behaviour.body:

@@ -15,6 +15,8 @@ from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
 from deros.monitor.evaluate import COMPARE
 from deros.monitor.functions import FUNCTIONS, Result
 from deros.monitor.ir import (
+    MIRRORED,
+    OPPOSITE,
     Age,
     And,
     Apply,
@@ -37,15 +39,6 @@ from deros.monitor.ir import (
     ValueExpression,
     Within,
 )
-
-_OPPOSITE: dict[Operator, Operator] = {
-    "=": "!=",
-    "!=": "=",
-    "<": ">=",
-    "<=": ">",
-    ">": "<=",
-    ">=": "<",
-}
 
 
 class Conditions:
@@ -92,7 +85,7 @@ class Conditions:
             case Truth():
                 return self._truth(condition.operand, False)
             case Compare():
-                opposite = _OPPOSITE[condition.operator]
+                opposite = OPPOSITE[condition.operator]
                 return self._compare(condition.left, opposite, condition.right)
             case Within():
                 return self._outside(condition)
@@ -101,7 +94,7 @@ class Conditions:
             case Unknown():
                 return self._is_not_unknown(condition)
             case Age():
-                return self._age(condition, _OPPOSITE[condition.operator])
+                return self._age(condition, OPPOSITE[condition.operator])
             case Not():
                 return self.true(condition.operand)
             case And():
@@ -155,7 +148,7 @@ class Conditions:
 
     def _compare(self, left: ValueExpression, operator: Operator, right: ValueExpression) -> Logic:
         if isinstance(left, Const):
-            left, operator, right = right, _MIRRORED[operator], left
+            left, operator, right = right, MIRRORED[operator], left
         if isinstance(left, Const) and isinstance(right, Const):
             return Atom(str(COMPARE[operator](left.value, right.value)))
         if self._is_number(left):
@@ -221,16 +214,6 @@ class Conditions:
             case Read():
                 base = self._program.leaves[value.leaf].type.base
                 return base in INTEGER_RANGES or base in FLOAT_TYPES
-
-
-_MIRRORED: dict[Operator, Operator] = {
-    "=": "=",
-    "!=": "!=",
-    "<": ">",
-    "<=": ">=",
-    ">": "<",
-    ">=": "<=",
-}
 
 
 def _compare_numbers(left: str, operator: Operator, right: str) -> Logic:

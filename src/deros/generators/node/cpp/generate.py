@@ -17,6 +17,7 @@ from deros.generators.node.cpp.view import (
 )
 from deros.generators.node.files import shared_files
 from deros.generators.node.package import maintainer, nodes_beside, refuse_legacy, unsupported
+from deros.generators.node.view import MAX_GOALS
 from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.text.cpp import (
     Text,
@@ -37,9 +38,7 @@ from deros.generators.text.reserved_names import hidden_from_cpp
 from deros.generators.text.templates import environment
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType
-
-_MAX_GOALS = 8
-"""How many goals a node executes at the same time, unless its class says otherwise."""
+from deros.metamodels.qos import DEFAULT
 
 
 def generate(model: NodeType, context: Context, options: Options) -> Files:
@@ -170,7 +169,8 @@ def _render(template: str, **names: object) -> str:
         call=call,
         comment=comment,
         expression=expression,
-        max_goals=_MAX_GOALS,
+        default_depth=str(DEFAULT.depth),
+        max_goals=MAX_GOALS,
         pursue=_pursue,
         statement=statement,
         string=cpp_string,

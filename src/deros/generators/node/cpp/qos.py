@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from deros.generators.text.cpp import Chain
 from deros.metamodels.common import QosProfile
+from deros.metamodels.qos import policies
 
 _PRESETS = {
     "sensor_data": "rclcpp::SensorDataQoS()",
@@ -12,7 +13,6 @@ _PRESETS = {
     "system_default": "rclcpp::SystemDefaultsQoS()",
 }
 _LIVELINESS = {"automatic": "Automatic", "manual_by_topic": "ManualByTopic"}
-_DEPTH = 10  # what a topic has whose model says nothing
 
 
 def qos_expression(profile: QosProfile | None) -> Chain | None:
@@ -24,7 +24,7 @@ def qos_expression(profile: QosProfile | None) -> Chain | None:
         return Chain(_PRESETS[profile.preset], (*_history(profile), *stated))
     if profile.keep_all:
         return Chain("rclcpp::QoS(rclcpp::KeepAll())", tuple(stated))
-    depth = _DEPTH if profile.depth is None else profile.depth
+    depth = policies(profile).depth
     return Chain(f"rclcpp::QoS({depth})", tuple(stated))
 
 

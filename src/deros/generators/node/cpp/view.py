@@ -15,8 +15,8 @@ from deros.generators.node.cpp.qos import qos_expression
 from deros.generators.node.view import (
     NodeBase,
     check_names,
-    duration_text,
     handle,
+    period_text,
     port_notes,
     timer_notes,
     topic_parameter,
@@ -31,6 +31,7 @@ from deros.generators.text.cpp import (
 from deros.generators.text.identifiers import Emitted, camel_case, check_collisions, file_label
 from deros.generators.text.notice import is_checked
 from deros.generators.text.prose import printable_line, sentence
+from deros.interfaces.durations import greatest_unit
 from deros.metamodels.node import NodeType, Port, PortKind
 
 # Other packages, those of interfaces above all, have a variable that lists their targets.
@@ -40,7 +41,7 @@ _TARGETS = {
     "rclcpp_components": "rclcpp_components::component",
     "rclcpp_lifecycle": "rclcpp_lifecycle::rclcpp_lifecycle",
 }
-_CHRONO = {"s": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
+_CHRONO = {"sec": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -349,7 +350,7 @@ def _node(model: NodeType, provided: Provided | None) -> NodeView:
             TimerView(
                 cpp_identifier(timer.name),
                 _period(timer.period_ns),
-                duration_text(timer.period_ns),
+                period_text(timer.period_ns),
                 timer_notes(timer),
             )
             for timer in model.timers
@@ -358,7 +359,7 @@ def _node(model: NodeType, provided: Provided | None) -> NodeView:
 
 
 def _period(nanoseconds: int) -> str:
-    count, unit = duration_text(nanoseconds).split()
+    count, unit = greatest_unit(nanoseconds, "sec")
     return f"std::chrono::{_CHRONO[unit]}({count})"
 
 

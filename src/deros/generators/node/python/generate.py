@@ -17,6 +17,7 @@ from deros.generators.node.python.view import (
     PackageView,
     package_view,
 )
+from deros.generators.node.view import MAX_GOALS
 from deros.generators.runtime.python.interface import python_runtime
 from deros.generators.text.identifiers import python_identifier
 from deros.generators.text.notice import licence, licensed_python, notice
@@ -25,9 +26,7 @@ from deros.generators.text.reserved_names import hidden_from_python
 from deros.generators.text.templates import environment
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType
-
-_MAX_GOALS = 8
-"""How many goals a node executes at the same time, unless its class says otherwise."""
+from deros.metamodels.qos import DEFAULT
 
 _EXECUTION = (
     "It runs in a thread of its own. Return soon when goal_handle.is_active is false, because the "
@@ -137,7 +136,8 @@ def _render(template: str, **names: object) -> str:
         names,
         call=call,
         expression=expression,
-        max_goals=_MAX_GOALS,
+        default_depth=str(DEFAULT.depth),
+        max_goals=MAX_GOALS,
         execution=wrapped(_EXECUTION, indent=8),
     )
 

@@ -6,25 +6,13 @@ from dataclasses import dataclass
 
 from deros.generators.text.python import Call
 from deros.metamodels.common import QosProfile
+from deros.metamodels.qos import DEFAULT, SYSTEM_DEFAULT, policies
 
 _PRESETS = {
     "sensor_data": "qos_profile_sensor_data",
     "services": "qos_profile_services_default",
     "parameters": "qos_profile_parameters",
     "system_default": "qos_profile_system_default",
-}
-
-# What each preset amounts to, for profiles that start from one and change some policies.
-# Source: rmw/qos_profiles.h
-_PRESET_POLICIES: dict[str, dict[str, str]] = {
-    "sensor_data": {"depth": "5", "reliability": "ReliabilityPolicy.BEST_EFFORT"},
-    "services": {"depth": "10", "reliability": "ReliabilityPolicy.RELIABLE"},
-    "parameters": {"depth": "1000", "reliability": "ReliabilityPolicy.RELIABLE"},
-    "system_default": {
-        "history": "HistoryPolicy.SYSTEM_DEFAULT",
-        "reliability": "ReliabilityPolicy.SYSTEM_DEFAULT",
-        "durability": "DurabilityPolicy.SYSTEM_DEFAULT",
-    },
 }
 
 
@@ -44,13 +32,13 @@ def qos_view(profile: QosProfile | None) -> QosView | None:
     if profile.preset is not None and not stated:
         name = _PRESETS[profile.preset]
         return QosView(name, (("rclpy.qos", name),))
-    arguments = dict(_PRESET_POLICIES.get(profile.preset or "", {}))
+    arguments = {} if profile.preset is None else _of_preset(profile.preset)
     if "depth" in stated or "history" in stated:
         arguments.pop("history", None)
         arguments.pop("depth", None)
     arguments.update(stated)
     if not arguments.keys() & {"depth", "history"}:
-        arguments["depth"] = "10"
+        arguments["depth"] = str(DEFAULT.depth)
     needed = [("rclpy.qos", "QoSProfile")]
     for value in arguments.values():
         if value.startswith("Duration("):
@@ -59,6 +47,19 @@ def qos_view(profile: QosProfile | None) -> QosView | None:
             needed.append(("rclpy.qos", value.partition(".")[0]))
     profile_call = Call("QoSProfile", tuple(f"{name}={text}" for name, text in arguments.items()))
     return QosView(profile_call, tuple(needed))
+
+
+def _of_preset(name: str) -> dict[str, str]:
+    """Return the policies of a preset, for profiles that start from one and change some."""
+    preset = policies(QosProfile(preset=name))
+    if preset.depth is None:
+        arguments = {"history": f"HistoryPolicy.{SYSTEM_DEFAULT.upper()}"}
+    else:
+        arguments = {"depth": str(preset.depth)}
+    arguments["reliability"] = f"ReliabilityPolicy.{preset.reliability.upper()}"
+    if preset.durability != DEFAULT.durability:
+        arguments["durability"] = f"DurabilityPolicy.{preset.durability.upper()}"
+    return arguments
 
 
 def _stated(profile: QosProfile) -> dict[str, str]:

@@ -16,8 +16,8 @@ from deros.generators.node.python.qos import qos_view
 from deros.generators.node.view import (
     NodeBase,
     check_names,
-    duration_text,
     handle,
+    period_text,
     port_notes,
     timer_notes,
     topic_parameter,
@@ -32,6 +32,7 @@ from deros.generators.text.identifiers import (
 from deros.generators.text.notice import is_checked
 from deros.generators.text.prose import printable_line, sentence
 from deros.generators.text.python import Call, Text, wrapped
+from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 
@@ -216,8 +217,8 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
         timers=tuple(
             TimerView(
                 python_identifier(timer.name),
-                repr(timer.period_ns / 10**9),
-                duration_text(timer.period_ns),
+                repr(timer.period_ns / NS_PER_S),
+                period_text(timer.period_ns),
                 _paragraphs(timer_notes(timer)),
             )
             for timer in model.timers

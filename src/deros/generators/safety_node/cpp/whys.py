@@ -21,7 +21,6 @@ from deros.generators.text.cpp import Call, Chain, Expression, cpp_string, expre
 from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of
 from deros.monitor import walk
 from deros.monitor.causes import (
-    OPPOSITE,
     AllOf,
     AnyOf,
     During,
@@ -34,6 +33,7 @@ from deros.monitor.causes import (
     plan_of_behaviour,
 )
 from deros.monitor.ir import (
+    OPPOSITE,
     Age,
     Compare,
     Condition,

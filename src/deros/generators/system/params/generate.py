@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.literals import comment
 from deros.generators.system.script.standalone.command_line import yaml
 from deros.generators.system.view import NodeView, SystemView, system_view
+from deros.generators.text.yaml import is_plain_key
 from deros.metamodels.common import Value
 from deros.metamodels.system import System
 
 Tree = dict[str, "Tree | _Leaf"]
 _INDENT = "  "
-_PLAIN_KEY = re.compile(r"/?[A-Za-z_][\w./-]*", re.ASCII)
-_YAML_WORDS = frozenset(("true", "false", "yes", "no", "on", "off", "y", "n", "null"))
 
 
 class _Leaf:
@@ -79,5 +77,4 @@ def _lines(tree: Tree, depth: int) -> Iterator[str]:
 
 
 def _key(name: str) -> str:
-    plain = _PLAIN_KEY.fullmatch(name) and name.lower() not in _YAML_WORDS
-    return name if plain else yaml(name)
+    return name if is_plain_key(name) else yaml(name)
