@@ -162,7 +162,7 @@ def test_setup_generates_only_changes(package: Path) -> None:
         )
         return done.stdout
 
-    assert name() == "robot_safety\n", "colcon reads what setup.py prints"
+    assert name() == "robot_safety\n", "colcon reads the output of setup.py"
     stamp = package / ".deros/stamp"
     first = stamp.stat().st_mtime_ns
     assert name() == "robot_safety\n"

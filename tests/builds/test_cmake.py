@@ -63,7 +63,7 @@ def test_generates_only_when_an_input_changes(folder: Path, tool: str) -> None:
     assert project.generated() == 0
     (source / "robot_robot.rnd").rename(source / "other.rnd")
     replace(source / "robot.system", "robot_robot.rnd", "other.rnd")
-    assert project.generated() == 1, "a description that is gone is no reason to fail"
+    assert project.generated() == 1, "a missing description must not fail"
     assert project.generated() == 0
 
 
@@ -109,7 +109,7 @@ def test_model_error_fails_the_build(folder: Path, tool: str) -> None:
     assert f"{system}:{line}:13: error[DRS204 unknown-port]" in failed.stdout
     assert "did you mean 'odom'?" in failed.stdout
     assert output.read_bytes() == before
-    assert project.build().returncode != 0, "it fails until it is mended"
+    assert project.build().returncode != 0, "it fails until it is fixed"
     replace(system, "connect odmo to", "connect odom to")
     assert project.generated() == 1
 

@@ -184,7 +184,7 @@ def test_files_no_longer_generated_are_removed(tmp_path: Path) -> None:
     assert edited.exists()
     assert not (package / "launch/b.launch.py").exists()
     assert not (package / "both/b_base.py").exists()
-    assert (package / "both/b.py").exists(), "written once for the user to fill in"
+    assert (package / "both/b.py").exists(), "a user file, written only once"
     assert (package / "launch/a.launch.py").exists()
 
 

@@ -120,7 +120,7 @@ def test_robot_stops_after_two_seconds_of_overspeed(
     reports = watch(ros_peer)
     with running(*packages):
         ros_peer.until(lambda: stops)
-        assert any(report.speed > 0.5 for report in reports), "stopped before it was too fast"
+        assert any(report.speed > 0.5 for report in reports), "stopped without excess speed"
         ros_peer.until(lambda: reports[-1].speed == 0.0)
     first = next(report.sent for report in reports if report.speed > 0.5)
     meanwhile = [report for report in reports if first <= report.received <= stops[0]]

@@ -70,8 +70,8 @@ def test_paused_simulation_misses_timeouts_but_not_immediate_stops(robot: Robot)
             sensors.quiet("/speed")
             beats = len(robot.beats)
             robot.spin(1.0)
-            assert len(robot.beats) == beats, "the heartbeat goes on in a paused simulation"
-            assert not robot.is_active("/halt"), "a timeout passed while time stood still"
+            assert len(robot.beats) == beats, "the heartbeat continues in a paused simulation"
+            assert not robot.is_active("/halt"), "a timeout expired while time was paused"
             sensors.play("/speed", speed(2.0))
             robot.until_stopped(limit=PROMPT)
             sensors.play("/clock", *ticks(2000.0))

@@ -52,7 +52,7 @@ def leak(node: Process, count: Callable[[], int], stretch: int, go_on: Callable[
             last, counted = counted, count()
             if counted > last:
                 since = time.monotonic()
-            assert time.monotonic() < since + LIMIT, "it does not go on"
+            assert time.monotonic() < since + LIMIT, "it does not continue"
         growths.append((node.memory() - before) / (count() - first))
     print(f"bytes for each, in {STRETCHES} stretches: {growths}")
     return statistics.median(growths)

@@ -24,14 +24,14 @@ def test_flood_on_one_input_does_not_block_others(robot: Robot) -> None:
         flood.play("/load", load(1.0), load(2.0), rate=20_000.0)
         begun, waited = time.monotonic(), flood.waited()
         robot.until_beats()
-        assert not robot.is_active("/halt"), "a sensor that talks was taken for silent"
+        assert not robot.is_active("/halt"), "an active sensor was treated as silent"
         sensors.play("/imu", imu(TILTED))
         robot.until_stopped("/halt", limit=0.4 + PROMPT)
         sensors.play("/speed", speed(2.0))
         robot.until_stopped(limit=PROMPT)
         sent = flood.quiet("/load")
         running = time.monotonic() - begun - (flood.waited() - waited)
-        assert sent > 10_000 * running, f"{sent} messages in {running:.1f} s are no flood"
+        assert sent > 10_000 * running, f"{sent} messages in {running:.1f} s are not a flood"
 
 
 def test_violation_within_a_flood_stops_the_robot(robot: Robot) -> None:
@@ -60,7 +60,7 @@ def test_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
         # A single one might not arrive.
         lidar.send("/scan", scan(0.1, beams=beams), times=5, rate=5.0)
         robot.until_stopped(limit=PROMPT)
-        assert not robot.is_active("/halt"), "a sensor that talks was taken for silent"
+        assert not robot.is_active("/halt"), "an active sensor was treated as silent"
 
 
 def test_publisher_of_another_type_is_not_the_sensor(robot: Robot) -> None:

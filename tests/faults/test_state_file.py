@@ -90,7 +90,7 @@ def device(file: Path) -> None:
     try:
         os.mknod(file, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
     except PermissionError:
-        pytest.skip("only root can make a device")
+        pytest.skip("only root can create a device")
 
 
 def described(folder: Path) -> list[tuple[str, int, bytes]]:

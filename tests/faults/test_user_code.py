@@ -73,7 +73,7 @@ def test_slow_user_code_does_not_delay_a_stop(robot: Robot) -> None:
         robot.spin(0.5)
         beats = len(robot.beats)
         robot.spin(0.5)
-        assert len(robot.beats) == beats, "the heartbeat hides that the code hangs"
+        assert len(robot.beats) == beats, "the heartbeat continues although the code hangs"
         robot.let_go_on()
         robot.until_alive()
 
@@ -93,7 +93,7 @@ def test_user_code_repeated_at_the_start_runs_after_the_states(
         node = robot.start(NODE, [f"state_file:={file}"])
         if how == "wait":
             robot.until_stopped()
-            assert len(robot.beats) == beats, "the stop has waited for the code"
+            assert len(robot.beats) == beats, "the stop waited for the code"
             robot.let_go_on()
             robot.until_alive()
             node.end()

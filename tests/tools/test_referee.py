@@ -179,17 +179,20 @@ def test_limits_do_not_apply_without_supervision() -> None:
 
 
 PLANTED: dict[str, tuple[dict[str, Value], set[str]]] = {
-    "a safety node that sees nothing": ({}, {"safety node", "robot"}),
+    "a blind safety node": ({}, {"safety node", "robot"}),
     "a safety node that forgets the stop": (
         {**stopped_at(2.1), "says_stop": lambda now: 2.1 <= now < 3.5},
         {"safety node"},
     ),
     "a safety node that is late": ({**stopped_at(3.0)}, {"safety node"}),
-    "a gate that does not heed the stop": (
+    "a gate that ignores the stop": (
         {"says_stop": after(2.1, True, False), "stop_arrives": after(2.1, True, False)},
         {"gate", "robot"},
     ),
-    "an arbiter that goes on": ({**stopped_at(2.1), "pedal": lambda _: 0.27}, {"arbiter", "robot"}),
+    "an arbiter that does not stop": (
+        {**stopped_at(2.1), "pedal": lambda _: 0.27},
+        {"arbiter", "robot"},
+    ),
 }
 
 

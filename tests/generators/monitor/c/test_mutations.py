@@ -21,7 +21,7 @@ SLIPS = {
     "for is exclusive": (r"(now - \*since\)) >= duration", r"\1 > duration"),
     "an interval restarts at every event": (r"if \(\*since == \w+\) \{", "if (true) {"),
     "an interval is never cleared": (r"^    \*since = [A-Z0-9_]+;", "    (void)since;"),
-    "an interval's end is no deadline": (r"^.*due = earlier\(.* duration\);$", ""),
+    "the end of an interval is not a deadline": (r"^.*due = earlier\(.* duration\);$", ""),
     "a comparison includes its bound": (r" > (?=-?\d)", " >= "),
     "unknown counts as false": (r"(return known \? verdict : \w+)_UNKNOWN", r"\1_FALSE"),
     "or for and": (r"return \(a < b\) \? a : b;(?=\n\}\n\n/\* Kleene)", "return (a < b) ? b : a;"),
@@ -30,37 +30,40 @@ SLIPS = {
         r"\1_TRUE",
     ),
     "NaN is taken as a value": (r"return value == value;", "return true;"),
-    "NaN in an array is overlooked": (r"numbers = false;", "numbers = true;"),
+    "NaN in an array is ignored": (r"numbers = false;", "numbers = true;"),
     "an input is not forgotten": (r"store_truth\(&m->\w+_known, false, news\)", "news"),
     "deadlines are missed": (r"else if \(now >= m->due\)", "else if (false)"),
-    "a step back is missed": (r"if \(now < m->now\)", "if (false)"),
-    "deadlines at t are late": (r"while \(m->due <= t\)", "while (m->due < t)"),
+    "a clock step is ignored": (r"if \(now < m->now\)", "if (false)"),
+    "deadlines at t are delayed": (r"while \(m->due <= t\)", "while (m->due < t)"),
     "behaviours act at every event": (r" && \(!held\);", ";"),
     "a nested behaviour ignores the outer": (r"both\(\s*m->\w+_condition,", "both((2),"),
     "a reset is never refused": (r"^    if \(m->\w+_condition == .*\{", "    if (true) {"),
-    "a reset is granted by unknown": (
+    "a reset succeeds while unknown": (
         r"(if \(\(?m->\w+_condition) == \w+FALSE\)",
         r"\1 < 2)",
     ),
-    "a reset is not remembered": (r"^(    m->\w+)_ran = true;", r"\1_ran = false;"),
-    "messages do not count": (r"^    m->\w+_base = m->now;", ""),
-    "what was missing stays so": (r"store_truth\(&m->\w+_missing, false, news\)", "news"),
+    "a reset has no effect": (r"^(    m->\w+)_ran = true;", r"\1_ran = false;"),
+    "messages do not renew the timeout": (r"^    m->\w+_base = m->now;", ""),
+    "a missing input stays missing": (r"store_truth\(&m->\w+_missing, false, news\)", "news"),
     "a timeout is late": (r"(\w+_base \+ INT64_C\(\d+\)\)) <= m->now", r"\1 < m->now"),
-    "intervals survive a step back": (r"^  m->\w+_since = [A-Z0-9_]+;", ""),
-    "the grace is not given": (r"bounded\(m->now \+ bounded\(grace\)\)", "m->now"),
+    "intervals survive a clock step": (r"^  m->\w+_since = [A-Z0-9_]+;", ""),
+    "the grace is ignored": (r"bounded\(m->now \+ bounded\(grace\)\)", "m->now"),
     "a latch is lost": (r"^  m->(\w+)_active = true;\n\}", "}"),
     "a disabled behaviour acts": (r"truth_of\(true, m->\w+_enabled\)", "truth_of(true, true)"),
-    "to enable is no event": (r"(m->\w+_enabled = enabled;)\n    evaluate\(m\);", r"\1"),
-    "the first event is not the first": (r"if \(!m->started\)", "if (false)"),
-    "a rule's change has no time": (r"^    \*since = now;", "    (void)since;"),
-    "rates look at the wrong time": (r"t - \*last_t", "t + *last_t"),
+    "enabling does not evaluate the rules": (
+        r"(m->\w+_enabled = enabled;)\n    evaluate\(m\);",
+        r"\1",
+    ),
+    "the first event is treated as a later one": (r"if \(!m->started\)", "if (false)"),
+    "the change of a rule has no time": (r"^    \*since = now;", "    (void)since;"),
+    "rates use the wrong time": (r"t - \*last_t", "t + *last_t"),
     "a rate keeps its first value": (r"^  \*last = value;", ""),
-    "the least is the greatest": (r"values\[i\] < found", "values[i] > found"),
-    "the last element is not looked at": (r"i < count;", "(i + 1U) < count;"),
-    "too near is invalid": (r"distance = range_min;", "distance = NAN;"),
-    "an absent element counts": (r"if \(\w+_given\b", "if (true"),
-    "a text is known by its length": (r"same = \(text\[i\] == expected\[i\]\);", ""),
-    "waiting for nothing": (r"waiting = true;", "waiting = false;"),
+    "minimum and maximum are swapped": (r"values\[i\] < found", "values[i] > found"),
+    "the last element is skipped": (r"i < count;", "(i + 1U) < count;"),
+    "a short range is invalid": (r"distance = range_min;", "distance = NAN;"),
+    "a missing element counts": (r"if \(\w+_given\b", "if (true"),
+    "a string is compared by its length": (r"same = \(text\[i\] == expected\[i\]\);", ""),
+    "waiting for inputs without a timeout": (r"waiting = true;", "waiting = false;"),
     "a line is wrong": (r"(_BEHAVIOUR_\d+, \d+)U", r"\g<1>1U"),
     "an argument is wrong": (r"_NUMBER, false, 0, 2\.5", "_NUMBER, false, 0, 2.0"),
 }
@@ -109,7 +112,7 @@ def test_mutation_is_detected(slip: str, tmp_path: Path) -> None:
         library = Loaded(units, tmp_path / units[0].prefix, "-O0", "-Wno-error")
         if _differs(library, cases):
             return
-    pytest.fail("no program tells the slip")
+    pytest.fail("no program detects the mutation")
 
 
 def _differs(library: Loaded, cases: Sequence[c_pairs.Case]) -> bool:

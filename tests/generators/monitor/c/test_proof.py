@@ -22,7 +22,7 @@ SLIPS = {
     "a wrong comparison": ("lasting", "(now - *since) >= duration", "(now - *since) > duration"),
     "a wrong bound": ("observe_speed", "m->speed > 0.5", "m->speed > 0.6"),
     "a missed clear": ("lasting", "    *since = INTELLIGENT_ONE_UNSET;\n", "    ;\n"),
-    "a clear too many": (
+    "an additional clear": (
         "settle_stop",
         "(m->too_fast_condition == INTELLIGENT_ONE_FALSE)",
         "(true)",
@@ -42,8 +42,8 @@ SLIPS = {
         "m->speed_base + INT64_C(500000000)",
         "m->speed_base + INT64_C(500000001)",
     ),
-    "a value that outlives its input": ("expire_speed", "(void)forget_speed(m);", "(void)m;"),
-    "an operand that is left out": (
+    "a value that survives its input": ("expire_speed", "(void)forget_speed(m);", "(void)m;"),
+    "a missing operand": (
         "judge_drive_system_max_speed_exceeded",
         "either(for_1, truth_of(true, m->speed_missing))",
         "for_1",
@@ -65,7 +65,7 @@ SLIPS = {
     ),
     "a stale time": ("reach_deadline", "  m->now = m->due;\n", ""),
     "a stale base": ("observe_speed", "    m->speed_base = m->now;\n", ""),
-    "a timeout that is one late": ("expire_speed", "<= m->now", "< m->now"),
+    "a timeout that is one nanosecond late": ("expire_speed", "<= m->now", "< m->now"),
     "a forgotten behaviour": ("act", "    behave_tilted(m);\n", ""),
     "a forgotten rule": (
         "judge_all",
@@ -83,7 +83,7 @@ SLIPS = {
         "    intelligent_one_emit(m->owner, m->now, INTELLIGENT_ONE_TRIGGER, 0U);  /* stop */\n",
         "",
     ),
-    "another site emitted": ("behave_too_fast", "_TRIGGER, 1U)", "_TRIGGER, 3U)"),
+    "the wrong site emitted": ("behave_too_fast", "_TRIGGER, 1U)", "_TRIGGER, 3U)"),
     "a reset emitted for a trigger": ("behave_too_fast", "_TRIGGER, 0U)", "_RESET, 0U)"),
     "an input that stays missing": (
         "observe_speed",
@@ -110,7 +110,11 @@ SLIPS = {
         "bounded(m->now + bounded(grace))",
         "m->now",
     ),
-    "an input that came at once": ("restart", "m->speed_came = false;", "m->speed_came = true;"),
+    "an input that has arrived at the start": (
+        "restart",
+        "m->speed_came = false;",
+        "m->speed_came = true;",
+    ),
     "a reset that does nothing": ("intelligent_one_reset", "  settle_stop(m);\n", ""),
 }
 """Mutations by name: the function, the right text, and the wrong text."""

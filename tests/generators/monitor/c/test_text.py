@@ -175,7 +175,7 @@ def test_deviations_are_listed_in_the_source() -> None:
 
 
 REFUSED = {
-    "two texts that are read": ("both: state = names_of;", "two texts"),
+    "two strings read from messages": ("both: state = names_of;", "two texts"),
     "a rate of 64 bits": ("quick: ticks.rate() > 1;", "64-bit"),
     "a 64-bit integer and another": ("like: ticks > beats;", "of another type"),
     "a long duration": ("long: enabled for 60000 d;", "146 years"),

@@ -84,10 +84,10 @@ SLIPS = {
         "  m->too_fast_condition = condition;",
         "  m->too_fast_condition = condition;\n  m->stop_active = rises;",
     ),
-    "a step back is overlooked": ("if (now < m->now)", "if (false)"),
+    "a clock step is ignored": ("if (now < m->now)", "if (false)"),
     "a time is not bounded": ("return (t < 0) ? 0 :", "return (t < 0) ? t :"),
     "a loop does not end": ("m->speed_missing = true;", "(void)m;"),
-    "what is missing is known": ("news = store_truth(&m->speed_known, false, news);", "(void)m;"),
+    "a missing input is known": ("news = store_truth(&m->speed_known, false, news);", "(void)m;"),
 }
 """Mutations by name, and the violated invariants."""
 

@@ -26,21 +26,30 @@ SLIPS = {
     "behaviours act at every event": (r"if not self\._behaviour_\d+:", "if True:"),
     "a nested behaviour ignores the outer": (r"if self\._behaviour_\d+ and ", "if "),
     "a reset is never refused": (r"^            if self\._behaviour_.*:", "            if False:"),
-    "messages do not count": (r"^            self\._\w+_heard = t$", "            pass"),
-    "intervals survive a step back": (
+    "messages do not renew the timeout": (
+        r"^            self\._\w+_heard = t$",
+        "            pass",
+    ),
+    "intervals survive a clock step": (
         r"^        self\.(_\w+_due) = NEVER$",
         r"        self.\1 = getattr(self, '\1', NEVER)",
     ),
-    "the first event is not the first": (r"^        if not self\._started:", "        if False:"),
-    "the grace is not given": (r"_heard = t \+ grace$", "_heard = t"),
+    "the first event is treated as a later one": (
+        r"^        if not self\._started:",
+        "        if False:",
+    ),
+    "the grace is ignored": (r"_heard = t \+ grace$", "_heard = t"),
     "a latch is lost": (r"'\w+' in latched$", "False"),
     "a disabled behaviour acts": (r"'\w+' not in self\._disabled", "True"),
-    "to enable is no event": (r"^( +)self\._disabled\.remove\(behaviour\)$", r"\g<0>\n\1return"),
-    "news are overlooked": (r"^( +)if (?:not fresh|\w+ == self\._\w+):$", r"\1if True:"),
-    "what was missing stays so": (r"_silent = self\._\w+_missing = False", "_silent = False"),
-    "a scan's form is kept": (r"scan_beams\(len\(ranges\), ", "scan_beams(4, "),
-    "a rule's change has no time": (r"^( {12,})self\._\w+_since = t$", r"\g<1>pass"),
-    "rates look at the wrong time": (r"t - self\._(\w+_last_t)", r"t + self._\1"),
+    "enabling does not evaluate the rules": (
+        r"^( +)self\._disabled\.remove\(behaviour\)$",
+        r"\g<0>\n\1return",
+    ),
+    "new values are ignored": (r"^( +)if (?:not fresh|\w+ == self\._\w+):$", r"\1if True:"),
+    "a missing input stays missing": (r"_silent = self\._\w+_missing = False", "_silent = False"),
+    "the geometry of a scan is kept": (r"scan_beams\(len\(ranges\), ", "scan_beams(4, "),
+    "the change of a rule has no time": (r"^( {12,})self\._\w+_since = t$", r"\g<1>pass"),
+    "rates use the wrong time": (r"t - self\._(\w+_last_t)", r"t + self._\1"),
 }
 """Mutations by name: a pattern of the generated text, and its replacement."""
 
@@ -70,7 +79,7 @@ def test_mutation_is_detected(slip: str) -> None:
         try:
             compare(program, trace, mutant, start)
         except (ArithmeticError, LookupError, TypeError) as error:
-            raise AssertionError("the mutant ends in an exception") from error
+            raise AssertionError("the mutant raises an exception") from error
 
     with pytest.raises(AssertionError):
         search()
