@@ -9,6 +9,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
+from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.cpp.rule_metadata import table
 from deros.generators.safety_node.cpp.rule_state import explained_rules
 from deros.generators.safety_node.cpp.whys import why_behaviour, why_rule, whys
@@ -146,6 +147,11 @@ def _told_in_cpp(unit: Unit) -> str:
     )
     template = environment("deros.generators.safety_node.cpp").get_template("rule_metadata.cpp.j2")
     text: str = template.render(
-        safety=view, standard=[], call=call, table=table, expression=expression
+        safety=view,
+        runtime=CppRuntime("told"),
+        standard=[],
+        call=call,
+        table=table,
+        expression=expression,
     )
     return text[text.index("/// Tell why") : text.index("}  // namespace told")]

@@ -42,9 +42,10 @@ def gate_package(text: str, options: Mapping[str, str] | None = None, name: str 
     safety = safety_node(built.program, built.topics, {}, loaded.model.source)
     nodes = gate_nodes(built.program, built.topics, safety)
     holder = notice(chosen)
-    gates = gate_files(built.program, nodes, safety, store, holder)
+    runtime = CppRuntime(nodes[0].package)
+    gates = gate_files(built.program, nodes, safety, store, runtime, holder)
     package = package_files(gates.nodes, chosen, gates.provided)
-    return {**package, **CppRuntime(nodes[0].package).files(RUNTIME, holder), **gates.files}
+    return {**package, **runtime.files(RUNTIME, holder), **gates.files}
 
 
 @functools.cache

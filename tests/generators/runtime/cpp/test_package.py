@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-import shutil
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
 
 from deros import __version__
-from deros.generators.runtime.cpp.interface import PACKAGE
+from deros.generators.output.writer import write
+from deros.generators.runtime.interface import CPP_RUNTIME, runtime_package
 from tests.support.cpp import colcon_build, has_package, needs_rclcpp
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.safety_cpp import RUNTIME
@@ -18,15 +18,15 @@ from tests.support.safety_cpp import RUNTIME
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Path:
-    """Copy the package without its Python files into a workspace."""
-    shutil.copytree(RUNTIME, tmp_path / PACKAGE, ignore=shutil.ignore_patterns("*.py", "__py*"))
+    """Write the package into a workspace, as ``deros runtime`` does."""
+    write(runtime_package(CPP_RUNTIME), tmp_path)
     return tmp_path
 
 
 def test_package_has_the_version_of_deros() -> None:
     """Generated packages require this version of the runtime."""
     manifest = ET.parse(RUNTIME / "package.xml").getroot()
-    assert manifest.findtext("name") == PACKAGE
+    assert manifest.findtext("name") == CPP_RUNTIME
     assert manifest.findtext("version") == __version__
 
 
@@ -51,18 +51,18 @@ def test_build_script_and_manifest_have_the_same_dependencies() -> None:
 
 def test_sources_pass_the_ament_linters(workspace: Path) -> None:
     """Copies in generated packages must pass the same linters."""
-    assert_cpp_lint_clean(workspace / PACKAGE)
+    assert_cpp_lint_clean(workspace / CPP_RUNTIME)
 
 
 @needs_rclcpp
 def test_colcon_builds_and_tests_the_package(workspace: Path) -> None:
     """The library, its headers and its version file are installed, and its own tests pass."""
     install = colcon_build(workspace, testing=has_package("ament_lint_auto"))
-    assert (install / f"lib/lib{PACKAGE}.so").is_file()
-    share = install / "share" / PACKAGE / "cmake"
-    assert (share / f"{PACKAGE}Config-version.cmake").is_file()
-    headers = install / "include" / PACKAGE / PACKAGE
+    assert (install / f"lib/lib{CPP_RUNTIME}.so").is_file()
+    share = install / "share" / CPP_RUNTIME / "cmake"
+    assert (share / f"{CPP_RUNTIME}Config-version.cmake").is_file()
+    headers = install / "include" / CPP_RUNTIME / CPP_RUNTIME
     assert {path.name for path in headers.iterdir()} == {
         "version.h",
-        *(path.name for path in (RUNTIME / "include" / PACKAGE).iterdir()),
+        *(path.name for path in (RUNTIME / "include" / CPP_RUNTIME).iterdir()),
     }

@@ -61,6 +61,7 @@ def gate_files(
     nodes: Sequence[NodeType],
     safety_node: NodeType,
     store: InterfaceStore,
+    runtime: CppRuntime,
     copyright_line: str = "",
 ) -> Gates:
     """Return the gates of ``program`` for the package of the safety node in C++.
@@ -70,18 +71,19 @@ def gate_files(
         nodes: the nodes of its gates, in order, as :func:`gate_nodes` returns them.
         safety_node: the node whose states and heartbeat they heed, as the Python target has it.
         store: the message definitions.
+        runtime: the runtime of the package.
         copyright_line: years and holder for the headers, or nothing.
     """
     made = Gates()
     for gate, node in zip(program.gates, nodes, strict=True):
         view = gate_view(gate, node, program, store, safety_node)
         made.nodes.append(base_node(node))
-        made.provided[node.name] = _provided(view, node)
+        made.provided[node.name] = _provided(view, node, runtime)
         made.files[f"{node.package}/{node.name}.rnd"] = File(node_description(node))
         for path, template in _paths(view).items():
-            made.files[path] = File(licensed_cpp(render(template, view), copyright_line))
-    for package in dict.fromkeys(node.package for node in nodes):
-        made.files.update(CppRuntime(package).files(("gate_numbers", *_OWN), copyright_line))
+            made.files[path] = File(licensed_cpp(render(template, view, runtime), copyright_line))
+    if nodes:
+        made.files.update(runtime.files(("gate_numbers", *_OWN), copyright_line))
     return made
 
 
@@ -97,29 +99,34 @@ def _paths(view: GateView) -> dict[str, str]:
     }
 
 
-def _provided(view: GateView, node: NodeType) -> Provided:
+def _provided(view: GateView, node: NodeType, runtime: CppRuntime) -> Provided:
     own = (f"src/{view.name}.cpp", f"src/{view.name}_logic.cpp")
     packages = {port.type.package for port in node.ports}
     return Provided(
-        (*own, *CppRuntime(view.package).sources((*_SHARED, *_OWN))),
+        (*own, *runtime.sources((*_SHARED, *_OWN))),
         tuple(sorted({*_NEEDS, *packages})),
         (f"src/{view.name}_main.cpp",),
         default_name=view.node,
     )
 
 
-def render(template: str, view: GateView) -> str:
-    """Return the text of one file of a gate: ``node``, ``logic`` or ``main``, with its ending."""
+def render(template: str, view: GateView, runtime: CppRuntime | None = None) -> str:
+    """Return the text of one file of a gate: ``node``, ``logic`` or ``main``, with its ending.
+
+    Without a ``runtime``, the package has a copy.
+    """
+    runtime = runtime or CppRuntime(view.package)
     templates = environment("deros.generators.gate.cpp")
-    own = [f"{view.name}_base", f"{view.name}_logic", "runtime/gate_runner"]
+    headers = [f"{view.package}/{view.name}{part}.hpp" for part in ("_base", "_logic")]
+    headers.append(runtime.header("gate_runner"))
     if view.heeds_safety_node:
-        own.append("runtime/safety_source")
-    headers = [f"{view.package}/{name}.hpp" for name in own]
+        headers.append(runtime.header("safety_source"))
     heard = [view.heartbeat_port.header] if view.heartbeat_port else []
     if view.latching:
         heard.append(cpp_header(TRIGGER))
     names = {
         "gate": view,
+        "runtime": runtime,
         "call": call,
         "condition": Conditions(view),
         "origin_comment": origin_comment,

@@ -18,7 +18,7 @@ from deros.generators.node.cpp.view import (
 from deros.generators.node.files import shared_files
 from deros.generators.node.package import maintainer, nodes_beside, refuse_legacy, unsupported
 from deros.generators.node.view import MAX_GOALS
-from deros.generators.runtime.cpp.interface import CppRuntime
+from deros.generators.runtime.cpp.interface import cpp_runtime
 from deros.generators.text.cpp import (
     Text,
     arguments,
@@ -65,8 +65,8 @@ def package_files(
 
     Args:
         models: one or more nodes; their order does not matter.
-        options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder, and
-            ``licence`` as an SPDX identifier.
+        options: ``maintainer`` as ``Name <address>``, ``copyright`` as years and holder,
+            ``licence`` as an SPDX identifier, and ``runtime``.
         provided: the nodes whose class the caller adds, by the name of the node type. Of such a
             node there is no user's file.
         store: the interfaces that are known: no package of theirs may be hidden.
@@ -79,7 +79,10 @@ def package_files(
     for model in ordered:
         _check_supported(model)
     holder = notice(options)
-    package = package_view(ordered, maintainer(options), holder, licence(options), provided or {})
+    runtime = cpp_runtime(ordered[0].package, options)
+    package = package_view(
+        ordered, maintainer(options), holder, licence(options), provided or {}, runtime
+    )
     scopes = [
         (function.text.partition("::")[0], function.span)
         for model in ordered
@@ -99,8 +102,8 @@ def package_files(
     files |= _custom_files(package)
     for model in ordered:
         files |= shared_files(model, holder)
-    shared = sorted({name for node in package.nodes for name in node.runtime})
-    return files | CppRuntime(root).files(shared, holder)
+    shared = sorted({part for node in package.nodes for part in node.runtime_parts})
+    return files | runtime.files(shared, holder)
 
 
 def _custom_files(package: PackageView) -> dict[str, File]:
@@ -128,7 +131,7 @@ def _custom_files(package: PackageView) -> dict[str, File]:
 
 def _node_files(package: PackageView, node: NodeView) -> dict[str, File]:
     root, include = package.name, f"{package.name}/include/{package.name}"
-    header = _cpp("base.hpp", package, node, base_header(package.name, node))
+    header = _cpp("base.hpp", package, node, base_header(node))
     source = _cpp("base.cpp", package, node, base_source(package.name, node))
     files = {
         f"{include}/{node.stem}_base.hpp": File(header),

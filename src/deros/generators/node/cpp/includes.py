@@ -8,7 +8,7 @@ _DESCRIPTOR = "rcl_interfaces/msg/parameter_descriptor.hpp"
 _RESULT = "rcl_interfaces/msg/set_parameters_result.hpp"
 
 
-def base_header(package: str, node: NodeView) -> list[str]:
+def base_header(node: NodeView) -> list[str]:
     """Return the headers that the base class's header includes, those of ROS 2 and the caller's."""
     headers = ["rclcpp/rclcpp.hpp", *(port.header for port in node.ports)]
     if node.lifecycle:
@@ -20,7 +20,9 @@ def base_header(package: str, node: NodeView) -> list[str]:
     if node.actions or node.action_clients:
         headers.append("rclcpp_action/rclcpp_action.hpp")
     if node.actions:
-        headers.append(f"{package}/runtime/goal_threads.hpp")
+        headers.append(node.runtime.header("goal_threads"))
+    if node.links_runtime:
+        headers.append(node.runtime.header("version_check"))
     return headers
 
 
@@ -28,9 +30,9 @@ def base_source(package: str, node: NodeView) -> list[str]:
     """Return the headers that the base class's source includes beside its own."""
     headers = list(node.provided.includes) if node.provided else []
     if node.lifecycle:
-        headers.append(f"{package}/runtime/managed_node.hpp")
+        headers.append(node.runtime.header("managed_node"))
     if node.reports_qos:
-        headers.append(f"{package}/runtime/qos_report.hpp")
+        headers.append(node.runtime.header("qos_report"))
     if any(parameter.described for parameter in node.declared):
         headers.append(_DESCRIPTOR)
     if node.checked:

@@ -21,6 +21,8 @@ from deros.generators.node.view import (
     timer_notes,
     topic_parameter,
 )
+from deros.generators.runtime.cpp.interface import CppRuntime
+from deros.generators.runtime.interface import CPP_RUNTIME, RUNTIME_VERSION
 from deros.generators.text.cpp import (
     Chain,
     cpp_header,
@@ -36,6 +38,7 @@ from deros.metamodels.node import NodeType, Port, PortKind
 
 # Other packages, those of interfaces above all, have a variable that lists their targets.
 _TARGETS = {
+    CPP_RUNTIME: f"{CPP_RUNTIME}::{CPP_RUNTIME}",
     "rclcpp": "rclcpp::rclcpp",
     "rclcpp_action": "rclcpp_action::rclcpp_action",
     "rclcpp_components": "rclcpp_components::component",
@@ -125,11 +128,13 @@ class NodeView(NodeBase[PortView, TimerView]):
         stem: what its files are named after.
         default_name: its name at run time.
         provided: what the caller makes of it; ``None`` for a node of the user's.
+        runtime: the runtime of its package.
     """
 
     stem: str
     default_name: str
     provided: Provided | None
+    runtime: CppRuntime
     parameters: tuple[ParameterView, ...]
     maps: tuple[MapView, ...]
 
@@ -139,8 +144,13 @@ class NodeView(NodeBase[PortView, TimerView]):
         return "rclcpp_lifecycle::LifecycleNode" if self.lifecycle else "rclcpp::Node"
 
     @property
-    def runtime(self) -> tuple[str, ...]:
-        """The names of the sources that it shares with the other nodes of its package."""
+    def links_runtime(self) -> bool:
+        """Whether its library is linked with that of the runtime."""
+        return self.runtime.linked and bool(self.provided or self.runtime_parts)
+
+    @property
+    def runtime_parts(self) -> tuple[str, ...]:
+        """The parts of the runtime that its base class uses."""
         goals = ("goal_threads",) if self.actions else ()
         managed = ("managed_node",) if self.lifecycle else ()
         return (*goals, *managed, "qos_report") if self.reports_qos else (*goals, *managed)
@@ -198,7 +208,7 @@ class NodeView(NodeBase[PortView, TimerView]):
     def library(self) -> tuple[str, ...]:
         """The sources of the node's library."""
         own = self.provided.sources if self.provided else (f"src/{self.stem}.cpp",)
-        shared = (f"src/runtime/{name}.cpp" for name in self.runtime)
+        shared = self.runtime.sources(self.runtime_parts)
         custom = (f"src/{custom_stem(scope)}.cpp" for scope, _ in self.custom)
         return tuple(sorted({f"src/{self.stem}_base.cpp", *own, *shared, *custom}))
 
@@ -246,6 +256,15 @@ class PackageView:
         names = sorted((*checked, "copyright")) if is_checked(self.copyright) else checked
         return tuple(f"ament_cmake_{name}" for name in names)
 
+    def requirement(self, library: str) -> str:
+        """Return a library as CMake looks for it: the runtime in the version of this deros."""
+        return f"{library} {RUNTIME_VERSION} EXACT" if library == CPP_RUNTIME else library
+
+    def depend(self, library: str) -> str:
+        """Return the element of the manifest for a library."""
+        version = f' version_eq="{RUNTIME_VERSION}"' if library == CPP_RUNTIME else ""
+        return f"<depend{version}>{library}</depend>"
+
     def targets(self, node: NodeView) -> tuple[str, ...]:
         """Return what CMake links one node's library with."""
         return tuple(_TARGETS.get(name, f"${{{name}_TARGETS}}") for name in _needed(node))
@@ -257,13 +276,14 @@ def package_view(
     copyright_line: str,
     licence: str,
     provided: Mapping[str, Provided],
+    runtime: CppRuntime,
 ) -> PackageView:
     """Return the view of the package that ``models``, all of one package, make up.
 
     Raises:
         GenerationError: if two names collide, in a node or between the nodes.
     """
-    nodes = tuple(_node(model, provided.get(model.name)) for model in models)
+    nodes = tuple(_node(model, provided.get(model.name), runtime) for model in models)
     package = models[0].package
     pairs = list(zip(models, nodes, strict=True))
     emitted = [*_files(pairs), *_custom_files(models)]
@@ -316,13 +336,15 @@ def _needed(node: NodeView) -> tuple[str, ...]:
         needed.add("rclcpp_action")
     if node.provided:
         needed.update(node.provided.needs)
+    if node.links_runtime:
+        needed.add(CPP_RUNTIME)
     return tuple(sorted(needed))
 
 
 # Nodes --------------------------------------------------------------------------------------------
 
 
-def _node(model: NodeType, provided: Provided | None) -> NodeView:
+def _node(model: NodeType, provided: Provided | None, runtime: CppRuntime) -> NodeView:
     name = (provided and provided.default_name) or model.name
     class_name = camel_case(name)
     check_names(model, class_name, "struct Parameters", cpp_identifier)
@@ -338,6 +360,7 @@ def _node(model: NodeType, provided: Provided | None) -> NodeView:
         source=file_label(model.source.path),
         summary=sentence(model.description) or f"The node {name}.",
         provided=provided,
+        runtime=runtime,
         parameters=cpp_parameter_views(model),
         maps=cpp_map_views(model),
         publishers=views[PortKind.PUBLISHER],

@@ -1,4 +1,7 @@
-"""The C++ runtime of a generated package: its own copy, or the package ``deros_runtime_cpp``."""
+"""The C++ runtime of a generated package: its own copy, or the package ``deros_runtime_cpp``.
+
+The sources of that package are in this folder; its headers and its namespace have its name.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from deros.generators.api.protocol import File
+from deros.generators.api.protocol import File, Options
+from deros.generators.runtime.interface import (
+    CPP_RUNTIME,
+    RuntimeSource,
+    runtime_source,
+)
 from deros.generators.text.cpp import mark_long_lines
 from deros.generators.text.notice import licensed_cpp
-
-PACKAGE = "deros_runtime_cpp"
-"""The ROS 2 package whose sources are in this folder; its headers and namespace have its name."""
 
 _NOTICE = licensed_cpp("", "")
 """The text above each of its sources."""
@@ -33,7 +38,7 @@ class CppRuntime:
 
     def header(self, part: str) -> str:
         """Return the path by which a part is included."""
-        return f"{PACKAGE if self.linked else f'{self.package}/runtime'}/{part}.hpp"
+        return f"{CPP_RUNTIME if self.linked else f'{self.package}/runtime'}/{part}.hpp"
 
     def sources(self, parts: Iterable[str]) -> tuple[str, ...]:
         """Return the sources that the package compiles of some parts, relative to the package."""
@@ -62,23 +67,35 @@ class CppRuntime:
     @property
     def alias(self) -> str:
         """The declaration that names the runtime in the package's namespace; none for a copy."""
-        return f"namespace runtime = {PACKAGE};" if self.linked else ""
+        return f"namespace runtime = {CPP_RUNTIME};" if self.linked else ""
 
     def _file(self, name: str, notice: str) -> File:
         return File(mark_long_lines(licensed_cpp(copied_text(name, self.package), notice)))
 
 
+def cpp_runtime(package: str, options: Options) -> CppRuntime:
+    """Return the runtime as the option ``runtime`` asks for it.
+
+    Raises:
+        ValueError: if the option cannot be read, or the package has the runtime's name.
+    """
+    linked = runtime_source(options) is RuntimeSource.PACKAGE
+    if linked and package == CPP_RUNTIME:
+        raise ValueError(f"package {package!r} has the name of the runtime that it depends on")
+    return CppRuntime(package, linked)
+
+
 def copied_text(name: str, package: str) -> str:
     """Return a header or source, by its file name, in the namespace ``runtime`` of a package."""
     text = _path(name).read_text(encoding="utf-8").removeprefix(_NOTICE)
-    text = text.replace(f"{PACKAGE.upper()}__", f"{package}__runtime__".upper())
-    text = text.replace(f"{PACKAGE}/", f"{package}/runtime/")
-    return text.replace(PACKAGE, f"{package}::runtime")
+    text = text.replace(f"{CPP_RUNTIME.upper()}__", f"{package}__runtime__".upper())
+    text = text.replace(f"{CPP_RUNTIME}/", f"{package}/runtime/")
+    return text.replace(CPP_RUNTIME, f"{package}::runtime")
 
 
 def _path(name: str) -> Path:
     folder = Path(__file__).parent
-    return folder / (f"include/{PACKAGE}" if name.endswith(".hpp") else "src") / name
+    return folder / (f"include/{CPP_RUNTIME}" if name.endswith(".hpp") else "src") / name
 
 
 def _has_source(part: str) -> bool:

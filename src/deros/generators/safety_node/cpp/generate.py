@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from deros.generators.api.protocol import File, Owner
 from deros.generators.node.cpp.interface import Provided
@@ -39,77 +40,88 @@ _NEEDS = (
 )
 
 
-def provided(view: SafetyView) -> Provided:
+def provided(view: SafetyView, runtime: CppRuntime) -> Provided:
     """Return what the package has to know of the node, whose class is made here."""
     own = [f"src/{view.stem}{part}.cpp" for part in ("", "_messages", "_rule_metadata")]
-    own += [f"src/{view.prefix}_monitor.c", *CppRuntime(view.package).sources(RUNTIME)]
+    own += [f"src/{view.prefix}_monitor.c", *runtime.sources(RUNTIME)]
     if view.actions:
         own.append(f"src/{view.actions_stem}.cpp")
     return Provided(tuple(own), _NEEDS, (f"src/{view.stem}_main.cpp",), default_name=view.node_name)
 
 
-def node_files(view: SafetyView, holder: str) -> dict[str, File]:
-    """Return the node's class, its messages and metadata, and the classes of the user's actions."""
-    root, include = view.package, f"{view.package}/include/{view.package}"
+def node_files(view: SafetyView, holder: str, runtime: CppRuntime) -> dict[str, File]:
+    """Return the node's class, its messages and metadata, and the classes of the user's actions.
+
+    Args:
+        view: the safety node.
+        holder: the text above each file.
+        runtime: the runtime of the package.
+    """
+    sources = _Sources(view, holder, runtime)
+    include, source = f"{view.package}/include/{view.package}", f"{view.package}/src/{view.stem}"
     headers = [
         f"{view.package}/{view.stem}_base.hpp",
-        f"{view.package}/runtime/safety_node_core.hpp",
+        runtime.header("safety_node_core"),
         "rclcpp/rclcpp.hpp",
         *view.headers,
     ]
     if view.actions:
         headers.append(f"{view.package}/{view.actions_stem}.hpp")
-    guard = f"{view.package}__{view.stem}"
-    inner = f"{root}/src/{view.stem}"
-    messages = _file("messages.hpp", view, holder, f"{view.stem}_messages", view.message_headers)
+    messages = sources.file("messages.hpp", f"{view.stem}_messages", view.message_headers)
+    metadata = sources.file("rule_metadata.hpp", f"{view.stem}_rule_metadata")
     files = {
-        f"{include}/{view.stem}.hpp": _file("node.hpp", view, holder, guard, headers),
-        f"{inner}.cpp": _file("node.cpp", view, holder),
-        f"{inner}_main.cpp": _file("main.cpp", view, holder),
-        f"{inner}_messages.hpp": messages,
-        f"{inner}_messages.cpp": _file("messages.cpp", view, holder),
-        f"{inner}_rule_metadata.hpp": _file(
-            "rule_metadata.hpp", view, holder, f"{view.stem}_rule_metadata"
+        f"{include}/{view.stem}.hpp": sources.file(
+            "node.hpp", f"{view.package}__{view.stem}", headers
         ),
-        f"{inner}_rule_metadata.cpp": _file("rule_metadata.cpp", view, holder),
+        f"{source}.cpp": sources.file("node.cpp"),
+        f"{source}_main.cpp": sources.file("main.cpp"),
+        f"{source}_messages.hpp": messages,
+        f"{source}_messages.cpp": sources.file("messages.cpp"),
+        f"{source}_rule_metadata.hpp": metadata,
+        f"{source}_rule_metadata.cpp": sources.file("rule_metadata.cpp"),
     }
-    return files | (_action_files(view, holder) if view.actions else {})
+    return files | (_action_files(view, sources) if view.actions else {})
 
 
-def _action_files(view: SafetyView, holder: str) -> dict[str, File]:
-    root, include = view.package, f"{view.package}/include/{view.package}"
-    stem = view.actions_stem
+@dataclass(frozen=True, slots=True)
+class _Sources:
+    """Renders the headers and sources of a safety node."""
+
+    view: SafetyView
+    holder: str
+    runtime: CppRuntime
+
+    def file(self, template: str, guard: str = "", headers: Iterable[str] = ()) -> File:
+        """Return a file that includes ``headers``, and what it uses of the standard library."""
+        calls = str(self.view.handlers)
+        loaded = environment("deros.generators.safety_node.cpp").get_template(f"{template}.j2")
+
+        def render(standard: list[str]) -> str:
+            return loaded.render(
+                safety=self.view,
+                runtime=self.runtime,
+                guard=f"{guard}_hpp_".upper(),
+                includes=include_lines(headers),
+                standard=standard,
+                uses_not_given="NOT_GIVEN" in calls,
+                uses_text="runtime::utf8" in calls,
+                call=call,
+                comment=comment,
+                expression=expression,
+                string=cpp_string,
+                table=table,
+            )
+
+        text = render(standard_headers(render([])))
+        return File(mark_long_lines(licensed_cpp(text, self.holder)))
+
+
+def _action_files(view: SafetyView, sources: _Sources) -> dict[str, File]:
+    include, stem = f"{view.package}/include/{view.package}", view.actions_stem
     guard = f"{view.package}__{stem}"
-    user = _file("actions.hpp", view, holder, guard)
-    source = _file("actions.cpp", view, holder)
+    header, source = sources.file("actions.hpp", guard), sources.file("actions.cpp")
     return {
-        f"{include}/{stem}_base.hpp": _file("actions_base.hpp", view, holder, f"{guard}_base"),
-        f"{include}/{stem}.hpp": File(user.text, Owner.USER),
-        f"{root}/src/{stem}.cpp": File(source.text, Owner.USER),
+        f"{include}/{stem}_base.hpp": sources.file("actions_base.hpp", f"{guard}_base"),
+        f"{include}/{stem}.hpp": File(header.text, Owner.USER),
+        f"{view.package}/src/{stem}.cpp": File(source.text, Owner.USER),
     }
-
-
-def _file(
-    template: str, view: SafetyView, holder: str, guard: str = "", headers: Iterable[str] = ()
-) -> File:
-    """Return a file that includes ``headers``, and what it uses of the standard library."""
-    calls = str(view.handlers)
-    loaded = environment("deros.generators.safety_node.cpp").get_template(f"{template}.j2")
-
-    def render(standard: list[str]) -> str:
-        return loaded.render(
-            safety=view,
-            guard=f"{guard}_hpp_".upper(),
-            includes=include_lines(headers),
-            standard=standard,
-            uses_not_given="NOT_GIVEN" in calls,
-            uses_text="runtime::utf8" in calls,
-            call=call,
-            comment=comment,
-            expression=expression,
-            string=cpp_string,
-            table=table,
-        )
-
-    text = render(standard_headers(render([])))
-    return File(mark_long_lines(licensed_cpp(text, holder)))

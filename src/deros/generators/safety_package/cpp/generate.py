@@ -9,8 +9,7 @@ from deros.generators.gate.cpp.interface import gate_files, gate_nodes
 from deros.generators.monitor.c.interface import render_monitor
 from deros.generators.node.cpp.interface import package_files
 from deros.generators.node.interface import node_description
-from deros.generators.runtime.cpp.interface import CppRuntime
-from deros.generators.runtime.interface import RuntimeSource, runtime_source
+from deros.generators.runtime.cpp.interface import cpp_runtime
 from deros.generators.safety_node.cpp.interface import (
     RUNTIME,
     node_files,
@@ -34,8 +33,6 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
         GenerationError: if the rules have an error, cannot be told in C, or names collide.
         ValueError: if an option cannot be read.
     """
-    if runtime_source(options) is RuntimeSource.PACKAGE:
-        raise ValueError("the target cpp has no runtime package yet: leave out --runtime")
     built = context.build(model)
     if built.program is None:
         raise GenerationError(built.diagnostics)
@@ -45,22 +42,24 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     shared = shared_topics(built.program, built.topics)
     view = safety_view(model, built.program, python, node, context.store, shared)
     holder = notice(options)
+    runtime = cpp_runtime(node.package, options)
     gates = gate_files(
         built.program,
         gate_nodes(built.program, built.topics, python),
         python,
         context.store,
+        runtime,
         holder,
     )
-    classes = {node.name: provided(view), **gates.provided}
+    classes = {node.name: provided(view, runtime), **gates.provided}
     files = package_files([node, *gates.nodes], options, classes, context.store)
     files |= {f"{node.package}/{node.name}.rnd": File(node_description(node))}
-    files |= node_files(view, holder)
+    files |= node_files(view, holder, runtime)
     files |= {
         f"{view.package}/src/{name}": File(licensed_cpp(_as_linted(text), holder))
         for name, text in render_monitor(built.program).items()
     }
-    return files | CppRuntime(view.package).files(RUNTIME, holder) | gates.files
+    return files | runtime.files(RUNTIME, holder) | gates.files
 
 
 def _as_linted(text: str) -> str:

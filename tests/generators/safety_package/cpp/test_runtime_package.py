@@ -1,0 +1,179 @@
+"""Packages with ``--runtime package``: they link the library ``deros_runtime_cpp`` and check it."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from deros import __version__
+from deros.generators.api.protocol import Context, Files
+from deros.generators.output.writer import write
+from deros.generators.runtime.interface import CPP_RUNTIME, runtime_package
+from deros.generators.safety_package.cpp.generate import generate
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.rules import Rules
+from tests.support.builds import needs_cmake
+from tests.support.cpp import colcon_build, needs_rclcpp, overlay, program, rclcpp_environment
+from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.ros import Peer, running
+from tests.support.safety_cpp import RUNTIME
+
+RULES = Path(__file__).resolve().parents[2] / "safety_node/cpp/models/base/robot.deros"
+PACKAGE = "base_safety_cpp"
+PROGRAMS = ("base_safety_node_cpp", "base_command_gate_cpp")
+OTHER_VERSION = "99.0.0"
+
+
+def generated(runtime: str, package: str = "base_safety") -> Files:
+    """Return the package of a safety node and a gate."""
+    context = Context(InterfaceStore(), Repository())
+    rules = context.repository.load(RULES).model
+    assert isinstance(rules, Rules)
+    names = {"package": package, "node": "base_safety_node"}
+    return generate(rules, context, {**names, "runtime": runtime})
+
+
+def runtime_in(folder: Path, version: str = __version__) -> None:
+    """Write the package of the runtime into a folder, in some version."""
+    write(runtime_package(CPP_RUNTIME), folder)
+    manifest = folder / CPP_RUNTIME / "package.xml"
+    text = manifest.read_text(encoding="utf-8")
+    changed = text.replace(f"<version>{__version__}<", f"<version>{version}<")
+    manifest.write_text(changed, encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give an install folder with the runtime and a package that is linked with it."""
+    workspace = tmp_path_factory.mktemp("linked")
+    runtime_in(workspace)
+    write(generated("package"), workspace)
+    return colcon_build(workspace)
+
+
+@pytest.fixture(scope="module")
+def other_runtime(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give an install folder with another version of the runtime."""
+    workspace = tmp_path_factory.mktemp("other")
+    runtime_in(workspace, OTHER_VERSION)
+    return colcon_build(workspace)
+
+
+def test_package_names_the_runtime_and_carries_no_copy() -> None:
+    """The manifest and the build script depend on it, in the version of this deros."""
+    files = generated("package")
+    assert not [path for path in files if "/runtime/" in path]
+    script = files[f"{PACKAGE}/CMakeLists.txt"].text
+    assert f"find_package({CPP_RUNTIME} {__version__} EXACT REQUIRED)\n" in script
+    assert script.count(f"  {CPP_RUNTIME}::{CPP_RUNTIME}\n") == len(PROGRAMS)
+    depend = f'  <depend version_eq="{__version__}">{CPP_RUNTIME}</depend>\n'
+    assert depend in files[f"{PACKAGE}/package.xml"].text
+    included = {
+        header
+        for file in files.values()
+        for header in re.findall(rf'#include "{CPP_RUNTIME}/(\w+\.hpp)"', file.text)
+    }
+    assert included <= {path.name for path in (RUNTIME / "include" / CPP_RUNTIME).iterdir()}
+
+
+def test_copy_is_the_default() -> None:
+    """A package is complete in itself unless the option says otherwise."""
+    copied = generated("copy")
+    assert CPP_RUNTIME not in "".join(file.text for file in copied.values())
+    assert f"{PACKAGE}/src/runtime/safety_node_core.cpp" in copied
+
+
+def test_other_values_of_the_option_are_rejected() -> None:
+    """The message names the values that there are."""
+    with pytest.raises(ValueError, match="'shared' is neither 'copy' nor 'package'"):
+        generated("shared")
+
+
+def test_package_with_the_name_of_the_runtime_is_rejected() -> None:
+    """It would depend on itself."""
+    with pytest.raises(ValueError, match="has the name of the runtime that it depends on"):
+        generated("package", package=CPP_RUNTIME)
+
+
+def test_linked_package_passes_the_linters_of_ament(tmp_path: Path) -> None:
+    """So does a package that carries a copy, which another test lints."""
+    write(generated("package"), tmp_path)
+    assert_cpp_lint_clean(tmp_path / PACKAGE)
+
+
+@pytest.mark.ros
+@needs_rclcpp
+def test_linked_nodes_run(installed: Path, ros_env: dict[str, str], ros_peer: Peer) -> None:
+    """The safety node sends heartbeats, and its gate passes a command on."""
+    from geometry_msgs.msg import Twist
+    from std_msgs.msg import Float64, UInt64
+
+    heartbeats: list[Any] = []
+    commands: list[Any] = []
+    node = ros_peer.node
+    node.create_subscription(UInt64, "/base_safety_node/heartbeat", heartbeats.append, 10)
+    node.create_subscription(Twist, "/base/command", commands.append, 10)
+    wish = node.create_publisher(Twist, "/base/wish", 10)
+    speed = node.create_publisher(Float64, "/speed", 10)
+    wished = Twist()
+    wished.linear.x = 0.25
+
+    def publish() -> bool:
+        speed.publish(Float64())
+        wish.publish(wished)
+        return bool(heartbeats) and any(command.linear.x == 0.25 for command in commands)
+
+    env = overlay(installed, ros_env)
+    safety_node, gate = ([program(installed, PACKAGE, name)] for name in PROGRAMS)
+    with running(safety_node, env), running(gate, env):
+        ros_peer.until(publish)
+
+
+@needs_rclcpp
+@needs_cmake
+def test_other_version_of_the_runtime_is_refused_at_build(
+    other_runtime: Path, tmp_path: Path
+) -> None:
+    """CMake takes no version but the one that the package was generated for."""
+    write(generated("package"), tmp_path)
+    env = rclcpp_environment()
+    assert env is not None
+    prefixes = f"-DCMAKE_PREFIX_PATH={other_runtime};{env['AMENT_PREFIX_PATH'].replace(':', ';')}"
+    command = ["cmake", "-S", str(tmp_path / PACKAGE), "-B", str(tmp_path / "build"), prefixes]
+    done = subprocess.run(
+        command, env=env, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode != 0
+    message = " ".join(done.stderr.split())
+    assert f'"{CPP_RUNTIME}" that exactly matches requested version "{__version__}"' in message
+    assert f"version: {OTHER_VERSION}" in message
+
+
+@pytest.mark.ros
+@needs_rclcpp
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_other_version_of_the_runtime_is_refused_at_start(
+    name: str, installed: Path, other_runtime: Path, ros_env: dict[str, str]
+) -> None:
+    """The program says which versions do not match, and ends before it makes a node."""
+    env = overlay(installed, ros_env)
+    env["LD_LIBRARY_PATH"] = f"{other_runtime / 'lib'}:{env['LD_LIBRARY_PATH']}"
+    done = subprocess.run(
+        [program(installed, PACKAGE, name)],
+        env=env,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (
+        1,
+        "",
+        f"{PACKAGE} was built with {CPP_RUNTIME} {__version__}, but the loaded library has version "
+        f"{OTHER_VERSION}: build the package again\n",
+    )
