@@ -1,4 +1,4 @@
-"""For the setup.py of an ament_python package that is generated from its models when it is built.
+"""Support for setup.py of an ament_python package that is generated when it is built.
 
 The package keeps its models, its package.xml and what is written by hand::
 
@@ -7,7 +7,7 @@ The package keeps its models, its package.xml and what is written by hand::
     setup('models/robot.deros')
 
 Everything else is made in the folder ``.deros`` beside setup.py, each time that setup.py runs;
-files that do not change are not touched. Nothing in it is to be kept, edited or checked in.
+unchanged files are not touched. Do not edit it or check it in.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from deros.pipeline.generate import Request
 
 FOLDER = ".deros"
-"""The folder of what is generated, in the source tree: setup.py may name no file outside it."""
+"""The folder of generated files, in the source tree: setup.py may not name files outside it."""
 
 
 def setup(
@@ -68,7 +68,7 @@ def setup(
 
 @dataclass(frozen=True, slots=True)
 class _Outcome:
-    """The generated package, or why there is none; and what was found in the models."""
+    """The generated package, or the reason why there is none, and the findings."""
 
     package: str | None
     findings: Sequence[Diagnostic] = ()
@@ -109,7 +109,7 @@ def _generate(request: Request, source: Path) -> _Outcome:
             )
         _, lacking = write(made, where, started)
         findings = (*findings, *lacking)
-        if lacking:  # said again by the next build, unless it is mended
+        if lacking:  # so that the next build reports it again
             os.utime(stamp, ns=(0, 0))
     except Refused as refused:
         return _Outcome(None, refused.diagnostics, refused.code)
@@ -123,7 +123,7 @@ def _generate(request: Request, source: Path) -> _Outcome:
 
 
 def _distribution(outcome: _Outcome) -> type[Any]:
-    """Return setuptools' distribution, which tells what was found when commands are run.
+    """Return the class of a distribution that prints the findings when commands are run.
 
     colcon asks a setup.py several questions before it builds, and its own complaint about one that
     fails to answer would bury ours.
@@ -143,7 +143,7 @@ def _distribution(outcome: _Outcome) -> type[Any]:
 
 
 def _placeholder(source: Path) -> dict[str, Any]:
-    """Return what colcon asks of an ament_python package, of one that cannot be generated."""
+    """Return the arguments that colcon needs for a package that cannot be generated."""
     try:
         name = ElementTree.parse(source / "package.xml").findtext("name", source.name).strip()
     except (OSError, ElementTree.ParseError):
@@ -154,7 +154,7 @@ def _placeholder(source: Path) -> dict[str, Any]:
 
 
 def _arguments(source: Path, package: str) -> dict[str, Any]:
-    """Return what the generated setup.py and setup.cfg say, for the folder of the source tree."""
+    """Return the arguments of the generated setup.py and setup.cfg, for the source tree."""
     root = source / FOLDER / package
     arguments = _called_with(root / "setup.py")
     below = f"{FOLDER}/{package}"
@@ -172,7 +172,7 @@ def _arguments(source: Path, package: str) -> dict[str, Any]:
 
 
 def _called_with(script: Path) -> dict[str, Any]:
-    """Run a setup.py and return what it would call setuptools' ``setup`` with."""
+    """Run a setup.py and return the arguments that it passes to setuptools' ``setup``."""
     import setuptools
 
     taken: dict[str, Any] = {}
@@ -188,7 +188,7 @@ def _called_with(script: Path) -> dict[str, Any]:
 
 
 def _joined(ours: Any, theirs: Any) -> Any:
-    """Join lists and dictionaries; of anything else theirs wins."""
+    """Join lists and dictionaries; for anything else ``theirs`` takes precedence."""
     if isinstance(ours, dict) and isinstance(theirs, Mapping):
         both = {name: _joined(ours[name], theirs[name]) for name in ours.keys() & theirs.keys()}
         return {**ours, **theirs, **both}

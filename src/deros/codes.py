@@ -352,4 +352,4 @@ OF_MODELS = frozenset(
     for code in ALL_CODES.values()
     if not code.name.startswith(("DRS4", "DRS5")) and not "DRS020" <= code.name <= "DRS027"
 )
-"""Findings about what a model says, not about generated files, traces or how deros is used."""
+"""Codes of findings about the content of models, not about generated files or traces."""

@@ -1,4 +1,4 @@
-"""What every room of deros says to its users: positions, diagnostics and their codes.
+"""Positions, diagnostics and their codes, which all rooms share.
 
 A check never prints and never raises for a fault in a user's text: it yields :class:`Diagnostic`
 objects, and the command line or an editor renders them. The codes are declared once, in
@@ -23,7 +23,7 @@ ANY_NAME = "*"
 
 
 class Severity(enum.Enum):
-    """How bad a finding is; only errors fail a run, warnings do under ``--strict``."""
+    """The severity of a finding; errors fail a run, and warnings do under ``--strict``."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -68,13 +68,13 @@ class SourceFile:
     """
 
     def __init__(self, path: str, text: str) -> None:
-        """Hold ``text`` read from ``path``."""
+        """Store ``text`` read from ``path``."""
         self.path = path
         self.text = text
         self.lost: frozenset[str] = frozenset()
 
     def mentions_lost(self, name: str) -> bool:
-        """Tell whether a statement that could not be read mentions ``name``.
+        """Return whether a statement that could not be read mentions ``name``.
 
         Such a statement may declare the name, use it or connect it: that something seems to be
         missing there follows from the syntax error alone, and is not reported a second time. Of a
@@ -103,7 +103,7 @@ class SourceFile:
         return self.text[starts[number - 1] : end].rstrip("\r\n")
 
     def __repr__(self) -> str:
-        """Name the file only; its text is long."""
+        """Return a form without the text, which is long."""
         return f"SourceFile({self.path!r})"
 
 
@@ -148,7 +148,7 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Related:
-    """Another place that belongs to a diagnostic, with what it has to do with it."""
+    """Another place that is relevant to a diagnostic, with an explanation."""
 
     span: Span
     message: str
@@ -156,7 +156,7 @@ class Related:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """What the hint of a diagnostic asks for, as an edit: ``text`` in place of ``span``."""
+    """The hint of a diagnostic as an edit: ``text`` in place of ``span``."""
 
     span: Span
     text: str
@@ -164,7 +164,7 @@ class Fix:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding: what is wrong where, what was probably meant, and what to do.
+    """One finding: the problem, its position, the likely intention, and what to do.
 
     Where the hint asks for one certain edit, ``fix`` is that edit, for tools that apply it.
     """
@@ -191,7 +191,7 @@ def report(
     related: tuple[Related, ...] = (),
     fix: Fix | None = None,
 ) -> Diagnostic:
-    """Make a diagnostic with the severity that its code declares, short enough to be read."""
+    """Make a diagnostic with the severity of its code, shortened if it is very long."""
     return Diagnostic(code, _readable(message), span, _readable(hint), related, code.severity, fix)
 
 
@@ -202,7 +202,7 @@ def last_word(name: str) -> str:
 
 
 def _readable(text: str) -> str:
-    """Return the text without its middle if that is longer than anybody reads, and encodable.
+    """Return the text in an encodable form, without its middle if it is very long.
 
     Names and texts of a model come into it as they are, and file names as the system has them.
     """
@@ -223,5 +223,5 @@ def in_file_order(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Tell whether any of the findings is an error."""
+    """Return whether any of the findings is an error."""
     return any(d.is_error for d in diagnostics)

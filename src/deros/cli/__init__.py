@@ -1,1 +1,1 @@
-"""The command line. One file per command; each renders what the rooms below return."""
+"""The command line. One file per command; each prints the results of the rooms below."""

@@ -75,7 +75,7 @@ def check(
 
 @contextlib.contextmanager
 def without_collector() -> Iterator[None]:
-    """Keep Python's cycle collector away while models are loaded and checked.
+    """Suspend Python's cyclic garbage collector while models are loaded and checked.
 
     They live until the end of the run: looking for garbage among them finds none, and takes a third
     of the time on a large system.
@@ -91,11 +91,11 @@ def without_collector() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a run of the checks found, in how many files.
+    """The findings of a run of the checks.
 
     Attributes:
-        findings: what is to be reported.
-        allowed: what the models allow.
+        findings: the findings to report.
+        allowed: the findings that are allowed.
         files: how many files were checked.
         named: the models that were named, alone or by their folder.
         compared: the same findings against a baseline, if there is one.
@@ -109,7 +109,7 @@ class Found:
 
 
 def _compared(found: Found, path: Path, *, write: bool) -> Found:
-    """Leave out what the baseline in ``path`` lists, which is written before if so asked."""
+    """Leave out the findings in the baseline ``path``, which is written first with ``write``."""
     from deros.report import baseline
 
     try:

@@ -165,7 +165,7 @@ def _apart(arguments: Sequence[str]) -> tuple[list[str], dict[str, str]]:
 
 
 def report_written(written: WriteReport) -> str:
-    """Say what became of the files, naming those that were written."""
+    """Return a report on the files that names the written ones."""
     from deros.generators.output.writer import Outcome
 
     lines = [f"wrote {written.directory / path}" for path in written.of(Outcome.WRITTEN)]

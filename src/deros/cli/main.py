@@ -1,4 +1,4 @@
-"""``deros``: the command group, and what holds for every command.
+"""``deros``: the command group, exit codes and errors of all commands.
 
 A command's module is imported only when it runs, so that ``deros --help`` answers at once. Exit
 codes: 0 clean, 1 findings, 2 usage, unreadable input or a bug of ours, 130 interrupted, 141 the
@@ -124,7 +124,7 @@ def run(arguments: list[str]) -> int:
 
 
 def _reader_gone() -> int:
-    """Leave quietly: Python would complain when it flushes to the closed pipe at exit."""
+    """Discard further output: flushing the closed pipe at exit would raise."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return BROKEN_PIPE
 

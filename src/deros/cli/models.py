@@ -1,4 +1,4 @@
-"""The models that a command line means: files as they are, and all models below folders."""
+"""The models on a command line: files, and all models below folders."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Named:
 
 
 def named_models(paths: Sequence[str]) -> list[Named]:
-    """Return the models that arguments of a command mean, each once, those of a folder sorted.
+    """Return the models that the arguments name, each once, those of a folder sorted.
 
     Raises:
         click.UsageError: a folder has no model, or too many folders in it.

@@ -1,4 +1,4 @@
-"""What ``deros generate`` is to make: which targets of which of the models that were named."""
+"""The requests of ``deros generate``: the targets of each model that is named."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def _targets(model: Named, target: str | None) -> tuple[str, ...]:
 def _worth_generating(
     named: Sequence[Named], options: Mapping[str, str], interfaces: tuple[Path, ...]
 ) -> list[Named]:
-    """Leave out what was found in folders and is not to be generated."""
+    """Leave out models found in folders from which nothing is generated."""
     from deros.metamodels.node import NodeType
     from deros.metamodels.rules import Rules
     from deros.pipeline.workspace import load

@@ -48,10 +48,10 @@ def _checked_metamodel(language: Language) -> Any:
 
 
 def _check(file_name: str) -> None:
-    """Check one file; what is not in the way goes to standard error.
+    """Check one file; write findings that do not block generating to standard error.
 
     Raises:
-        TextXError: with all findings as its text, if one of them is in the way.
+        TextXError: with all findings as its text, if one of them is blocking.
     """
     import click
 
@@ -79,7 +79,7 @@ def _run_generator(
     """Load, check, generate and write.
 
     Args:
-        generator: what runs.
+        generator: the generator to run.
         filename: the model's file.
         options: those of the generator, by their declared names.
         interfaces: folders with message definitions.
@@ -87,7 +87,7 @@ def _run_generator(
         overwrite: whether generated files that were edited by hand are replaced.
 
     Raises:
-        TextXError: with all that is in the way as its text.
+        TextXError: with the errors as its text.
     """
     from deros.generators.output.writer import WriteError
     from deros.pipeline.generate import Refused, Request, generate

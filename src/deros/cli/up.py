@@ -1,4 +1,4 @@
-"""``deros up``: run a system model directly, as the script made from it would."""
+"""``deros up``: run a system directly, like the script generated from it."""
 
 from __future__ import annotations
 
@@ -70,8 +70,8 @@ def up(
 ) -> None:
     """Start every node of the system in FILE; stop them all on Ctrl-C.
 
-    The model is checked first, and nothing is started if an error is found. What then happens is
-    what the script of 'deros generate --target script' does; ARGUMENTS after -- are its own.
+    The model is checked first, and nothing is started if an error is found. It then
+    runs like the script of 'deros generate --target script', which takes the ARGUMENTS after --.
     """
     given = ["--stop-timeout", stop_timeout]
     given += [word for folder in install for word in ("--package-path", folder)]
@@ -84,7 +84,7 @@ def up(
 
 @contextlib.contextmanager
 def _interrupts_at_once() -> Iterator[None]:
-    """Let SIGINT end the process as long as there is nothing to stop in order.
+    """Let SIGINT terminate the process until nodes have to be stopped in order.
 
     Python's own handler raises an exception wherever the program is, and in the middle of some
     imports that is lost: the system would be started all the same.

@@ -34,7 +34,7 @@ class EmbeddedSource:
     """The embedded definitions as a place to look in."""
 
     def has_package(self, package: str) -> bool:
-        """Tell whether any interface of ``package`` is embedded."""
+        """Return whether any interface of ``package`` is embedded."""
         return package in self.packages()
 
     def packages(self) -> frozenset[str]:

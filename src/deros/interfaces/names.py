@@ -119,7 +119,7 @@ def check_topic_name(name: str) -> str | None:
 
 
 def is_too_long(name: str) -> bool:
-    """Tell whether a full name, of a topic or a node, is longer than ROS 2 takes."""
+    """Return whether a full name, of a topic or a node, is longer than ROS 2 takes."""
     return len(name) > _TOPIC_LIMIT
 
 

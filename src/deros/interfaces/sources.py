@@ -50,7 +50,7 @@ class Source(Protocol):
     """One place that definitions come from."""
 
     def has_package(self, package: str) -> bool:
-        """Tell whether the place has interfaces of ``package``."""
+        """Return whether the place has interfaces of ``package``."""
         ...
 
     def packages(self) -> frozenset[str]:
@@ -94,7 +94,7 @@ class FolderSource:
         return found
 
     def has_package(self, package: str) -> bool:
-        """Tell whether the tree has interfaces of ``package``."""
+        """Return whether the tree has interfaces of ``package``."""
         return any((package, kind) in self._folders for kind in SECTIONS)
 
     def packages(self) -> frozenset[str]:
@@ -132,7 +132,7 @@ class AmentSource:
         self._inputs: list[Path] = []
 
     def has_package(self, package: str) -> bool:
-        """Tell whether the index of the prefix lists interfaces of ``package``."""
+        """Return whether the index of the prefix lists interfaces of ``package``."""
         try:
             return bool(package) and (self._prefix / INDEX / package).is_file()
         except OSError:  # a name longer than the file system takes

@@ -38,7 +38,7 @@ class StandardTopic:
     of: str = ""
 
     def has(self, kind: InterfaceType | None) -> bool:
-        """Tell whether it may be of a type; of one that nobody gives, it may."""
+        """Return whether it may be of a type; of one that nobody gives, it may."""
         return kind is None or not self.types or _text(kind) in self.types
 
 
@@ -58,17 +58,17 @@ def standard_topic(name: str, kind: InterfaceType | None) -> StandardTopic | Non
 
 
 def is_shown_only(kind: InterfaceType) -> bool:
-    """Tell whether messages of a type are for tools, so that no subscription is missing."""
+    """Return whether messages of a type are for tools, so that no subscription is missing."""
     return _text(kind) in _table().shown
 
 
 def is_operated(kind: InterfaceType) -> bool:
-    """Tell whether messages of a type come from an operator, so that no publisher is missing."""
+    """Return whether messages of a type come from an operator, so that no publisher is missing."""
     return _text(kind) in _table().operated
 
 
 def has_topic_of_its_own(kind: InterfaceType) -> bool:
-    """Tell whether messages of a type are for one standard topic, as transforms are."""
+    """Return whether messages of a type are for one standard topic, as transforms are."""
     return _text(kind) in _table().fixed
 
 

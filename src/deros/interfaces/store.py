@@ -64,7 +64,7 @@ class InterfaceStore:
         return (parts[0], parts[1], parts[2]) if parts else None
 
     def exists(self, kind: InterfaceType) -> bool:
-        """Tell whether there is a definition of that name, be it readable or not."""
+        """Return whether there is a definition of that name, be it readable or not."""
         return self._definition(kind) is not None
 
     def problem(self, kind: InterfaceType) -> DefinitionProblem | None:
@@ -78,7 +78,7 @@ class InterfaceStore:
         return None if definition is None else self._extents.of(definition).unknown
 
     def has_package(self, package: str) -> bool:
-        """Tell whether any interface of ``package`` is known."""
+        """Return whether any interface of ``package`` is known."""
         return self._owner(package) is not None
 
     def packages(self) -> frozenset[str]:

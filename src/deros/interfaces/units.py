@@ -103,7 +103,7 @@ class UnitRegistry:
         return self._parsed[text]
 
     def compatible(self, a: Unit, b: Unit) -> bool:
-        """Tell whether values of one unit can be compared with values of the other."""
+        """Return whether values of one unit can be compared with values of the other."""
         return a.exponents == b.exponents
 
     def factor(self, source: Unit, target: Unit) -> tuple[float, float]:

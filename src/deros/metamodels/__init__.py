@@ -1,1 +1,1 @@
-"""The three languages: their grammars, their loader and the typed models that it yields."""
+"""The languages: grammars, loader and typed models."""

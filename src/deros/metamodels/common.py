@@ -1,4 +1,4 @@
-"""What the typed models of the three languages share."""
+"""Classes that the typed models of all languages share."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Interval:
     upper_closed: bool = True
 
     def __contains__(self, value: float) -> bool:
-        """Tell whether ``value`` lies within."""
+        """Return whether ``value`` lies within."""
         above = value >= self.lower if self.lower_closed else value > self.lower
         below = value <= self.upper if self.upper_closed else value < self.upper
         return above and below
@@ -46,7 +46,7 @@ class Interval:
         return math.isinf(self.lower) or math.isinf(self.upper)
 
     def spelled(self, bound: Callable[[float], str] = repr) -> str:
-        """Return it as the languages write it, ``[0.1, 2.0)`` or ``>= 0.1``."""
+        """Return the interval in the notation of the languages, ``[0.1, 2.0)`` or ``>= 0.1``."""
         if math.isinf(self.upper):
             return f"{'>=' if self.lower_closed else '>'} {bound(self.lower)}"
         if math.isinf(self.lower):
@@ -56,7 +56,7 @@ class Interval:
         return f"{opening}{bound(self.lower)}, {bound(self.upper)}{closing}"
 
     def clause(self, bound: Callable[[float], str] = repr) -> str:
-        """Return how a description states it, ``in [0.1, 2.0)`` or ``>= 0.1``."""
+        """Return the interval as a clause of a description, ``in [0.1, 2.0)`` or ``>= 0.1``."""
         return f"{'' if self.one_sided else 'in '}{self.spelled(bound)}"
 
 

@@ -1,4 +1,4 @@
-"""What the three converters from textX objects to typed models share."""
+"""The base class of the converters from textX objects to typed models."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ _ESCAPES = {'"': '"', "\\": "\\", "/": "/", "n": "\n", "t": "\t", "r": "\r"}
 _INTEGER = re.compile(r"[+-]?\d+\Z")
 _EXPONENT = re.compile(r"[eE]([+-]?\d+)\Z")
 _GREATEST_COUNT = 2**31 - 1
-_LONGEST_S = 2**31 - 1  # of DDS; rmw would shorten what is longer
+_LONGEST_S = 2**31 - 1  # the limit of DDS; rmw would shorten longer times
 _TIME_UNITS = UnitRegistry()
 _KINDS: dict[str, InterfaceKind] = {"msg": "msg", "srv": "srv", "action": "action"}
 
 
 class Converter:
-    """Turns the textX objects of one file into frozen models, collecting what it finds wrong."""
+    """Turns the textX objects of one file into frozen models and collects the diagnostics."""
 
     def __init__(self, source: SourceFile) -> None:
         self.source = source
@@ -44,29 +44,29 @@ class Converter:
         self.diagnostics.append(report(code, message, span, hint, related))
 
     def lose(self, span: Span) -> None:
-        """Give up a statement that means nothing: what it mentions is not missed elsewhere."""
+        """Discard a meaningless statement; names that it mentions are not reported missing."""
         self.source.lost |= frozenset(re.findall(r"\w+", span.text))
 
     def span(self, found: Any) -> Span:
-        """Return the place of a textX object."""
+        """Return the span of a textX object."""
         return Span(self.source, found._tx_position, found._tx_position_end)
 
     def token_span(self, token: Token) -> Span:
-        """Return the place of a token."""
+        """Return the span of a token."""
         return Span(self.source, token.start, token.start + len(token))
 
     def name(self, token: Token) -> Name:
-        """Return a token as a name with its place."""
+        """Return a token as a name with its span."""
         return Name(str(token), self.token_span(token))
 
     def written(self, token: Token) -> str:
-        """Return a name that may stand in quotes."""
+        """Return a name that may be quoted."""
         return self.text(token) if token[0] == '"' else str(token)
 
     # Texts, numbers, values ------------------------------------------------------------------
 
     def text(self, token: Token | None) -> str:
-        """Return what a quoted text says, or an empty text when there is none."""
+        """Return the content of a quoted string, or an empty one when there is none."""
         if token is None:
             return ""
         inner = token[1:-1]
@@ -103,12 +103,12 @@ class Converter:
         return Decimal(0)
 
     def integer(self, token: Token) -> int:
-        """Return a count of something; one that no machine counts to is reported and reads as 0."""
+        """Return a count; one that is too large for a machine is reported and reads as 0."""
         value = int(self.decimal(token))
         return value if value <= _GREATEST_COUNT else int(self._out_of_range(token))
 
     def scalar(self, token: Token) -> Scalar:
-        """Return a value as its text says: bool, int, float or str."""
+        """Return a value by the form of its text: bool, int, float or str."""
         if token[0] == '"':
             return self.text(token)
         if token == "true" or token == "false":
@@ -125,7 +125,7 @@ class Converter:
         return tuple(self.scalar(item) for item in found.items)
 
     def value_span(self, found: Any) -> Span:
-        """Return the place of a scalar or an array."""
+        """Return the span of a scalar or an array."""
         return self.token_span(found) if isinstance(found, str) else self.span(found)  # type: ignore[arg-type]
 
     def interval(self, found: Any) -> Interval:
@@ -145,11 +145,11 @@ class Converter:
         return InterfaceType(package, _KINDS[middle[0]] if middle else kind, name)
 
     def unit(self, token: Token | None) -> str | None:
-        """Return a unit as written, without the blanks in it."""
+        """Return a unit as written, without spaces."""
         return "".join(token.split()) if token is not None else None
 
     def duration_ns(self, found: Any) -> int:
-        """Return a duration in nanoseconds, or 0 after reporting why it is none."""
+        """Return a duration in nanoseconds, or 0 after reporting why it is invalid."""
         if found.unit is None:
             hint = f"write '{found.value} sec' or '{found.value} ms'"
             self.report(codes.UNKNOWN_UNIT, "a duration needs a unit", self.span(found), hint)
@@ -172,12 +172,12 @@ class Converter:
         return duration
 
     def effective_ns(self, found: Any, what: str, zero: str) -> int | None:
-        """Return a duration that ROS 2 has to keep, or ``None`` after reporting why it cannot.
+        """Return a duration for ROS 2, or ``None`` after reporting why ROS 2 cannot apply it.
 
         Args:
             found: the duration.
-            what: what it is, for the message.
-            zero: what ROS 2 makes of no time at all.
+            what: the name of the duration, for the message.
+            zero: how ROS 2 treats a duration of 0, for the message.
         """
         before = len(self.diagnostics)
         duration = self.duration_ns(found)
@@ -191,7 +191,7 @@ class Converter:
         return duration if len(self.diagnostics) == before else None
 
     def check_longest(self, duration_ns: int, what: str, found: Any) -> None:
-        """Report a duration that is longer than ROS 2 can keep."""
+        """Report a duration that is longer than ROS 2 supports."""
         if duration_ns > _LONGEST_S * NS_PER_S:
             message = f"{what} is longer than the {_LONGEST_S} seconds that the middleware supports"
             self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found))
@@ -234,7 +234,7 @@ class Converter:
 
 
 def _character(pair: re.Match[str]) -> str:
-    """Return the character that two escapes stand for, as in JSON."""
+    """Return the character of two surrogate escapes, as in JSON."""
     return pair[0].encode("utf-16", "surrogatepass").decode("utf-16")
 
 
@@ -247,14 +247,14 @@ _QOS_FIELDS = {
 
 
 class Sections:
-    """Notices the second of two sections, or of two attributes, that may be given only once."""
+    """Reports sections and attributes that are given twice."""
 
     def __init__(self, converter: Converter) -> None:
         self._converter = converter
         self._first: dict[str, Span] = {}
 
     def once(self, what: str, span: Span) -> bool:
-        """Tell whether ``what`` comes for the first time; report it when it does not."""
+        """Return whether ``what`` is given for the first time; report it otherwise."""
         first = self._first.setdefault(what, span)
         if first is span:
             return True

@@ -37,7 +37,7 @@ _FOREIGN_TYPES = {
     **dict.fromkeys(("str", "text", "char", "std::string"), "string"),
     **dict.fromkeys(("boolean", "flag"), "bool"),
 }
-"""What the parameter types of other languages are called in ROS 2."""
+"""The ROS 2 names of parameter types of other languages."""
 
 _INTERFACE_KINDS: dict[PortKind, InterfaceKind] = {
     PortKind.PUBLISHER: "msg",
@@ -48,7 +48,7 @@ _INTERFACE_KINDS: dict[PortKind, InterfaceKind] = {
     PortKind.ACTION_CLIENT: "action",
 }
 _WRAPPING = "wrapping"
-"""What stands behind the unit of an angle that jumps by a full turn where it begins anew."""
+"""The word after the unit of an angle that wraps around after a full turn."""
 
 _WORDS = {
     "ParameterUnit": "unit",
@@ -70,7 +70,7 @@ _UNBOUNDED = Interval(-math.inf, math.inf)
 
 
 def as_double(value: Value, kind: ParameterType) -> Value:
-    """Return ``value`` as a double where a double is wanted and a whole number is written."""
+    """Return an integer value of a double parameter as a double."""
     if kind is ParameterType.DOUBLE and type(value) is int:
         return float(value)
     if kind is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
@@ -175,7 +175,7 @@ class NodeConverter(Converter):
         return {"description": self.text(attribute.text)}
 
     def _bounds(self, attribute: Any, given: Sections, settings: dict[str, Any]) -> None:
-        """Join a range, or a bound of one side, with the bound of the other side."""
+        """Combine a range or a one-sided bound with another bound."""
         known: Interval = settings.get("interval", _UNBOUNDED)
         span = self.span(attribute)
         if type(attribute).__name__ == "Within":

@@ -85,12 +85,12 @@ class RulesConverter(Converter):
     """Converts one DeRoS program; each ``use`` statement has an index of its own file."""
 
     def __init__(self, source: SourceFile, indexes: Mapping[int, FileIndex]) -> None:
-        """Hold the indexes by the position of their ``use`` statement."""
+        """Store the indexes by the position of their ``use`` statement."""
         super().__init__(source)
         self._indexes = indexes
 
     def rules(self, model: Any) -> Rules:
-        """Return the program that the file holds."""
+        """Return the rules of the file."""
         groups: dict[str, list[Any]] = {}
         convert = {
             "Use": self._use,
@@ -355,7 +355,7 @@ class RulesConverter(Converter):
         return TopicPath(name, path, Span(self.source, found._tx_position, span.end))
 
     def _path(self, name: Name, found: Any) -> tuple[tuple[str | int, ...], Span]:
-        """Return the steps after a name, and the place of the name with them."""
+        """Return the steps after a name, and the span of the whole path."""
         if found.path is None:
             return (), name.span
         steps = _STEP.findall(found.path)

@@ -99,7 +99,7 @@ class SystemConverter(Converter):
     def _parts(
         self, parts: Any, topics: list[Topic], members: list[NodeInstance | Subsystem]
     ) -> tuple[SafetyInstance, ...]:
-        """Convert what stands in a system or a subsystem; return its ``safety`` statements."""
+        """Convert the parts of a system or a subsystem; return its ``safety`` statements."""
         sections = Sections(self)
         safety: list[SafetyInstance] = []
         for part in parts:
@@ -301,7 +301,7 @@ class SystemConverter(Converter):
 
 
 def unknown(name: str, what: str, known: Iterable[str], span: Span) -> tuple[str, Span, str]:
-    """Word the finding that no import defines ``name``: message, place and hint."""
+    """Return message, span and hint of the finding that no import defines ``name``."""
     names = list(known)
     hint = did_you_mean(near(name, names))
     if not hint:

@@ -1,4 +1,4 @@
-"""What a system amounts to at run time: every node by its full name, every topic by its graph name.
+"""The system at run time: every node by its full name, every topic by its graph name.
 
 Names resolve as ROS 2 resolves them (ROS 2 design, "Topic and Service name mapping"): an absolute
 name stands as it is, a relative one is put under the namespace where it is written, ``~/x`` under
@@ -128,7 +128,7 @@ def flatten(system: System) -> FlatSystem:
 
 @dataclass(frozen=True, slots=True)
 class _Site:
-    """A ``safety`` statement where it stands at run time."""
+    """A ``safety`` statement and its place at run time."""
 
     statement: SafetyInstance
     path: tuple[str, ...]
@@ -136,7 +136,7 @@ class _Site:
 
 
 class _Walk:
-    """All that stands in a system, imports expanded, in the order written."""
+    """The members of a system, imports expanded, in the order written."""
 
     def __init__(self, system: System) -> None:
         self.system = system
@@ -181,7 +181,7 @@ _Describe = Callable[[SafetyInstance, Rules], tuple[NodeType, ...]]
 
 
 class _Expansion:
-    """A system with the nodes that its ``safety`` statements stand for."""
+    """A system with the nodes of its ``safety`` statements."""
 
     def __init__(self, walk: _Walk, describe: _Describe) -> None:
         self._walk = walk
@@ -215,7 +215,7 @@ class _Expansion:
 
 
 def _node_types(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
-    """Return the nodes of a statement as the systems that the rules use let them be."""
+    """Return the nodes of a statement, given the systems that the rules use."""
     target, package = statement.target, statement.package or ""
     known = statement.reference.node_types
     if (target, package) not in known:
@@ -241,9 +241,9 @@ def nodes_of_rules(rules: Rules, target: str = "python", package: str = "") -> t
 
 
 def _node_types_alone(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
-    """Return the nodes of a statement as far as the rules alone say what they are.
+    """Return the nodes of a statement as far as they follow from the rules alone.
 
-    That is all that other safety nodes have to know of them: what they publish, and of which type.
+    Other safety nodes need no more: the topics that they publish, and the types.
     """
     return safety_node_types(
         rules, lambda _: None, lambda _: Offers(), statement.target, statement.package or ""
@@ -251,7 +251,7 @@ def _node_types_alone(statement: SafetyInstance, rules: Rules) -> tuple[NodeType
 
 
 def _known_topics(rules: Rules) -> TopicTable:
-    """Return what the systems that some rules use say of topics, without what safety nodes read."""
+    """Return the topics of the systems that rules use, without the inputs of safety nodes."""
     systems = {id(use.system): use.system for use in rules.uses if use.system is not None}
     return TopicTable(
         _Expansion(_Walk(system), _node_types_alone).system() for system in systems.values()
@@ -323,6 +323,6 @@ def _default_topic(port: Port, node_type: NodeType | None, settings: dict[str, V
 
 
 def is_topic_parameter(node_type: NodeType, name: str) -> bool:
-    """Tell whether ``name`` is a string parameter of the type: it may hold a topic's name."""
+    """Return whether ``name`` is a string parameter of the type: it may hold a topic's name."""
     parameter = node_type.parameter(name)
     return parameter is not None and parameter.type is ParameterType.STRING

@@ -1,7 +1,7 @@
 """Files that a pattern with ``*``, ``?``, ``[…]`` and ``**`` matches, each folder visited once.
 
-The library's own ``glob`` follows symbolic links wherever they lead: two of them that lead back to
-where they are make it run for ever.
+``glob`` of the standard library follows every symbolic link, so that a cycle of two links makes it
+run for ever.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from fnmatch import fnmatchcase
 from pathlib import PurePath
 
 MOST_FOLDERS = 20_000
-"""How many folders a pattern may search."""
+"""The number of folders that a pattern may search."""
 
 
 class TooManyFolders(Exception):  # noqa: N818 - a finding of the model, and no fault of the program
@@ -58,7 +58,7 @@ def folder_levels(parent: str, parts: Sequence[str]) -> list[list[str]]:
 
 
 def path_matches(path: PurePath, pattern: str) -> bool:
-    """Tell whether a relative path matches a pattern, in which ``**`` is any number of folders."""
+    """Return whether a relative path matches a pattern; ``**`` is any number of folders."""
     return _parts_match(path.parts, PurePath(pattern).parts)
 
 
@@ -117,7 +117,7 @@ def _identity(folder: str) -> object:
 
 
 def _entries(folder: str) -> list[os.DirEntry[str]]:
-    """Return what is in a folder, sorted, so that always the same name of one folder counts."""
+    """Return the sorted content of a folder, so that of several links the same one is used."""
     try:
         with os.scandir(folder or ".") as entries:
             return sorted(entries, key=lambda entry: entry.name)
@@ -133,5 +133,5 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
 
 
 def _matches(name: str, pattern: str) -> bool:
-    """Tell whether a name matches; a hidden one only where the pattern begins with a dot."""
+    """Return whether a name matches; a hidden one only if the pattern begins with a dot."""
     return fnmatchcase(name, pattern) and (not name.startswith(".") or pattern.startswith("."))

@@ -1,4 +1,4 @@
-"""What the expressions of a grammar say of the texts that they match."""
+"""Properties of grammar expressions: keywords, first tokens, statements."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from arpeggio import (
 
 _LONG_WORD = re.compile(r"[a-z_]{2,}")
 _ANY_WORD = "zzyzx"
-"""A word that no language has as a keyword: what matches it matches names."""
+"""A word that is not a keyword of any language: a token that matches it matches names."""
 
 
 def is_statement(expression: ParsingExpression) -> bool:
-    """Tell whether an expression is a statement: it may end in ``;``, or ends in statements."""
+    """Return whether an expression is a statement: it may end in ``;``, or ends in statements."""
     kind = type(expression)
     if kind is OrderedChoice:
         return any(is_statement(node) for node in expression.nodes)
@@ -38,7 +38,7 @@ def is_statement(expression: ParsingExpression) -> bool:
 
 
 def first_tokens(expression: ParsingExpression) -> Iterator[ParsingExpression]:
-    """Yield the tokens that a text may begin with that an expression matches."""
+    """Yield the tokens with which a match of an expression may begin."""
     yield from _first(expression, set())
 
 
@@ -56,7 +56,7 @@ def _first(expression: ParsingExpression, seen: set[int]) -> Iterator[ParsingExp
 
 
 def may_be_empty(expression: ParsingExpression) -> bool:
-    """Tell whether an expression also matches nothing."""
+    """Return whether an expression matches the empty text."""
     kind = type(expression)
     if kind in (Optional, ZeroOrMore):
         return True
@@ -66,12 +66,12 @@ def may_be_empty(expression: ParsingExpression) -> bool:
 
 
 def is_name(token: ParsingExpression) -> bool:
-    """Tell whether a token matches any word."""
+    """Return whether a token matches any word."""
     return matches(token, _ANY_WORD, 0)
 
 
 def words_of(token: ParsingExpression) -> list[str]:
-    """Return the words that a token stands for; a name stands for none."""
+    """Return the words that a token matches; none for a name."""
     literal = literal_of(token)
     if literal is not None:
         return [literal]
@@ -81,7 +81,7 @@ def words_of(token: ParsingExpression) -> list[str]:
 
 
 def literal_of(token: ParsingExpression) -> str | None:
-    """Return the text that a token stands for, or ``None`` where it stands for several."""
+    """Return the text that a token matches, or ``None`` if it matches several."""
     return _sign_of(token) if isinstance(token, (StrMatch, RegExMatch)) else None
 
 
@@ -94,7 +94,7 @@ def _sign_of(token: ParsingExpression) -> str | None:
 
 
 def matches(token: ParsingExpression, text: str, position: int) -> bool:
-    """Tell whether a token matches at a position."""
+    """Return whether a token matches at a position."""
     if isinstance(token, EndOfFile):
         return position >= len(text)
     if isinstance(token, RegExMatch):

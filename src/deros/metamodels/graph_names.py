@@ -1,10 +1,10 @@
-"""Names in the ROS graph: how a relative or private name becomes a full one."""
+"""Resolution of relative and private names in the ROS graph."""
 
 from __future__ import annotations
 
 
 def resolve_name(name: str, namespace: str, node_name: str = "") -> str:
-    """Return the graph name that ``name`` means under ``namespace``, for the node ``node_name``."""
+    """Return the graph name of ``name`` in ``namespace``, for the node ``node_name``."""
     if name.startswith("/"):
         return name
     if name == "~" or name.startswith("~/"):

@@ -1,4 +1,4 @@
-"""Habits of other languages: what a text that fits nowhere was meant to say.
+"""Habits of other languages: how to rewrite a text that does not parse.
 
 Each row has a pattern for the text at the fault, if need be one for the text before it, what to
 write instead, and words. A row is offered only if the statement parses on with its edit.
@@ -19,7 +19,7 @@ _Edit = Callable[[re.Match[str]], str]
 
 @dataclass(frozen=True, slots=True)
 class Habit:
-    """A habit that was recognised: the edit, ``text`` in place of ``start`` to ``end``, and words.
+    """A recognised habit: the edit, ``text`` in place of ``start`` to ``end``, and its messages.
 
     ``text`` is ``None`` where no edit can be given; ``reads_as`` is what a parser reads for it, if
     it is a comment.
@@ -320,11 +320,11 @@ _ROWS = (
 
 
 def habits(text: str, position: int, start: int, language: Language) -> Iterator[Habit]:
-    """Yield the habits that explain why a text fits nowhere at a position.
+    """Yield the habits that explain why a text does not parse at a position.
 
     Args:
         text: the whole text.
-        position: where it fits nowhere.
+        position: where it does not parse.
         start: where its statement begins.
         language: of the text.
     """

@@ -1,4 +1,4 @@
-"""Which files an ``import`` or ``use`` statement means."""
+"""The files of an ``import`` or ``use`` statement."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from deros.metamodels.globbing import TooManyFolders, folder_levels, matching_fi
 def find_files(
     importer: str, pattern: str, span: Span, suffixes: tuple[str, ...]
 ) -> tuple[str, ...] | Diagnostic:
-    """Return the files that ``pattern``, a path or a glob, means in the file ``importer``.
+    """Return the files that ``pattern``, a path or a glob, names in the file ``importer``.
 
     Files found by a glob come sorted by name; those of other suffixes, and the importing file
-    itself, are not meant. A path to no file, or to one of another suffix, is a diagnostic.
+    itself, are left out. A path to no file, or to one of another suffix, is a diagnostic.
     """
     path = os.path.normpath(Path(importer).parent / pattern)
     if glob.has_magic(pattern) and not _is_file(path):
@@ -45,9 +45,9 @@ def find_files(
 
 
 def listed_folders(importer: str, pattern: str) -> tuple[str, ...]:
-    """Return the folders whose content decides what ``pattern`` means in the file ``importer``.
+    """Return the folders whose content decides which files ``pattern`` names in ``importer``.
 
-    Of a path they are none. Of a glob they are those where a new file, or a new folder, may match.
+    There are none for a path; for a glob, those where a new file or folder may match.
     """
     parent = Path(importer).parent
     if not glob.has_magic(pattern) or _is_file(os.path.normpath(parent / pattern)):
@@ -76,7 +76,7 @@ def shown_path(path: str) -> str:
 def _is_file(path: str) -> bool:
     try:
         return Path(path).is_file()
-    except OSError:  # a name longer than the file system takes
+    except OSError:  # a name longer than the file system allows
         return False
 
 

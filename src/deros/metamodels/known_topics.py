@@ -1,4 +1,4 @@
-"""What systems tell of a topic: that it exists, its type, its ends, its units, its QoS."""
+"""Topics of the used systems: their type, ends, units and QoS."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class KnownTopic:
 
     @property
     def external(self) -> bool:
-        """Whether the topic is fed or read from outside the model, or by libraries and tools."""
+        """Whether the topic has ends outside the model, or in libraries and tools."""
         if any(each.declaration.external for each in self.declarations):
             return True
         return standard_topic(self.name, self.type) is not None
@@ -67,7 +67,7 @@ class KnownTopic:
 
     @property
     def place(self) -> Span:
-        """Where the systems speak of the topic first."""
+        """The first mention of the topic in the systems."""
         if self.declarations:
             return self.declarations[0].declaration.name_span
         for flat in (*self.publishers, *self.subscriptions):
@@ -77,7 +77,7 @@ class KnownTopic:
     def unit_of(self, path: FieldPath) -> str | None:
         """Return the unit that a node description annotates for a field, or ``None``.
 
-        What the publishers say goes before what the subscriptions say.
+        Annotations of publishers take precedence over those of subscriptions.
         """
         wanted = _without_indices(format_path(path))
         for flat in (*self.publishers, *self.subscriptions):
@@ -87,7 +87,7 @@ class KnownTopic:
         return None
 
     def is_wrapping(self, path: FieldPath) -> bool:
-        """Tell whether a node description says that a field jumps by a full turn."""
+        """Return whether a node description annotates a field as wrapping."""
         wanted = _without_indices(format_path(path))
         return any(
             each.wrapping and _without_indices(each.path) == wanted
@@ -111,7 +111,7 @@ class TopicTable:
             self._add(system)
 
     def get(self, name: str) -> KnownTopic | None:
-        """Return what is known of the topic with the graph name ``name``, or ``None``."""
+        """Return the topic with the graph name ``name``, or ``None``."""
         return self._topics.get(name)
 
     def offers(self, name: str) -> Offers:

@@ -1,4 +1,4 @@
-"""The languages, each declared once: whatever knows a language looks it up here.
+"""The languages, each declared once for all rooms.
 
 The functions of a language live in the room that they belong to and are named as entry points,
 ``module:attribute``. So a declaration names functions of higher rooms without importing them, and a
@@ -22,7 +22,7 @@ class Language:
         name: its name in textX, which generators refer to.
         suffix: the ending of its files' names, ``.rnd``.
         kind: the word for ``deros new``.
-        title: what its files are, in the plural.
+        title: the plural noun for its files.
         description: one line for ``textx list-languages``.
         grammar: the textX grammar, a file of this folder or an absolute path.
         loader: entry point of the converter: it takes a :class:`~deros.metamodels.load.Loading` and
@@ -111,7 +111,7 @@ def suffixes() -> tuple[str, ...]:
 
 
 def listed() -> str:
-    """Return what models there are, as help texts list it: ``node descriptions (*.rnd), …``."""
+    """Return the kinds of models for help texts: ``node descriptions (*.rnd), …``."""
     *most, last = (f"{each.title} ({each.pattern})" for each in LANGUAGES)
     return f"{', '.join(most)} and {last}"
 

@@ -66,7 +66,7 @@ class Repository:
 
     @property
     def files(self) -> list[LoadedFile]:
-        """Every file loaded so far: those asked for and those that they import, imports first."""
+        """Every file loaded so far: the requested ones and their imports, imports first."""
         return list(self._files.values())
 
     @property
@@ -248,7 +248,7 @@ class Loading:
 
 
 class _NoModel(Exception):  # noqa: N818 - the findings say what is wrong
-    """A file has no head that could be read."""
+    """The head of a file cannot be parsed."""
 
 
 def _model(language: Language, text: str, before_references: Callable[[Any], None] | None) -> Any:
@@ -258,7 +258,7 @@ def _model(language: Language, text: str, before_references: Callable[[Any], Non
 
 
 def _identity(path: str) -> str:
-    """Return what two names of one file have in common."""
+    """Return the resolved path, which is the same for all names of one file."""
     try:
         return os.path.realpath(path)
     except ValueError:  # a name with a NUL in it, which reading will report
@@ -266,7 +266,7 @@ def _identity(path: str) -> str:
 
 
 def _cycle(chain: list[_Open]) -> Diagnostic:
-    """Make the diagnostic of an import that leads back to the first file of ``chain``."""
+    """Make the diagnostic of an import cycle."""
     names = " → ".join(f"'{each.path}'" for each in [*chain, chain[0]])
     *before, last = chain
     related = tuple(Related(each.follows, "imported from here") for each in before)
@@ -276,7 +276,7 @@ def _cycle(chain: list[_Open]) -> Diagnostic:
 
 @contextmanager
 def _room_to_parse() -> Iterator[None]:
-    """Let the parser recurse as deep as models may nest, and build without garbage collection.
+    """Raise the recursion limit for nested models, and suspend garbage collection.
 
     A parse makes objects by the hundred thousand and hardly any garbage: collections would only
     walk the growing model again and again.

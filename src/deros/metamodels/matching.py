@@ -1,4 +1,4 @@
-"""A quick way to run a parser that textX has built from a grammar.
+"""A fast implementation of the parsers that textX builds from grammars.
 
 Arpeggio, textX's parser, raises an exception for every alternative that does not match, and looks
 for a comment before every token. It takes three and a half times as long as the functions made here
@@ -43,7 +43,7 @@ _skip_blanks = re.compile(r"[\t\n\r ]*").match
 
 
 class DoesNotParse(Exception):  # noqa: N818 - it is the answer of a parser
-    """A text is none of the language."""
+    """A text does not conform to the grammar."""
 
 
 class Token(str):

@@ -59,7 +59,7 @@ class Fault:
         return self.place.start if self.place is not None else 0
 
     def is_mended_by(self, start: int, end: int, by: str) -> bool:
-        """Tell whether the statement, or its head, is whole after an edit."""
+        """Return whether the statement, or its head, is whole after an edit."""
         return any(self._is_whole(place, start, end, by) for place in self._candidates)
 
     @property
@@ -84,7 +84,7 @@ class Fault:
         return attempt.head_matches and attempt.reached > behind
 
     def opens_statement_by(self, by: str) -> bool:
-        """Tell whether what was found is the start of a statement once something precedes it."""
+        """Return whether what was found is the start of a statement once something precedes it."""
         for place in self._candidates:
             _, attempt, longer = self._attempt(self.position, self.position, by, place)
             if self.position + longer in attempt.starts:
@@ -92,7 +92,7 @@ class Fault:
         return False
 
     def gets_on_by(self, start: int, end: int, by: str) -> bool:
-        """Tell whether the parse gets past the fault, and past the edit, after an edit."""
+        """Return whether the parse gets past the fault, and past the edit, after an edit."""
         for place in self._candidates:
             _, attempt, longer = self._attempt(start, end, by, place)
             if attempt.reached > max(self.position + longer, start + len(by) - 1):
@@ -100,7 +100,7 @@ class Fault:
         return False
 
     def _goes_on(self, text: str, position: int, by: str) -> bool:
-        """Tell whether a statement begins on a new line, or a block ends."""
+        """Return whether a statement begins on a new line, or a block ends."""
         if position >= len(text) or text[position] == "}":
             return True
         if not is_line_start(text, position):
@@ -245,7 +245,7 @@ def _missing_sign(fault: Fault) -> Iterator[Mend]:
 
 
 def _opens_next(fault: Fault) -> bool:
-    """Tell whether the next statement is what was found: then more than a sign is missing."""
+    """Return whether the next statement is what was found: then more than a sign is missing."""
     place = fault.place
     while place is not None:
         if place.list.opened_by(fault.text, fault.position) == "keyword":
@@ -309,7 +309,7 @@ def _goes_on(fault: Fault, outer: Place, text: str, position: int) -> bool:
 
 
 def is_line_start(text: str, position: int) -> bool:
-    """Tell whether a position is the first of a line that is no blank, or the end of the text."""
+    """Return whether a position is the first of a line that is no blank, or the end of the text."""
     line = text[text.rfind("\n", 0, position) + 1 : position]
     return not line.strip() or position >= len(text)
 

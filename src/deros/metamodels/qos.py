@@ -151,7 +151,7 @@ def shortfalls(offered: Policies, requested: Policies) -> tuple[Shortfall, ...]:
 
 
 def _is_less(policy: Policy, offer: Any, request: Any) -> bool | None:
-    """Tell whether less is offered than requested; ``None`` if the middleware decides that."""
+    """Return whether less is offered than requested; ``None`` if the middleware decides that."""
     if policy in _KINDS:
         least, most = _KINDS[policy]
         if offer == most or request == least:
@@ -165,7 +165,7 @@ def _is_less(policy: Policy, offer: Any, request: Any) -> bool | None:
 
 
 def is_met_by_default(shortfall: Shortfall) -> bool:
-    """Tell whether what ``system_default`` becomes is enough in every middleware of ROS 2.
+    """Return whether what ``system_default`` becomes is enough in every middleware of ROS 2.
 
     Only a profile file of the user's could make it less. A publisher is reliable, a subscription is
     volatile and asks for automatic liveliness; whether a subscription is best effort, and whether a

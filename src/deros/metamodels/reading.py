@@ -1,4 +1,4 @@
-"""From a file to text that a parser can take: decoding, comments, and the depth of nesting."""
+"""Reading of files for the parsers: decoding, comments, and the depth of nesting."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from deros.interfaces.names import not_text
 from deros.interfaces.types import MOST_DIGITS
 
 MAX_DEPTH = 100
-"""How deep brackets and other nested constructs may go; hand-written models stay below ten."""
+"""The greatest depth of nested constructs; hand-written models stay below ten."""
 
 _SPECIAL = re.compile(
     r'(?P<text>"[^"\\\n]*(?:\\.[^"\\\n]*)*")'
@@ -38,7 +38,7 @@ _NOT_LINE_END = re.compile(r"[^\r\n]")
 
 
 class Unreadable(Exception):  # noqa: N818 - it carries a finding, and is no fault of the program
-    """The text cannot go to a parser; ``diagnostic`` says why."""
+    """The text cannot be parsed; ``diagnostic`` says why."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -84,7 +84,7 @@ def read(path: Path, shown: str, *, streams: bool = True) -> SourceFile:
 
 
 def _read_stream(path: Path, most: int) -> bytes:
-    """Read whatever the path leads to, but no more than fits."""
+    """Read a file or stream up to the size limit."""
     with path.open("rb") as stream:
         data = stream.read(most + 1)
     if len(data) > most:
@@ -134,7 +134,7 @@ def comments(source: SourceFile) -> Iterator[Span]:
 
 
 def _check_words(source: SourceFile, text: str) -> None:
-    """Refuse words outside quotes that are longer than any name, before anything is made of them.
+    """Reject words outside quotes that are longer than any name, before they are converted.
 
     Whole numbers would be, too, where Python converts them.
     """

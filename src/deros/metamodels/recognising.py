@@ -60,7 +60,7 @@ class StatementList:
         return how
 
     def seems_opened_by(self, text: str, position: int) -> bool:
-        """Tell whether a word stands here that was meant to be a keyword of a statement."""
+        """Return whether a word stands here that was meant to be a keyword of a statement."""
         found = _WORD(text, position)
         return found is not None and bool(near(found.group(), self.keywords))
 
@@ -167,12 +167,12 @@ class Recogniser:
         return list(self._lists.values())
 
     def run(self, text: str) -> bool:
-        """Tell whether the whole text matches; if not, :attr:`trace` says why."""
+        """Return whether the whole text matches; if not, :attr:`trace` says why."""
         self.trace = Trace()
         return self._root(text, skip_blanks(text).end()) >= 0  # type: ignore[union-attr]
 
     def run_body(self, text: str, start: int) -> bool:
-        """Tell whether the statements of the outermost list fill the text from ``start`` on."""
+        """Return whether the statements of the outermost list fill the text from ``start`` on."""
         self.trace = Trace()
         assert self.body is not None
         position = start
@@ -211,7 +211,7 @@ class Recogniser:
         return max(found, default=None)
 
     def begins_statement(self, position: int) -> bool:
-        """Tell whether a statement that is remembered begins at a position."""
+        """Return whether a statement that is remembered begins at a position."""
         return any(start == position for _, start in self._known)
 
     def forget(self) -> None:

@@ -1,4 +1,4 @@
-"""Reading on after a syntax error: every error of a file, and what is sound of its model.
+"""Recovery from syntax errors: all errors of a file, and the rest of its model.
 
 Where the text fits nowhere, the statement that it belongs to is mended if one edit does it (see
 :mod:`deros.metamodels.mending`), so that whatever follows is read as the hint means it; else it
@@ -46,10 +46,10 @@ _A_NAME.compile()
 
 @dataclass(slots=True)
 class Recovered:
-    """What is left of a file with syntax errors.
+    """The result of recovering from syntax errors.
 
     Attributes:
-        text: what a parser takes of it; ``None`` if its head, or all of it, cannot be read.
+        text: a text that parses; ``None`` if the head, or all of the file, cannot be parsed.
         diagnostics: the syntax errors.
     """
 
@@ -60,7 +60,7 @@ class Recovered:
 def recover(source: SourceFile, prepared: str, language: Language) -> Recovered:
     """Find every syntax error of a text that does not parse.
 
-    The words of the statements that are lost go into the source.
+    The words of the discarded statements are added to the source.
     """
     return _Recovery(source, prepared, language).run()
 
@@ -73,7 +73,7 @@ def recogniser(language: Language) -> Recogniser:
 
 @dataclass(slots=True)
 class _Stretch:
-    """A piece of text that cannot be read, and whether a statement begins behind it."""
+    """A piece of text that does not parse, and whether a statement begins after it."""
 
     start: int
     end: int
@@ -192,7 +192,7 @@ class _Recovery:
         return Place(place.outer, place.list, before), start, expected
 
     def _is_taken_for_a_name(self, whole: Place, start: int, end: int, failed: int) -> bool:
-        """Tell whether any word would do in the place of one."""
+        """Return whether any word would do in the place of one."""
         other = f"{self._text[:start]}{'z' * (end - start)}{self._text[end:]}"
         return self._recogniser.try_statement(whole.list, other, whole.start).reached >= failed
 
@@ -337,7 +337,7 @@ class _Recovery:
 
 
 def _is_nameless(fault: Fault) -> bool:
-    """Tell whether a declaration lacks its name: whatever is missing elsewhere may be it."""
+    """Return whether a declaration lacks its name: whatever is missing elsewhere may be it."""
     words = PIECE.findall(fault.text[fault.start : fault.position])
     if not words:
         return fault.place is not None and any(map(is_name, fault.place.list.first))

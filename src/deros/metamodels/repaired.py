@@ -1,4 +1,4 @@
-"""A text with edits, which knows where its characters stood before."""
+"""A text with edits that maps its characters to their original positions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _NOT_BLANK = re.compile(r"[^\t\n\r ]")
 
 
 class RepairedText(str):
-    """A text that a parser takes, made of one that it does not take.
+    """An edited text that parses, made from one that does not.
 
     Attributes:
         edits: of each edit that changes the length: where the text goes on behind it, and where
@@ -48,7 +48,7 @@ class RepairedText(str):
         return self.replaced(start, end, blanks)
 
     def original(self, offset: int) -> int:
-        """Return where a character stood in the text as it was read.
+        """Return the original position of a character.
 
         Of characters that were put in, it is where the original goes on behind them.
         """

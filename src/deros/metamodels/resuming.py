@@ -1,4 +1,4 @@
-"""Where reading goes on behind a broken statement."""
+"""Finds where parsing resumes after a broken statement."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ENOUGH_TOKENS = 2
 
 
 class _Begin(enum.Enum):
-    """How certain it is that a statement begins somewhere."""
+    """How certain it is that a statement begins at a position."""
 
     SURE = enum.auto()
     MISSPELT = enum.auto()
@@ -40,7 +40,7 @@ class Search:
         self._enclosed = text.count("{", 0, start) > text.count("}", 0, start)
 
     def end(self) -> tuple[int, bool]:
-        """Return where the statement ends, and whether another one surely begins there."""
+        """Return the end of the statement, and whether another one certainly begins there."""
         text = self._text
         depth = 0
         for piece in PIECE.finditer(text, self._start):
@@ -68,7 +68,7 @@ class Search:
         return after
 
     def _begins(self, here: int) -> _Begin | None:
-        """Tell whether a statement of an open list begins here."""
+        """Return whether a statement of an open list begins here."""
         fresh = self._is_fresh(here)
         for each in self._lists:
             how = each.opened_by(self._text, here)
@@ -94,7 +94,7 @@ class Search:
         return None
 
     def _is_fresh(self, here: int) -> bool:
-        """Tell whether a position begins a line, or follows the end of something."""
+        """Return whether a position begins a line, or follows the end of a statement."""
         last = here - 1
         while last >= self._start and self._text[last] in "\t\n\r ":
             if self._text[last] == "\n":

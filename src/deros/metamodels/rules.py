@@ -60,7 +60,7 @@ class TopicPath:
 
 @dataclass(frozen=True, slots=True)
 class NamePath:
-    """A name and what may follow it: an input, a constant, a message constant, an input's field."""
+    """A name with a path: an input, a constant, a message constant, or a field of an input."""
 
     name: Name
     path: tuple[str | int, ...]
@@ -187,7 +187,7 @@ class UnitDefinition:
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """What a bound action publishes: ``publishes VALUE on TOPIC : TYPE``."""
+    """The publication of a bound action: ``publishes VALUE on TOPIC : TYPE``."""
 
     value: Term
     topic: Name
@@ -300,7 +300,7 @@ class GateLimit:
 
 @dataclass(frozen=True, slots=True)
 class GateLine:
-    """One line of a gate: when it applies, and what it makes of the command.
+    """One line of a gate: its condition, and its effect on the command.
 
     It applies while ``action`` is active or, without one, when what ``lost`` names has been silent
     for ``duration``. ``limits`` is empty for a line that commands zero. ``until_reset``: the zero
@@ -317,7 +317,7 @@ class GateLine:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """``gate SOURCE -> TARGET : TYPE rate R { … }``: what safety lets through of a command.
+    """``gate SOURCE -> TARGET : TYPE rate R { … }``: a filter for commands.
 
     ``resume`` is where ``resume on zero command`` stands, if it does.
     """

@@ -1,4 +1,4 @@
-"""What a ``safety`` statement stands for: node types from rules as written, and their instances.
+"""The nodes of a ``safety`` statement: node types from rules as written, and their instances.
 
 A rule's topic is named as the rules write it: an absolute name stands as it is, a relative one goes
 under the namespace where the system that the rules use begins.
@@ -74,7 +74,7 @@ def stated_package(rules: Rules, target: str) -> str | None:
 
 
 def topic_names(rules: Rules) -> dict[str, str]:
-    """Return every topic that the rules name: as they write it, by its graph name at the root."""
+    """Return the topics of the rules as written, by their graph names at the root."""
     written = [name.text for name, _ in _topics_used(rules)]
     written += [action.binding.topic.text for action in rules.actions if action.binding]
     written += [name.text for gate in rules.gates for name in (gate.source, gate.target)]
@@ -85,7 +85,7 @@ def topic_names(rules: Rules) -> dict[str, str]:
 
 
 def outline(rules: Rules, type_of: TypeOf) -> Outline:
-    """Return what the nodes of the rules follow from; inputs of unknown type are left out."""
+    """Return the outline of the nodes of the rules, without inputs of unknown type."""
     inputs: dict[str, InputOutline] = {}
     for name, span in _topics_used(rules):
         topic = resolve_name(name.text, "/")
@@ -109,7 +109,7 @@ def outline(rules: Rules, type_of: TypeOf) -> Outline:
 
 
 def _topics_used(rules: Rules) -> Iterator[tuple[Any, Span]]:
-    """Yield the topics that rules read, with the input or term that says so, in their order."""
+    """Yield the topics that rules read with the input or term that names them, in order."""
     inputs = {each.name.text: each for each in reversed(rules.inputs)}
     for part in _parts(rules.entities):
         if isinstance(part, TopicPath):
@@ -120,7 +120,7 @@ def _topics_used(rules: Rules) -> Iterator[tuple[Any, Span]]:
 
 
 def _parts(top: Any) -> Iterator[Any]:
-    """Yield all that a part of the syntax tree consists of, in the order written."""
+    """Yield all descendants of a syntax tree node, in the order written."""
     waiting = [top]
     while waiting:
         part = waiting.pop()
@@ -187,7 +187,7 @@ def safety_node_types(
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a ``safety`` statement stands at run time.
+    """The place of a ``safety`` statement at run time.
 
     Attributes:
         namespace: of the nodes.
@@ -204,7 +204,7 @@ def instances(
     types: tuple[NodeType, ...],
     place: Place,
 ) -> tuple[NodeInstance, ...]:
-    """Return the instances that a statement stands for, the safety node first.
+    """Return the node instances of a statement, the safety node first.
 
     Every port is connected: those that the rules name as the rules say, a gate's heartbeat to that
     of the safety node, and the others as the statement says or to a topic of their own name.
@@ -241,7 +241,7 @@ def instances(
 
 
 def unresolved_instance(statement: SafetyInstance) -> NodeInstance:
-    """Return what stands for the nodes of rules that could not be loaded: one of unknown type."""
+    """Return a node of unknown type in place of the nodes of rules that could not be loaded."""
     name = node_name(package_name(PurePath(statement.path).stem))
     return NodeInstance(
         statement.node_name or name,
@@ -274,7 +274,7 @@ def _wiring(port: Port, target: str, span: Span) -> Wiring:
 
 
 def _chosen(statement: SafetyInstance, port: Port, is_gate: bool) -> Wiring | None:
-    """Return what the statement connects a port to; private ports are those of the safety node."""
+    """Return the target of a port in the statement; private ports belong to the safety node."""
     if is_gate and port.name.startswith("~"):
         return None
     plain = port.name.removeprefix("/")

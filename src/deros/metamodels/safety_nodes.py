@@ -39,22 +39,22 @@ DIAGNOSTICS_HZ, FASTEST_DIAGNOSTICS_HZ = 1.0, 100.0
 """The default and the maximum of ``diagnostics_freq``."""
 
 PROCESS_PARAMETERS = ("realtime_priority", "lock_memory", "garbage_collection")
-"""The parameters that a gate has in common with the safety node."""
+"""The parameters that gates share with the safety node."""
 
 CPP_SUFFIX = "_cpp"
-"""What the names of the node types end in that the C++ target makes of rules."""
+"""The suffix of the node types that the C++ target generates from rules."""
 
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9]+")
 
 OffersOf = Callable[[str], Offers]
-"""Returns what the publishers of a topic in the used systems offer, by its graph name."""
+"""Returns the QoS that the publishers of a topic offer, by its graph name."""
 
 
 # Names --------------------------------------------------------------------------------------------
 
 
 def package_name(rules_name: str) -> str:
-    """Return the name of the package made from rules: what REP 144 leaves of their name.
+    """Return the name of the package generated from rules, adapted to REP 144.
 
     >>> package_name("Courier-2")
     'courier_2_safety'
@@ -70,7 +70,7 @@ def node_name(package: str) -> str:
 
 
 def gate_node_name(target: str) -> str:
-    """Return the name of the node type that a gate becomes: ``/front/cmd_vel`` has one of its own.
+    """Return the name of the node type of the gate to a topic.
 
     >>> gate_node_name("/front/cmd_vel")
     'front_cmd_vel_gate'
@@ -83,22 +83,22 @@ def gate_node_name(target: str) -> str:
 
 
 def is_gate_node(name: str, target: str) -> bool:
-    """Tell whether a node type, in whatever language, is the gate that leads to a topic."""
+    """Return whether a node type, in Python or C++, is the gate to a topic."""
     return name.removesuffix(CPP_SUFFIX) == gate_node_name(target)
 
 
 def is_gate(name: str) -> bool:
-    """Tell whether a node type, in whatever language, has the name of a gate."""
+    """Return whether a node type, in Python or C++, has the name of a gate."""
     return name.removesuffix(CPP_SUFFIX).endswith("_gate")
 
 
 def heartbeat_port(safety_node: NodeType) -> str:
-    """Return the name of a gate's port for the heartbeat: where the safety node has its own."""
+    """Return the name of a gate's heartbeat port: the default topic of the safety node's."""
     return f"{safety_node.name.removesuffix(CPP_SUFFIX)}/heartbeat"
 
 
 def is_safety_node(node: NodeType) -> bool:
-    """Tell whether a node type has the heartbeat that every generated safety node has."""
+    """Return whether a node type publishes a heartbeat like every generated safety node."""
     return any(
         port.kind is PortKind.PUBLISHER and port.name == HEARTBEAT and (port.type == HEARTBEAT_TYPE)
         for port in node.ports
@@ -106,13 +106,13 @@ def is_safety_node(node: NodeType) -> bool:
 
 
 def cpp_twin(node: NodeType) -> NodeType:
-    """Return the node type in C++: it stands where the Python one stood, by one word more."""
+    """Return the C++ node type that corresponds to a Python one."""
     name, package = f"{node.name}{CPP_SUFFIX}", f"{node.package}{CPP_SUFFIX}"
     source = SourceFile(f"{name}.rnd", node.source.text)
     return dataclasses.replace(node, name=name, package=package, source=source)
 
 
-# What the nodes follow from -----------------------------------------------------------------------
+# Outlines -----------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +136,7 @@ class InputOutline:
 
 @dataclass(frozen=True, slots=True)
 class LineOutline:
-    """What one line of a gate subscribes to: the state of an action, the heartbeat, or nothing."""
+    """The subscription of one line of a gate: an action's state, the heartbeat, or none."""
 
     state: StateOutline | None
     heartbeat: bool
@@ -158,7 +158,7 @@ class GateOutline:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """All of some rules that their nodes depend on.
+    """The properties of rules that determine their nodes.
 
     Attributes:
         name: of the rules.
@@ -309,7 +309,7 @@ def _safety_ports(outline: Outline, offers: OffersOf) -> list[Port]:
 
 
 def _diagnostics_name(outline: Outline) -> str:
-    """Return the usual topic, or one of the node's own where the rules need the usual one."""
+    """Return the usual topic, or a private one if the rules use the usual one."""
     needed = {read.topic for read in outline.inputs} | {state.topic for state in outline.states}
     return f"~{DIAGNOSTICS}" if DIAGNOSTICS in needed else DIAGNOSTICS
 
@@ -411,7 +411,7 @@ def made_port(
     qos: QosProfile | None,
     description: str,
 ) -> Port:
-    """Return a synthesized port: its places are those of what it comes from."""
+    """Return a synthesized port with the span of its origin."""
     return Port(kind, name, interface, span, span, span, qos=qos, description=description)
 
 

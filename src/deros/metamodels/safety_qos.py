@@ -25,17 +25,17 @@ EVENTS = QosProfile(reliability="reliable", durability="transient_local", depth=
 DIAGNOSTICS = QosProfile(reliability="reliable", depth=10)
 
 GATE_HEARTBEAT = QosProfile(reliability="reliable", depth=10)
-"""A gate's subscription of the heartbeat."""
+"""The QoS of a gate's subscription to the heartbeat."""
 
 GATE_TARGET = QosProfile(reliability="reliable", depth=10)
-"""What a gate lets through."""
+"""The QoS of the commands that a gate publishes."""
 
 _INPUT_DEPTH = 10
 
 
 @dataclass(frozen=True, slots=True)
 class Offers:
-    """What is known of the publishers of a topic.
+    """The known QoS of the publishers of a topic.
 
     Attributes:
         stated: the QoS that the description of each of them states.
@@ -49,7 +49,7 @@ class Offers:
 
     @property
     def are_reliable(self) -> bool:
-        """Whether every publisher is reliable; a default that nobody states does not count."""
+        """Whether every publisher is reliable; an unstated default does not count."""
         kinds = [
             None if _says_nothing(each) else policies(each).reliability for each in self.stated
         ]
@@ -57,7 +57,7 @@ class Offers:
 
     @property
     def are_durable(self) -> bool:
-        """Whether every publisher keeps samples for those who come late."""
+        """Whether every publisher keeps samples for late subscriptions."""
         kinds = [policies(each).durability for each in self.stated]
         return self._all("durability", "transient_local", kinds)
 

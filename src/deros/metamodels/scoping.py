@@ -28,7 +28,7 @@ N = TypeVar("N", bound=_Named)
 
 @dataclass(frozen=True, slots=True)
 class Reference(Generic[T]):
-    """A name in a model and everything that it may mean: one candidate if all is well."""
+    """A name in a model and its candidates: exactly one if the name is unambiguous."""
 
     name: Token
     candidates: tuple[T, ...]
@@ -51,11 +51,11 @@ class FileIndex:
     complete: bool = True
 
     def add_node_type(self, node_type: NodeType) -> None:
-        """Make a node type known under its name; one file imported twice counts once."""
+        """Index a node type by name; one file imported twice counts once."""
         _add(self.node_types, node_type)
 
     def add_system(self, system: System) -> None:
-        """Make a system known under its name; one file imported twice counts once."""
+        """Index a system by name; one file imported twice counts once."""
         _add(self.systems, system)
 
 
@@ -69,7 +69,7 @@ _NO_IMPORTS = FileIndex()
 
 
 def attach_index(model: Any, index: FileIndex) -> None:
-    """Give a textX model, before its references are resolved, the index of its imports."""
+    """Attach the index of its imports to a textX model before references are resolved."""
     model._deros_index = index
 
 

@@ -1,4 +1,4 @@
-"""Syntax errors in the user's words: what was found where, and what could stand there instead."""
+"""Messages for syntax errors: the token found, and the tokens expected instead."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _MOST_NAMED = 4
 
 
 def found_at(text: str, position: int) -> str:
-    """Return the token that a text has at a position, as a reader would take it; "" at its end."""
+    """Return the token at a position of a text, as a person would read it; "" at the end."""
     found = _FOUND.match(text, position)
     return found.group() if found is not None else ""
 
@@ -62,12 +62,12 @@ def found_at(text: str, position: int) -> str:
 def explain(
     source: SourceFile, position: int, rules: Iterable[Any], hint: str = "", fix: Fix | None = None
 ) -> Diagnostic:
-    """Say what stands at a position where only what ``rules`` match could stand.
+    """Return the diagnostic of a position where only a match of ``rules`` is valid.
 
     Args:
         source: the file.
-        position: of the first character that fits nowhere.
-        rules: the tokens of the grammar that would have fitted.
+        position: of the first character that does not parse.
+        rules: the tokens of the grammar that are valid there.
         hint: what to do, if that is known; else the keywords that nearly match are offered.
         fix: the hint as an edit.
     """
@@ -100,7 +100,7 @@ def _missing(expected: list[str]) -> str:
     if not expected:
         return "where it is not expected"
     if len(expected) > _MOST_NAMED:
-        # Past a few, the first ones tell what kind of thing is wanted.
+        # Of many, the first ones show which kind of token is expected.
         return f"where something else is expected: {', '.join(expected[:_MOST_NAMED])}, …"
     *others, last = expected
     return (
@@ -120,7 +120,7 @@ def _described(text: str) -> str:
 
 
 def in_words(rule: Any) -> str:
-    """Name what a token of the grammar matches, as a user would."""
+    """Return a user's name for the text that a token of the grammar matches."""
     if isinstance(rule, EndOfFile):
         return "the end of the file"
     words = _WORDS.get(rule.rule_name)

@@ -1,6 +1,6 @@
 """The typed model of a system description (``*.system``), as written.
 
-What a system amounts to at run time (full names, connections) is :mod:`deros.metamodels.flatten`.
+For the system at run time (full names, connections) see :mod:`deros.metamodels.flatten`.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ class RulesReference:
     __slots__ = ("node_types", "rules")
 
     def __init__(self) -> None:
-        """Start without rules."""
+        """Create a reference that is not resolved yet."""
         self.rules: Rules | None = None
         self.node_types: dict[tuple[str, str], tuple[NodeType, ...]] = {}
         """What :mod:`deros.metamodels.safety_instances` made of them, by target and package."""

@@ -1,4 +1,4 @@
-"""What textX's plug-in registration asks for, for the rooms that offer plug-ins to textX.
+"""The classes of textX's plug-in registration, for the rooms that offer plug-ins to textX.
 
 textX recognises a generator by its class, so a look-alike will not do; no other room imports textX.
 """

@@ -1,4 +1,4 @@
-"""What a build system keeps of a run: the files it rests on, and those it made."""
+"""Files for build systems: the dependencies of a run, and its outputs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _STAMP = "# The last run of deros made these files:\n"
 def inputs(
     context: Context, generators: Iterable[Generator], more: Iterable[Path] = ()
 ) -> list[str]:
-    """Return the absolute paths of all that a run has read and whose change asks for another.
+    """Return the absolute paths of the dependencies of a run.
 
     These are the models; the folders that globs have searched, whose change says that a file came
     or went; the definitions of messages; ``more``; and deros and the generators themselves.
@@ -43,7 +43,7 @@ def inputs(
 
 
 def _program(module: str, project: str | None) -> Iterator[Path]:
-    """Find the files of a program: its package, and the record of its version.
+    """Yield the files of a program: its package, and its version record.
 
     An installer may give files the time of their making, so that an upgrade would not show. But
     the record lies in a folder that is named after the version, and is gone with it.
@@ -80,7 +80,7 @@ def prerequisites(text: str) -> list[str]:
 
 
 def is_current(stamp: Path, depfile: Path) -> bool:
-    """Tell whether nothing has changed since the run that wrote both files."""
+    """Return whether nothing has changed since the run that wrote both files."""
     try:
         made = stamp.stat().st_mtime_ns
         found = prerequisites(read_regular(depfile, _LARGEST).decode())
@@ -90,7 +90,7 @@ def is_current(stamp: Path, depfile: Path) -> bool:
 
 
 def write_if_changed(path: Path, text: str) -> None:
-    """Write a file, unless it holds the text already.
+    """Write a file, unless it has this content already.
 
     Raises:
         WriteError: if it cannot be written.
@@ -104,7 +104,7 @@ def write_if_changed(path: Path, text: str) -> None:
 
 
 def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
-    """Write the stamp of a run: what it made, and, as the file's time, when it began.
+    """Write the stamp of a run: its outputs, and as the file's time the start of the run.
 
     A model that is saved while deros runs is then newer than the stamp, and not overlooked.
 
@@ -124,7 +124,7 @@ def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
 
 
 def stamped(path: Path) -> list[str]:
-    """Return what the run before made, as its stamp says; nothing if there was none."""
+    """Return the outputs of the previous run by its stamp; none if there is no stamp."""
     try:
         text = read_regular(path, _LARGEST).decode()
     except (OSError, UnicodeDecodeError):

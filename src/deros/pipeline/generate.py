@@ -1,4 +1,4 @@
-"""From the files of models to the files that are made of them, none of it written yet."""
+"""Load, check and generate; nothing is written yet."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 class Refused(Exception):  # noqa: N818 - it carries findings, and is no fault of the program
-    """Nothing is generated; the diagnostics say why, ``code`` is what to exit with."""
+    """Nothing is generated; ``diagnostics`` says why, and ``code`` is the exit code."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic], code: int) -> None:
-        """Carry the findings."""
+        """Store findings and exit code."""
         self.diagnostics = tuple(diagnostics)
         self.code = code
         super().__init__("; ".join(each.message for each in self.diagnostics))
@@ -30,14 +30,14 @@ class Refused(Exception):  # noqa: N818 - it carries findings, and is no fault o
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What to generate: a model, a target of it, and what both need.
+    """A model and a target to generate from it.
 
     Attributes:
         file: the model's path, as diagnostics are to show it.
         target: which generator.
         options: those of the generator.
         interfaces: folders with message definitions.
-        generator: the generator itself, if the caller has it.
+        generator: the generator, if the caller has resolved it.
     """
 
     file: str
@@ -49,14 +49,14 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Generated:
-    """The files of models, not written yet, with what they were made by and what was found.
+    """The generated files, not written yet, with their generators and findings.
 
     Attributes:
-        files: what is to be written.
-        context: what the generators looked at.
+        files: the files to write.
+        context: the context of the generators.
         generators: those that ran.
-        findings: what was found in the models, none of it in the way.
-        outputs: the model of each generator, and what it has made.
+        findings: the findings in the models, none of them blocking.
+        outputs: the model of each generator, and its files.
         rests_on: files besides the models that the result depends on.
     """
 
@@ -69,7 +69,7 @@ class Generated:
 
 
 def generate(*requests: Request) -> Generated:
-    """Load, check and generate; of several models either all or nothing.
+    """Load, check and generate; for several models, all or nothing.
 
     Raises:
         Refused: if a model has an error, if a target cannot be made from it, or if two of them make
@@ -120,7 +120,7 @@ def _generator(request: Request, loaded: LoadedFile, findings: Sequence[Diagnost
 def _options(
     requests: Sequence[Request], generators: Sequence[Generator]
 ) -> list[Mapping[str, str]]:
-    """Return what each generator is given: its own of the options, and what the project says.
+    """Return the options of each generator, from the command line and the project.
 
     Raises:
         UnknownOption: no generator of the run has an option that the command line gives.
@@ -140,7 +140,7 @@ class UnknownOption(ValueError):  # noqa: N818 - named after what it is
     """The generator has no option of that name."""
 
     def __init__(self, name: str, hint: str) -> None:
-        """Name it, with the nearest ones."""
+        """Store the option, with a hint at the nearest ones."""
         self.option = f"--{name}"
         super().__init__(f"No such option: --{name}" + (f"; {hint}" if hint else ""))
 

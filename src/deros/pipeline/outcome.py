@@ -1,4 +1,4 @@
-"""What findings mean for a run: its exit code, and whether it may generate."""
+"""The consequences of findings for a run: its exit code, and whether it generates."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def exit_code(diagnostics: Iterable[Diagnostic], *, strict: bool = False) -> int
 
 
 def blocking_diagnostics(findings: Sequence[Diagnostic], path: str) -> list[Diagnostic]:
-    """Return the findings without those that only what ``path`` generates can mend.
+    """Return the findings without errors that generating from ``path`` corrects.
 
     A system is to contain the gates that its rules declare, and those are generated from the rules.
     """

@@ -1,4 +1,4 @@
-"""Generated files to the disk, with what a build system is to know of them."""
+"""Writing of generated files, with dependency file and stamp for build systems."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class OutputSpec:
-    """Where files go, and what a build system is to know of it.
+    """The destinations of a run.
 
     Attributes:
         output: the folder to write to.
-        overwrite: whether files of the generator that a hand has edited are replaced.
+        overwrite: whether generated files that were edited by hand are replaced.
         source: where the hand-written files of the package are, if not in the output.
-        depfile: where to write what the output rests on, as a rule of Make.
+        depfile: where to write the dependencies of the output as a Make rule.
         stamp: the file that stands for the whole output; the rule's target.
-        rests_on: files that it rests on besides those that are read here.
+        rests_on: dependencies besides the files that are read here.
     """
 
     output: Path
@@ -42,9 +42,9 @@ class OutputSpec:
 def write(
     made: Generated, where: OutputSpec, started_ns: int
 ) -> tuple[WriteReport, tuple[Diagnostic, ...]]:
-    """Write the files, and last what the build system is to know.
+    """Write the files, and then dependency file and stamp.
 
-    Returns what became of the files, and what those of the user lack now.
+    Returns a report on the files, and the findings about the user's files.
 
     Args:
         made: what :func:`~deros.pipeline.generate.generate` returned.
@@ -125,5 +125,5 @@ def _review(made: Generated, present: Mapping[str, Path]) -> tuple[Diagnostic, .
 
 
 def now_ns() -> int:
-    """Return the time of the files' clock."""
+    """Return the current time on the clock of file modification times."""
     return time.time_ns()

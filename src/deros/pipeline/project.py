@@ -1,4 +1,4 @@
-"""The project file: what a project's commands have in common, said once.
+"""The project file: settings that the commands of a project share.
 
 It is ``deros.toml``, or the table ``[tool.deros]`` of ``pyproject.toml``, in the folder of a model
 or the nearest one above it. What the command line says wins.
@@ -35,16 +35,16 @@ _ALLOW_KEYS = ("code", "path", "reason")
 
 @dataclass(frozen=True, slots=True)
 class Project:
-    """What a project file says.
+    """The content of a project file.
 
     Attributes:
         path: the file; ``None`` if there is none.
         interfaces: folders with message definitions, absolute.
-        targets: what ``deros generate`` makes of each language, by the suffix of its files.
+        targets: the targets of ``deros generate`` for each language, by suffix.
         output: the folder to write to, absolute; ``None`` if it is not given.
         options: options of generators: copyright, licence, maintainer and runtime.
         allowances: findings that are allowed by code and path.
-        diagnostics: what is wrong with the file.
+        diagnostics: the findings about the file.
     """
 
     path: Path | None = None
@@ -146,7 +146,7 @@ def _parse(path: Path) -> _ProjectFile:
 
 
 def _is_ours(shared: _ProjectFile) -> bool:
-    """Tell whether a pyproject.toml has a table for deros, or seems to have one."""
+    """Return whether a pyproject.toml has a table for deros, or seems to have one."""
     if shared.tables is not None:
         return "deros" in shared.tables
     header = r"(?m)^\s*\[+\s*tool\s*\.\s*[\"']?deros[\"']?\s*[\].]"

@@ -2,8 +2,8 @@
 
 A comment ``// deros: allow DRS210 the driver is started by hand`` at the end of a line silences the
 findings of that code on that line. A comment that stands alone holds for the next line that is
-neither empty nor a comment. Errors cannot be allowed: what generates and starts relies on there
-being none. A project allows findings by code and path, see :class:`ProjectAllowance`.
+neither empty nor a comment. Errors cannot be allowed: generators and commands
+rely on error-free models. A project allows findings by code and path: :class:`ProjectAllowance`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _FILLING = " \t\r\n:;,.-*/\N{EN DASH}\N{EM DASH}"
 _USAGE = "write '// deros: allow CODE reason'"
 
 ABOUT_ALLOWANCES = frozenset({codes.BAD_ALLOWANCE, codes.NOT_ALLOWABLE, codes.UNUSED_ALLOWANCE})
-"""What is wrong with an allowance is mended there, not allowed by another one."""
+"""Findings about allowances, which cannot be allowed themselves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +69,11 @@ class ProjectAllowance:
     span: Span
 
     def covers(self, finding: Diagnostic) -> bool:
-        """Tell whether a finding is of this code and in a file of the pattern."""
+        """Return whether a finding is of this code and in a file of the pattern."""
         return finding.code.name == self.code and self.names(finding.span.file)
 
     def names(self, file: str) -> bool:
-        """Tell whether a file is one of the pattern."""
+        """Return whether a file is one of the pattern."""
         path = Path(file).absolute()
         root = self.root
         if not path.is_relative_to(root):
@@ -91,7 +91,7 @@ class Allowed:
 
 @dataclass(frozen=True, slots=True)
 class Sorted:
-    """The findings that stand, and those that are allowed."""
+    """The findings that remain, and those that are allowed."""
 
     findings: tuple[Diagnostic, ...]
     allowed: tuple[Allowed, ...]
@@ -103,7 +103,7 @@ def sort_out(
     judged: Iterable[LoadedFile],
     project: Sequence[ProjectAllowance] = (),
 ) -> Sorted:
-    """Split findings into those that stand and those that are allowed, judging the allowances.
+    """Split findings into remaining and allowed ones, and check the allowances.
 
     Args:
         findings: all findings of a run.
@@ -231,7 +231,7 @@ def _named_codes(rest: Span, at: int) -> tuple[list[Span], int]:
 
 
 def _is_slug(word: str) -> bool:
-    """Tell whether a word is a slug, or probably meant to be one."""
+    """Return whether a word is a slug, or probably meant to be one."""
     spelled = word.lower().replace("_", "-")
     return spelled in codes.SLUGS or ("-" in spelled and bool(near(spelled, codes.SLUGS)))
 

@@ -19,7 +19,7 @@ from deros.validators.safety_rules import as_generated, contained_systems, neigh
 
 
 class Checked(NamedTuple):
-    """What a run found, and what of it the models allow."""
+    """The findings of a run, and those that are allowed."""
 
     findings: list[Diagnostic]
     allowed: list[Allowed]
@@ -72,12 +72,12 @@ def check_all(
         findings.extend(_check_model(each, context))
     found = in_file_order(_said_once(as_generated(findings, watching)))
     sorted_out = sort_out(found, loaded, named, project)
-    told = without_consequences(sorted_out.findings, findings, loaded)
-    return Checked(in_file_order(told), list(sorted_out.allowed))
+    remaining = without_consequences(sorted_out.findings, findings, loaded)
+    return Checked(in_file_order(remaining), list(sorted_out.allowed))
 
 
 def _said_once(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Keep one of the findings that say the same of one place.
+    """Drop findings with the same code, message and position as an earlier one.
 
     A system that rules use, and that another one contains, is checked on its own and as a part.
     """

@@ -1,4 +1,4 @@
-"""Findings that only follow from others, which are not reported.
+"""Suppression of findings that only follow from others.
 
 Two things are known to be wrong before anything else is judged: statements that could not be read,
 and names that mean nothing. A finding that says that something is missing is silent where a lost
@@ -43,11 +43,11 @@ _UNKNOWN_TYPE = frozenset({codes.UNKNOWN_PACKAGE, codes.UNKNOWN_TYPE, codes.UNUS
 def without_consequences(
     findings: Iterable[Diagnostic], causes: Sequence[Diagnostic], files: Iterable[LoadedFile]
 ) -> Iterator[Diagnostic]:
-    """Yield those of the findings that do not only follow from one of ``causes``.
+    """Yield the findings that are not mere consequences of one of ``causes``.
 
     Args:
         findings: what would be reported.
-        causes: everything that was found, whatever of it is reported.
+        causes: all findings, reported or not.
         files: all files of the run.
     """
     lost = _lost_words(list(files))
@@ -71,7 +71,7 @@ def without_consequences(
 
 
 def _meant(found: Iterable[Diagnostic]) -> set[str]:
-    """Return the names that unknown names were probably meant to be: they are not unused."""
+    """Return the names that unknown names probably mean; these are not unused."""
     return {
         last_word(match[1])
         for each in found
@@ -97,7 +97,7 @@ def _lost_words(files: list[LoadedFile]) -> set[str]:
 
 
 def _subjects(finding: Diagnostic) -> Iterator[str]:
-    """Yield the words that a finding quotes: what it is about, and what it asks for."""
+    """Yield the words that a finding quotes: its subject, and its suggestions."""
     for match in _QUOTED.finditer(f"{finding.message}\n{finding.hint}"):
         quoted = match[1] or match[2]
         if quoted[0] in "/~":

@@ -1,4 +1,4 @@
-"""Two connections of a node that have probably been exchanged, as the words of their names tell."""
+"""Connections of a node that are probably swapped, judged by the words of their names."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def check_crossed(flat: FlatSystem) -> Iterator[Diagnostic]:
 
 
 def _pairs(node: FlatNode) -> Iterator[tuple[FlatPort, FlatPort]]:
-    """Yield the pairs of connected ports that could be taken for each other."""
+    """Yield the pairs of connected ports that could be confused."""
     groups: dict[tuple[VertexKind, bool, InterfaceType], list[FlatPort]] = defaultdict(list)
     for port in node.ports:
         if port.wiring is not None:
@@ -64,7 +64,7 @@ def _pairs(node: FlatNode) -> Iterator[tuple[FlatPort, FlatPort]]:
 
 
 def are_crossed(first: tuple[str, str], second: tuple[str, str]) -> bool:
-    """Tell whether two ports have words of each other's targets, and none of their own ones.
+    """Return whether two ports share words with each other's targets, and none with their own.
 
     Words that both ports have, or both targets, say nothing. Each argument is the name of a port
     and the full name that it is connected to.

@@ -1,4 +1,4 @@
-"""Files that parameters name: is one there, where that can be known?
+"""Existence of files that parameters name, where it can be determined.
 
 A path on the robot says nothing about this machine, and a file that a node writes need not exist.
 So only two kinds of text count: ``package://PACKAGE/PATH`` (or ``share:PACKAGE/PATH``) of a package
@@ -31,7 +31,7 @@ _SUFFIXES = re.compile(
     re.IGNORECASE,
 )
 _WRITTEN = re.compile(r"log|out|save|write|record|dump|store|dest|export", re.IGNORECASE)
-"""Names of parameters whose files a node writes, more often than not."""
+"""Names of parameters whose files a node usually writes."""
 
 
 def check_files(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
@@ -67,7 +67,7 @@ def _named(
 
 
 def _is_missing(text: str, folder: Path) -> bool:
-    """Tell whether a text looks like the path of a file in a folder that is there, and is none."""
+    """Return whether a text looks like a path in an existing folder, but no such file exists."""
     found = _RELATIVE.fullmatch(text)
     if found is None or _SUFFIXES.fullmatch(found["suffix"]) is None:
         return False
@@ -91,7 +91,7 @@ def _exists(path: Path) -> bool:
     try:
         return path.exists()
     except (OSError, ValueError):
-        return True  # nothing can be known of it
+        return True  # unknown
 
 
 def _is_folder(path: Path) -> bool:

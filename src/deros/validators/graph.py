@@ -1,4 +1,4 @@
-"""The wiring of a system as a networkx graph: who talks to whom, over what, of which type.
+"""The wiring of a system as a networkx graph: nodes, channels and the types of their ends.
 
 The graph is a plain :class:`networkx.MultiDiGraph`, so that all of networkx works on it::
 
@@ -121,7 +121,7 @@ class End:
 
     @property
     def is_assumed(self) -> bool:
-        """Whether the QoS is the default only because nobody describes that of the program."""
+        """Whether the QoS is only assumed, because the description of a program states none."""
         return self.port.port.qos is None and self._is_program
 
     @property

@@ -1,4 +1,4 @@
-"""The wording of hints that every family uses, and near matches among very many names."""
+"""Hints that all checks share, and near matches among very many names."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from deros import codes
 from deros.interfaces import names
 
 _FEW = 300
-"""Up to so many names are compared with one by one; that takes microseconds each."""
+"""The number of names up to which all are compared; that takes microseconds each."""
 
 
 def did_you_mean(name: str, candidates: Iterable[str], otherwise: str = "") -> str:
@@ -20,7 +20,7 @@ def did_you_mean(name: str, candidates: Iterable[str], otherwise: str = "") -> s
 
 
 def one_of(candidates: Iterable[str], what: str) -> str:
-    """Return the hint that lists what there is, if that is few enough to read."""
+    """Return the hint that lists the candidates, if they are few."""
     listed = sorted(set(candidates))
     return f"{what}: {', '.join(listed)}" if 0 < len(listed) <= 8 else ""
 
@@ -42,7 +42,7 @@ class NameIndex:
     """
 
     def __init__(self, candidates: Mapping[str, object]) -> None:
-        """Hold the candidates; they are indexed when first asked about."""
+        """Store the candidates, which are indexed at the first query."""
         self._candidates = candidates
 
     def did_you_mean(self, name: str, otherwise: str = "") -> str:
@@ -77,7 +77,7 @@ class NameIndex:
 
 
 def _variants(name: str) -> Iterator[str]:
-    """Yield the name, and it short of any one character: names one edit apart share a variant."""
+    """Yield the name, and each variant without one character: near names share a variant."""
     yield name
     for position in range(len(name)):
         yield name[:position] + name[position + 1 :]

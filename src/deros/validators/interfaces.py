@@ -43,7 +43,7 @@ _OF_OTHERS = (
 
 
 def _unknown_package(store: InterfaceStore, package: str, span: Span) -> Diagnostic:
-    """Make the finding for a package that is not known.
+    """Return the finding for an unknown package.
 
     One whose name is that of an interface package may well exist: where to find it comes first.
     """
@@ -70,7 +70,7 @@ def _stem(package: str) -> str:
 
 
 def _elsewhere(store: InterfaceStore, wanted: InterfaceType) -> str:
-    """Tell where a type of this name is: as another kind of interface, or in another package."""
+    """Return a hint at a type of this name of another kind, or in another package."""
     for kind in _WORD:
         if kind != wanted.kind and wanted.name in store.names(wanted.package, kind):
             return f"'{wanted.short}' is {_A[kind]} type, not {_A[wanted.kind]} type"

@@ -58,7 +58,7 @@ def _refused(fault: str | None, name: str, span: Span) -> Iterator[Diagnostic]:
 
 
 def _program(node: NodeType) -> Iterator[Diagnostic]:
-    """The program of an existing node is a file of its package, never another one."""
+    """Check that the program of an existing node is a plain file name."""
     if node.executable is None:
         return
     fault = check_program_name(node.executable)
@@ -72,7 +72,7 @@ def _program(node: NodeType) -> Iterator[Diagnostic]:
 
 
 def _duplicates(node: NodeType) -> Iterator[Diagnostic]:
-    """Names must differ among parameters, among timers, and among the ports of one kind."""
+    """Check that parameters, timers, and the ports of each kind have different names."""
     for word, declared in (
         ("parameter", [(p.name, p.name_span) for p in node.parameters]),
         ("timer", [(t.name, t.name_span) for t in node.timers]),
@@ -121,7 +121,7 @@ def _parameter(node: NodeType, parameter: Parameter, units: UnitRegistry) -> Ite
 
 
 def _key(node: NodeType, parameter: Parameter) -> Iterator[Diagnostic]:
-    """Check what a parameter of the form ``gains.<joints>.p`` is declared for each entry of."""
+    """Check the list that a parameter of the form ``gains.<joints>.p`` refers to."""
     if len(parameter.keys) > 1:
         yield report(
             codes.UNKNOWN_KEY_PARAMETER,
@@ -178,7 +178,7 @@ def _range_faults(parameter: Parameter) -> Iterator[str]:
 
 
 def _size_faults(parameter: Parameter) -> Iterator[str]:
-    """Find sizes of what has none, and sizes that exclude each other."""
+    """Yield sizes of values without a size, and sizes that contradict each other."""
     kind = parameter.type
     has_size = kind.is_array or kind is ParameterType.STRING
     sizes = {

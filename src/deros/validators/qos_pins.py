@@ -1,4 +1,4 @@
-"""The QoS that a declared topic pins: both ends meet it."""
+"""Checks of ends against the QoS that a declared topic pins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The wording of findings about QoS: what differs, in which policy, and the smallest cure."""
+"""Messages of findings about QoS: the difference, its policy, and the smallest change."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from deros.validators.rules_ends import RulesEnd
 from deros.validators.system_safety import is_of_safety
 
 _NAMED = 3
-"""So many ends of a side are named; the others are counted."""
+"""The number of ends of a side that are named; the others are counted."""
 
 AnyEnd = End | RulesEnd
 
@@ -81,7 +81,7 @@ def _is_program(end: AnyEnd) -> bool:
 
 
 def difference(shortfall: Shortfall, offering: Side, requesting: Side) -> str:
-    """Say what is offered and what is requested: "the publisher offers a sample every 2 sec, …"."""
+    """Return the offer and the request in words: "the publisher offers a sample every 2 sec, …"."""
     policy, offer, request = shortfall.policy, shortfall.offered, shortfall.requested
     if policy in ("deadline", "lease"):
         noun = "sample" if policy == "deadline" else "liveliness assertion"
@@ -107,7 +107,7 @@ def _kind(policy: Policy, value: PolicyValue) -> str:
 
 
 def _origin(side: Side, policy: Policy) -> str:
-    """Say where a kind comes from that the description does not state itself."""
+    """Return the origin of a policy that the description does not state itself."""
     if stated(side.profile, policy) is not None:
         return ""
     preset = side.profile.preset if side.profile is not None else None
@@ -148,7 +148,7 @@ def _the(side: Side) -> str:
 
 
 def _least(shortfall: Shortfall) -> PolicyValue:
-    """Return what to request so that the offer is enough."""
+    """Return the policies to request so that the offer is sufficient."""
     if shortfall.offered != SYSTEM_DEFAULT:
         return shortfall.offered
     return {"reliability": "best_effort", "durability": "volatile"}.get(
@@ -157,7 +157,7 @@ def _least(shortfall: Shortfall) -> PolicyValue:
 
 
 def _most(shortfall: Shortfall) -> PolicyValue:
-    """Return what to offer so that it is enough for the request."""
+    """Return the policies to offer so that they satisfy the request."""
     if shortfall.requested != SYSTEM_DEFAULT:
         return shortfall.requested
     return {"reliability": "reliable", "durability": "transient_local"}.get(
@@ -166,7 +166,7 @@ def _most(shortfall: Shortfall) -> PolicyValue:
 
 
 def qos_words(target: dict[Policy, PolicyValue], present: Policies) -> str:
-    """Return in words how a profile gets other policies: what to write, and what to take away."""
+    """Return in words how to change a profile: what to write, and what to remove."""
     written = []
     for policy, value in target.items():
         if policy == "lease" and value is not None:

@@ -1,4 +1,4 @@
-"""Checks of safety rules: what keeps them from being built, and what is suspect in sound ones."""
+"""Checks of safety rules: errors found when building them, and suspicious constructs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which topics a DeRoS program reads and feeds: its nodes are ends of those topics."""
+"""The topics that rules read and publish: their nodes are ends of those topics."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class RulesEnd:
 
     @property
     def qos_span(self) -> Span:
-        """Where the rules give the end its QoS: they name the topic there."""
+        """The place in the rules that names the topic."""
         return self.span
 
 
@@ -39,8 +39,8 @@ class RulesEnds:
     """Graph names of the topics at which safety nodes and gates are ends.
 
     Attributes:
-        read: those that they subscribe.
-        fed: those that they publish.
+        read: the topics that they subscribe to.
+        fed: the topics that they publish.
         gated: source and target of each gate.
         ends: all of these ends, with their QoS.
     """

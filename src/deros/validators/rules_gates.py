@@ -1,4 +1,4 @@
-"""Gates: lines that leave a hole, and systems whose wiring goes past the gate."""
+"""Checks of gates: insufficient lines, and wirings that bypass the gate."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from deros.validators.rules_heartbeat import check_heartbeats, heartbeat_hint
 
 
 def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
-    """Yield the findings about gates in themselves, and in every system that the rules use."""
+    """Yield the findings about gates, alone and in every system that the rules use."""
     flat = result.topics.systems
     states = {resolve_name(each.binding.topic.text, "/") for each in rules.actions if each.binding}
     for gate in rules.gates:
@@ -42,13 +42,13 @@ def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
 
 
 def _order(gate: Gate) -> Iterator[Diagnostic]:
-    """Find zero lines that a limit before them leaves numbers of."""
+    """Yield zero lines that an earlier limit overrides in part."""
     if gate.resume is not None:
-        return  # every zero is one in all numbers then
+        return  # then a zero line sets all numbers to zero
     for index, line in enumerate(gate.lines):
         if line.limits or line.until_reset:
             continue
-        # The limits of an action say nothing while something is lost.
+        # The limits of an action do not apply while something is lost.
         earlier = (each for each in gate.lines[:index] if each.limits)
         limit = next((each for each in earlier if line.action or not each.action), None)
         if limit is not None:
@@ -86,7 +86,7 @@ def _watching(gate: Gate, hint: str) -> Iterator[Diagnostic]:
 
 
 def _resuming(gate: ir.Gate, written: Gate, program: ir.Program) -> Iterator[Diagnostic]:
-    """Find what lets commands pass again without a person's reset or the controller's zero."""
+    """Yield gates that resume without a person's reset or the controller's zero."""
     if gate.resume_on_zero:
         return
     lines = [
@@ -116,7 +116,7 @@ def _ended(line: ir.GateLine, program: ir.Program) -> str:
 
 
 def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
-    """Find limits that stop the robot, and which nothing waits after."""
+    """Yield limits that stop the robot without waiting for a reset or a zero command."""
     for line in gate.lines:
         if line.limits and all(limit.lower == limit.upper == 0 for limit in line.limits):
             yield report(
@@ -196,7 +196,7 @@ def _named(target: Name, flat: FlatSystem) -> tuple[Related, ...]:
 
 
 def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
-    """Find a source that nobody feeds, and a target that nobody reads; a gate may do either."""
+    """Yield a source without a publisher and a target without a subscriber; gates count."""
     source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
     fed = {resolve_name(each.target.text, "/") for each in rules.gates}
     read = {resolve_name(each.source.text, "/") for each in rules.gates}
@@ -230,5 +230,5 @@ def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic
 
 
 def _open(topic: KnownTopic) -> bool:
-    """Tell whether somebody whom the model does not show is, or may be, at the topic."""
+    """Return whether the topic has, or may have, ends outside the model."""
     return bool(topic.external or topic.untyped)

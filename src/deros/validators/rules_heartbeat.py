@@ -1,4 +1,4 @@
-"""Times in the rules that have to outlast the periods of a safety node, as the systems set them."""
+"""Timeouts in the rules against the periods of safety nodes, as the systems set them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from deros.monitor.build import BuildResult
 from deros.validators.system_safety import is_safety_node, is_state
 
 FEWEST_PERIODS = Fraction(5, 2)
-"""How many periods of what is expected must have passed before its silence means something."""
+"""The number of periods after which a missing message counts as lost."""
 
 _HIGHEST_HZ = {
     "publish_freq": FASTEST_PUBLISH_HZ,
@@ -72,7 +72,7 @@ class _Pace:
 def check_heartbeats(
     gate: ir.Gate, program: ir.Program, systems: Iterable[FlatSystem]
 ) -> Iterator[Diagnostic]:
-    """Find lines of a gate that give up a heartbeat after too few periods of it."""
+    """Yield lines of a gate whose heartbeat timeout is too short."""
     paces = _heartbeats(gate.target, _states_of(program), systems)
     for line in gate.lines:
         if line.lost != "heartbeat" or not line.lost_ns:
@@ -91,7 +91,7 @@ def check_heartbeats(
 
 
 def heartbeat_hint(gate: Gate, states: set[str], systems: Iterable[FlatSystem]) -> str:
-    """Return the line that watches the heartbeat, with a time that the systems' paces allow."""
+    """Return the line that monitors the heartbeat, with a time that suits the systems."""
     needed = (pace.shortest_ns for pace in _heartbeats(gate.target.text, states, systems))
     return f"add 'lost heartbeat for {_seconds(max(_HINTED_NS, *needed))} sec: zero until reset;'"
 
@@ -101,7 +101,7 @@ def _states_of(program: ir.Program) -> set[str]:
 
 
 def _heartbeats(target: str, states: set[str], systems: Iterable[FlatSystem]) -> list[_Pace]:
-    """Return the heartbeats that the gates to a topic listen to, or else what is usual.
+    """Return the heartbeats of the gates to a topic, or else the default.
 
     Where a system has no such gate yet, its heartbeat will be that of the node that publishes the
     ``states`` of the rules' actions.

@@ -60,7 +60,7 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
 
 
 def _has_end(topic: KnownTopic, ends: list[FlatPort]) -> bool:
-    """Tell whether somebody is, or may be, at this end of the topic."""
+    """Return whether somebody is, or may be, at this end of the topic."""
     return bool(ends or topic.external or topic.untyped)
 
 

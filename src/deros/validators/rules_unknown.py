@@ -102,7 +102,7 @@ def _start(function: AppliedFunction) -> int:
 
 
 def _is_fallible(function: AppliedFunction) -> bool:
-    """Tell whether a function can be unknown of a message that counts."""
+    """Return whether a function can be unknown of a message that counts."""
     match FUNCTIONS[function.expression.function].argument:
         case Argument.QUATERNION | Argument.SCAN:
             return True

@@ -1,4 +1,4 @@
-"""Declarations that nothing uses, and resets that never come."""
+"""Unused declarations, and resets that are never triggered."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ways through rules as written: every term of a condition, every behaviour."""
+"""Traversal of rules as written: terms of conditions, and behaviours."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def behaviours_of(rules: Rules) -> Iterator[Behaviour]:
 
 
 def terms_of(condition: Condition) -> Iterator[Term]:
-    """Yield the terms that stand in a condition, without those inside them."""
+    """Yield the terms of a condition, without nested ones."""
     match condition:
         case Comparison():
             yield condition.left
@@ -63,7 +63,7 @@ def terms_of(condition: Condition) -> Iterator[Term]:
 
 
 def topics_read(rules: Rules) -> Iterator[Name]:
-    """Yield every topic that inputs and rules name, as often as they do."""
+    """Yield every topic that inputs and rules name, repetitions included."""
     for each in rules.inputs:
         yield each.term.topic
     for _, rule in rules_of(rules):

@@ -1,4 +1,4 @@
-"""Which rules belong to a system: those at hand, those beside it, and what is still to generate."""
+"""The rules of a system: loaded ones, those in its folder, and nodes not generated yet."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _FOLLOW = frozenset(
         codes.UNWIRED_PORT,
     }
 )
-"""What an outdated description makes of a system that is sound otherwise."""
+"""Codes of findings that an outdated description causes in a correct system."""
 
 
 def contained_systems(part: System | Subsystem) -> Iterator[System]:
@@ -66,7 +66,7 @@ def neighbours(loaded: Sequence[LoadedFile], repository: Repository) -> list[Loa
 
 
 def has_safety_node(system: System) -> bool:
-    """Tell whether a system's own file has, or may have, a safety node that is wired by hand."""
+    """Return whether a system's own file has, or may have, a safety node that is wired by hand."""
     return any(node.type is None or is_safety_node(node.type) for node in _instances(system))
 
 
@@ -79,7 +79,7 @@ def _instances(part: System | Subsystem) -> Iterator[NodeInstance]:
 
 
 def _mentions(path: Path, system: str) -> bool:
-    """Tell whether a file's text has a ``use`` of a file of that name."""
+    """Return whether a file's text has a ``use`` of a file of that name."""
     try:
         with path.open(encoding="utf-8", errors="replace") as file:
             text = file.read(_MOST_CHARACTERS)
@@ -91,7 +91,7 @@ def _mentions(path: Path, system: str) -> bool:
 def as_generated(
     findings: Iterable[Diagnostic], watching: Mapping[int, Sequence[Rules]]
 ) -> Iterator[Diagnostic]:
-    """Put right what findings say about descriptions that are generated from the rules.
+    """Adapt findings about descriptions that are generated from the rules.
 
     A missing description is reported as one that has not been generated yet. Of an outdated one,
     ports that it lacks and types that it has wrong only follow from that.
@@ -140,14 +140,14 @@ def _only_follows(
     names: Mapping[str, tuple[Rules, NodeType]],
     outdated: Container[SourceFile],
 ) -> bool:
-    """Tell whether a finding goes away when outdated descriptions are generated again."""
+    """Return whether a finding goes away when outdated descriptions are generated again."""
     if finding.code is codes.UNKNOWN_PORT:
         return _is_to_come(finding, names)
     return finding.code in _FOLLOW and any(r.span.source in outdated for r in finding.related)
 
 
 def _is_to_come(finding: Diagnostic, names: Mapping[str, tuple[Rules, NodeType]]) -> bool:
-    """Tell whether a port that is not known is one that the node has once it is generated anew."""
+    """Return whether a port is unknown only until the node is generated again."""
     for related in finding.related:
         found = names.get(related.span.text)
         if found is not None:

@@ -1,4 +1,4 @@
-"""``safety`` statements of a system: their names, their rules, and what they connect themselves."""
+"""Checks of ``safety`` statements: their names, rules and connections."""
 
 from __future__ import annotations
 

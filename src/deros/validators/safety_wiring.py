@@ -1,4 +1,4 @@
-"""Safety nodes and gates that are wired by hand, against the rules that they are generated from.
+"""Checks of hand-wired safety nodes and gates against their rules.
 
 Rules that use a system say what their safety node and gates are connected to in it. A node of the
 system is theirs if its type has the name that the generator gives it, or if it has a heartbeat as
@@ -36,12 +36,12 @@ from deros.validators.graph import End
 _MOST_SHOWN = 4
 
 
-# Which nodes are those of which rules -------------------------------------------------------------
+# Assignment of nodes to rules ---------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class HandWired:
-    """A node of a system that is written there by hand, and what its rules make of it."""
+    """A hand-wired node of a system, and the node that its rules define."""
 
     node: FlatNode
     expected: NodeType
@@ -54,7 +54,7 @@ class HandWired:
 
 
 def hand_wired(flat: FlatSystem, programs: Iterable[Rules]) -> list[HandWired]:
-    """Return the nodes of ``flat`` that the safety nodes and gates of ``programs`` are.
+    """Return the hand-wired safety nodes and gates of ``programs`` in ``flat``.
 
     Nodes of imported systems are among them where the rules use those systems.
     """
@@ -99,7 +99,7 @@ def _is_named(node: FlatNode, expected: NodeType) -> bool:
 
 
 def _left(safety: Sequence[FlatNode], programs: Sequence[Rules], rules: Rules) -> list[FlatNode]:
-    """Return the safety nodes that must be those of ``rules``, because nothing else can be."""
+    """Return the safety nodes that belong to ``rules`` by elimination."""
     names = {nodes_of_rules(each)[0].name: each for each in programs}
     others = [n for n in safety if n.type and n.type.name.removesuffix(CPP_SUFFIX) not in names]
     here = {n.type.name.removesuffix(CPP_SUFFIX) for n in safety if n.type}
@@ -118,8 +118,8 @@ def _package(nodes: Sequence[FlatNode]) -> str | None:
 def check_hand_wired(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[Diagnostic]:
     """Yield each difference between nodes wired by hand and their rules.
 
-    A system that ``flat`` only imports is checked on its own, so that nothing is said here but what
-    its place in ``flat`` changes.
+    A system that ``flat`` only imports is checked on its own; only differences that are due to its
+    place in ``flat`` are reported here.
     """
     found = hand_wired(flat, programs)
     own = [each for each in found if each.node.instance.span.source is flat.system.source]
@@ -138,7 +138,7 @@ def check_hand_wired(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[Di
 
 
 def _is_whole(each: HandWired) -> bool:
-    """Tell whether all that is compared could be read: what a lost statement says is not known."""
+    """Return whether everything that is compared could be parsed."""
     sources = [each.rules.source, each.node.instance.span.source]
     if each.node.type is not None:
         sources.append(each.node.type.source)
@@ -150,7 +150,7 @@ def _key(each: HandWired, end: FlatPort) -> tuple[int, Port]:
 
 
 def _twice(own: Sequence[HandWired], flat: FlatSystem) -> Iterator[Diagnostic]:
-    """Find a second node of the same rules: two instances, or one beside a ``safety`` statement."""
+    """Yield a second node of the same rules: another instance, or a ``safety`` statement."""
     first: dict[tuple[int, str], Span] = {}
     stated = {
         id(node.statement.rules): node.statement.path_span
@@ -173,7 +173,7 @@ def _twice(own: Sequence[HandWired], flat: FlatSystem) -> Iterator[Diagnostic]:
 
 
 def _strangers(found: Sequence[HandWired], flat: FlatSystem) -> Iterator[Diagnostic]:
-    """Report safety nodes wired by hand of rules that are not loaded: nothing checks them."""
+    """Yield hand-wired safety nodes whose rules are not loaded, so that they are unchecked."""
     known = {id(each.node) for each in found}
     for node in flat.nodes:
         if node.statement is not None or node.type is None or id(node) in known:
@@ -225,7 +225,7 @@ def _descriptions(nodes: Iterable[HandWired]) -> Iterator[Diagnostic]:
 def _differences(
     each: HandWired, actual: NodeType, with_safety_node: bool
 ) -> Iterator[tuple[str, Span | None]]:
-    """Yield what the description says otherwise, each with the place in the rules if there is."""
+    """Yield the differences of a description, each with its place in the rules if it has one."""
     expected = each.expected
     suffix = CPP_SUFFIX if actual.name.endswith(CPP_SUFFIX) else ""
     package = f"{expected.package.removesuffix(CPP_SUFFIX)}{suffix}"
@@ -249,7 +249,7 @@ def _differences(
 
 
 def _port_key(port: Port, each: HandWired) -> tuple[PortKind, str]:
-    """Identify a port; that for a heartbeat is named after the safety node, in its own way."""
+    """Return the identity of a port; the name of a heartbeat port depends on the safety node."""
     return port.kind, _role(port, each.is_gate)
 
 
@@ -279,7 +279,7 @@ def _shown(port: Port) -> str:
 def _elsewhere(
     found: Sequence[HandWired],
 ) -> Iterator[tuple[HandWired, FlatPort, str, tuple[str, Span]]]:
-    """Yield each port on another topic than the rules say: with that topic, and what says so."""
+    """Yield each port that is not on the topic of the rules, with that topic and its origin."""
     for each in found:
         names = topic_names(each.rules)
         for end in each.node.ports:
@@ -362,7 +362,7 @@ def check_users(rules: Rules) -> Iterator[Diagnostic]:
 
 
 def check_gate_targets(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[Diagnostic]:
-    """Yield each publisher past a gate that the checks of the rules do not see.
+    """Yield each publisher that bypasses a gate and is not found by the checks of the rules.
 
     They look at the systems that the rules use: another gate for the same topic is past the first
     one, and so is any node of a system that contains such a system.

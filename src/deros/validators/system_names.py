@@ -1,4 +1,4 @@
-"""Names in a system description: legal in ROS 2, declared once, imported for a purpose."""
+"""Checks of names in a system description: valid in ROS 2, declared once, imports used."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _topics(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
 
 
 def _full_names(flat: FlatSystem) -> Iterator[Diagnostic]:
-    """Find names that are too long only with the namespaces before them."""
+    """Yield full names that are too long."""
     own = flat.system.source
     for topic in flat.topics:
         if topic.declaration.span.source is own:
@@ -155,7 +155,7 @@ def _one_full_name(flat: FlatSystem) -> Iterator[Diagnostic]:
 
 
 def _is_matter_of_import(system: System, first: FlatNode, second: FlatNode) -> bool:
-    """Tell whether the two collide within one imported file, whose own check reports them."""
+    """Return whether two nodes collide within one imported file, whose own check reports them."""
     source = second.instance.span.source
     return (
         source is not system.source
@@ -165,7 +165,7 @@ def _is_matter_of_import(system: System, first: FlatNode, second: FlatNode) -> b
 
 
 def _place(system: System, node: FlatNode) -> Span:
-    """Return where ``system`` brings the node in: itself, or by using an imported system."""
+    """Return where ``system`` adds the node: itself, or by using an imported system."""
     if node.instance.span.source is system.source:
         return node.instance.name_span
     members: tuple[NodeInstance | Subsystem, ...] = system.members

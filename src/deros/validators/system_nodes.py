@@ -1,4 +1,4 @@
-"""Each node instance against its type: ports, topics that it is wired to, parameters."""
+"""Checks of node instances against their types: parameters, ports and wirings."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def _setting(
 def _override(
     node: FlatNode, node_type: NodeType, setting: ParameterSetting
 ) -> Iterator[Diagnostic]:
-    """Find the override of a QoS of a generated node, which would have no effect."""
+    """Yield a QoS override of a generated node, which has no effect."""
     if node_type.executable is not None:
         return
     for port in node.ports:
@@ -176,7 +176,7 @@ def _value(
 
 
 def _value_hint(kind: ParameterType, value: Value) -> str:
-    """Say what would fit where the mistake is a common one: quotes, or a fraction."""
+    """Return a hint for common mistakes: quotes, or a fraction."""
     if kind is ParameterType.STRING and not isinstance(value, tuple):
         return "put the text in quotes"
     if isinstance(value, str) and kind is not ParameterType.STRING and not kind.is_array:
@@ -259,7 +259,7 @@ def _connected_twice(
     ends: list[tuple[Port | None, str | None]],
     seen: dict[tuple[PortKind | None, str], Wiring],
 ) -> Iterator[Diagnostic]:
-    """Find a port, or a name that no port has, that an earlier connection has already."""
+    """Yield a port or name that an earlier wiring has connected already."""
     keys: list[tuple[PortKind | None, str]]
     keys = [(port.kind, port.name) for port, _ in ends if port is not None]
     for key in keys or [(wiring.kind, wiring.port.removeprefix("/"))]:
@@ -279,7 +279,7 @@ def _connected_twice(
 
 
 def _is_written(node: FlatNode, wiring: Wiring) -> bool:
-    """Tell whether the system itself writes a wiring; those that rules write are checked there."""
+    """Return whether the system itself contains a wiring; those from rules are checked there."""
     return node.statement is None or any(wiring is each for each in node.statement.wirings)
 
 

@@ -1,4 +1,4 @@
-"""QoS of whole topics, services and actions: every pair of ends, and every pin.
+"""Checks of QoS: every pair of ends of a topic, service or action, and every pin.
 
 Ends with one profile are compared once, so that a topic of a thousand ends costs no more than its
 few different profiles; what does not match is reported at the ends of the smaller side.

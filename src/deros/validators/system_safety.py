@@ -1,4 +1,4 @@
-"""Publishers that speak for a safety node: a second one on what gates and drives obey."""
+"""Checks for a second publisher of an action's state or of a heartbeat."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def _states(flat: FlatSystem, watchers: Iterable[Rules]) -> set[str]:
 
 
 def is_state(port: Port) -> bool:
-    """Tell whether a port of a safety node publishes the states of actions."""
+    """Return whether a port of a safety node publishes the states of actions."""
     qos = port.qos
     is_latched = qos is not None and qos.durability == "transient_local" and qos.depth == 1
     return port.kind is PortKind.PUBLISHER and is_latched
@@ -88,12 +88,12 @@ def _heartbeats(flat: FlatSystem) -> set[str]:
 
 
 def is_of_safety(node: FlatNode) -> bool:
-    """Tell whether a node is a generated safety node or a gate."""
+    """Return whether a node is a generated safety node or a gate."""
     return is_safety_node(node) or _is_gate(node)
 
 
 def is_safety_node(node: FlatNode) -> bool:
-    """Tell whether a node has the heartbeat of a generated safety node."""
+    """Return whether a node has the heartbeat of a generated safety node."""
     return node.type is not None and safety_nodes.is_safety_node(node.type)
 
 

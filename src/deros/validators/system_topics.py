@@ -1,4 +1,4 @@
-"""Topics, services and actions as a whole: types that meet, ends that are missing."""
+"""Checks of topics, services and actions: mismatched types and missing ends."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from deros.interfaces.types import InterfaceType
 
 _COMPARED = 20
-"""So many topics of a type that no node subscribes to are looked at to find one for another."""
+"""The number of unread topics of one type that are considered for an unpublished one."""
 
 
 def check_topics(
@@ -67,7 +67,7 @@ def check_topics(
 
 
 def _ends_in_rules(topic: Channel, rules: RulesEnds) -> bool:
-    """Tell whether the safety node is the end that a topic would lack."""
+    """Return whether the safety node is the missing end of a topic."""
     return (topic.name in rules.read and (bool(topic.sources) or not topic.sinks)) or (
         topic.name in rules.fed and not topic.sources
     )
@@ -176,7 +176,7 @@ def _missing_ends(
 
 
 def _is_unread(topic: Channel) -> bool:
-    """Tell whether a published topic reaches no node but the one that publishes it."""
+    """Return whether a published topic reaches no node but the one that publishes it."""
     names = {end.node.full_name for end in (*topic.sources, *topic.sinks)}
     return not topic.sinks or len(names) == 1
 

@@ -1,4 +1,4 @@
-"""Topics, services and actions with their ends, as the checks of whole systems look at them."""
+"""Topics, services and actions with their ends."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def pinned_types(flat: FlatSystem) -> dict[str, Topic]:
 
 
 def _is_standard(name: str, pin: Topic | None, ends: list[End]) -> bool:
-    """Tell whether a topic has ends in libraries, tools or hands, which no model describes."""
+    """Return whether a topic has ends in libraries, tools or operators, outside any model."""
     kind = pin.type if pin is not None else None
     if kind is None and ends:
         kind = ends[0].type

@@ -1,4 +1,4 @@
-"""How probable it is that two names were meant to be one topic."""
+"""Similarity of topic names: whether two of them probably mean the same topic."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 
 LIKELY = 0.6
-"""From this likeness on, two names are probably meant to be one."""
+"""The likeness from which on two names probably mean the same topic."""
 
 _FEW = 200
-"""Up to so many names are compared with one by one; it takes some ten microseconds each."""
+"""The number of names up to which all are compared; that takes some ten microseconds each."""
 
 _WORD = re.compile(r"\d+|[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 _SYNONYMS = {
@@ -30,7 +30,7 @@ _SYNONYMS = {
     "batt": "battery",
     "gnss": "gps",
 }
-"""Words that different drivers use for one thing."""
+"""Words that different drivers use for the same thing."""
 
 _NAMES_OF_THINGS = (
     "accel back base battery bias bottom camera center cmd color confidence cost covariance "
@@ -130,7 +130,7 @@ class LikelyTopics:
 
 
 def _keys(name: str) -> set[str]:
-    """Return what names that are alike have in common, of two at least one."""
+    """Return the index keys of a name: similar names share at least one of them."""
     space, last = _parts(name)
     joined, place = "".join(last), "/".join(space)
     keys = {joined[:i] + joined[i + 1 :] for i in range(len(joined))} | {joined, *last}
@@ -159,7 +159,7 @@ def _canonical(word: str) -> str:
 
 @lru_cache(maxsize=1 << 14)
 def _alike(first: tuple[str, ...], second: tuple[str, ...]) -> float:
-    """Return how alike two lists of words are; 0 if each has what the other lacks."""
+    """Return the likeness of two lists of words; 0 if each has a word that the other lacks."""
     if first == second:
         return 1.0
     joined, other = "".join(first), "".join(second)
@@ -193,7 +193,7 @@ def _digits(words: tuple[str, ...]) -> list[str]:
 
 @lru_cache(maxsize=1 << 14)
 def is_mistyped(first: str, second: str) -> bool:
-    """Tell whether two words are one but for a slip of the fingers, two in a long one."""
+    """Return whether two words differ by one typing error, or two in a long word."""
     if first.isdigit() or second.isdigit() or (first in _KNOWN and second in _KNOWN):
         return False
     shorter, longer = sorted((len(first), len(second)))

@@ -1,4 +1,4 @@
-"""For a topic that lacks an end, the topics that it was probably meant to be."""
+"""Topics that a topic without an end was probably meant to be."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ONE_SIDED = 0.05
 
 
 class Topic(Protocol):
-    """What is asked of a topic."""
+    """The interface of a topic."""
 
     @property
     def name(self) -> str:
@@ -42,7 +42,7 @@ T = TypeVar("T", bound=Topic)
 
 
 class Robots:
-    """The parts of a system that are there several times, each in a namespace of its own.
+    """The repeated parts of a system, each in its own namespace.
 
     Nodes of one type and one name that stand in several namespaces make these repetitions of each
     other: of ``/left/arm/elbow`` and ``/right/arm/elbow``, they are ``/left`` and ``/right``.
@@ -78,7 +78,7 @@ class Robots:
         return None
 
     def are_apart(self, first: str, second: str) -> bool:
-        """Tell whether two full names belong to two different parts."""
+        """Return whether two full names belong to two different parts."""
         one, other = self.of(first), self.of(second)
         return one is not None and other is not None and one != other
 
@@ -126,7 +126,7 @@ class Partners(Generic[T]):
         return [candidates[name] for name in self._best(fed, False, candidates, rank)]
 
     def can_join(self, fed: T, read: T) -> bool:
-        """Tell whether one topic in the place of two would join nodes that belong together."""
+        """Return whether one topic in the place of two would join nodes that belong together."""
         name = fed.sources[0].node.full_name
         is_one = all(end.node.full_name == name for end in chain(fed.sources, read.sinks))
         if is_one or self._robots.are_apart(fed.name, read.name):

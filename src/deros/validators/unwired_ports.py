@@ -1,4 +1,4 @@
-"""Ports that no ``connect`` mentions: which of them are worth a word."""
+"""Checks of ports that no ``connect`` mentions."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SEEKS_A_PARTNER = {
     PortKind.CLIENT: "client",
     PortKind.ACTION_CLIENT: "action client",
 }
-"""Ports for which no wiring is worth a word; a server is reached under its own name as it is."""
+"""Kinds of ports that are reported; a server is reached under its own name anyway."""
 
 _COMPARED = 20
 """So many subscribed topics of a type and last word are looked at to find one for a publisher."""
@@ -114,7 +114,7 @@ class _Asked:
         self._declared = {kind: LikelyTopics(names) for kind, names in declared.items()}
 
     def asks_for(self, fed: Channel) -> bool:
-        """Tell whether somebody in the system may wait for what is published on a topic.
+        """Return whether some node may expect the messages that are published on a topic.
 
         That is so where the topic is declared or read, where a topic of its type that another node
         reads is called alike, or one that is declared and not published, or where one lacks a

@@ -1,4 +1,4 @@
-"""Whether a value fits a parameter: its type, and the constraints of its declaration.
+"""Checks of parameter values: type, and constraints of the declaration.
 
 Shared by the defaults of node descriptions and the ``param`` lines of system descriptions.
 """
@@ -59,12 +59,12 @@ _NUMERIC = frozenset(
 
 
 def is_numeric(kind: ParameterType) -> bool:
-    """Tell whether a range (``in [a, b]``) makes sense for parameters of this type."""
+    """Return whether a range (``in [a, b]``) makes sense for parameters of this type."""
     return kind in _NUMERIC
 
 
 def type_fault(kind: ParameterType, value: Value) -> str | None:
-    """Return why ``value`` is no value for a parameter of type ``kind``, or ``None``."""
+    """Return why ``value`` is not of the parameter type ``kind``, or ``None``."""
     fits = _FITS[kind]
     if isinstance(value, tuple):
         if not kind.is_array:
@@ -138,7 +138,7 @@ def _size_fault(parameter: Parameter, value: Value) -> str | None:
 
 
 def show(value: Value) -> str:
-    """Spell a value as the languages do."""
+    """Return a value in the notation of the languages."""
     if isinstance(value, tuple):
         return f"[{', '.join(map(show, value))}]"
     if isinstance(value, bool):
@@ -149,14 +149,14 @@ def show(value: Value) -> str:
 
 
 def outside(parameter: Parameter) -> str:
-    """Say what a number is that lies out of the range of a parameter."""
+    """Return in words how a number violates the range of a parameter."""
     interval = parameter.interval
     assert interval is not None
     return f"{'not' if interval.one_sided else 'outside'} {interval.spelled()}"
 
 
 def _because(kind: ParameterType, value: Scalar) -> str:
-    """Name the range of integers where it is what an integer breaks."""
+    """Return the range of integers if an integer violates it."""
     if isinstance(value, bool) or not isinstance(value, int):
         return ""
     if kind in (ParameterType.INTEGER, ParameterType.INTEGER_ARRAY):
