@@ -82,7 +82,7 @@ def _generate(request: Request, source: Path) -> _Outcome:
     """
     from deros.generators.output.source_tree import SourceTreeError, package_folder
     from deros.generators.output.writer import WriteError
-    from deros.pipeline.depfile import is_current, stamped, write_if_changed
+    from deros.pipeline.depfile import is_current, read_stamp, write_if_changed
     from deros.pipeline.generate import Refused, generate
     from deros.pipeline.output import OutputSpec, now_ns, write
     from deros.pipeline.scaffold import scaffold_command
@@ -96,7 +96,7 @@ def _generate(request: Request, source: Path) -> _Outcome:
         write_if_changed(output / ".gitignore", "*\n")
         write_if_changed(ros, os.environ.get("AMENT_PREFIX_PATH", ""))
         started = now_ns()
-        there = stamped(stamp)
+        there = read_stamp(stamp)
         whole = bool(there) and all((output / each).exists() for each in there)
         if whole and is_current(stamp, depfile):
             return _Outcome(there[0].partition("/")[0])

@@ -39,7 +39,7 @@ class Code:
         slug: its name in words, ``unknown-import``.
         title: what it reports, in a few words.
         severity: the severity of its findings.
-        tells_absence: whether it says that something is missing, which may be in a statement that
+        reports_absence: whether it says that something is missing, which may be in a statement that
             could not be read.
     """
 
@@ -47,7 +47,7 @@ class Code:
     slug: str
     title: str
     severity: Severity
-    tells_absence: bool = False
+    reports_absence: bool = False
 
     def __str__(self) -> str:
         """Return name and slug, as users read it."""

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import deros.generators
-from deros.pipeline.depfile import depfile, is_current, prerequisites, stamped
+from deros.pipeline.depfile import depfile, is_current, prerequisites, read_stamp
 from tests.support.builds import PROGRAM, frozen_program, models, replace, touch
 from tests.support.cli import Outcome
 from tests.support.cli import deros as run
@@ -153,7 +153,7 @@ def test_stamp_lists_the_output(tmp_path: Path) -> None:
     """It lists the files that deros maintains, without user files."""
     models(tmp_path)
     _generate("robot.deros", "python")
-    listed = stamped(Path("stamp"))
+    listed = read_stamp(Path("stamp"))
     files = {str(p.relative_to("out")) for p in Path("out").rglob("*") if p.is_file()}
     assert files - set(listed) == {
         "robot_safety/package.xml",

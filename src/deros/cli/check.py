@@ -65,7 +65,7 @@ def check(
     """Check models and report every finding."""
     if write_baseline and baseline is None:
         raise click.UsageError("--write-baseline needs --baseline FILE")
-    with without_collector():
+    with collector_suspended():
         found = find(files, interfaces)
     if baseline is not None:
         found = _compared(found, baseline, write=write_baseline)
@@ -74,7 +74,7 @@ def check(
 
 
 @contextlib.contextmanager
-def without_collector() -> Iterator[None]:
+def collector_suspended() -> Iterator[None]:
     """Suspend Python's cyclic garbage collector while models are loaded and checked.
 
     They live until the end of the run: looking for garbage among them finds none, and takes a third

@@ -99,7 +99,7 @@ def generate(
     from deros.generators.output.source_tree import SourceTreeError
     from deros.generators.output.writer import WriteError
     from deros.pipeline import generate as pipeline
-    from deros.pipeline.output import OutputSpec, lacking_in, now_ns, write
+    from deros.pipeline.output import OutputSpec, now_ns, review_source_tree, write
     from deros.pipeline.scaffold import scaffold_command, scaffold_files
 
     if scaffold is not None and (depfile or stamp or source):
@@ -119,7 +119,7 @@ def generate(
         show(made.findings)
         if scaffold is not None:
             kept = scaffold_files(made, request, scaffold)
-            lacking = lacking_in(made, scaffold)
+            lacking = review_source_tree(made, scaffold)
             written = writer.write(kept, scaffold, overwrite=overwrite)
         else:
             where = OutputSpec(output, overwrite, source, depfile, stamp)

@@ -56,7 +56,7 @@ _RESERVED = CPP | PYTHON  # no generator of ROS 2 could make a field of that nam
 
 @dataclass(frozen=True, slots=True)
 class DefinitionError:
-    """Why a definition cannot be read, and the line (from 1) where."""
+    """The reason why a definition cannot be read, and its line, from 1."""
 
     line: int
     message: str
@@ -99,7 +99,7 @@ class _Part:
         return MessageDefinition(kind, fields, constants, self._defaults)
 
     def read(self, line: str) -> str | None:
-        """Take one line; return what is wrong with it, if anything is."""
+        """Parse one line; return the reason if it is invalid."""
         stripped = without_comment(line).strip()
         if not stripped:
             return None
@@ -145,7 +145,7 @@ class _Part:
 
 
 def without_comment(line: str) -> str:
-    """Cut a line at its first ``#`` that stands outside quotes."""
+    """Cut a line at its first ``#`` outside quotes."""
     match = _COMMENT.match(line)
     return match[1] if match else line
 

@@ -31,7 +31,7 @@ _PLACEHOLDER = "structure_needs_at_least_one_member"
 
 
 class EmbeddedSource:
-    """The embedded definitions as a place to look in."""
+    """The embedded definitions as a source."""
 
     def has_package(self, package: str) -> bool:
         """Return whether any interface of ``package`` is embedded."""

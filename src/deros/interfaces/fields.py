@@ -1,4 +1,4 @@
-"""Field paths: what ``position[2]`` or ``twist.twist.linear.x`` of a message is.
+"""Field paths of messages, such as ``position[2]`` or ``twist.twist.linear.x``.
 
 A path is a tuple of field names and array indices, ``("position", 2)``.
 """
@@ -17,7 +17,7 @@ FieldPath = Sequence[str | int]
 
 @dataclass(frozen=True, slots=True)
 class ResolvedField:
-    """Where a path ends.
+    """The field that a path names.
 
     Attributes:
         type: the field's type; of the element where the path ends with an index.
@@ -33,7 +33,7 @@ class ResolvedField:
 
 @dataclass(frozen=True, slots=True)
 class FieldError:
-    """Why a path leads nowhere.
+    """The reason why a path does not name a field.
 
     Attributes:
         position: index in the path of the first part that does not fit.

@@ -1,4 +1,4 @@
-"""Reading files that somebody else has named: never waiting, and never more than fits."""
+"""Reading of untrusted file names: without blocking, and up to a size limit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keywords of the languages that ROS 2 nodes are written in: nothing they name may be called so.
+"""Keywords of the languages of ROS 2 nodes, which generated names must avoid.
 
 Source: ISO/IEC 9899:1999, 6.4.1, and ISO/IEC 14882:2017 and 14882:2020, [lex.key].
 """

@@ -1,4 +1,4 @@
-"""Fields of messages that the rules speak of, and that are known to be there."""
+"""Existing fields of messages that the rules name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names: near matches for hints, and the rules by which ROS 2 accepts or refuses one.
+"""Names: near matches for hints, and the naming rules of ROS 2.
 
 The checks return ``None`` for a name that ROS 2 takes, else the reason why it does not, as a phrase
 that completes "the name … ". Sources: ``rcl_validate_topic_name``, ``rmw_validate_node_name``,
@@ -23,7 +23,7 @@ _CLOSE = 0.6
 _COMPARED_CLOSELY = 100
 _FORBIDDEN_IN_PROGRAM = re.compile(r"[^A-Za-z0-9_.+-]")
 _MISTYPED_LENGTH = 300
-"""Nobody mistypes a longer name; comparing two of them would take time by the square."""
+"""Longer names are not compared, because that takes quadratic time."""
 
 # Control characters but tab and line ends, separators that some readers take for line ends, halves
 # of characters, and what turns the direction of writing, so that text reads as it does not run.
@@ -53,7 +53,7 @@ def near(name: str, candidates: Iterable[str], n: int = 3) -> list[str]:
 
 
 def _most_alike(name: str, candidates: list[str]) -> list[str]:
-    """Return those that share most pairs of letters with ``name``: few enough to compare closely.
+    """Return the candidates that share most pairs of letters with ``name``.
 
     A close comparison with the ten thousand topics of a large system would take half a second.
     """
@@ -71,7 +71,7 @@ def _letter_pairs(name: str) -> frozenset[str]:
 
 
 def did_you_mean(matches: Iterable[str]) -> str:
-    """Word near matches as a hint, or return an empty text when there are none."""
+    """Return near matches as a hint, or an empty text when there are none."""
     quoted = [f"'{match}'" for match in matches]
     if not quoted:
         return ""
@@ -80,12 +80,12 @@ def did_you_mean(matches: Iterable[str]) -> str:
 
 
 def not_text(text: str) -> re.Match[str] | None:
-    """Find the first character that no text for people or programs may hold, or return ``None``."""
+    """Return the match of the first character that is forbidden in any text, or ``None``."""
     return _NOT_TEXT.search(text)
 
 
 def check_identifier(name: str) -> str | None:
-    """Say why a name cannot be one in generated code of every language, or return ``None``."""
+    """Return why a name cannot be used in generated code, or ``None``."""
     if found := _FORBIDDEN.search(name):
         return f"contains '{found[0]}'; a name may contain only A to Z, a to z, digits and '_'"
     if len(name) > _NODE_LIMIT:
@@ -94,7 +94,7 @@ def check_identifier(name: str) -> str | None:
 
 
 def check_node_name(name: str) -> str | None:
-    """Say why ROS 2 refuses a node's name (the part without namespace), or return ``None``."""
+    """Return why ROS 2 rejects a node's name (without namespace), or ``None``."""
     if not name:
         return "is empty"
     if found := _FORBIDDEN.search(name):
@@ -107,7 +107,7 @@ def check_node_name(name: str) -> str | None:
 
 
 def check_topic_name(name: str) -> str | None:
-    """Say why ROS 2 refuses a topic or service name, absolute, relative or private (``~/x``)."""
+    """Return why ROS 2 rejects a topic or service name, absolute, relative or private (``~/x``)."""
     if not name:
         return "is empty"
     path = name
@@ -119,12 +119,12 @@ def check_topic_name(name: str) -> str | None:
 
 
 def is_too_long(name: str) -> bool:
-    """Return whether a full name, of a topic or a node, is longer than ROS 2 takes."""
+    """Return whether a full name, of a topic or a node, is longer than ROS 2 allows."""
     return len(name) > _TOPIC_LIMIT
 
 
 def check_namespace(name: str) -> str | None:
-    """Say why ROS 2 refuses a namespace, absolute or relative, or return ``None``."""
+    """Return why ROS 2 rejects a namespace, absolute or relative, or ``None``."""
     if not name:
         return "is empty"
     return None if name == "/" else _check_path(name, name)
@@ -148,7 +148,7 @@ def _check_path(path: str, whole: str) -> str | None:
 
 
 def check_package_name(name: str) -> str | None:
-    """Say why a package's name is refused (REP 144 and rosidl), or return ``None``."""
+    """Return why a package's name is rejected (REP 144 and rosidl), or ``None``."""
     if len(name) < 2:
         return "is shorter than two characters"
     if found := re.search(r"[^a-z0-9_]", name):
@@ -164,7 +164,7 @@ def check_package_name(name: str) -> str | None:
 
 
 def check_parameter_name(name: str) -> str | None:
-    """Say why a parameter's name (parts joined by ``.``) is refused, or return ``None``.
+    """Return why a parameter's name (parts joined by ``.``) is rejected, or ``None``.
 
     ROS 2 gives nodes any name from a parameter file; these are the characters that all its tools
     take.
@@ -182,12 +182,12 @@ def check_parameter_name(name: str) -> str | None:
 
 
 def check_timer_name(name: str) -> str | None:
-    """Say why a timer's name, which becomes part of a method's, is refused, or return ``None``."""
+    """Return why a timer's name, which becomes part of a method's, is rejected, or ``None``."""
     return "starts with a digit" if name[:1].isdigit() else check_identifier(name)
 
 
 def check_program_name(name: str) -> str | None:
-    """Say why a name is not the plain file name of a package's program, or return ``None``.
+    """Return why a name is not the plain file name of a package's program, or ``None``.
 
     What ``ros2 run`` takes is a file in the package's own folder. A path, a pattern or an option
     would let a description start any program of the machine.

@@ -1,4 +1,4 @@
-"""How much a message holds with all that is nested in it: refused before anybody walks through it.
+"""The size of a message with all nested ones, checked before it is traversed.
 
 rosidl has no messages that contain themselves, and a few files of nested arrays can ask for more
 fields than any machine has memory for.
@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from deros.interfaces.types import InterfaceType, MessageDefinition
 
 MOST_FIELDS = 10_000
-"""How many fields a message may have with those nested in it, an array counting once."""
+"""The most fields of a message, nested ones included; an array counts once."""
 
 MOST_ELEMENTS = 1 << 24
-"""How many values of fixed number a message may have: enough for an image of 16 MB."""
+"""The most elements of fixed arrays in a message: enough for an image of 16 MB."""
 
 DEEPEST = 50
 
@@ -24,7 +24,7 @@ Look = Callable[[InterfaceType], MessageDefinition | None]
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """What a message holds: fields, values of fixed number; or why it cannot be used.
+    """The size of a message: fields and fixed elements; or the reason why it cannot be used.
 
     ``unknown`` is a type nested in it that has no definition: fields before it can still be named.
     """

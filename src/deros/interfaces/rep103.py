@@ -30,7 +30,7 @@ def unit_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str 
 
 
 def is_wrapping(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> bool:
-    """Return whether the field is an angle that jumps by a full turn where it begins anew."""
+    """Return whether the field is an angle that wraps around after a full turn."""
     return (_text_of(store, kind, path) or "").endswith(_WRAPPING)
 
 

@@ -109,7 +109,7 @@ def _text(kind: InterfaceType) -> str:
 
 
 class _Table(NamedTuple):
-    """What is known of standard topics.
+    """The table of standard topics.
 
     Attributes:
         named: the topics by their names.

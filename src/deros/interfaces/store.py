@@ -1,4 +1,4 @@
-"""Where message, service and action definitions come from.
+"""Lookup of message, service and action definitions.
 
 An :class:`InterfaceStore` asks, in this order, the folders it was given, the ament index of the
 environment, and the definitions embedded in deros (:mod:`deros.interfaces.embedded`). As in a ROS 2
@@ -28,7 +28,7 @@ from deros.interfaces.types import InterfaceKind, InterfaceType, MessageDefiniti
 
 
 class InterfaceStore:
-    """Finds interface definitions; cheap to construct, and quiet about what is not there.
+    """Finds interface definitions. It is cheap to construct, and missing ones are not errors.
 
     Args:
         paths: folders that hold ``<package>/msg/*.msg`` (or ``srv``, ``action``) at any depth; the
@@ -38,7 +38,7 @@ class InterfaceStore:
     """
 
     def __init__(self, paths: Sequence[Path] = (), prefixes: Sequence[Path] | None = None) -> None:
-        """Remember where to look; nothing is read yet."""
+        """Store the sources; nothing is read yet."""
         self._paths = tuple(paths)
         self._prefixes = _environment_prefixes() if prefixes is None else tuple(prefixes)
         self._owners: dict[str, Source | None] = {}
@@ -68,7 +68,7 @@ class InterfaceStore:
         return self._definition(kind) is not None
 
     def problem(self, kind: InterfaceType) -> DefinitionProblem | None:
-        """Say why a definition that is there cannot be read, or return ``None``."""
+        """Return why an existing definition cannot be read, or ``None``."""
         found = self._definition(kind)
         return found if isinstance(found, DefinitionProblem) else None
 
@@ -102,7 +102,7 @@ class InterfaceStore:
         return None
 
     def inputs(self) -> tuple[Path, ...]:
-        """Return the files and folders on disk that the answers given so far rest on.
+        """Return the files and folders on disk that the results so far depend on.
 
         What is embedded in deros is not among them, nor what was looked for in vain.
         """

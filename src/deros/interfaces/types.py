@@ -1,4 +1,4 @@
-"""Names and shapes of ROS 2 interfaces, as every other room speaks of them."""
+"""Names and types of ROS 2 interfaces."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class InterfaceType:
 
     @property
     def short(self) -> str:
-        """The spelling of the three languages, ``package.Name``."""
+        """The spelling of the languages of deros, ``package.Name``."""
         return f"{self.package}.{self.name}"
 
 
@@ -80,7 +80,7 @@ class FieldType:
 
     @property
     def is_number(self) -> bool:
-        """Whether the field is one integer or floating-point value (a bool is none)."""
+        """Whether the field is one integer or floating-point value (a bool is not)."""
         return not self.is_array and (self.base in INTEGER_RANGES or self.base in FLOAT_TYPES)
 
     @property

@@ -44,7 +44,7 @@ _LONGEST_WORD = 40
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit as written, and what it amounts to in base units.
+    """A unit as written, and its value in base units.
 
     A value in this unit is ``value * factor + offset`` in base units (radian among them). Only
     ``degC`` and ``degF`` have an offset; in a compound (``degC/s``) they count as differences.
@@ -85,7 +85,7 @@ class UnitRegistry:
     def __init__(
         self, definitions: Mapping[str, tuple[Decimal | float, str]] | None = None
     ) -> None:
-        """Remember the program's own units; nothing is read yet."""
+        """Store the program's own units; nothing is read yet."""
         self._definitions = dict(definitions or {})
         self._words: dict[str, Unit | None] = {}
         self._parsed: dict[str, Unit | None] = {}
@@ -151,7 +151,7 @@ class UnitRegistry:
         if word not in self._words:
             if self._depth > _MAX_DEPTH:
                 return None
-            self._words[word] = None  # what a definition finds that leads back to itself
+            self._words[word] = None  # the value that a cyclic definition finds
             self._depth += 1
             self._words[word] = self._look_up(word)
             self._depth -= 1
@@ -242,7 +242,7 @@ _ONE = Unit("1", (), Fraction(1))
 def _combine(left: Unit, right: Unit, exponent: int) -> Unit | None:
     """Return ``left * right ** exponent``; without offset, as a product is one of differences.
 
-    ``None`` stands for a product that no quantity has: its factor would fill the memory.
+    ``None`` stands for a product whose factor would fill the memory.
     """
     if _bits(left.factor) + _bits(right.factor) * abs(exponent) > _MOST_BITS:
         return None
@@ -264,7 +264,7 @@ def _exact_factor(source: Unit, target: Unit) -> tuple[Fraction, Fraction]:
 
 
 def _fraction(value: Decimal | float) -> Fraction | None:
-    """Return the exact value, or ``None`` where a double holds infinity, NaN or nothing like it."""
+    """Return the exact value, or ``None`` if it is not finite as a double."""
     if isinstance(value, Decimal):
         if value.is_finite() and abs(value.adjusted()) > MOST_DIGITS:
             return None if value else Fraction(0)

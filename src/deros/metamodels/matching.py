@@ -30,7 +30,7 @@ from arpeggio import (
     ZeroOrMore,
 )
 
-from deros.metamodels.repaired import RepairedText, restore_places
+from deros.metamodels.repaired_text import RepairedText, restore_places
 
 Matcher = Callable[[str, int, list[Any]], int]
 """Matches a text at a position that is no blank and appends to the list what it makes of it.

@@ -34,7 +34,7 @@ class ParameterType(enum.Enum):
 
 
 class PortKind(enum.Enum):
-    """What a node does at a port; the value is the keyword of its section."""
+    """The kind of a port; the value is the keyword of its section."""
 
     PUBLISHER = "publishes"
     SUBSCRIPTION = "subscribes"
@@ -45,7 +45,7 @@ class PortKind(enum.Enum):
 
     @property
     def word(self) -> str:
-        """The word that stands for the kind before a port's name in a wiring."""
+        """The word for the kind before a port's name in a wiring."""
         return _KIND_WORDS[self]
 
 

@@ -1,4 +1,4 @@
-"""What a QoS profile amounts to, and which ends the middleware connects with each other.
+"""QoS policies of a profile, and the compatibility of publishers and subscriptions.
 
 Each policy follows the request-offered rule of DDS (OMG DDS 1.4, section 2.2.3): a publisher
 *offers*, a subscription *requests*, and the two are connected only if no policy offers less than is
@@ -22,7 +22,7 @@ Policy = Literal[
     "reliability", "durability", "deadline", "liveliness", "lease", "depth", "lifespan"
 ]
 PolicyValue = str | float | None
-"""A kind, nanoseconds or a number of samples; ``None`` is no promise, or no wish."""
+"""A kind, nanoseconds or a number of samples; ``None`` is no offer, or no request."""
 
 SYSTEM_DEFAULT = "system_default"
 """The kind of a policy that the middleware chooses by its own settings."""
@@ -32,7 +32,7 @@ _KINDS = {
     "durability": ("volatile", "transient_local"),
     "liveliness": ("automatic", "manual_by_topic"),
 }
-"""The kinds of each policy, from the one that promises least."""
+"""The kinds of each policy, the weakest first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +103,7 @@ class Shortfall:
 class PinViolation:
     """A policy in which an end does not meet the pin of its topic.
 
-    ``excess`` tells that a subscription asks for more than is pinned; otherwise it is less.
+    ``excess`` means that a subscription requests more than is pinned; otherwise it is less.
     """
 
     policy: Policy
@@ -114,7 +114,7 @@ class PinViolation:
 
 
 def stated(profile: QosProfile | None, policy: Policy) -> PolicyValue:
-    """Return what a profile itself says of a policy; ``None`` if nothing, or a preset does."""
+    """Return the value that a profile itself states for a policy, or ``None``."""
     if profile is None:
         return None
     if policy == "depth" and profile.keep_all:
@@ -137,7 +137,7 @@ def policies(profile: QosProfile | None, default: Policies = DEFAULT) -> Policie
 
 @lru_cache(maxsize=4096)
 def shortfalls(offered: Policies, requested: Policies) -> tuple[Shortfall, ...]:
-    """Return what keeps a publisher and a subscription apart, or may do so."""
+    """Return the policies that disconnect a publisher and a subscription, or may do so."""
     return tuple(
         Shortfall(policy, offer, request, verdict is True)
         for policy in REQUEST_OFFERED
@@ -165,7 +165,7 @@ def _is_less(policy: Policy, offer: Any, request: Any) -> bool | None:
 
 
 def is_met_by_default(shortfall: Shortfall) -> bool:
-    """Return whether what ``system_default`` becomes is enough in every middleware of ROS 2.
+    """Return whether ``system_default`` satisfies the request in every middleware of ROS 2.
 
     Only a profile file of the user's could make it less. A publisher is reliable, a subscription is
     volatile and asks for automatic liveliness; whether a subscription is best effort, and whether a
@@ -196,7 +196,7 @@ def pinned_policies(pin: QosProfile) -> Mapping[Policy, PolicyValue]:
 
 @lru_cache(maxsize=4096)
 def publisher_violations(pin: QosProfile, profile: QosProfile | None) -> tuple[PinViolation, ...]:
-    """Return in what a publisher offers less than the pin of its topic; more is allowed."""
+    """Return the policies in which a publisher offers less than the pin; more is allowed."""
     actual = policies(profile)
     return tuple(_below(pin, actual, tuple(_FIELDS)))
 
@@ -205,7 +205,7 @@ def publisher_violations(pin: QosProfile, profile: QosProfile | None) -> tuple[P
 def subscription_violations(
     pin: QosProfile, profile: QosProfile | None
 ) -> tuple[PinViolation, ...]:
-    """Return in what a subscription asks for anything else than the pin of its topic.
+    """Return the policies in which a subscription requests anything but the pin.
 
     With more, it would not be connected with a publisher that offers just what is pinned; with
     less, it would miss what the pin promises. A lifespan counts where a sample is published.
@@ -217,7 +217,7 @@ def subscription_violations(
 
 @lru_cache(maxsize=4096)
 def excess(pin: QosProfile, profile: QosProfile | None) -> tuple[PinViolation, ...]:
-    """Return in what a subscription asks for more than the pin of its topic promises."""
+    """Return the policies in which a subscription requests more than the pin."""
     actual = policies(profile)
     found = []
     for policy, value in pinned_policies(pin).items():
@@ -241,7 +241,7 @@ def _below(pin: QosProfile, actual: Policies, among: tuple[Policy, ...]) -> Iter
 # Overrides --------------------------------------------------------------------------------------
 
 OVERRIDES = "qos_overrides."
-"""What the parameters begin with by which ROS 2 changes the QoS of a program's ends at the start.
+"""The prefix of the parameters by which ROS 2 overrides the QoS of a program's ends at startup.
 
 They read ``qos_overrides./scan.subscription.reliability``, or ``subscription_NAME`` of several.
 """
@@ -258,7 +258,7 @@ _OVERRIDE_FIELDS = {
 
 
 def overridden_policy(parameter: str, topic: str, entity: str) -> str | None:
-    """Return which policy of an end a parameter overrides, by its name in ROS 2, or ``None``.
+    """Return the ROS 2 name of the policy that a parameter overrides, or ``None``.
 
     Args:
         parameter: the parameter's name.

@@ -26,10 +26,10 @@ _SPECIAL = re.compile(
     re.DOTALL,
 )
 LARGEST_MODEL = 4 << 20
-"""How many bytes a model's file may hold: some thirty thousand lines, which take seconds."""
+"""The largest model file in bytes: some thirty thousand lines, which take seconds."""
 
 LARGEST_STREAM = 256 << 20
-"""How many bytes anything else may hold that is read: traces of hours."""
+"""The largest size in bytes of other inputs: traces of hours."""
 
 _LONGEST_WORD = 255
 _LONG_WORD = re.compile(rf"\w{{{_LONGEST_WORD + 1},}}")
@@ -48,7 +48,7 @@ class Unreadable(Exception):  # noqa: N818 - it carries a finding, and is no fau
 def read(path: Path, shown: str, *, streams: bool = True) -> SourceFile:
     """Read a UTF-8 file; ``shown`` is its path as diagnostics name it.
 
-    Without ``streams``, a pipe or a device is refused: it may keep the reader waiting for ever.
+    Without ``streams``, pipes and devices are rejected, because they may block for ever.
 
     Raises:
         Unreadable: the file cannot be opened, is too large, or does not hold text.
@@ -152,7 +152,7 @@ def _check_words(source: SourceFile, text: str) -> None:
 
 
 def forbidden_character(character: str, span: Span) -> Diagnostic:
-    """Make the diagnostic for a character, written as such or as an escape, at a place."""
+    """Return the diagnostic for a forbidden character, written as such or as an escape."""
     name = unicodedata.name(character, "control character").lower()
     if "\ud800" <= character <= "\udfff":
         name = "unpaired surrogate"
@@ -161,6 +161,6 @@ def forbidden_character(character: str, span: Span) -> Diagnostic:
 
 
 def too_deep(span: Span) -> Diagnostic:
-    """Make the diagnostic for a place where nesting passes :data:`MAX_DEPTH`."""
+    """Return the diagnostic for nesting deeper than :data:`MAX_DEPTH`."""
     message = f"nested more than {MAX_DEPTH} levels deep"
     return report(codes.NESTED_TOO_DEEPLY, message, span, "split it into named parts")

@@ -1,7 +1,7 @@
 """Recovery from syntax errors: all errors of a file, and the rest of its model.
 
 Where the text fits nowhere, the statement that it belongs to is mended if one edit does it (see
-:mod:`deros.metamodels.mending`), so that whatever follows is read as the hint means it; else it
+:mod:`deros.metamodels.repairs`), so that whatever follows is read as the hint means it; else it
 becomes blank, and what it says is lost: its words are noted in the source, and what seems to be
 missing because of them is not reported. Then reading goes on from there. Every other character
 keeps its place.
@@ -19,20 +19,20 @@ from deros import codes
 from deros.diagnostics import ANY_NAME, Diagnostic, Fix, SourceFile, Span, report
 from deros.metamodels.grammar import is_name, literal_of
 from deros.metamodels.languages import Language
-from deros.metamodels.mending import Fault, Mend, is_line_start, mends
 from deros.metamodels.parsers import fast_metamodel
-from deros.metamodels.recognising import (
+from deros.metamodels.recogniser import (
     Place,
     Recogniser,
     StatementList,
     skip_blanks,
 )
-from deros.metamodels.repaired import RepairedText
-from deros.metamodels.resuming import PIECE, Search
+from deros.metamodels.repaired_text import RepairedText
+from deros.metamodels.repairs import Fault, Repair, is_line_start, repairs
+from deros.metamodels.resumption import PIECE, Search
 from deros.metamodels.syntax import explain
 
 MOST_ERRORS = 50
-"""How many syntax errors of a file are explained; of the rest only their number is reported."""
+"""The number of syntax errors that are explained per file; the rest are only counted."""
 
 _WORD = re.compile(r"\w+")
 _LOOK_AHEAD = 400
@@ -95,7 +95,7 @@ class _Recovery:
         self._lost: set[str] = set()
 
     def run(self) -> Recovered:
-        """Mend or blank one error after the other, until the rest parses."""
+        """Repair or blank one error after the other, until the rest parses."""
         complete = True
         while not self._parses():
             if self._diagnostics and not self._text.strip():
@@ -123,7 +123,7 @@ class _Recovery:
     # One error --------------------------------------------------------------------------------
 
     def _go_on(self) -> bool:
-        """Report the error and change the text so that it is behind; tell whether that is done."""
+        """Report the error and edit the text to get past it; return whether that succeeded."""
         trace = self._recogniser.trace
         place = _statement_at(trace.places, trace.position)
         position, expected = trace.position, tuple(trace.expected)
@@ -131,10 +131,10 @@ class _Recovery:
             place, position, expected = self._blamed(place, position, expected)
         end, sure = self._resume_at(place, position)
         fault = Fault(self._text, position, expected, place, end, self._language, self._recogniser)
-        mend = next(mends(fault), None)
-        self._report(fault, mend)
-        if mend is not None and mend.start is not None:
-            return self._apply(mend)
+        repair = next(repairs(fault), None)
+        self._report(fault, repair)
+        if repair is not None and repair.start is not None:
+            return self._apply(repair)
         if place is None:
             return self._skip_head(end)
         if _is_nameless(fault):
@@ -143,7 +143,7 @@ class _Recovery:
         return True
 
     def _blamed(self, place: Place, failed: int, expected: _Tokens) -> tuple[Place, int, _Tokens]:
-        """Return the statement that is to blame, where it breaks off, and what is missing there.
+        """Return the broken statement, the position of the fault, and the tokens expected there.
 
         Where a statement could begin at the failure, that may belong to the statement before all
         the same: on one line with it, or because that one lacks its end and took the next one's
@@ -192,12 +192,12 @@ class _Recovery:
         return Place(place.outer, place.list, before), start, expected
 
     def _is_taken_for_a_name(self, whole: Place, start: int, end: int, failed: int) -> bool:
-        """Return whether any word would do in the place of one."""
+        """Return whether any other word would parse in the place of a word."""
         other = f"{self._text[:start]}{'z' * (end - start)}{self._text[end:]}"
         return self._recogniser.try_statement(whole.list, other, whole.start).reached >= failed
 
     def _swallowing(self, whole: Place, place: Place, failed: int) -> tuple[int, _Tokens] | None:
-        """Find where a statement without its end took the next one's keyword for a name."""
+        """Return where a statement without its end took the next one's keyword for a name."""
         text = self._text
         here = text.rfind("\n", whole.start, failed) + 1
         here = skip_blanks(text, here).end()  # type: ignore[union-attr]
@@ -213,28 +213,28 @@ class _Recovery:
                 return here, tuple(cut.trace.expected)
         return None
 
-    def _report(self, fault: Fault, mend: Mend | None) -> None:
+    def _report(self, fault: Fault, repair: Repair | None) -> None:
         original = self._text.original
         hint, fix = "", None
         position = original(fault.position)
-        if mend is not None:
-            hint = mend.hint
-            if mend.start is not None:
-                span = Span(self._source, original(mend.start), original(mend.end))
-                fix = Fix(span, mend.text)
+        if repair is not None:
+            hint = repair.hint
+            if repair.start is not None:
+                span = Span(self._source, original(repair.start), original(repair.end))
+                fix = Fix(span, repair.text)
         found = explain(self._source, position, fault.expected, hint, fix)
-        if mend is not None and mend.message:
+        if repair is not None and repair.message:
             span = found.span
-            if mend.start is not None and mend.end > mend.start:
-                span = Span(self._source, original(mend.start), original(mend.end))
-            found = report(codes.SYNTAX_ERROR, mend.message, span, hint, fix=fix)
+            if repair.start is not None and repair.end > repair.start:
+                span = Span(self._source, original(repair.start), original(repair.end))
+            found = report(codes.SYNTAX_ERROR, repair.message, span, hint, fix=fix)
         self._diagnostics.append(found)
 
-    def _apply(self, mend: Mend) -> bool:
-        assert mend.start is not None
-        text = mend.text if mend.reads_as is None else mend.reads_as
-        self._text = self._text.replaced(mend.start, mend.end, text)
-        self._forget(mend.start)
+    def _apply(self, repair: Repair) -> bool:
+        assert repair.start is not None
+        text = repair.text if repair.reads_as is None else repair.reads_as
+        self._text = self._text.replaced(repair.start, repair.end, text)
+        self._forget(repair.start)
         self._stretch = None
         return True
 
@@ -245,7 +245,7 @@ class _Recovery:
         self._forget(stretch.start)
 
     def _widen(self) -> bool:
-        """Blank the statement around the last one, where blanking that one alone did not do."""
+        """Blank the enclosing statement if blanking the last one alone was not enough."""
         stretch = self._stretch
         if stretch is None:
             return False
@@ -272,7 +272,7 @@ class _Recovery:
         self._source.lost = frozenset(self._lost)
 
     def _skip_head(self, end: int) -> bool:
-        """Leave a head that cannot be read; its statements are read nevertheless."""
+        """Skip a head that does not parse; its statements are read nevertheless."""
         self._lost.update(_WORD.findall(self._text[:end]))
         if end >= len(self._text) or self._recogniser.body is None:
             return False
@@ -281,7 +281,7 @@ class _Recovery:
         return True
 
     def _forget(self, position: int) -> None:
-        """Drop what is remembered of statements that may end otherwise now.
+        """Discard cached statements that may end elsewhere now.
 
         A token may look some words ahead.
         """
@@ -290,7 +290,7 @@ class _Recovery:
         self._recogniser.forget_from(start + words[-3].start() if len(words) > 2 else start)
 
     def _count_the_rest(self) -> None:
-        """Report how many statements more there are that do not parse."""
+        """Report the number of further statements that do not parse."""
         trace = self._recogniser.trace
         position = trace.position
         place = _statement_at(trace.places, position)
@@ -322,11 +322,11 @@ class _Recovery:
     # Where reading goes on --------------------------------------------------------------------
 
     def _resume_at(self, place: Place | None, failed: int) -> tuple[int, bool]:
-        """Return where the next statement begins, and whether it surely is one.
+        """Return where the next statement begins, and whether that is certain.
 
         Args:
             place: the broken statement; ``None`` for the head of a file.
-            failed: the position where it fits nowhere.
+            failed: the position where it does not parse.
         """
         body = self._recogniser.body
         if place is None and body is None:

@@ -1,4 +1,4 @@
-"""How a node's ports get the names that they are wired to: by the remapping rules of ROS 2.
+"""Remapping rules of ROS 2 that connect the ports of a node as wired.
 
 A rule ``NAME:=TARGET`` gives the name ``TARGET`` to every topic and every service that the node's
 code calls ``NAME``; ``rostopic://NAME:=TARGET`` does so for topics alone, ``rosservice://…`` for
@@ -40,12 +40,12 @@ def wired_ends(node_type: NodeType, wiring: Wiring) -> list[tuple[Port | None, s
 
 
 def scheme_of(kind: PortKind) -> Scheme:
-    """Return what a rule for ports of this kind alone starts with."""
+    """Return the prefix of a rule that applies to ports of this kind only."""
     return "rosservice" if kind in _SERVICE_KINDS else "rostopic"
 
 
 def conflicts(ports: Sequence[FlatPort]) -> Iterator[tuple[FlatPort, FlatPort]]:
-    """Yield the pairs of ports that one rule would move together, and the model does not.
+    """Yield the pairs of ports that one rule would remap together, unlike the model.
 
     The first of a pair is the port that is declared first.
     """
@@ -60,7 +60,7 @@ def conflicts(ports: Sequence[FlatPort]) -> Iterator[tuple[FlatPort, FlatPort]]:
 
 
 def _names(port: FlatPort) -> Iterator[tuple[Scheme, str, str]]:
-    """Yield every name that the port asks for, as topic or service, and what it has to become."""
+    """Yield every name that the port requests, as topic or service, with its target."""
     kind, name, target = port.port.kind, port.requested, port.topic
     yield scheme_of(kind), name, target
     if kind in ACTION_KINDS:
@@ -94,7 +94,7 @@ def remappings(ports: Sequence[FlatPort]) -> tuple[tuple[str, str], ...]:
 
 
 def wired_apart(node: FlatNode) -> Iterator[Diagnostic]:
-    """Yield a finding for each port that cannot be where the model has it, beside another one."""
+    """Yield a finding for each port whose wiring conflicts with that of another port."""
     yield from _one_parameter(node)
     for first, second in conflicts(node.ports):
         one, other = _called(first), _called(second)
@@ -119,7 +119,7 @@ def _called(port: FlatPort) -> str:
 
 
 def _one_parameter(node: FlatNode) -> Iterator[Diagnostic]:
-    """Find ports that take their names from one parameter, and are connected to two topics."""
+    """Yield ports that take their names from one parameter, but have different topics."""
     if node.type is None:
         return
     by_parameter = {port.port.via: port for port in node.ports if port.sets_parameter}

@@ -283,18 +283,18 @@ def _safety_ports(outline: Outline, offers: OffersOf) -> list[Port]:
         ports.append(_port(PortKind.PUBLISHER, state, safety_qos.STATE, description))
     description = "Counts up at publish_freq: stop when it stops"
     ports.append(
-        made_port(
+        synthesized_port(
             PortKind.PUBLISHER, HEARTBEAT, HEARTBEAT_TYPE, start, safety_qos.HEARTBEAT, description
         )
     )
     description = "Tells of each action, reset and fault"
     ports.append(
-        made_port(PortKind.PUBLISHER, EVENTS, _STATUS, start, safety_qos.EVENTS, description)
+        synthesized_port(PortKind.PUBLISHER, EVENTS, _STATUS, start, safety_qos.EVENTS, description)
     )
     description = "State of the node, of its actions and of its rules"
     name = _diagnostics_name(outline)
     ports.append(
-        made_port(
+        synthesized_port(
             PortKind.PUBLISHER, name, DIAGNOSTICS_TYPE, start, safety_qos.DIAGNOSTICS, description
         )
     )
@@ -304,7 +304,7 @@ def _safety_ports(outline: Outline, offers: OffersOf) -> list[Port]:
     ]
     if outline.latched:
         description = "Resets the latched actions that no behaviour calls for"
-        ports.append(made_port(PortKind.SERVICE, RESET, TRIGGER, start, None, description))
+        ports.append(synthesized_port(PortKind.SERVICE, RESET, TRIGGER, start, None, description))
     return ports
 
 
@@ -366,11 +366,11 @@ def _losses_in_simulated_time(gate: GateOutline) -> Parameter:
 def _gate_ports(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> list[Port]:
     span = gate.span
     description = "What safety lets through"
-    target = made_port(
+    target = synthesized_port(
         PortKind.PUBLISHER, gate.target, gate.type, span, safety_qos.GATE_TARGET, description
     )
     qos = safety_qos.gate_source_qos(offers(gate.source))
-    source = made_port(
+    source = synthesized_port(
         PortKind.SUBSCRIPTION, gate.source, gate.type, span, qos, "What is asked for"
     )
     ports = {source.name: source}
@@ -380,7 +380,7 @@ def _gate_ports(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> l
             ports.setdefault(state.topic, _port(PortKind.SUBSCRIPTION, state, safety_qos.STATE))
         if line.heartbeat:
             name = heartbeat_port(safety_node)
-            beat = made_port(
+            beat = synthesized_port(
                 PortKind.SUBSCRIPTION,
                 name,
                 HEARTBEAT_TYPE,
@@ -390,20 +390,20 @@ def _gate_ports(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> l
             )
             ports.setdefault(name, beat)
     description = "What applies"
-    diagnostics = made_port(
+    diagnostics = synthesized_port(
         PortKind.PUBLISHER, DIAGNOSTICS, DIAGNOSTICS_TYPE, span, safety_qos.DIAGNOSTICS, description
     )
     resets: list[Port] = []
     if gate.is_latching:
         description = "Ends the zeros that last until a reset, once their causes are over"
-        resets = [made_port(PortKind.SERVICE, RESET, TRIGGER, span, None, description)]
+        resets = [synthesized_port(PortKind.SERVICE, RESET, TRIGGER, span, None, description)]
     return [target, diagnostics, *ports.values(), *resets]
 
 
 # Ports --------------------------------------------------------------------------------------------
 
 
-def made_port(
+def synthesized_port(
     kind: PortKind,
     name: str,
     interface: InterfaceType,
@@ -418,4 +418,4 @@ def made_port(
 def _port(
     kind: PortKind, end: StateOutline | InputOutline, qos: QosProfile, description: str = ""
 ) -> Port:
-    return made_port(kind, end.topic, end.type, end.span, qos, description)
+    return synthesized_port(kind, end.topic, end.type, end.span, qos, description)

@@ -103,7 +103,7 @@ def write_if_changed(path: Path, text: str) -> None:
         raise WriteError(f"cannot write {path}: {error.strerror or error}") from error
 
 
-def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
+def write_stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
     """Write the stamp of a run: its outputs, and as the file's time the start of the run.
 
     A model that is saved while deros runs is then newer than the stamp, and not overlooked.
@@ -123,7 +123,7 @@ def stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
         raise WriteError(f"cannot write {path}: {error.strerror or error}") from error
 
 
-def stamped(path: Path) -> list[str]:
+def read_stamp(path: Path) -> list[str]:
     """Return the outputs of the previous run by its stamp; none if there is no stamp."""
     try:
         text = read_regular(path, _LARGEST).decode()

@@ -65,7 +65,7 @@ def write(
         place,
         remove_stale,
     )
-    from deros.pipeline.depfile import depfile, inputs, stamp, stamped, write_if_changed
+    from deros.pipeline.depfile import depfile, inputs, read_stamp, write_if_changed, write_stamp
 
     merged = Merged(made.files, (), ())
     if where.source is not None:
@@ -97,13 +97,13 @@ def write(
         found = inputs(made.context, made.generators, more)
         write_if_changed(where.depfile, depfile(targets, found))
     if where.stamp is not None:
-        stale = sorted(set(stamped(where.stamp)) - ours)
+        stale = sorted(set(read_stamp(where.stamp)) - ours)
         remove_stale(stale, where.output, overwrite=where.overwrite)
-        stamp(where.stamp, sorted(ours), started_ns)
+        write_stamp(where.stamp, sorted(ours), started_ns)
     return written, _review(made, present)
 
 
-def lacking_in(made: Generated, source: Path) -> tuple[Diagnostic, ...]:
+def review_source_tree(made: Generated, source: Path) -> tuple[Diagnostic, ...]:
     """Return the findings about the user's files in the source tree of a package."""
     return _review(made, _users_files(made, source, source))
 

@@ -1,7 +1,7 @@
 """The project file: settings that the commands of a project share.
 
 It is ``deros.toml``, or the table ``[tool.deros]`` of ``pyproject.toml``, in the folder of a model
-or the nearest one above it. What the command line says wins.
+or the nearest one above it. The command line takes precedence.
 """
 
 from __future__ import annotations
@@ -73,14 +73,14 @@ def projects_of(models: Iterable[str | Path]) -> list[Project]:
 
 
 def interfaces_of(given: Sequence[Path], projects: Iterable[Project]) -> tuple[Path, ...]:
-    """Return the folders of the command line, which win, and those of the projects."""
+    """Return the folders of the command line, which take precedence, and of the projects."""
     return (*given, *(folder for project in projects for folder in project.interfaces))
 
 
 def unneeded(
     projects: Iterable[Project], named: Iterable[str], allowed: Iterable[Allowed]
 ) -> list[Diagnostic]:
-    """Return the allowances of projects that no finding needs, where all of a project is checked.
+    """Return findings for unneeded allowances of projects that are checked as a whole.
 
     Args:
         projects: the projects.
@@ -178,7 +178,7 @@ def _project(file: _ProjectFile) -> Project:
 
 
 class _Reader:
-    """Reads the table of one project file, collecting what is wrong with it."""
+    """Reads the table of one project file and collects the findings."""
 
     def __init__(self, path: Path, source: SourceFile) -> None:
         self._path = path
@@ -288,7 +288,7 @@ class _Reader:
         self._found.append(report(code, message, span, hint))
 
     def _place(self, key: str) -> Span:
-        """Return where a key stands, as far as it can be told: TOML's reader gives no places."""
+        """Return the span of a key, found by its text: TOML's reader gives no positions."""
         text = self._source.text
         start = 0
         if header := re.search(r"(?m)^\s*\[+\s*tool\s*\.\s*[\"']?deros", text):
@@ -304,12 +304,12 @@ class _Reader:
         return Span(self._source, found.start(group), found.end(group))
 
     def _entry(self, number: int) -> Span:
-        """Return where an allowance stands."""
+        """Return the span of an allowance."""
         headers = re.finditer(r"(?m)^\s*(\[\[[^\]\n]*\ballow\s*\]\])", self._source.text)
         header = next((each for n, each in enumerate(headers) if n == number), None)
         if header is None:
             place = self._place("allow")
-            # Entries need places of their own, also where all of them stand in one list.
+            # Entries need different spans, even if all of them are in one list.
             return Span(self._source, place.start, place.end + number)
         return Span(self._source, header.start(1), header.end(1))
 

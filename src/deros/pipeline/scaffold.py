@@ -1,4 +1,4 @@
-"""What the source tree of a package has that is generated while it is built."""
+"""The source tree of a package that is generated while it is built."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def scaffold_files(made: Generated, request: Request, source: Path) -> dict[str, File]:
-    """Return what the source tree of a package has that is generated while it is built.
+    """Return the files in the source tree of a package that is generated while it is built.
 
-    The script that has it generated is part of it; it is the user's once it is written.
+    They include the build script, which belongs to the user once it is written.
     """
     from deros.generators.api.protocol import File, Owner
     from deros.generators.output.source_tree import package_folder, scaffold
@@ -34,7 +34,7 @@ def scaffold_files(made: Generated, request: Request, source: Path) -> dict[str,
 
 
 def scaffold_command(request: Request, source: Path) -> str:
-    """Return the command that makes, or mends, what a package has in its source tree."""
+    """Return the command that creates or repairs the source tree of a package."""
     words = ["deros", "generate", request.file, "--target", request.target]
     for name, value in request.options.items():
         words += [f"--{name}", value]

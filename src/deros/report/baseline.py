@@ -1,4 +1,4 @@
-"""Baselines: the warnings that a project lives with, so that a check reports only new ones.
+"""Baselines: the accepted warnings of a project, so that a check reports only new ones.
 
 A baseline is a JSON file. Each finding in it has a fingerprint made of its code, its message and
 the text that it points at, not of its line, so that it is recognized when lines move. Errors are
@@ -34,7 +34,7 @@ class Unusable(Exception):  # noqa: N818 - it carries a finding, and is no fault
     """The baseline cannot be read or written; ``diagnostic`` says why."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
-        """Carry the finding."""
+        """Store the finding."""
         super().__init__(diagnostic.message)
         self.diagnostic = diagnostic
 
@@ -51,7 +51,7 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Baseline:
-    """What a baseline holds.
+    """The content of a baseline.
 
     Attributes:
         path: its file.
@@ -68,11 +68,11 @@ class Baseline:
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """Findings against a baseline.
+    """Findings compared with a baseline.
 
     Attributes:
-        new: what the baseline lacks, and all errors.
-        known: what it holds.
+        new: the findings that are not in the baseline, and all errors.
+        known: the findings that are in it.
         absent: its entries that were not found again, where that can be told.
     """
 
@@ -102,7 +102,7 @@ def read(path: Path) -> Baseline:
     """Read a baseline.
 
     Raises:
-        Unusable: the file cannot be read, or is no baseline.
+        Unusable: the file cannot be read, or is not a baseline.
     """
     try:
         text = read_regular(path, _LARGEST).decode()
@@ -156,7 +156,7 @@ def compare(findings: Sequence[Diagnostic], baseline: Baseline, named: Iterable[
 
 
 def absent(entry: Entry, baseline: Baseline) -> Diagnostic:
-    """Return the remark that a finding of the baseline does not occur any more."""
+    """Return the remark that a finding of the baseline no longer occurs."""
     start = max(0, baseline.source.text.find(entry.fingerprint))
     span = Span(baseline.source, start, start + len(entry.fingerprint))
     message = f"{entry.file}: {entry.code} no longer occurs: {entry.message}"

@@ -127,7 +127,7 @@ def _excerpt(span: Span, style: str) -> Iterator[Piece]:
 
 
 def _printable(text: str) -> str:
-    """Replace what would disturb a terminal; a tab stands as one, so that carets stay aligned."""
+    """Replace unprintable characters; tabs are kept, so that carets stay aligned."""
     return "".join(c if c.isprintable() or c == "\t" else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 

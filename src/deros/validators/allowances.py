@@ -90,19 +90,19 @@ class Allowed:
 
 
 @dataclass(frozen=True, slots=True)
-class Sorted:
+class Outcome:
     """The findings that remain, and those that are allowed."""
 
     findings: tuple[Diagnostic, ...]
     allowed: tuple[Allowed, ...]
 
 
-def sort_out(
+def apply_allowances(
     findings: Iterable[Diagnostic],
     loaded: Iterable[LoadedFile],
     judged: Iterable[LoadedFile],
     project: Sequence[ProjectAllowance] = (),
-) -> Sorted:
+) -> Outcome:
     """Split findings into remaining and allowed ones, and check the allowances.
 
     Args:
@@ -135,7 +135,7 @@ def sort_out(
         sources = {each.source for each in judged}
         unneeded = [a for a in given.values() if a.span not in needed and a.span.source in sources]
         said += map(_unneeded, unneeded)
-    return Sorted((*standing, *said), tuple(allowed))
+    return Outcome((*standing, *said), tuple(allowed))
 
 
 def _allowance_of(

@@ -12,10 +12,10 @@ from deros.metamodels.load import LoadedFile, Repository
 from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
 from deros.monitor.build_cache import BuildCache
-from deros.validators.allowances import Allowed, ProjectAllowance, sort_out
+from deros.validators.allowances import Allowed, ProjectAllowance, apply_allowances
 from deros.validators.consequences import without_consequences
 from deros.validators.context import CheckContext
-from deros.validators.safety_rules import as_generated, contained_systems, neighbours
+from deros.validators.safety_rules import adapt_to_generated, contained_systems, neighbours
 
 
 class Checked(NamedTuple):
@@ -70,13 +70,13 @@ def check_all(
         is_whole = id(each) in named_files or bool(rules)
         context = CheckContext(store, builds, is_whole, rules, rules_of_parts)
         findings.extend(_check_model(each, context))
-    found = in_file_order(_said_once(as_generated(findings, watching)))
-    sorted_out = sort_out(found, loaded, named, project)
+    found = in_file_order(_without_repeats(adapt_to_generated(findings, watching)))
+    sorted_out = apply_allowances(found, loaded, named, project)
     remaining = without_consequences(sorted_out.findings, findings, loaded)
     return Checked(in_file_order(remaining), list(sorted_out.allowed))
 
 
-def _said_once(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+def _without_repeats(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Drop findings with the same code, message and position as an earlier one.
 
     A system that rules use, and that another one contains, is checked on its own and as a part.
@@ -91,7 +91,7 @@ def check_file(loaded: LoadedFile, store: InterfaceStore) -> list[Diagnostic]:
     """Return the findings of one file by itself, in file order, without those of its imports."""
     found = _check_model(loaded, CheckContext(store, BuildCache(store)))
     findings = in_file_order([*loaded.diagnostics, *found])
-    sorted_out = sort_out(findings, [loaded], ())
+    sorted_out = apply_allowances(findings, [loaded], ())
     return list(without_consequences(sorted_out.findings, findings, [loaded]))
 
 

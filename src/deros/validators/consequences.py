@@ -59,7 +59,7 @@ def without_consequences(
     for each in findings:
         if lost and each.code is codes.UNUSED_ALLOWANCE:
             continue
-        if each.code.tells_absence:
+        if each.code.reports_absence:
             subjects = set(_subjects(each))
             if ANY_NAME in lost or not lost.isdisjoint(subjects) or each.span in refused:
                 continue

@@ -18,7 +18,7 @@ from deros.metamodels.qos import (
     subscription_violations,
     words,
 )
-from deros.validators.qos_words import AnyEnd, qos_words
+from deros.validators.qos_messages import AnyEnd, qos_words
 from deros.validators.rules_ends import RulesEnd
 from deros.validators.system_safety import is_of_safety
 

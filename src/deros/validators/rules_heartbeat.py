@@ -36,12 +36,12 @@ _HINTED_NS = 300_000_000
 
 @dataclass(frozen=True, slots=True)
 class _Pace:
-    """How often a safety node publishes something.
+    """The rate at which a safety node publishes a topic.
 
     Attributes:
-        hertz: how often.
+        hertz: the rate.
         node: the full name of the node; empty where no system has one, and the default counts.
-        parameter: what sets it.
+        parameter: the parameter that sets it.
         place: where the system sets it, or else the node.
     """
 
@@ -52,7 +52,7 @@ class _Pace:
 
     @property
     def shortest_ns(self) -> int:
-        """The least time in which enough of them must have come."""
+        """The shortest timeout that is long enough."""
         return math.ceil(FEWEST_PERIODS * NS_PER_S / self.hertz)
 
     @property
@@ -62,7 +62,7 @@ class _Pace:
 
     @property
     def hz(self) -> str:
-        """The rate as a finding says it."""
+        """The rate in the notation of findings."""
         return f"{float(self.hertz):.6g}"
 
 
@@ -130,7 +130,7 @@ def _heartbeats(target: str, states: set[str], systems: Iterable[FlatSystem]) ->
 
 
 def check_input_timeouts(result: BuildResult) -> Iterator[Diagnostic]:
-    """Find inputs that go missing between two messages of a safety node that lives."""
+    """Yield inputs whose timeout is shorter than the period of a working safety node."""
     nodes = [node for flat in result.topics.systems for node in flat.nodes if is_safety_node(node)]
     paces = {topic: pace for node in nodes for topic, pace in _paces(node).items()}
     for each in result.program.inputs if result.program is not None else ():
@@ -166,11 +166,11 @@ def _paces(node: FlatNode) -> dict[str, _Pace]:
 
 
 def _pace(node: FlatNode, parameter: str) -> _Pace:
-    """Return what the system sets, else the default of the node's description."""
+    """Return the rate that the system sets, else the default of the node's description."""
     declared = node.type.parameter(parameter) if node.type is not None else None
     value = dict(node.parameters).get(parameter, declared.default if declared else None)
     setting = next((each for each in node.instance.parameters if each.name == parameter), None)
-    hertz = Fraction(PUBLISH_HZ)  # what no safety node accepts is a finding of its own
+    hertz = Fraction(PUBLISH_HZ)  # a value that no safety node accepts is a separate finding
     if isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value < math.inf:
         hertz = Fraction(value)
     return _Pace(

@@ -12,7 +12,7 @@ Number = Fraction | float
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """One interval; it holds at least one number."""
+    """One interval, which contains at least one number."""
 
     lower: Number
     upper: Number
@@ -36,7 +36,7 @@ class NumberSet:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is no number in it."""
+        """Whether the set is empty."""
         return not self.pieces
 
     def __and__(self, other: NumberSet) -> NumberSet:

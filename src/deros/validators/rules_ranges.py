@@ -1,4 +1,4 @@
-"""Conditions that the range of their values decides for ever, and exact comparisons of floats."""
+"""Checks of conditions that are always or never true, and of exact float comparisons."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _ANGLE = (("rad", Fraction(1)),)
 
 
 def check_ranges(rules: Rules, comparisons: Sequence[ResolvedComparison]) -> Iterator[Diagnostic]:
-    """Yield what is never or always true, alone or together, and float equalities."""
+    """Yield conditions that are never or always true, alone or combined, and float equalities."""
     ranges = _Ranges(rules, comparisons)
     for _, rule in rules_of(rules):
         ranges.solve(rule.condition)
@@ -51,7 +51,7 @@ def check_ranges(rules: Rules, comparisons: Sequence[ResolvedComparison]) -> Ite
 
 
 class _Solution:
-    """The values of one operand that satisfy a condition, out of those that it can have."""
+    """The values of one operand that satisfy a condition, among its possible values."""
 
     def __init__(self, comparison: ResolvedComparison, values: NumberSet) -> None:
         self.comparison = comparison
@@ -67,7 +67,7 @@ class _Solution:
 
 
 class _Ranges:
-    """Solves conditions from the inside out, and reports a decided one once, where it is."""
+    """Solves conditions from the inside out, and reports each decided one once."""
 
     def __init__(self, rules: Rules, comparisons: Sequence[ResolvedComparison]) -> None:
         self.findings: list[Diagnostic] = []
@@ -184,7 +184,7 @@ class _Ranges:
         return report(code, message, condition.span, hint)
 
     def _plain(self, term: Term) -> Decimal | None:
-        """Return the number that a term is, or a constant stands for, if it has no unit."""
+        """Return the number of a term or constant without a unit."""
         seen: set[str] = set()
         while isinstance(term, NamePath) and term.name.text in self._constants:
             if term.path or term.name.text in seen:
@@ -210,7 +210,7 @@ def _in_unit(value: Value, wanted: Unit | None) -> Ends:
 
 
 def _decided(operator: Operator, left: Ends, right: Ends) -> bool | None:
-    """Return what a comparison always is for numbers between these ends, if it is always one."""
+    """Return the value of a comparison for all numbers between these ends, if it is constant."""
     if operator in (">", ">="):
         left, right = right, left
         operator = "<" if operator == ">" else "<="

@@ -1,4 +1,4 @@
-"""Inputs whose silence nobody would notice."""
+"""Checks for inputs without a timeout."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class _Untimed:
 def check_timeouts(rules: Rules) -> Iterator[Diagnostic]:
     """Yield one finding per input without a timeout, with the rules that read it.
 
-    A rule that only asks for its ``age()`` does notice, and is not counted.
+    A rule that reads only its ``age()`` detects the loss, and is not counted.
     """
     inputs = {each.name.text: each for each in reversed(rules.inputs)}
     found: dict[str, _Untimed] = {}

@@ -1,4 +1,4 @@
-"""Topics that nobody feeds, and action topics that nobody reads."""
+"""Checks for rule topics without a publisher, and action topics without a subscriber."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from deros.validators.rules_walk import topics_read
 
 
 def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
-    """Yield the findings about who is at the other end of the rules' topics.
+    """Yield the findings about the other ends of the rules' topics.
 
     External topics have their other end outside the model; the safety node itself publishes the
     topics of bound actions. A system with unknown parts proves nothing.
@@ -60,7 +60,7 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
 
 
 def _has_end(topic: KnownTopic, ends: list[FlatPort]) -> bool:
-    """Return whether somebody is, or may be, at this end of the topic."""
+    """Return whether the topic has, or may have, a node at this end."""
     return bool(ends or topic.external or topic.untyped)
 
 

@@ -1,4 +1,4 @@
-"""Values that are unknown although no input is silent, and silence that no rule asks for."""
+"""Checks for unhandled unknown values, unused timeouts and failsafe rules."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _Key = tuple[str, tuple[ir.ValueExpression, ...]]
 
 
 def check_unknown(written: rules.Rules, result: BuildResult) -> Iterator[Diagnostic]:
-    """Yield the findings about what rules without errors do not know."""
+    """Yield the findings about unknown values in rules without errors."""
     program = result.program
     if program is None:
         return
@@ -65,7 +65,7 @@ def _used(program: ir.Program) -> _Used:
 def _unnoticed(
     program: ir.Program, used: _Used, functions: Iterable[AppliedFunction]
 ) -> Iterator[Diagnostic]:
-    """Yield one finding per rule and function whose loss neither it nor another rule notices."""
+    """Yield one finding per rule and function whose loss no rule detects."""
     fallible = sorted(filter(_is_fallible, functions), key=_start)
     starts = [_start(each) for each in fallible]
     everywhere: set[_Key] = set()
@@ -102,7 +102,7 @@ def _start(function: AppliedFunction) -> int:
 
 
 def _is_fallible(function: AppliedFunction) -> bool:
-    """Return whether a function can be unknown of a message that counts."""
+    """Return whether a function can be unknown for a valid message."""
     match FUNCTIONS[function.expression.function].argument:
         case Argument.QUATERNION | Argument.SCAN:
             return True
@@ -125,12 +125,12 @@ def _reason(function: AppliedFunction) -> str:
 
 
 def _header(function: ir.Apply) -> tuple[ir.ValueExpression, ...]:
-    """Return what a rate over a span reads of the header; nothing for other functions."""
+    """Return the header fields that a rate over a span reads; none for other functions."""
     return function.arguments[2:] if function.function == "rate_over" else ()
 
 
 def _key(function: ir.Apply) -> _Key:
-    """Return what functions have in common that are unknown of the same messages."""
+    """Return a key that is equal for functions that are unknown for the same messages."""
     if _header(function):
         return "stamps", _header(function)
     argument = FUNCTIONS[function.function].argument
@@ -141,7 +141,7 @@ def _key(function: ir.Apply) -> _Key:
 
 
 def _noticed(condition: ir.Condition) -> Iterator[_Key]:
-    """Yield the functions of which a rule asks whether they are unknown, or is true then."""
+    """Yield the functions for which a rule detects that they are unknown."""
     for part in walk.parts(condition):
         for value in walk.values([part]):
             if not isinstance(value, ir.Apply):
@@ -153,7 +153,7 @@ def _noticed(condition: ir.Condition) -> Iterator[_Key]:
 
 
 def _while_unknown(condition: ir.Condition, key: _Key) -> tuple[bool, bool]:
-    """Return whether a condition is surely not false, and surely not true, without a function."""
+    """Return whether a condition is surely not false, and not true, while a function is unknown."""
     match condition:
         case ir.Not():
             not_false, not_true = _while_unknown(condition.operand, key)
@@ -182,7 +182,7 @@ def _while_unknown(condition: ir.Condition, key: _Key) -> tuple[bool, bool]:
 
 
 def _unasked(written: rules.Rules, program: ir.Program, used: _Used) -> Iterator[Diagnostic]:
-    """Yield one finding per input whose silence no rule of a behaviour asks for."""
+    """Yield one finding per input whose timeout no rule of a behaviour uses."""
     everywhere: set[int] = set()
     firmly: set[int] = set()
     read_firmly: set[int] = set()
@@ -214,7 +214,7 @@ def _unasked(written: rules.Rules, program: ir.Program, used: _Used) -> Iterator
 
 
 def _asked(condition: ir.Condition) -> tuple[int, ...]:
-    """Return the inputs of which a condition, no part of it, asks whether they are silent."""
+    """Return the inputs that a condition itself, not a part of it, checks for silence."""
     match condition:
         case ir.Missing(input=index) | ir.Unknown(input=index):
             return (index,)
@@ -230,7 +230,7 @@ def _asked(condition: ir.Condition) -> tuple[int, ...]:
 def _negated(written: rules.Rules, program: ir.Program) -> Iterator[Diagnostic]:
     """Yield one finding per ``not`` of a failsafe rule that keeps a behaviour from acting.
 
-    What only resets other actions, or logs, may well stay away.
+    Behaviours that only reset actions or log are left out.
     """
     resets = {each.reset_by for each in program.actions}
     failsafe = {
@@ -262,7 +262,7 @@ def _actions(behaviour: ir.Behaviour) -> set[int]:
 
 
 def _under_not(condition: rules.Condition, *, negated: bool) -> Iterator[rules.NamePath]:
-    """Yield the rules that stand under an odd number of ``not``."""
+    """Yield the rules under an odd number of ``not``."""
     match condition:
         case rules.Truth(operand=rules.NamePath() as term) if negated:
             yield term

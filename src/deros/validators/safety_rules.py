@@ -88,7 +88,7 @@ def _mentions(path: Path, system: str) -> bool:
     return any(PurePath(used).name == system for used in _USE.findall(text))
 
 
-def as_generated(
+def adapt_to_generated(
     findings: Iterable[Diagnostic], watching: Mapping[int, Sequence[Rules]]
 ) -> Iterator[Diagnostic]:
     """Adapt findings about descriptions that are generated from the rules.

@@ -13,12 +13,12 @@ from deros.metamodels.flatten import FlatSystem, flatten
 from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
 from deros.validators.context import CheckContext
-from deros.validators.crossed_ports import check_crossed
 from deros.validators.files import check_files
 from deros.validators.graph import wiring_graph
 from deros.validators.rules_ends import ends_of
 from deros.validators.safety_statements import check_statements
 from deros.validators.safety_wiring import check_gate_targets, check_hand_wired
+from deros.validators.swapped_ports import check_swapped
 from deros.validators.system_names import check_names
 from deros.validators.system_nodes import check_instances
 from deros.validators.system_qos import check_qos
@@ -47,7 +47,7 @@ def _check_wiring(
         programs: rules that use the system; they read and feed its topics, too.
         programs_of_parts: rules that use a system that this one contains.
     """
-    yield from check_crossed(flat)
+    yield from check_swapped(flat)
     if not any(node.statement is not None and node.type is None for node in flat.nodes):
         # Otherwise the topics of the rules are not known, and no end is known to be missing.
         graph = wiring_graph(flat)

@@ -25,8 +25,8 @@ from deros.metamodels.qos import (
     shortfalls,
 )
 from deros.validators.graph import End, Vertex, channels, publishers, subscribers
+from deros.validators.qos_messages import AnyEnd, Side, cure, difference, places
 from deros.validators.qos_pins import check_pin
-from deros.validators.qos_words import AnyEnd, Side, cure, difference, places
 from deros.validators.rules_ends import RulesEnd, RulesEnds
 from deros.validators.system_safety import is_of_safety
 

@@ -18,7 +18,7 @@ _COMPARED = 64
 """So many ports of a node and type are compared with each other."""
 
 
-def check_crossed(flat: FlatSystem) -> Iterator[Diagnostic]:
+def check_swapped(flat: FlatSystem) -> Iterator[Diagnostic]:
     """Yield the pairs of connections whose ports and targets have each other's words.
 
     Only ports of one type can be exchanged without another finding, and of services and actions
@@ -33,7 +33,7 @@ def check_crossed(flat: FlatSystem) -> Iterator[Diagnostic]:
             assert second.wiring is not None
             # Of a system that is used several times, each instance would say the same.
             pair = (id(first.wiring), id(second.wiring))
-            if pair in reported or not are_crossed(
+            if pair in reported or not are_swapped(
                 (first.port.name, first.topic), (second.port.name, second.topic)
             ):
                 continue
@@ -63,7 +63,7 @@ def _pairs(node: FlatNode) -> Iterator[tuple[FlatPort, FlatPort]]:
                 yield first, second
 
 
-def are_crossed(first: tuple[str, str], second: tuple[str, str]) -> bool:
+def are_swapped(first: tuple[str, str], second: tuple[str, str]) -> bool:
     """Return whether two ports share words with each other's targets, and none with their own.
 
     Words that both ports have, or both targets, say nothing. Each argument is the name of a port

@@ -1,4 +1,4 @@
-"""Recognising text by a grammar's own expressions, and saying how far that went.
+"""A recogniser that runs on the expressions of a grammar and reports how far it came.
 
 A :class:`Recogniser` makes no tree. It records the farthest place that no expression matches, what
 could stand there, and in which statement lists the place lies. That is all that error recovery
@@ -80,7 +80,7 @@ class Place(NamedTuple):
 
 @dataclass(slots=True)
 class Trace:
-    """What is known of the farthest failure.
+    """The farthest failure of a parse.
 
     Attributes:
         position: where it is.
@@ -113,7 +113,7 @@ class Trace:
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """What came of matching a piece of text.
+    """The result of matching a piece of text.
 
     Attributes:
         end: where the piece ends, or -1 if it does not match.
@@ -127,7 +127,7 @@ class Attempt:
 
     @property
     def reached(self) -> int:
-        """How far the parse came."""
+        """The farthest position of the parse."""
         return max(self.end, self.trace.position)
 
     @property
@@ -163,7 +163,7 @@ class Recogniser:
 
     @property
     def lists(self) -> list[StatementList]:
-        """The lists of statements that the grammar has."""
+        """The lists of statements in the grammar."""
         return list(self._lists.values())
 
     def run(self, text: str) -> bool:
@@ -183,7 +183,7 @@ class Recogniser:
             position = end
 
     def try_statement(self, statements: StatementList, text: str, start: int) -> Attempt:
-        """Match one statement, whatever is remembered and without changing it."""
+        """Match one statement without using or changing the cache."""
         before, self.trace = self.trace, Trace(place=Place(None, statements, start))
         known, self._known = self._known, {}
         try:
@@ -193,7 +193,7 @@ class Recogniser:
             self.trace, self._known = before, known
 
     def try_all(self, text: str) -> Attempt:
-        """Match a whole text, whatever is remembered and without changing it."""
+        """Match a whole text without using or changing the cache."""
         before, self.trace = self.trace, Trace()
         known, self._known = self._known, {}
         try:
@@ -211,15 +211,15 @@ class Recogniser:
         return max(found, default=None)
 
     def begins_statement(self, position: int) -> bool:
-        """Return whether a statement that is remembered begins at a position."""
+        """Return whether a cached statement begins at a position."""
         return any(start == position for _, start in self._known)
 
     def forget(self) -> None:
-        """Drop every statement that is remembered: another text comes."""
+        """Discard all cached statements, before another text is read."""
         self._known.clear()
 
     def forget_from(self, position: int) -> None:
-        """Drop what may depend on the text from ``position`` on."""
+        """Discard cached statements that may depend on the text from ``position`` on."""
         self._known = {
             key: (end, looked_at)
             for key, (end, looked_at) in self._known.items()
@@ -313,7 +313,7 @@ class Recogniser:
         return step
 
     def _statement(self, statements: StatementList, text: str, position: int) -> int:
-        """Match one statement of a list, unless that is remembered; return its end, or -1."""
+        """Match one statement of a list, unless it is cached; return its end, or -1."""
         trace = self.trace
         end, looked_at = self._known.get((statements.number, position), (-1, -1))
         if end < 0:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import enum
 import re
 
-from deros.metamodels.recognising import Recogniser, StatementList, skip_blanks
+from deros.metamodels.recogniser import Recogniser, StatementList, skip_blanks
 
 PIECE = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"?|[^\s"{};]+|[{};]')
 """A text, a word with what touches it, or a sign that ends or encloses statements."""

@@ -1,4 +1,4 @@
-"""Edits that mend a statement: habits of other languages, misspelt keywords, missing signs.
+"""Edits that repair a statement: habits of other languages, misspelt keywords, missing signs.
 
 Nothing is guessed. An edit is offered when the statement parses with it (a habit, which has its own
 words: when the parse gets past it), and it is the only one of its kind that does.
@@ -17,25 +17,25 @@ from deros.interfaces.names import did_you_mean, near
 from deros.metamodels.grammar import literal_of, words_of
 from deros.metamodels.habits import habits
 from deros.metamodels.languages import Language
-from deros.metamodels.recognising import Attempt, Place, Recogniser, Trace, skip_blanks
-from deros.metamodels.repaired import RepairedText
+from deros.metamodels.recogniser import Attempt, Place, Recogniser, Trace, skip_blanks
+from deros.metamodels.repaired_text import RepairedText
 from deros.metamodels.syntax import found_at
 
 _LARGEST_TO_CLOSE = 50_000
-"""Of a larger block the missing brace is not looked for: it is read again as a whole for that."""
+"""The largest block in which a missing brace is searched for, as each attempt parses it again."""
 
 _MOST_BLOCKS = 4
-"""How many of the blocks around a fault are tried to close."""
+"""The number of blocks around a fault that are tried to close."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A place that nothing matches.
+    """A position where the text does not parse.
 
     Attributes:
         text: the text with all edits so far.
-        position: of the first character that fits nowhere.
-        expected: the tokens that would fit.
+        position: of the first character that does not parse.
+        expected: the tokens that are valid there.
         place: the broken statement, ``None`` for the head of the file.
         end: where the next statement begins.
     """
@@ -55,7 +55,7 @@ class Fault:
 
     @property
     def start(self) -> int:
-        """Where the broken statement begins."""
+        """The start of the broken statement."""
         return self.place.start if self.place is not None else 0
 
     def is_mended_by(self, start: int, end: int, by: str) -> bool:
@@ -132,8 +132,8 @@ class Fault:
 
 
 @dataclass(frozen=True, slots=True)
-class Mend:
-    """What to do about a fault.
+class Repair:
+    """A repair of a fault.
 
     Attributes:
         hint: in words.
@@ -152,8 +152,8 @@ class Mend:
     reads_as: str | None = None
 
 
-def mends(fault: Fault) -> Iterator[Mend]:
-    """Yield what mends a fault, the likeliest first."""
+def repairs(fault: Fault) -> Iterator[Repair]:
+    """Yield repairs of a fault, the likeliest first."""
     yield from _by_habit(fault)
     yield from islice(_misspelt(fault), 1)
     yield from _only(_other_sign(fault))
@@ -162,21 +162,21 @@ def mends(fault: Fault) -> Iterator[Mend]:
     yield from _open_block(fault)
 
 
-def _only(found: Iterable[Mend]) -> Iterator[Mend]:
-    """Yield the edit if it is the only one that mends the statement."""
+def _only(found: Iterable[Repair]) -> Iterator[Repair]:
+    """Yield the edit if it is the only one that repairs the statement."""
     edits = list(found)
     if len(edits) == 1:
         yield edits[0]
 
 
-def _by_habit(fault: Fault) -> Iterator[Mend]:
+def _by_habit(fault: Fault) -> Iterator[Repair]:
     for habit in habits(fault.text, fault.position, fault.start, fault.language):
         if habit.text is None:
-            yield Mend(habit.hint, None, message=habit.message)
+            yield Repair(habit.hint, None, message=habit.message)
             return
         reads_as = habit.text if habit.reads_as is None else habit.reads_as
         if fault.gets_on_by(habit.start, habit.end, reads_as):
-            yield Mend(
+            yield Repair(
                 habit.hint, habit.start, habit.end, habit.text, habit.message, habit.reads_as
             )
             return
@@ -192,7 +192,7 @@ def _literals(fault: Fault) -> list[str]:
     ]
 
 
-def _misspelt(fault: Fault) -> Iterator[Mend]:
+def _misspelt(fault: Fault) -> Iterator[Repair]:
     found = fault.found
     if not found[:1].isalpha():
         return
@@ -200,10 +200,10 @@ def _misspelt(fault: Fault) -> Iterator[Mend]:
     words = [each for token in fault.expected for each in words_of(token) if each[0].isalpha()]
     for word in near(found, words, _NEAREST):
         if fault.is_mended_by(fault.position, end, word):
-            yield Mend(did_you_mean([word]), fault.position, end, word)
+            yield Repair(did_you_mean([word]), fault.position, end, word)
 
 
-def _other_sign(fault: Fault) -> Iterator[Mend]:
+def _other_sign(fault: Fault) -> Iterator[Repair]:
     found = fault.found
     if found[:1] not in _MISTAKEN_SIGNS:
         return
@@ -216,7 +216,7 @@ def _other_sign(fault: Fault) -> Iterator[Mend]:
         if fault.is_mended_by(fault.position, end, _spaced(fault, fault.position, end, sign)):
             hint = f"write '{sign}' instead of '{fault.text[fault.position : end]}'"
             text = _spaced(fault, fault.position, end, sign)
-            yield Mend(hint, fault.position, end, text)
+            yield Repair(hint, fault.position, end, text)
 
 
 _MISTAKEN_SIGNS = tuple(":=-,;)]|&")
@@ -226,7 +226,7 @@ _NEVER_MISSING = frozenset("-[(")
 _LONG_SIGNS = frozenset({"->", "=>", ":=", "==", "<-", "::", "++", "--", "!="})
 
 
-def _missing_sign(fault: Fault) -> Iterator[Mend]:
+def _missing_sign(fault: Fault) -> Iterator[Repair]:
     if not fault.found or _opens_next(fault):
         return
     signs = [sign for sign in _literals(fault) if sign not in _NEVER_MISSING]
@@ -241,11 +241,11 @@ def _missing_sign(fault: Fault) -> Iterator[Mend]:
             start = len(before) if not sign[0].isalpha() and sign != "{" else fault.position
             text = sign if start < fault.position else f"{sign} "
             hint = f"write '{sign}' before '{fault.found}'"
-            yield Mend(hint, start, start, text)
+            yield Repair(hint, start, start, text)
 
 
 def _opens_next(fault: Fault) -> bool:
-    """Return whether the next statement is what was found: then more than a sign is missing."""
+    """Return whether the token begins the next statement: then more than a sign is missing."""
     place = fault.place
     while place is not None:
         if place.list.opened_by(fault.text, fault.position) == "keyword":
@@ -254,7 +254,7 @@ def _opens_next(fault: Fault) -> bool:
     return False
 
 
-def _surplus_sign(fault: Fault) -> Iterator[Mend]:
+def _surplus_sign(fault: Fault) -> Iterator[Repair]:
     found = fault.found
     before = _KEYWORD_BEFORE.search(fault.text, 0, fault.position)
     is_after_keyword = before is not None and before[1] in fault.recogniser.words
@@ -262,11 +262,11 @@ def _surplus_sign(fault: Fault) -> Iterator[Mend]:
         return
     end = fault.position + 1
     if fault.is_mended_by(fault.position, end, " "):
-        yield Mend(f"remove '{found}'", fault.position, end, "")
+        yield Repair(f"remove '{found}'", fault.position, end, "")
 
 
-def _open_block(fault: Fault) -> Iterator[Mend]:
-    """Close a block whose closing brace is missing: at the end, or where an outer statement is."""
+def _open_block(fault: Fault) -> Iterator[Repair]:
+    """Close a block without a closing brace at the end, or before an outer statement."""
     text = fault.text
     missing = text.count("{") - text.count("}")
     if missing <= 0 or fault.place is None:
@@ -275,7 +275,7 @@ def _open_block(fault: Fault) -> Iterator[Mend]:
         if "}" in _literals(fault):
             end = len(text.rstrip())
             braces = "\n}" * missing
-            yield Mend(f"close the block with '{'}' * missing}'", end, end, braces)
+            yield Repair(f"close the block with '{'}' * missing}'", end, end, braces)
         return
     outer = fault.place.outer
     start = fault.place.start
@@ -288,7 +288,7 @@ def _open_block(fault: Fault) -> Iterator[Mend]:
             behind = len(text[:start].rstrip())
             word = found_at(text, start)
             opened = " ".join(text[outer.start : text.index("{", outer.start)].split())
-            yield Mend(
+            yield Repair(
                 f"close '{opened} {{' with '}}' before '{word}'",
                 behind,
                 behind,
@@ -309,13 +309,13 @@ def _goes_on(fault: Fault, outer: Place, text: str, position: int) -> bool:
 
 
 def is_line_start(text: str, position: int) -> bool:
-    """Return whether a position is the first of a line that is no blank, or the end of the text."""
+    """Return whether a position is the first non-blank of a line, or the end of the text."""
     line = text[text.rfind("\n", 0, position) + 1 : position]
     return not line.strip() or position >= len(text)
 
 
 def _spaced(fault: Fault, start: int, end: int, word: str) -> str:
-    """Return a keyword with blanks where it would touch a word."""
+    """Return a keyword with spaces where it would touch a word."""
     if not word[0].isalpha():
         return word
     before = " " if fault.text[start - 1 : start].strip() else ""
