@@ -143,7 +143,9 @@ def test_options_and_message_definitions_are_inputs(folder: Path, tool: str) -> 
     replace(folder / "CMakeLists.txt", "--package=first", "--package=second")
     failed = project.build()
     assert failed.returncode != 0
-    assert "is of a package 'first', generated is 'second'" in failed.stdout
+    assert (
+        "is the manifest of package 'first', but the generated package is 'second'" in failed.stdout
+    )
     options = '--package=first "--maintainer=Jo <jo@example.com>"'
     replace(folder / "CMakeLists.txt", "--package=second", options)
     assert project.generated() == 1

@@ -111,7 +111,7 @@ def test_outdated_generated_description_is_rejected(source: Path) -> None:
     ("manifest", "complaint"),
     [
         (MANIFEST.replace("<name>p", "<name>q"), "of a package 'q', generated is 'p'"),
-        (MANIFEST.replace(">rclpy<", ">x<"), "lacks <depend> for what .* needs: rclpy"),
+        (MANIFEST.replace(">rclpy<", ">x<"), "lacks <depend> tags for .*: rclpy"),
         ("<package>", "cannot be read"),
     ],
 )

@@ -1,6 +1,6 @@
-"""The generators that come with deros, as its entry points name them.
+"""The built-in generators, as the entry points of deros declare them.
 
-Each loads its module when it runs, so that listing them costs next to nothing.
+Each imports its module when it is called, so that listing the generators stays fast.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def rossystem_launch(model: System, context: Context, options: Options) -> Files
 
 @generator("rossystem", "script")
 def rossystem_script(model: System, context: Context, options: Options) -> Files:
-    """The launch file's equivalent in one Python file that needs the standard library alone."""
+    """The equivalent of the launch file as one Python file that needs only the standard library."""
     from deros.generators.system.script.generate import generate
 
     return generate(model, context, options)
@@ -57,7 +57,7 @@ def rossystem_params(model: System, context: Context, options: Options) -> Files
 
 
 _RUNTIME = Option(
-    "runtime", "'copy': the package carries the runtime (default); 'package': it depends on it"
+    "runtime", "'copy': the package contains the runtime (default); 'package': it depends on it"
 )
 
 _SAFETY = (

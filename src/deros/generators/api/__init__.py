@@ -1,1 +1,1 @@
-"""What a generator is, and how generators are found: for those of deros and of others."""
+"""The interface of generators, and their registry, for built-in and third-party ones."""

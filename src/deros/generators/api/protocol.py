@@ -1,8 +1,8 @@
-"""What a generator is: a pure function from a typed model and options to files.
+"""The interface of a generator: a pure function from a typed model and options to files.
 
-A generator from outside is one entry point in the group ``textx_generators`` whose object is made
-by :func:`deros.generators.api.registry.generator`; it is then known to ``textx generate`` and
-``deros generate`` alike.
+A third-party generator is an entry point in the group ``textx_generators`` that refers to a
+function decorated with :func:`deros.generators.api.registry.generator`. Both ``deros generate`` and
+``textx generate`` find it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Owner(enum.Enum):
-    """Whose file it is once written."""
+    """Who owns a file once it is written."""
 
     GENERATOR = "generator"  # refreshed on every run, unless edited by hand
     USER = "user"  # written once, never again
@@ -41,7 +41,9 @@ class File:
 class Option:
     """An option of a generator, given as text on the command line (``--name value``).
 
-    The name is lower case and may hold hyphens; generators look it up exactly as declared.
+    Attributes:
+        name: lower case, with hyphens between words; the key in :data:`Options`.
+        description: the help text.
     """
 
     name: str
@@ -58,10 +60,10 @@ class Context:
 
     Attributes:
         store: the message, service and action definitions.
-        repository: the files loaded in this run, and the way to load more.
+        repository: the files loaded in this run; loads further ones.
         check: returns the findings of a file that a generator loads besides its model. By default
             these are the loader's; the pipeline passes in all checks of one file.
-        builds: the rules that the checks have built in this run, if there were checks.
+        builds: the monitors that the checks have built in this run; ``None`` without checks.
     """
 
     store: InterfaceStore
@@ -70,7 +72,7 @@ class Context:
     builds: BuildCache | None = None
 
     def build(self, rules: Rules) -> BuildResult:
-        """Return rules built for a monitor, from this run's checks where they have built them."""
+        """Return the monitor of ``rules``, reusing what the checks of this run have built."""
         if self.builds is not None:
             return self.builds.of(rules)
         from deros.monitor.build import build
@@ -79,23 +81,23 @@ class Context:
 
 
 Files = Mapping[str, File]
-"""Relative POSIX paths and what they hold."""
+"""The generated files by relative POSIX path."""
 
 Options = Mapping[str, str]
-"""Option names as declared, and the texts given for them; options not given are absent."""
+"""The text given for each option, by its declared name; options not given are absent."""
 
 GenerateFunction = Callable[[Any, Context, Options], Files]
-"""A generator's own function. It neither prints nor touches the disk."""
+"""The function of a generator. It neither prints nor writes to the disk."""
 
 
 class GenerationError(Exception):
-    """The model is sound, but this target cannot be made from it.
+    """The model is valid, but the target cannot be generated from it.
 
     Attributes:
-        diagnostics: why, each with its place in the model; at least one is an error.
+        diagnostics: the reasons, with their locations in the model; at least one is an error.
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Carry ``diagnostics``, in the order found."""
+        """Store ``diagnostics`` in the given order."""
         self.diagnostics = tuple(diagnostics)
         super().__init__("; ".join(d.message for d in self.diagnostics))

@@ -1,9 +1,9 @@
-"""Generators by language and target, built in or from other distributions, found by entry point.
+"""The registry of generators by language and target, built in or from other distributions.
 
 A generator is a function decorated with :func:`generator` and named by an entry point in the group
-``textx_generators``. The decorated object is what textX looks for there, too: ``textx generate``
-calls it with a textX model, of which only the file's name is used; the typed model comes from our
-loader.
+``textx_generators``, which is also the one that textX searches. ``textx generate`` calls the
+decorated object with a textX model. Only the file name of that model is used: the typed model comes
+from the loader of deros.
 """
 
 from __future__ import annotations
@@ -31,14 +31,15 @@ _INTERFACES = GeneratorParam(
 
 
 class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
-    """A target of one language: call it with a typed model to get the files.
+    """A target of one language; calling it with a typed model returns the files.
 
     Attributes:
-        language: textX name of the language, ``rosnode``, ``rossystem`` or ``deros``.
-        target: what it makes, unique within the language.
-        description: the docstring's first paragraph on one line.
-        options: what it takes on the command line, all optional.
-        project_name: distribution that brought it, once discovered.
+        language: the textX name of the language, ``rosnode``, ``rossystem`` or ``deros``.
+        target: the name of the target, unique within the language.
+        description: the first paragraph of the function's docstring, on one line.
+        options: the options on the command line, all of them optional.
+        project_name: the distribution that provides it, once discovered.
+        project_version: the version of that distribution.
     """
 
     language: str
@@ -50,7 +51,7 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
     def __init__(
         self, language: str, target: str, function: GenerateFunction, options: Sequence[Option]
     ) -> None:
-        """Describe ``function`` to textX and to ourselves."""
+        """Wrap ``function`` in the description that textX asks for."""
         self.function = function
         self.options = tuple(options)
         custom = [GeneratorParam(_argument(o.name), o.description, False) for o in self.options]
@@ -63,7 +64,7 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
         """Return the files for ``model``.
 
         Raises:
-            GenerationError: if this target cannot be made from the model.
+            GenerationError: if the target cannot be generated from the model.
             ValueError: if an option is not one of :attr:`options`.
         """
         given = dict(options or {})
@@ -76,7 +77,7 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
         return files
 
     def __repr__(self) -> str:
-        """Name language and target."""
+        """Return a text with language and target."""
         return f"Generator({self.language!r}, {self.target!r})"
 
     def _run_for_textx(
@@ -88,20 +89,20 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
         debug: bool,  # noqa: ARG002
         **custom_args: Any,
     ) -> None:
-        """Load, check, generate and write one file, as ``textx generate`` wants it done.
+        """Load, check, generate and write one file for ``textx generate``.
 
-        The metamodels of our languages know how (``run_generator``), since that needs more than a
-        generator may import.
+        ``run_generator`` of the metamodel does it, since generators must not import the pipeline.
 
         Raises:
-            TextXError: with all diagnostics as its text; textX prints it and exits with 1.
+            TextXError: if there are errors; its text holds all diagnostics. textX prints it and
+                exits with 1.
         """
         filename = getattr(model, "_tx_filename", None)
         if not filename:
             raise TextXError(f"{self.language} -> {self.target} needs a model from a file")
         names = {_argument(option.name): option.name for option in self.options}
         interfaces = str(custom_args.pop("interfaces", ""))
-        folders = tuple(Path(each) for each in interfaces.split(os.pathsep) if each)
+        folders = tuple(Path(folder) for folder in interfaces.split(os.pathsep) if folder)
         options = {names.get(name, name): str(value) for name, value in custom_args.items()}
         metamodel.run_generator(self, filename, options, folders, output_path, overwrite)
 
@@ -109,10 +110,10 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
 def generator(
     language: str, target: str, options: Sequence[Option] = ()
 ) -> Callable[[GenerateFunction], Generator]:
-    """Make a generator of a function from typed model, context and options to files.
+    """Return a decorator that turns a function from typed model, context and options into files.
 
-    The function's docstring becomes the description. Name the decorated object by an entry point
-    in the group ``textx_generators``::
+    The function's docstring becomes the description of the generator. Declare an entry point for
+    the decorated object in the group ``textx_generators``::
 
         [project.entry-points.textx_generators]
         rossystem_dot = "my_package:dot"
@@ -125,10 +126,10 @@ def generator(
 
 
 def _check_path_lengths(files: Files, model: Any) -> None:
-    """Refuse files that no file system could hold, before any of them is written.
+    """Reject file names that are too long for file systems, before any file is written.
 
     Raises:
-        GenerationError: names of the model make the name of a file too long.
+        GenerationError: if names in the model make a file name too long.
     """
     for path in files:
         for part in path.split("/"):
@@ -147,7 +148,7 @@ _LONGEST_FILE_NAME = 255
 
 @dataclass(frozen=True, slots=True)
 class BrokenPlugin:
-    """An entry point that could not be used, and why; it takes nothing else down with it."""
+    """An entry point that could not be used, and the reason. Others are not affected."""
 
     entry_point: str
     distribution: str
@@ -156,7 +157,7 @@ class BrokenPlugin:
 
 @dataclass(frozen=True, slots=True)
 class Registry:
-    """All generators of the environment, in order of language and target."""
+    """All installed generators, sorted by language and target."""
 
     generators: tuple[Generator, ...]
     broken: tuple[BrokenPlugin, ...] = ()
@@ -173,18 +174,18 @@ class Registry:
 
 @functools.cache
 def discover() -> Registry:
-    """Load the generators that the installed distributions name.
+    """Load the generators of all installed distributions.
 
-    Generators of other textX languages in the same group are passed over. When two distributions
-    claim one target, ours wins, then the first by name.
+    Generators of other textX languages in the same group are ignored. If two distributions declare
+    the same target, the one of deros takes precedence, otherwise the first by name.
     """
-    found: dict[tuple[str, str], Generator] = {}
+    generators: dict[tuple[str, str], Generator] = {}
     broken: list[BrokenPlugin] = []
     for point in sorted(entry_points(group=GROUP), key=_own_first):
         distribution = point.dist.name if point.dist else "?"
         try:
             loaded = point.load()
-        except Exception as error:  # a plug-in may fail in any way it likes
+        except Exception as error:  # a plug-in may raise anything
             reason = f"{type(error).__name__}: {error}"
             broken.append(BrokenPlugin(point.name, distribution, reason))
             continue
@@ -192,11 +193,11 @@ def discover() -> Registry:
             continue
         loaded.project_name = distribution
         loaded.project_version = point.dist.version if point.dist else None
-        other = found.setdefault((loaded.language, loaded.target), loaded)
+        other = generators.setdefault((loaded.language, loaded.target), loaded)
         if other is not loaded:
             reason = f"{loaded.language} -> {loaded.target} is taken by {other.project_name}"
             broken.append(BrokenPlugin(point.name, distribution, reason))
-    return Registry(tuple(found[key] for key in sorted(found)), tuple(broken))
+    return Registry(tuple(generators[key] for key in sorted(generators)), tuple(broken))
 
 
 def _own_first(point: EntryPoint) -> tuple[bool, str, str]:
@@ -205,5 +206,5 @@ def _own_first(point: EntryPoint) -> tuple[bool, str, str]:
 
 
 def _argument(option: str) -> str:
-    """Return an option's name as textX passes it on."""
+    """Return the name of an option as textX passes it to a generator."""
     return option.replace("-", "_")

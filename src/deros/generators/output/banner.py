@@ -1,7 +1,8 @@
-"""The banner of files that a generator owns: it says so, and tells whether a hand has been at them.
+"""The banner at the top of generated files, which detects manual edits.
 
-The banner holds a digest of the file's own text. A file whose digest still fits is as the generator
-left it, whatever the generator would write today, and can be refreshed without losing anything.
+The banner contains a digest of the rest of the file. As long as the digest matches, the file is as
+the generator wrote it, even if a generator of today would write another text, and can be replaced
+without losing anybody's work.
 """
 
 from __future__ import annotations
@@ -40,8 +41,8 @@ _FIRST_LINE_STAYS = ("#!", "<?xml")
 def with_banner(path: str, text: str) -> str:
     """Return ``text`` with the banner for the file ``path``.
 
-    Kinds of file without comments, and files that are empty on purpose (markers), stay as they are;
-    :func:`is_untouched` then never says yes, so that a difference always counts as a hand's work.
+    File types without comments, and marker files, which are empty, get no banner.
+    :func:`is_untouched` is false for them, so that any difference counts as a manual edit.
     """
     comment = _comment(path)
     if comment is None or not text:
@@ -57,7 +58,7 @@ def with_banner(path: str, text: str) -> str:
 
 
 def is_untouched(text: str) -> bool:
-    """Tell whether ``text`` is exactly as a generator wrote it: its digest is there and fits."""
+    """Return whether ``text`` is as a generator wrote it: its digest is present and matches."""
     match = _DIGEST_LINE.search(text)
     if match is None:
         return False

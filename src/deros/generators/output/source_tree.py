@@ -1,9 +1,9 @@
-"""Generated files and hand-written ones made one package, each where it belongs.
+"""Packages of generated and hand-written files, for generation at build time.
 
-A package that is generated while it is built keeps its hand-written files in its source tree, and
-the generated ones in the build tree. To build, both have to stand in one folder: what is written by
-hand is linked, or copied, into the generated package. Nothing of the user's is ever made in the
-build tree, where it would be lost with the next clean build.
+Such a package has its hand-written files in the source tree and the generated ones in the build
+tree. The build needs both in one folder, so the hand-written files are linked, or copied, into the
+generated package. Files for the user to edit are never created in the build tree, where the next
+clean build would delete them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from deros.generators.user_files.manifest import named
 
 MANIFEST = "package.xml"
 BUILD_SCRIPTS = frozenset({"CMakeLists.txt", "setup.py", "setup.cfg"})
-"""Files that the source tree has for itself: they are what calls deros."""
+"""Build files of the source tree, which call deros; those of the generated package are separate."""
 
 _MODELS = (".rnd", ".system", ".deros")
 NOT_SEARCHED = frozenset({"__pycache__", "build", "install", "log", "node_modules"})
@@ -32,26 +32,26 @@ _OTHERS_PLACE = ("CMakeCache.txt", "COLCON_IGNORE", "AMENT_IGNORE", MANIFEST)
 
 
 class SourceTreeError(Exception):
-    """The source tree does not fit what is generated; the text says how to mend it.
+    """The source tree does not match the generated files.
 
     Attributes:
-        mended_by_scaffold: whether making the package's files anew mends it.
+        mended_by_scaffold: whether ``scaffold`` corrects it.
     """
 
     def __init__(self, message: str, *, mended_by_scaffold: bool) -> None:
-        """Keep what is wrong."""
+        """Store the message and whether ``scaffold`` helps."""
         super().__init__(message)
         self.mended_by_scaffold = mended_by_scaffold
 
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A hand-written file and its place in the generated package.
+    """A hand-written file and its path in the generated package.
 
     Attributes:
-        path: relative to the output folder.
-        source: where it was written.
-        copied: whether it is copied, not linked: what CMake installs must be no link.
+        path: its path relative to the output folder.
+        source: its path in the source tree.
+        copied: whether it is copied instead of linked; CMake must not install links.
     """
 
     path: str
@@ -61,7 +61,13 @@ class Placed:
 
 @dataclass(frozen=True, slots=True)
 class Merged:
-    """What is to be written, what is to be placed beside it, and what that rests on."""
+    """A generated package merged with its source tree.
+
+    Attributes:
+        files: the generated files to write.
+        placed: the hand-written files to link or copy.
+        inputs: the folders and files of the source tree that the result depends on.
+    """
 
     files: Files
     placed: tuple[Placed, ...]
@@ -69,21 +75,25 @@ class Merged:
 
 
 def package_folder(files: Files) -> str:
-    """Return the folder of the package that the files make up, or '' if they are none."""
+    """Return the folder of the package that the files form, or '' if they are not a package."""
     tops = {path.partition("/")[0] for path in files}
     top = tops.pop() if len(tops) == 1 else ""
     return top if f"{top}/{MANIFEST}" in files else ""
 
 
 def merge(files: Files, source: Path, output: Path) -> Merged:
-    """Join generated files with what stands in the source tree of their package.
+    """Merge generated files with those in the source tree of their package.
 
-    Hand-written files must be there; files that the generator owns must not, unless they are just
-    what it would write. A build tree inside the source tree, which ``output`` tells, is no part of
-    it.
+    The source tree must contain the hand-written files. It must not contain files that the
+    generator owns, unless they are identical to the generated ones.
+
+    Args:
+        files: the generated files.
+        source: the source tree.
+        output: the output folder; if it is inside the source tree, it is not part of it.
 
     Raises:
-        SourceTreeError: if a hand-written file is missing, or one is in the way.
+        SourceTreeError: if a hand-written file is missing, or one conflicts with a generated one.
     """
     top = package_folder(files)
     own = {str(PurePosixPath(path).relative_to(top)): path for path in files}
@@ -99,7 +109,7 @@ def merge(files: Files, source: Path, output: Path) -> Merged:
         missing.append(MANIFEST)
     if missing:
         lacking = ", ".join(sorted(missing))
-        message = f"{source} lacks {lacking}, which deros writes once for you to keep there"
+        message = f"{source} lacks {lacking}, which deros generates once and you keep there"
         raise SourceTreeError(message, mended_by_scaffold=True)
     folders: list[Path] = []
     names = list(_hand_written(source, output, folders)) if top else []
@@ -117,21 +127,21 @@ def merge(files: Files, source: Path, output: Path) -> Merged:
         for name in names
         if name not in BUILD_SCRIPTS and not name.endswith(_MODELS)
     )
-    taken = {each.path for each in placed}
+    taken = {file.path for file in placed}
     written = {path: file for path, file in files.items() if path not in taken}
-    copies = [each.source for each in placed if each.copied]
+    copies = [file.source for file in placed if file.copied]
     return Merged(written, placed, (*folders, *([manifest] if top else []), *copies))
 
 
 def scaffold(files: Files, source: Path, models: str) -> dict[str, File]:
-    """Return what a package generated at build time has in its source tree, by its path there.
+    """Return the files for the source tree of a package generated at build time, by path.
 
-    These are the hand-written files, the manifest, and the node descriptions, which models import
-    and which therefore stand in their folder; besides, whatever of the generator's stands there
-    already, to be refreshed.
+    These are the files of the user, the manifest, and the node descriptions. The descriptions go to
+    the folder of the models, which import them. Generated files that the source tree already
+    contains are included, so that they are refreshed.
 
     Args:
-        files: what the generator makes.
+        files: the generated files.
         source: the source tree.
         models: the folder of the models in it.
     """
@@ -153,27 +163,27 @@ def scaffold(files: Files, source: Path, models: str) -> dict[str, File]:
 
 
 def place(placed: Iterable[Placed], output: Path) -> None:
-    """Link and copy hand-written files into the output; what is right already is not touched.
+    """Link and copy hand-written files into the output; files that are up to date are not touched.
 
     Raises:
-        WriteError: if one cannot be placed.
+        WriteError: if a file cannot be linked or copied.
     """
-    for each in placed:
-        target = output / each.path
+    for file in placed:
+        target = output / file.path
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
-            if each.copied:
-                _copy(each.source, target)
+            if file.copied:
+                _copy(file.source, target)
             else:
-                _link(each.source, target)
+                _link(file.source, target)
         except OSError as error:
             raise WriteError(f"cannot write {target}: {error.strerror or error}") from error
 
 
 def remove_stale(stale: Iterable[str], output: Path, *, overwrite: bool) -> None:
-    """Remove what an earlier run made and this one does not, and the folders left empty.
+    """Remove files that only an earlier run generated, and the folders that become empty.
 
-    A file that a hand has edited stays, unless ``overwrite``.
+    Files with manual edits are kept unless ``overwrite`` is set.
     """
     for path in stale:
         if ".." in PurePosixPath(path).parts or PurePosixPath(path).is_absolute():
@@ -186,22 +196,22 @@ def remove_stale(stale: Iterable[str], output: Path, *, overwrite: bool) -> None
             if text and not overwrite and not is_untouched(text):
                 continue
         target.unlink(missing_ok=True)
-        with contextlib.suppress(OSError):  # a folder that still holds something stays
+        with contextlib.suppress(OSError):  # folders that are not empty are kept
             for folder in PurePosixPath(path).parents:
                 if folder.name:
                     (output / folder).rmdir()
 
 
 def _hand_written(source: Path, output: Path, folders: list[Path]) -> Iterator[str]:
-    """Find the package's files, noting the folders that were searched."""
+    """Yield the hand-written files of the package, and append searched folders to ``folders``."""
     build_tree = output.resolve()
     for directory, below, names in os.walk(source):
         here = Path(directory)
         folders.append(here)
         below[:] = sorted(
-            each
-            for each in below
-            if _belongs(here / each) and not build_tree.is_relative_to((here / each).resolve())
+            folder
+            for folder in below
+            if _belongs(here / folder) and not build_tree.is_relative_to((here / folder).resolve())
         )
         for name in sorted(names):
             if not name.startswith(".") and (here / name).is_file():
@@ -217,7 +227,7 @@ def _belongs(folder: Path) -> bool:
 
 
 def _check_not_generated(file: File, name: str, source: Path) -> None:
-    """Refuse a file in the source tree that the generator owns, unless it is what it writes."""
+    """Reject a file in the source tree that the generator owns and would write differently."""
     if file.owner is Owner.USER or name in BUILD_SCRIPTS or name == MANIFEST or not file.text:
         return
     if (source / name).read_bytes() != with_banner(name, file.text).encode():
@@ -225,9 +235,9 @@ def _check_not_generated(file: File, name: str, source: Path) -> None:
 
 
 def _check_model(file: File | None, path: Path) -> None:
-    """Refuse a node description that deros has made of an earlier state of the rules.
+    """Reject a node description that was generated from an earlier version of the rules.
 
-    One without a banner was written by hand, and is nobody else's.
+    A description without a banner was written by hand and is accepted.
     """
     if file is None or not _has_banner(path):
         return
@@ -236,7 +246,7 @@ def _check_model(file: File | None, path: Path) -> None:
 
 
 def _in_the_way(path: Path) -> SourceTreeError:
-    message = f"{path} was generated from something else than the model as it is: refresh it"
+    message = f"{path} was not generated from the present version of the model: refresh it"
     return SourceTreeError(message, mended_by_scaffold=True)
 
 
@@ -245,7 +255,7 @@ def _has_banner(path: Path) -> bool:
 
 
 def _check_manifest(generated: str, path: Path) -> None:
-    """Refuse a manifest of another package, or one that leaves out what generated code needs."""
+    """Reject a manifest of another package, or one that lacks required dependencies."""
     try:
         present = ElementTree.parse(path).getroot()
     except (ElementTree.ParseError, ValueError) as error:
@@ -253,15 +263,18 @@ def _check_manifest(generated: str, path: Path) -> None:
         raise SourceTreeError(message, mended_by_scaffold=False) from error
     wanted = ElementTree.fromstring(generated)
     if (name := present.findtext("name", "").strip()) != (own := wanted.findtext("name", "")):
-        message = f"{path} is of a package {name!r}, generated is {own!r}"
+        message = (
+            f"{path} is the manifest of package {name!r}, but the generated package is {own!r}"
+        )
         raise SourceTreeError(message, mended_by_scaffold=False)
     if lacking := sorted(named(wanted) - named(present)):
-        message = f"{path} lacks <depend> for what the generated code needs: {', '.join(lacking)}"
+        listed = ", ".join(lacking)
+        message = f"{path} lacks <depend> tags for dependencies of the generated code: {listed}"
         raise SourceTreeError(message, mended_by_scaffold=True)
 
 
 def _link(source: Path, target: Path) -> None:
-    # Relative to where the folder really is, so that both trees can be moved together.
+    # Relative to the resolved folder, so that both trees can be moved together.
     wanted = os.path.relpath(source.resolve(), target.parent.resolve())
     if target.is_symlink() and os.readlink(target) == wanted:  # noqa: PTH115 - compares texts
         return

@@ -1,8 +1,8 @@
-"""The one place where generated files reach the disk: all of them, or none.
+"""The writer of generated files: it writes either all files of a run or none.
 
-Everything is first written to a staging folder inside the output directory, copies of what will be
-replaced included, so that a full disk shows before anything has changed. Then only renames are
-left; if one of them fails, those done are taken back.
+All files are first written to a staging folder inside the output directory, with copies of the
+files that will be replaced, so that a full disk is noticed before anything has changed. Only
+renames remain; if one of them fails, the completed ones are undone.
 """
 
 from __future__ import annotations
@@ -23,45 +23,45 @@ from deros.generators.output.banner import is_untouched, with_banner
 from deros.interfaces.files import read_regular
 
 _LARGEST = 256 << 20
-"""How many bytes a file may have that stands where one is to be written."""
+"""The largest size in bytes of an existing file at the path of a generated one."""
 
 
 class WriteError(Exception):
-    """The output could not be written; the directory is as it was before."""
+    """The output could not be written; the directory is unchanged."""
 
 
 class Outcome(enum.Enum):
-    """What became of one file."""
+    """The outcome for one file."""
 
     WRITTEN = "written"  # created or refreshed
-    UNCHANGED = "unchanged"  # on disk already, to the byte
-    HAND_EDITED = "hand-edited"  # generator's, but changed by hand: kept
-    USER = "user"  # the user's, there already: kept
+    UNCHANGED = "unchanged"  # identical to the file on disk
+    HAND_EDITED = "hand-edited"  # a generated file with manual edits: kept
+    USER = "user"  # an existing file of the user: kept
 
 
 @dataclass(frozen=True, slots=True)
 class WriteReport:
-    """What a run did, by relative POSIX path, in sorted order."""
+    """The outcomes of a run by relative POSIX path, sorted."""
 
     directory: Path
     outcomes: tuple[tuple[str, Outcome], ...]
 
     def of(self, outcome: Outcome) -> tuple[str, ...]:
-        """Return the paths with one outcome."""
+        """Return the paths with the given outcome."""
         return tuple(path for path, became in self.outcomes if became is outcome)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """One warning for each hand-edited file that was kept."""
+        """One warning for each file that was kept because of manual edits."""
         return tuple(_kept(self.directory / path) for path in self.of(Outcome.HAND_EDITED))
 
 
 def write(files: Files, directory: Path, *, overwrite: bool = False) -> WriteReport:
-    """Write ``files`` below ``directory``, which is made if it is not there.
+    """Write ``files`` below ``directory``, creating the directory if necessary.
 
-    Files of the generator get a banner with a digest and are refreshed; one that a hand has edited
-    is kept unless ``overwrite``. Files of the user are written once and never again. A file that
-    has not changed is not touched.
+    Files of the generator get a banner with a digest and are refreshed. Those with manual edits are
+    kept unless ``overwrite`` is set. Files of the user are written once and never again. Unchanged
+    files are not touched.
 
     Raises:
         WriteError: if a path leaves the directory, or a file cannot be written.
@@ -82,10 +82,10 @@ def join(outputs: Sequence[tuple[str, Files]]) -> Files:
     """Return the files of several models as those of one run.
 
     Args:
-        outputs: each model's name, and what was made from it.
+        outputs: the name of each model, and the files generated from it.
 
     Raises:
-        WriteError: if two of them make one path, and not the same text of it.
+        WriteError: if two models generate the same path with different texts.
     """
     joined: dict[str, File] = {}
     makers: dict[str, str] = {}
@@ -93,8 +93,8 @@ def join(outputs: Sequence[tuple[str, Files]]) -> Files:
         for path, file in files.items():
             if joined.setdefault(path, file) != file:
                 raise WriteError(
-                    f"refused to write {path}: {makers[path]} and {maker} make it, and not the "
-                    "same; give them packages or output folders of their own"
+                    f"refused to write {path}: {makers[path]} and {maker} generate it with "
+                    "different texts; give them separate packages or output folders"
                 )
             makers.setdefault(path, maker)
     return joined
@@ -102,7 +102,7 @@ def join(outputs: Sequence[tuple[str, Files]]) -> Files:
 
 @dataclass(frozen=True, slots=True)
 class _Change:
-    """A file to put in place, and whether something stands there now."""
+    """A file to put in place, and whether it replaces an existing one."""
 
     path: PurePosixPath
     content: bytes
@@ -132,7 +132,7 @@ def _write(
     if changes:
         with _undoing() as undo_folders:
             _make_directory(directory, undo_folders)
-            # The copies to go back to lie in the staging folder: it must outlive the way back.
+            # The copies for undoing are in the staging folder, which must be removed after them.
             with _staging(directory) as staging, _undoing() as undo:
                 _stage(changes, directory, staging)
                 _put_in_place(changes, directory, staging, undo)
@@ -142,7 +142,7 @@ def _write(
 def _outcome(target: Path, change: _Change, owner: Owner, overwrite: bool) -> Outcome:
     if target.is_dir():
         raise WriteError(f"cannot write {target}: it is a directory")
-    # What is neither is never opened: a pipe would block, and a device is not to be replaced.
+    # Other than regular files are never opened: a pipe would block, a device must not be replaced.
     present = read_regular(target, _LARGEST) if target.exists() else b""
     if owner is Owner.USER:
         return Outcome.USER
@@ -154,7 +154,7 @@ def _outcome(target: Path, change: _Change, owner: Owner, overwrite: bool) -> Ou
 
 
 def _untouched(present: bytes) -> bool:
-    # A checkout may have turned the line ends; nobody's work is lost with them.
+    # A checkout may have converted the line endings, which is not a manual edit.
     return is_untouched(present.decode(errors="replace").replace("\r\n", "\n"))
 
 
@@ -171,7 +171,7 @@ def _checked(path: str) -> PurePosixPath:
         or str(pure) != path
     ):
         raise WriteError(
-            f"refused to write {path!r}: it is no plain path below the output directory"
+            f"refused to write {path!r}: it is not a plain path below the output directory"
         )
     return pure
 
@@ -181,14 +181,14 @@ def _check_nesting(paths: list[PurePosixPath]) -> None:
     for path in paths:
         for parent in path.parents:
             if parent in names:
-                raise WriteError(f"refused to write {path}: {parent} is to be a file")
+                raise WriteError(f"refused to write {path}: {parent} is generated as a file")
 
 
 def _check_case(paths: list[PurePosixPath], directory: Path) -> None:
-    """Refuse a file that another one, there or to be written, differs from in case alone.
+    """Reject a file whose path differs only in case from that of another generated or present one.
 
-    Where case does not count, one would silently take the other's place. It is refused everywhere,
-    so that what is generated does not depend on the machine, and can be checked out on any.
+    On a case-insensitive file system one would silently replace the other. All systems reject it,
+    so that the output does not depend on the machine and can be checked out on any.
     """
     wanted = set(paths)
     there: dict[PurePosixPath, dict[str, str]] = {}
@@ -196,30 +196,30 @@ def _check_case(paths: list[PurePosixPath], directory: Path) -> None:
         names = there.get(path.parent)
         if names is None:
             folder = directory / path.parent
-            listed = [each.name for each in folder.iterdir()] if folder.is_dir() else []
+            listed = [path.name for path in folder.iterdir()] if folder.is_dir() else []
             names = there[path.parent] = {name.casefold(): name for name in listed}
             names |= {name.casefold(): name for name in listed if path.parent / name in wanted}
         other = names.setdefault(path.name.casefold(), path.name)
         if other != path.name:
             raise WriteError(
-                f"refused to write {directory / path}: it differs from {other} in case alone, and "
-                "where case does not count both are one file; rename one of the two in the models"
+                f"refused to write {directory / path}: it differs from {other} only in case, and "
+                "on a case-insensitive file system both are one file; rename one in the models"
             )
 
 
 def _check_inside(target: Path, directory: Path) -> None:
-    """Refuse a target that a symbolic link in the output directory would carry out of it."""
+    """Reject a target that a symbolic link leads out of the output directory."""
     root = directory.resolve()
     if not target.parent.resolve().is_relative_to(root):
         raise WriteError(f"refused to write {target}: a symbolic link leads out of {directory}")
 
 
-# Staging, putting in place, and taking back -------------------------------------------------------
+# Staging, renaming and undoing --------------------------------------------------------------------
 
 
 @contextlib.contextmanager
 def _undoing() -> Iterator[contextlib.ExitStack]:
-    """Give a stack of steps back, which are taken if the block fails for whatever reason."""
+    """Yield a stack of callbacks that are called if the block raises."""
     with contextlib.ExitStack() as undo:
         yield undo
         undo.pop_all()
@@ -235,13 +235,13 @@ def _staging(directory: Path) -> Iterator[Path]:
 
 
 def _make_directory(directory: Path, undo: contextlib.ExitStack) -> None:
-    """Make ``directory`` and its missing parents, each to be removed again on failure."""
+    """Create ``directory`` and its missing parents, each to be removed again on failure."""
     for folder in [*reversed(directory.parents), directory]:
         if not folder.exists():
             try:
                 folder.mkdir()
             except FileExistsError:
-                continue  # a run beside this one was first
+                continue  # a concurrent run has created it
             undo.callback(_remove_folder, folder)
 
 
@@ -251,7 +251,7 @@ def _stage(changes: Iterable[_Change], directory: Path, staging: Path) -> None:
         with staged.open("wb") as stream:
             stream.write(change.content)
             stream.flush()
-            os.fsync(stream.fileno())  # some file systems find out only here that they are full
+            os.fsync(stream.fileno())  # some file systems report only here that they are full
         if change.executable:
             mode = staged.stat().st_mode
             staged.chmod(mode | (mode & 0o444) >> 2)
@@ -273,7 +273,7 @@ def _put_in_place(
 
 
 def _remove_folder(folder: Path) -> None:
-    # Somebody else may have put a file there meanwhile; it is not ours to delete.
+    # Another program may have put a file there meanwhile, which must not be deleted.
     with contextlib.suppress(OSError):
         folder.rmdir()
 
@@ -282,7 +282,7 @@ def _kept(path: Path) -> Diagnostic:
     source = SourceFile(str(path), "")
     return report(
         codes.HAND_EDITED,
-        "edited by hand since it was generated: kept as it is",
+        "edited by hand since it was generated; not overwritten",
         Span(source, 0, 0),
-        hint="move the change to a file of yours, or replace it with --overwrite",
+        hint="move the change to one of your own files, or replace the file with --overwrite",
     )

@@ -30,9 +30,9 @@ from deros.interfaces.keywords import CPP_20
 from deros.interfaces.types import InterfaceType
 
 LINE_LENGTH = 100
-"""Longest line that ament's uncrustify and cpplint settings allow."""
+"""The longest line that ament's settings of uncrustify and cpplint allow."""
 
-# What common headers define as macros: nothing may be called so.
+# Macros of common headers, which must not be used as names.
 _MACROS_TEXT = (
     "EOF HUGE_VAL INFINITY NAN NULL assert errno linux major minor stderr stdin stdout unix"
 )
@@ -44,11 +44,11 @@ _NOT_IN_IDENTIFIERS = re.compile(r"[^A-Za-z0-9]+")
 
 
 def cpp_identifier(name: str) -> str:
-    """Return the C++ identifier for a ROS 2 name: ``/fmInformation/imu`` is ``fmInformation_imu``.
+    """Return the C++ identifier for a ROS 2 name, ``fmInformation_imu`` for ``/fmInformation/imu``.
 
-    Every run of characters that are neither letter nor digit becomes one ``_``, and is dropped at
-    either end, since C++ reserves many names with underscores. Keywords and macros get a ``_`` at
-    the end; what starts with a digit gets an ``x`` in front.
+    Each run of characters other than letters and digits becomes one ``_``. It is removed at both
+    ends, since C++ reserves many names with underscores. Keywords and macros get a ``_`` at the
+    end, names that start with a digit get an ``x`` in front.
     """
     text = _NOT_IN_IDENTIFIERS.sub("_", name).strip("_") or "x"
     if is_reserved(text):
@@ -57,17 +57,17 @@ def cpp_identifier(name: str) -> str:
 
 
 def is_reserved(name: str) -> bool:
-    """Tell whether C++ keeps a word for itself."""
+    """Return whether a word is a keyword or a macro."""
     return name in CPP_20 or name in _MACROS
 
 
 def cpp_type(interface: InterfaceType) -> str:
-    """Return the C++ type of an interface: ``std_msgs::msg::Bool``."""
+    """Return the C++ type of an interface, ``std_msgs::msg::Bool`` for example."""
     return f"{interface.package}::{interface.kind}::{interface.name}"
 
 
 def cpp_header(interface: InterfaceType) -> str:
-    """Return the header that defines an interface's C++ type: ``sensor_msgs/msg/laser_scan.hpp``.
+    """Return the header of the C++ type of an interface: ``sensor_msgs/msg/laser_scan.hpp``.
 
     Source: rosidl_pycommon, ``convert_camel_case_to_lower_case_underscore``.
     """
@@ -80,7 +80,7 @@ def cpp_header(interface: InterfaceType) -> str:
 
 
 def cpp_string(text: str) -> str:
-    """Return the literal of a text, as UTF-8; ``std::string`` in full where it holds a NUL."""
+    """Return the literal of a text in UTF-8, as a ``std::string`` if it contains a NUL."""
     literal = f'"{_escaped(text)}"'
     return f"std::string({literal}, {len(text.encode())})" if "\0" in text else literal
 
@@ -110,7 +110,7 @@ def cpp_double(value: float) -> str:
 def cpp_int64(value: int) -> str:
     """Return the literal of a 64-bit integer."""
     if value == -(2**63):
-        return "std::numeric_limits<int64_t>::min()"  # there is no literal below zero
+        return "std::numeric_limits<int64_t>::min()"  # a literal cannot be negative
     return f"INT64_C({value})" if abs(value) >= 2**31 else str(value)
 
 
@@ -274,11 +274,11 @@ def _pieces(text: str, indent: int) -> Document:
 
 
 def comment(text: str, indent: int, notes: Iterable[str] = (), mark: str = "///") -> str:
-    """Return a comment as text for a template that has written ``indent`` blanks already.
+    """Return a comment, for a template that has written ``indent`` blanks already.
 
-    Text and notes are broken where they are too long; an empty line stands between two. What a
-    compiler or linter would take for its own business (a backslash at a line's end, a trigraph, a
-    to-do) is rewritten.
+    The text and each note are paragraphs with an empty line between them. Character sequences that
+    compilers or linters interpret in comments (a backslash at the end of a line, a trigraph, a
+    to-do) are replaced.
     """
     lines: list[str] = []
     for paragraph in filter(None, (text, *notes)):
@@ -295,7 +295,7 @@ def wrapped(text: str, indent: int) -> list[str]:
 
 
 def summary(text: str, otherwise: str) -> str:
-    """Return a description as a sentence, or another one where there is none."""
+    """Return a description as a sentence, or ``otherwise`` if it is empty."""
     return sentence(text) or otherwise
 
 
@@ -325,27 +325,27 @@ _HEADERS = {
 
 
 def standard_headers(text: str) -> list[str]:
-    """Return the headers of the standard library that a text needs, by the names it uses."""
+    """Return the headers of the standard library for the names that a text uses."""
     return [header for header, names in _HEADERS.items() if re.search(names, text)]
 
 
 def include_lines(headers: Iterable[str]) -> list[str]:
-    """Return ``#include`` lines of quoted headers, in order, each once."""
+    """Return the ``#include`` lines of quoted headers, sorted and without repeats."""
     return [f'#include "{header}"' for header in sorted(set(headers))]
 
 
 def tidied(text: str) -> str:
-    """Return ``text`` without needless empty lines and without empty sections of classes."""
+    """Return ``text`` without superfluous empty lines and empty sections of classes."""
     text = re.sub(r"\n{3,}", "\n\n", text)
     text = re.sub(r"(?:\n\w+:\n+)+(?=(?:private|protected):|\};)", "\n", text)
     return re.sub(r"\n+(\n(?: +\}|\};))", r"\1", text)
 
 
 def mark_long_lines(text: str) -> str:
-    """Have the linters pass over lines that no wrapping could keep to the line length.
+    """Exempt lines that are too long from the linters.
 
-    ROS 2 names may be 255 characters long, and a name cannot be broken: cpplint is told of each
-    such line, and uncrustify, which would break it all the same, to leave the whole file alone.
+    They cannot be broken: a name in ROS 2 may have 255 characters. For cpplint each such line is
+    marked. For uncrustify, which would break it anyway, the whole file is.
     """
     lines = text.splitlines()
     if all(len(line) <= LINE_LENGTH for line in lines):

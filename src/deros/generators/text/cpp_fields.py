@@ -1,4 +1,4 @@
-"""Fields of messages as C++ has them: types and literals of numbers of all widths, and texts."""
+"""Types and literals of message fields in C++."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NUMBERS = {
     "float32": "float",
     "float64": "double",
 } | {name: f"std::{name}_t" for name in INTEGER_RANGES if name not in ("byte", "char")}
-"""The C++ type of every primitive that is no text."""
+"""The C++ type of each primitive that is not a string."""
 
 
 def number(base: str, value: int | float) -> str:
@@ -45,7 +45,7 @@ def _single(value: float) -> bytes:
 
 
 def scalar(base: str, value: Scalar) -> str:
-    """Return the literal that a field of a primitive type is compared with."""
+    """Return the literal of a value for comparison with a field of a primitive type."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""Names of ROS 2 turned into names of a programming language, and the collisions this can cause."""
+"""Conversion of ROS 2 names to identifiers and file names, and detection of collisions."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ _NOT_IN_IDENTIFIERS = re.compile(r"\W+", re.ASCII)
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _PLAIN_IN_FILE_NAMES = " _.+-@"
 PYTHON_WORDS = PYTHON | {name for name in dir(builtins) if name.islower()}
-"""What no name in emitted Python may be: keywords, and builtins that code calls."""
+"""Names that emitted Python must not define: keywords, and builtins that it may call."""
 
 
 def file_label(path: str) -> str:
-    """Return the name of a file as generated text may show it, without its folder.
+    """Return the name of a file, without its folder, escaped for generated text.
 
-    A file may be named anything but ``/`` and NUL: quotes, line breaks and comment signs in a name
-    would otherwise become code. Letters, digits, spaces and ``_.+-@`` stay, every other character
-    becomes ``%`` and the hexadecimal number of each byte, as in a URL.
+    File names may contain everything but ``/`` and NUL, and quotes, line breaks or comment signs
+    would become code. Letters, digits, spaces and ``_.+-@`` are kept. Any other character is
+    replaced by ``%`` and the hexadecimal number of each byte, as in a URL.
     """
     return "".join(
         character
@@ -38,17 +38,17 @@ def file_label(path: str) -> str:
 def python_identifier(name: str) -> str:
     """Return the Python identifier for a ROS 2 name.
 
-    A leading ``/`` or ``~/`` is dropped, every other run of characters that no identifier may hold
-    becomes ``_``: ``/fmInformation/imu`` is ``fmInformation_imu``. Keywords get a ``_`` at the end,
-    names that start with a digit one at the front.
+    A leading ``/`` or ``~/`` is removed, and any other run of characters that are not allowed in
+    identifiers becomes ``_``: ``/fmInformation/imu`` becomes ``fmInformation_imu``. Keywords get a
+    ``_`` at the end, names that start with a digit get one at the front.
     """
     return _legal(_NOT_IN_IDENTIFIERS.sub("_", name.removeprefix("~").removeprefix("/")) or "_")
 
 
 def camel_case(name: str) -> str:
-    """Return the class name for a ROS 2 name: ``vectornav_vn100_node`` is ``VectornavVn100Node``.
+    """Return the class name for a ROS 2 name, ``VectornavVn100Node`` for ``vectornav_vn100_node``.
 
-    Capitals within a word stay, so ``fmSensors`` is ``FmSensors``.
+    Capitals within a word are kept: ``fmSensors`` becomes ``FmSensors``.
     """
     words = [word for word in python_identifier(name).split("_") if word]
     text = "".join(word[0].upper() + word[1:] for word in words) or "_"
@@ -68,7 +68,13 @@ def _legal(text: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Emitted:
-    """One name that a target emits: the identifier, what it stands for in the model, and where."""
+    """An identifier that a target emits.
+
+    Attributes:
+        identifier: the identifier.
+        origin: the construct of the model that it stands for.
+        span: the location of that construct.
+    """
 
     identifier: str
     origin: str
@@ -76,19 +82,18 @@ class Emitted:
 
 
 def check_collisions(emitted: Iterable[Emitted], within: str, *, files: bool = False) -> None:
-    """Refuse a model of which two things would get one name in ``within``.
+    """Reject a model in which two constructs would get the same name.
 
     Args:
         emitted: the names, in the order of the model.
-        within: what must not hold a name twice, for the message.
-        files: whether the names are those of files, which some file systems do not tell apart by
-            case.
+        within: the scope in which names must be unique, for the message.
+        files: whether the names are file names, which are also compared without case.
 
     Raises:
         GenerationError: with one ``DRS401`` for each name that is taken already.
     """
     first: dict[str, Emitted] = {}
-    found: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for item in emitted:
         key = item.identifier.casefold() if files else item.identifier
         other = first.setdefault(key, item)
@@ -98,8 +103,8 @@ def check_collisions(emitted: Iterable[Emitted], within: str, *, files: bool = F
         message = f"{both} both become {item.identifier!r} in {within}"
         if item.identifier != other.identifier:
             names = f"{item.identifier!r} and {other.identifier!r}"
-            message = f"{both} become {names} in {within}, one file where case does not count"
-        found.append(
+            message = f"{both} become {names} in {within}, which differ only in case"
+        diagnostics.append(
             report(
                 codes.NAME_COLLISION,
                 message,
@@ -108,5 +113,5 @@ def check_collisions(emitted: Iterable[Emitted], within: str, *, files: bool = F
                 related=(Related(other.span, f"{other.origin} is here"),),
             )
         )
-    if found:
-        raise GenerationError(found)
+    if diagnostics:
+        raise GenerationError(diagnostics)

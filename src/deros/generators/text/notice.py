@@ -1,4 +1,4 @@
-"""Licence and copyright of generated packages: from the options of generators to each file."""
+"""Licence and copyright notices of generated files, from the options of the generators."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from deros.generators.api.protocol import Options
 
 APACHE = "Apache-2.0"
-"""The licence of packages for which none is given."""
+"""The default licence of packages."""
 
 _APACHE_TEXT = """\
 Licensed under the Apache License, Version 2.0 (the "License");
@@ -29,44 +29,45 @@ def licence(options: Options) -> str:
     """Return the licence for manifests: the option ``licence``, an SPDX expression.
 
     Raises:
-        ValueError: if it has a character that no SPDX expression has.
+        ValueError: if it contains a character that is not allowed in SPDX expressions.
     """
     text = options.get("licence", APACHE).strip()
     if _LICENCE.fullmatch(text) is None:
-        raise ValueError(f"licence {text!r} does not read like an SPDX identifier: BSD-3-Clause")
+        raise ValueError(f"licence {text!r} is not an SPDX identifier such as BSD-3-Clause")
     return text
 
 
 def notice(options: Options) -> str:
-    """Return the text above each file, or nothing if there is no copyright holder.
+    """Return the notice for the top of each file, or '' if there is no copyright holder.
 
-    The Apache License asks for its own text. Of any other licence the SPDX identifier is named.
+    For the Apache License it is the text that the licence asks for, for any other licence the SPDX
+    identifier.
 
     Raises:
-        ValueError: if an option cannot stand in a comment.
+        ValueError: if an option cannot be part of a comment.
     """
     holder = " ".join(options.get("copyright", "").split())
     if not holder:
         return ""
     if not holder.isprintable() or holder.endswith(("\\", "??/")):
-        raise ValueError(f"copyright {holder!r} cannot stand in a comment")
+        raise ValueError(f"copyright {holder!r} cannot be part of a comment")
     named = licence(options)
     body = _APACHE_TEXT if named == APACHE else f"SPDX-License-Identifier: {named}"
     return f"Copyright {holder}\n\n{body}"
 
 
 def is_checked(text: str) -> bool:
-    """Tell whether ament's own test knows a notice: that of the Apache License."""
+    """Return whether ament_copyright recognizes a notice: only that of the Apache License."""
     return text.endswith(_APACHE_TEXT)
 
 
 def licensed_python(text: str, notice: str) -> str:
-    """Return a module, or any text with comments like Python's, with its notice above it."""
+    """Return a text whose comments start with ``#`` with its notice above it."""
     return _above(text, notice, "#")
 
 
 def licensed_cpp(text: str, notice: str) -> str:
-    """Return a C or C++ file with its notice above it; without one it refers to package.xml."""
+    """Return a C or C++ file with its notice above it, or with a reference to package.xml."""
     if not notice:
         return f"// Copyright and licence: see package.xml.\n\n{text}"
     return _above(text, notice, "//")

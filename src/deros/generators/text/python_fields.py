@@ -1,4 +1,4 @@
-"""Fields of messages as rclpy takes them."""
+"""Literals of message fields for rclpy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from deros.monitor.ir import Scalar
 
 
 def literal(kind: FieldType, value: Scalar) -> str:
-    """Return the literal that rclpy takes for a field."""
+    """Return the literal that rclpy accepts for a field."""
     if kind.base == "byte":
         assert isinstance(value, int)
         return repr(bytes([value]))

@@ -1,4 +1,4 @@
-"""Names that a generated package cannot have, because they hide what its programs need."""
+"""Names that a generated package must not have, since they hide modules or functions it needs."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def hidden_from_python(
         models: the nodes of the package.
         needed: the packages that it depends on.
         modules: further modules of the package, each with its place.
-        store: the interfaces that are known; ``None`` for none.
+        store: the known interfaces, or ``None``.
     """
     package = models[0].package
     if (what := _python_module(package, needed, store)) is not None:
@@ -153,13 +153,13 @@ def hidden_from_cpp(
     scopes: Sequence[tuple[str, Span]],
     store: InterfaceStore | None,
 ) -> Iterator[Diagnostic]:
-    """Yield a finding for each namespace of a package in C++ that is the name of something else.
+    """Yield a finding for each namespace of a package in C++ that hides another name.
 
     Args:
         models: the nodes of the package, whose name is a namespace.
         needed: the packages that it depends on.
-        scopes: further namespaces, each with its place.
-        store: the interfaces that are known; ``None`` for none.
+        scopes: further namespaces with their locations.
+        store: the known interfaces, or ``None``.
     """
     package = models[0].package
     what = _package(package, _CPP_PACKAGES.union(needed), store)

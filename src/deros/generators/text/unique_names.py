@@ -1,4 +1,4 @@
-"""Identifiers of emitted text: descriptive names, never reserved, never the same twice."""
+"""Identifiers for emitted code: descriptive, not reserved, and unique."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from deros.generators.text.identifiers import python_identifier
 
 
 class UniqueNames:
-    """Hands out identifiers that differ from each other and from all reserved ones."""
+    """Creates identifiers that differ from each other and from all reserved ones."""
 
     def __init__(self, taken: frozenset[str] = frozenset()) -> None:
-        """Start with the names that are ``taken``."""
+        """Treat the names in ``taken`` as used already."""
         self._taken = set(taken)
 
     def new(self, *parts: str | int, endings: Sequence[str] = ()) -> str:
-        """Return an identifier made of ``parts``; a number is added where it is taken already.
+        """Return a new identifier made of ``parts``, with a number at the end if it is taken.
 
         Args:
             parts: the words of the identifier.
-            endings: what others end in that are made of it; they are as free as it is, and taken.
+            endings: suffixes; the identifier with each of them is unique, too, and reserved.
         """
         words = (python_identifier(str(part)).strip("_") for part in parts)
         base = "_".join(word for word in words if word) or "value"
         if base[0].isdigit():
             base = f"n{base}"
         name, number = base, 2
-        while not self._taken.isdisjoint(wanted := {name, *(name + each for each in endings)}):
+        while not self._taken.isdisjoint(wanted := {name, *(name + ending for ending in endings)}):
             name, number = f"{base}_{number}", number + 1
         self._taken |= wanted
         return name

@@ -50,7 +50,7 @@ def test_names_that_differ_only_in_underscores_collide(sections: str, name: str)
     ("name", "other", "within"),
     [
         ("a", "a_main", "'a_main' in the sources of package b"),
-        ("a", "A", "'a' and 'A' in the sources of package b, one file where case does not count"),
+        ("a", "A", "'a' and 'A' in the sources of package b, which differ only in case"),
         ("a_b", "aB", "'AB' in the namespace b"),
     ],
 )

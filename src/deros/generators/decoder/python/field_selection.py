@@ -1,4 +1,4 @@
-"""The fields that a decoder is to read, as a tree that follows the messages' structure."""
+"""The selection of fields that a decoder reads, as a tree with the structure of the message."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from deros.interfaces.fields import FieldPath
 
 @dataclass(slots=True)
 class FieldSelection:
-    """What is wanted of one field.
+    """The selected parts of one field.
 
     Attributes:
-        name: the variable for its value; ``None`` where only parts of it are wanted.
-        parts: what is wanted of its fields, by name, or of its elements, by index.
+        name: the variable for its value; ``None`` if at most parts of it are selected.
+        parts: the selections of its fields by name, or of its elements by index.
     """
 
     name: str | None = None
@@ -22,11 +22,11 @@ class FieldSelection:
 
     @property
     def elements(self) -> list[tuple[int, FieldSelection]]:
-        """What is wanted of the elements of an array, in the order in which they come."""
+        """The selected elements of an array, sorted by index."""
         return sorted((key, part) for key, part in self.parts.items() if isinstance(key, int))
 
     def names(self) -> Iterator[str]:
-        """Yield the variables for all its values."""
+        """Yield the variables of all selected values."""
         if self.name is not None:
             yield self.name
         for part in self.parts.values():
@@ -34,11 +34,13 @@ class FieldSelection:
 
 
 NOTHING = FieldSelection()
-"""A field that is only passed over."""
+"""The selection of nothing: the field is skipped."""
 
 
-def tree(paths: Sequence[FieldPath], names: Mapping[tuple[str | int, ...], str]) -> FieldSelection:
-    """Return the tree of all ``paths``, each with its name."""
+def select(
+    paths: Sequence[FieldPath], names: Mapping[tuple[str | int, ...], str]
+) -> FieldSelection:
+    """Return the selection of all ``paths``, with the variable of each."""
     root = FieldSelection()
     for path in paths:
         here = root

@@ -1,4 +1,4 @@
-"""What a module of decoders has in common: byte orders, helpers, and the readers of groups."""
+"""The parts that the decoders of a module share: byte orders, helpers, and readers of groups."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FORMATS: dict[str, tuple[str, int]] = {
     "float32": ("f", 4),
     "float64": ("d", 8),
 }
-"""The letter of the :mod:`struct` module, and the size, of each primitive that has one."""
+"""The format character in the :mod:`struct` module, and the size, of each fixed-size primitive."""
 
 _DTYPES = {"B": "u1", "b": "i1", "h": "i2", "H": "u2", "i": "i4", "I": "u4"} | {
     "q": "i8",
@@ -38,11 +38,11 @@ _SHARED = {
 
 @dataclass(slots=True)
 class Parts:
-    """The parts of a module that its decoders turn out to need.
+    """The parts of a module that its decoders use.
 
     Attributes:
-        shared: constants that several decoders may use: name to value.
-        helpers: names of the functions and constants of the template that are called.
+        shared: the values of constants for all decoders, by name.
+        helpers: the names of the used functions and constants of the template.
     """
 
     shared: dict[str, str] = field(default_factory=dict)
@@ -64,7 +64,7 @@ class Parts:
         return name
 
     def helper(self, name: str) -> str:
-        """Note that a helper of the template is used, and return its name."""
+        """Record that a helper of the template is used, and return its name."""
         self.helpers.add(name)
         if name in ("string", "wstring"):
             self.reader("I")
@@ -72,6 +72,6 @@ class Parts:
 
 
 def group_lines(name: str, letters: str, fields: list[str]) -> list[str]:
-    """Return the constant that reads a group of fields at once, and what they are."""
+    """Return the lines of the constant that reads a group of fields, with a comment on them."""
     comment = render_lines(paragraph(", ".join(fields), "# ", "#   "), LINE_LENGTH)
     return [*comment, f"{name} = both('{letters}')"]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from deros.generators.decoder.python.emitter import SMALL, DecoderEmitter
-from deros.generators.decoder.python.field_selection import tree
+from deros.generators.decoder.python.field_selection import select
 from deros.generators.decoder.python.module import Parts
 from deros.generators.decoder.python.position import START
 from deros.generators.decoder.python.writer import Writer
@@ -35,13 +35,13 @@ _RESERVED = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """What is to be read of a topic's messages.
+    """A topic and the fields of its messages that a decoder reads.
 
     Attributes:
-        name: an identifier, different from those of the other topics.
-        type: of its messages.
-        paths: the wanted fields, in the order in which the decoder returns them: primitives and
-            arrays, of messages where nothing but their number is of interest.
+        name: an identifier, unique among the topics.
+        type: the message type.
+        paths: the fields in the order in which the decoder returns them: primitives, arrays of
+            primitives, and arrays of messages, of which only the length is read.
     """
 
     name: str
@@ -56,7 +56,7 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class _Decoder:
-    """What the template prints of one decoder."""
+    """The lines of one decoder for the template."""
 
     groups: tuple[tuple[str, ...], ...]
     signature: tuple[str, ...]
@@ -67,18 +67,19 @@ class _Decoder:
 def render_decoders(topics: Sequence[Topic], store: InterfaceStore) -> str:
     """Return the text of a module with one function per topic, ``decode_<name>(data: bytes)``.
 
-    A decoder takes a serialized message, as rclpy hands it to the callback of a raw subscription,
-    and returns the values of the topic's paths as a tuple, or the bare value if there is just one.
-    Numbers, booleans and strings are Python's own, ``byte`` is an integer, and NaN stands for an
-    element that an array does not have. Arrays of numbers are read-only NumPy views of the data if
-    their length is not fixed, or greater than 64; others are tuples of numbers and booleans, or
-    lists of strings. An array of messages comes out as a ``range`` as long as it.
+    A decoder takes a serialized message, as rclpy passes it to the callback of a raw subscription.
+    It returns the values of the topic's paths as a tuple, or the value itself if there is only one.
+    Numbers, booleans and strings are Python's own, ``byte`` is an integer, and NaN is the value of
+    an element that an array does not have. Arrays of numbers are read-only NumPy views of the data
+    if their length is not fixed or greater than 64. Others are tuples of numbers and booleans, or
+    lists of strings. The value of an array of messages is a ``range`` of the same length.
 
-    Data that is no plain CDR, or too short for what is wanted of it, raises one of the module's
-    ``DECODING_ERRORS``. The module needs the standard library alone, and NumPy if such views occur.
+    A decoder raises one of ``DECODING_ERRORS`` of the module if the data is not plain CDR, or too
+    short for the selected fields. The module needs only the standard library, and NumPy if there
+    are such views.
 
     Raises:
-        ValueError: if a message type is not known, or a path leads to no such field.
+        ValueError: if a message type is unknown, or a path does not lead to a field.
     """
     parts = Parts()
     constants = UniqueNames(frozenset({"NAN", "DECODING_ERRORS"}))
@@ -96,9 +97,9 @@ def _decoder(topic: Topic, store: InterfaceStore, parts: Parts, constants: Uniqu
     variables = {path: names.new(*path) for path in dict.fromkeys(paths)}
     writer = Writer(names, parts, topic.name.upper(), constants)
     types = [_annotation(store, topic.type, path) for path in paths]
-    walk = DecoderEmitter(store, writer, START)
-    walk.message(topic.type, tree(paths, variables), later=False)
-    walk.read_gathered()
+    emitter = DecoderEmitter(store, writer, START)
+    emitter.message(topic.type, select(paths, variables), more_selected=False)
+    emitter.read_gathered()
     result = f"tuple[{', '.join(types) or '()'}]" if len(paths) != 1 else types[0]
     return _Decoder(
         tuple(tuple(group) for group in writer.groups),
@@ -109,7 +110,7 @@ def _decoder(topic: Topic, store: InterfaceStore, parts: Parts, constants: Uniqu
 
 
 def _annotation(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str:
-    """Return the type of a value, as Python writes it."""
+    """Return the type of a value as Python source text."""
     found = resolve(store, kind, path)
     if not isinstance(found, ResolvedField) or not path:
         reason = "is the whole message" if isinstance(found, ResolvedField) else found.message
@@ -153,7 +154,7 @@ def _signature(function: str, result: str) -> list[str]:
 
 
 def _documentation(topic: Topic, paths: Sequence[FieldPath]) -> list[str]:
-    """Return the docstring: in one line if it fits."""
+    """Return the lines of the docstring, which is on one line if it fits."""
     fields = ", ".join(map(format_path, paths)) or "nothing"
     lines = ['"""', f"Return fields of a {topic.type}.", "", f"In order: {fields}.", '"""']
     several = join(HARDLINE, map(paragraph, lines))
@@ -162,7 +163,7 @@ def _documentation(topic: Topic, paths: Sequence[FieldPath]) -> list[str]:
 
 
 def _with_return(lines: Sequence[str], variables: Sequence[str]) -> list[str]:
-    """Return the body with its last statement, which may be what has been written last."""
+    """Return the body with its return statement, which replaces an assignment at the end."""
     if not variables:
         return ["    byte_order(data)", "    return ()"]
     lines = ["    order = byte_order(data)", *lines]

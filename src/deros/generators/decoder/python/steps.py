@@ -1,4 +1,4 @@
-"""The single steps of a walk: to align, to go on, to read what has been gathered."""
+"""The steps of a decoder: align, advance, and read collected fields."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from deros.generators.text.document import HARDLINE, breakable, join
 
 @dataclass(frozen=True, slots=True)
 class _Read:
-    """A field that is to be read: where, as what, and into which variable."""
+    """A field to be read: its position, its format, and its variable."""
 
     offset: int
     letters: str
@@ -28,7 +28,7 @@ class _Read:
 
 
 def _letters(run: Sequence[_Read]) -> str:
-    """Return what the struct module calls a format: ``4d72x3d``, with gaps as ``x``."""
+    """Return the format string of the struct module: ``4d72x3d``, with gaps as ``x``."""
     items: list[str] = []
     end = run[0].offset
     for read in run:
@@ -39,54 +39,56 @@ def _letters(run: Sequence[_Read]) -> str:
 
 
 class Steps:
-    """Keeps the present place, and the fields to be read at constant distances from its base."""
+    """Tracks the current position and collects fields at constant distances from its base."""
 
-    def __init__(self, writer: Writer, place: Position) -> None:
-        """Begin at ``place``."""
-        self.place = place
+    def __init__(self, writer: Writer, position: Position) -> None:
+        """Start at ``position``."""
+        self.position = position
         self._writer = writer
         self._gathered: list[_Read] = []
         self._defaulted: set[str] = set()
 
     def align(self, alignment: int, path: str) -> None:
-        """Go on to the next multiple of ``alignment``, counted from the first field."""
-        aligned = self.place.aligned(alignment)
+        """Advance to the next multiple of ``alignment``, relative to the first field."""
+        aligned = self.position.aligned(alignment)
         if aligned is None:
             self.read_gathered()
-            # The first field stands behind the encapsulation, hence at 4 modulo 8.
-            ahead = (ENCAPSULATION - self.place.offset) % alignment
+            # The first field follows the encapsulation header, so its offset is 4 modulo 8.
+            ahead = (ENCAPSULATION - self.position.offset) % alignment
             padding = f"({ahead} - at) % {alignment}" if ahead else f"-at % {alignment}"
             self._move(padding, 0, path and f"to {path}, a multiple of {alignment}")
             aligned = moved(alignment)
-        self.place = aligned
+        self.position = aligned
 
     def advance(self, distance: str, comment: str, more: int = 0) -> None:
-        """Move ``at`` by an expression; what is then known of the place is for the caller."""
+        """Advance ``at`` by an expression; the caller sets the position afterwards."""
         self.read_gathered()
         self._move(distance, more, comment)
 
     def settle(self, comment: str) -> None:
-        """Make ``at`` stand for the present place."""
+        """Set ``at`` to the current position."""
         self.read_gathered()
-        if not self.place.moving or self.place.offset:
+        if not self.position.moving or self.position.offset:
             self._move("", 0, comment)
-        self.place = self.place.base()
+        self.position = self.position.base()
 
     def _move(self, distance: str, more: int, comment: str) -> None:
-        offset = self.place.offset + more
+        offset = self.position.offset + more
         terms = [str(offset)] if offset else []
         terms += [distance] if distance else []
-        self._writer.line(f"at {'+=' if self.place.moving else '='} {' + '.join(terms)}", comment)
+        self._writer.line(
+            f"at {'+=' if self.position.moving else '='} {' + '.join(terms)}", comment
+        )
 
     # Values -------------------------------------------------------------------------------------
 
     def gather(self, letters: str, size: int, name: str, path: str) -> None:
-        """Have the field at the present place read, together with others near it."""
-        self._gathered.append(_Read(self.place.offset, letters, size, name, path))
+        """Collect the field at the current position, to be read together with others near it."""
+        self._gathered.append(_Read(self.position.offset, letters, size, name, path))
 
     def read_gathered(self) -> None:
-        """Write the lines that read what has been gathered."""
-        gathered = sorted(self._gathered, key=lambda each: each.offset)
+        """Write the lines that read the collected fields."""
+        gathered = sorted(self._gathered, key=lambda read: read.offset)
         for read in gathered:
             if read.is_tuple:
                 self._read([read])
@@ -95,30 +97,30 @@ class Steps:
         self._gathered = []
 
     def _read(self, run: list[_Read]) -> None:
-        place = Position(self.place.moving, run[0].offset, 1, 0).text()
+        offset = Position(self.position.moving, run[0].offset, 1, 0).text()
         if len(run) == 1 and not run[0].is_tuple:
             reader = self._writer.parts.reader(run[0].letters)
-            self._writer.line(f"{run[0].name} = {reader}[order](data, {place})[0]")
+            self._writer.line(f"{run[0].name} = {reader}[order](data, {offset})[0]")
             return
         reader = self._writer.group(_letters(run), [read.path for read in run])
-        self._writer.assign([read.name for read in run], f"{reader}[order](data, {place})")
+        self._writer.assign([read.name for read in run], f"{reader}[order](data, {offset})")
 
     def one(self, letter: str, more: int = 0) -> str:
-        """Return the expression that reads one primitive at the present place, or behind it."""
-        return f"{self._writer.parts.reader(letter)}[order](data, {self.place.text(more)})[0]"
+        """Return the expression for a primitive ``more`` bytes after the current position."""
+        return f"{self._writer.parts.reader(letter)}[order](data, {self.position.text(more)})[0]"
 
     def view(self, letter: str, count: str, name: str) -> None:
-        """Write the line that looks at numbers in the data as an array."""
+        """Write the line that creates a NumPy view of numbers in the data."""
         dtype = self._writer.parts.dtype(letter)
-        place = self.place.text()
-        self._writer.line(f"{name} = np.frombuffer(data, {dtype}[order], {count}, {place})")
+        offset = self.position.text()
+        self._writer.line(f"{name} = np.frombuffer(data, {dtype}[order], {count}, {offset})")
 
     def nan(self) -> str:
-        """Return the name of the value of an element that is not there."""
+        """Return the constant for the value of a missing element."""
         return self._writer.parts.helper("NAN")
 
     def default(self, part: FieldSelection) -> None:
-        """Set all values of an element that may not be there to NaN."""
+        """Set all values of an element that may be missing to NaN."""
         names = [name for name in part.names() if name not in self._defaulted]
         self._defaulted.update(names)
         if names:

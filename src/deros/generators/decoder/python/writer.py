@@ -1,4 +1,4 @@
-"""The lines of one decoder as they come."""
+"""The writer of the lines of one decoder."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ class Writer:
     Attributes:
         lines: the body of the function.
         groups: the lines of each reader of a group.
-        parts: what the module needs for it.
-        names: of the function's variables.
+        parts: the parts of the module that it uses.
+        names: the names of the function's variables.
     """
 
     def __init__(
         self, names: UniqueNames, parts: Parts, constant: str, constants: UniqueNames
     ) -> None:
-        """Begin with no lines; ``constant`` is what the readers of groups are named after."""
+        """Start without lines; the names of the readers of groups start with ``constant``."""
         self.lines: list[str] = []
         self.groups: list[list[str]] = []
         self.parts = parts
@@ -35,17 +35,17 @@ class Writer:
 
     @property
     def has_lengths(self) -> bool:
-        """Whether a length is read from the data."""
+        """Whether the lines read a length from the data."""
         return any("UINT32[" in line for line in self.lines)
 
     def line(self, text: str, comment: str = "") -> None:
-        """Add a line, with a comment behind it, or above it where the line gets too long."""
+        """Add a line with a comment at its end, or above it if the line would be too long."""
         above = if_broken(concat("# ", comment, LINE)) if comment else ""
         behind = if_broken("", f"  # {comment}") if comment else ""
         self.add(group(above, text, behind))
 
     def assign(self, names: Sequence[str], value: str) -> None:
-        """Add the assignment of several values at once."""
+        """Add an assignment of several values."""
         self.add(filled(if_broken("("), names, concat(if_broken(")"), f" = {value}")))
 
     def add(self, document: Document) -> None:
@@ -53,7 +53,7 @@ class Writer:
         self.lines += render_lines(document, LINE_LENGTH, 4 * self._depth)
 
     def group(self, letters: str, fields: list[str]) -> str:
-        """Return the constant that reads a group of fields."""
+        """Add a constant that reads a group of fields, and return its name."""
         name = self._constants.new(self._constant)
         self.parts.helpers.add("both")
         self.groups.append(group_lines(name, letters, fields))
@@ -61,7 +61,7 @@ class Writer:
 
     @contextmanager
     def indented(self, header: str, comment: str = "") -> Iterator[None]:
-        """Add a line and indent those that follow within."""
+        """Add a line, and indent the lines added within the context."""
         self.line(header, comment)
         self._depth += 1
         yield
