@@ -18,6 +18,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from deros.generators.monitor.c.formulas import printed as printed_in_c
+from deros.generators.monitor.c.formulas import shared_texts
+from deros.generators.monitor.python.formulas import printed as printed_in_python
 from deros.monitor import function_values as values
 from deros.monitor.function_texts import C
 from deros.monitor.functions import FUNCTIONS
@@ -38,7 +41,8 @@ def _namespace() -> dict[str, Any]:
         "Sequence": Sequence,
     }
     for row in FUNCTIONS.values():
-        exec(row.python, found)
+        for text in printed_in_python(row):
+            exec(text, found)
         if row.guard is not None:
             exec(row.guard.python, found)
     return found
@@ -247,8 +251,8 @@ def test_every_value_function_has_a_text_in_each_language() -> None:
         if row.evaluate is not None:
             built_in = ("abs", "len")
             assert row.python_of_unit or row.python_call in (*NAMESPACE, *built_in)
-            assert row.c or row.c_call in ("fabs", "")
-            assert not row.c or row.c_call in row.c
+            assert printed_in_c(row) or row.c_call in ("fabs", "")
+            assert row.c_call in printed_in_c(row) or row.c_call == "fabs"
 
 
 # C --------------------------------------------------------------------------------------------
@@ -276,7 +280,9 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     if compiler is None:
         pytest.skip("no C compiler")
     directory: Path = tmp_path_factory.mktemp("functions")
-    exported = "\n".join([IS_NUMBER, *C.values()]).replace("static ", "")
+    texts = [*C.values(), *(text for _, text in shared_texts())]
+    texts += [printed_in_c(row) for row in FUNCTIONS.values() if not row.c]
+    exported = "\n".join([IS_NUMBER, *texts]).replace("static ", "")
     exported = exported.replace("@_", "").replace("$_SAMPLES", f"{SAMPLES}U")
     for placeholder, meant in OF_ELEMENTS:
         exported = re.sub(rf"(?<![A-Z]){placeholder}(?![A-Z])", meant, exported)

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from deros.monitor import ir
-from deros.monitor.memories import SAMPLES, RateOver, Unwrapped
+from deros.monitor.functions import FUNCTIONS
+from deros.monitor.memories import SAMPLES, RateOver
 from tests.support.rules import build_rules, condition, program
 
 TURN = 2.0 * math.pi
@@ -18,7 +19,7 @@ MS = 1_000_000
 
 def unwrapped(*angles: float | None, turn: float = TURN) -> list[float | None]:
     """Return unwrapped angles, message by message."""
-    memory, found = Unwrapped(), []
+    memory, found = FUNCTIONS["unwrapped"].new_memory(), []
     for number, angle in enumerate(angles):
         memory.follow(number, angle, turn)
         found.append(memory.result)

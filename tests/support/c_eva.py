@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from deros.generators.monitor.c.expressions import integer, number
 from deros.generators.monitor.c.handlers import Handler, Parameter
+from deros.generators.monitor.c.literals import integer, number
 from deros.generators.monitor.c.view import MonitorView
 
 TABLES_CHECK = "tables_stand"

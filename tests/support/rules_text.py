@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 from deros.monitor import ir
+from deros.monitor.functions import FUNCTIONS, Argument
 from tests.support.strategies import KINDS
 
 NODE_TEXT = "node robot : robot\npublishes\n" + "".join(
@@ -113,12 +114,16 @@ class _Writer:
                 span = value.arguments[1]
                 assert isinstance(span, ir.Const)
                 return f"{self.value(value.arguments[0])}.rate({span.value} ns)"
-            case ir.Apply(function="abs" | "rate"):
-                return f"{self.value(value.arguments[0])}.{value.function}()"
             case ir.Apply():
+                row = FUNCTIONS[value.function]
+                subject = self._program.inputs[value.input].name
+                if row.argument is Argument.NUMBER:
+                    subject = self.value(value.arguments[0])
                 constants = [each for each in value.arguments if isinstance(each, ir.Const)]
-                arguments = ", ".join(f"{each.value} rad" for each in constants)
-                return f"{self._program.inputs[value.input].name}.{value.function}({arguments})"
+                units = [unit if unit != "1" else "" for _, unit in row.parameters]
+                pairs = zip(constants, units, strict=True)
+                arguments = ", ".join(f"{each.value} {unit}".strip() for each, unit in pairs)
+                return f"{subject}.{value.function}({arguments})"
             case ir.Scale():
                 raise ValueError("a scaled value has no text of its own")
 

@@ -178,11 +178,9 @@ MORE_KINDS: Mapping[str, Kind] = {
 ALL_KINDS = {**KINDS, **MORE_KINDS}
 
 
-def functions_of(argument: Argument) -> tuple[str, ...]:
-    """Return the functions that rules may apply to something, without further arguments."""
-    return tuple(
-        row.name for row in WRITTEN.values() if row.argument is argument and not row.parameters
-    )
+def functions_of(*arguments: Argument) -> tuple[str, ...]:
+    """Return the functions that rules may apply to something."""
+    return tuple(row.name for row in WRITTEN.values() if row.argument in arguments)
 
 
 # Programs -----------------------------------------------------------------------------------------
@@ -233,26 +231,34 @@ class _Drawing:
         reads = [ir.Read(leaf) for leaf in self.inputs[index].leaves]
         match self.kinds[index]:
             case "quaternion":
-                name = self.draw(st.sampled_from(functions_of(Argument.QUATERNION)))
-                value: ir.ValueExpression = ir.Apply(name, tuple(reads), index)
+                value: ir.ValueExpression = self.applied(index, reads, Argument.QUATERNION)
             case "vector":
-                name = self.draw(st.sampled_from(functions_of(Argument.VECTOR)))
-                value = ir.Apply(name, tuple(reads), index)
+                value = self.applied(index, reads, Argument.VECTOR)
             case "array" | "floats" | "ints" | "longs" | "wides":
-                arrays = functions_of(Argument.NUMBERS) + functions_of(Argument.ARRAY)
-                name = self.draw(st.sampled_from(arrays))
-                value = ir.Apply(name, tuple(reads), index)
+                value = self.applied(index, reads, Argument.NUMBERS, Argument.ARRAY)
             case "scan":
-                sector = (ir.Const(self.draw(unit_bearing)), ir.Const(self.draw(unit_bearing)))
-                value = ir.Apply("nearest", (*reads, *sector), index)
+                value = self.applied(index, reads, Argument.SCAN)
             case "flags":
-                name = self.draw(st.sampled_from(functions_of(Argument.ARRAY)))
-                value = ir.Apply(name, tuple(reads), index)
+                value = self.applied(index, reads, Argument.ARRAY)
             case _:
                 value = reads[0]
         for _ in range(self.draw(st.sampled_from((0, 0, 0, 1, 2)))):
             value = self.wrapped(value, index)
         return value
+
+    def applied(self, index: int, reads: list[ir.Read], *arguments: Argument) -> ir.Apply:
+        """Draw a function of a part of a message, and its parameters."""
+        name = self.draw(st.sampled_from(functions_of(*arguments)))
+        named = {self.leaves[read.leaf].path[-1]: read for read in reads}
+        wanted = FUNCTIONS[name].leaves
+        read = [named[leaf] for leaf in wanted] if all(wanted) else reads
+        return ir.Apply(name, (*read, *self.parameters(name)), index)
+
+    def parameters(self, name: str) -> tuple[ir.Const, ...]:
+        """Draw the constants in the parentheses of a function."""
+        units = [unit for _, unit in FUNCTIONS[name].parameters]
+        drawn = (unit_bearing if unit == "rad" else st.sampled_from(NUMBERS) for unit in units)
+        return tuple(ir.Const(float(self.draw(each))) for each in drawn)
 
     def wrapped(self, value: ir.ValueExpression, index: int) -> ir.ValueExpression:
         choices = (*functions_of(Argument.NUMBER), "over")
@@ -278,10 +284,10 @@ class _Drawing:
             case "scale":
                 offset = self.draw(st.sampled_from((0.0, 1.0, -0.5)))
                 return ir.Scale(value, self.draw(st.sampled_from((2.0, -1.0, 0.1))), offset)
-            case name if FUNCTIONS[name].memory is None:
-                return ir.Apply(name, (value,), index)
+            case name if FUNCTIONS[name].is_stateful:
+                return self.remembering(name, (value, *self.parameters(name)), index)
             case name:
-                return self.remembering(name, (value,), index)
+                return ir.Apply(name, (value, *self.parameters(name)), index)
 
     def remembering(
         self, function: str, arguments: tuple[ir.ValueExpression, ...], index: int

@@ -238,16 +238,16 @@ class Engine:
 
     def _follow(self, function: Apply, number: int, t_ns: int) -> None:
         """Let a function that remembers something see the message just stored."""
-        create = FUNCTIONS[function.function].memory
-        assert create is not None
-        memory = self._state.rates.setdefault(number, create())
+        if number not in self._state.memories:
+            self._state.memories[number] = FUNCTIONS[function.function].new_memory()
+        memory = self._state.memories[number]
         memory.follow(t_ns, *(evaluate_value(each, self._state) for each in function.arguments))
 
     def _make_unknown(self, each: Input) -> None:
         self._state.make_unknown(each.index)
         for function in self._functions_of(each):
             if function.state is not None:
-                self._state.rates.pop(function.state, None)
+                self._state.memories.pop(function.state, None)
 
     def _functions_of(self, each: Input) -> Iterator[Apply]:
         return (function for function in self._functions if function.input == each.index)

@@ -57,13 +57,11 @@ def evaluate_value(value: ValueExpression, state: State) -> Any:
         case Read():
             result = state.values[value.leaf]
         case Apply(state=int(number)):
-            result = state.rates[number].result if number in state.rates else None
+            result = state.memories[number].result if number in state.memories else None
         case Apply():
             arguments = [evaluate_value(each, state) for each in value.arguments]
-            evaluate = FUNCTIONS[value.function].evaluate
-            assert evaluate is not None, f"{value.function} is no function of values"
             unknown = any(each is None for each in arguments)
-            result = None if unknown else evaluate(*arguments)
+            result = None if unknown else FUNCTIONS[value.function].value(*arguments)
         case Scale():
             operand = evaluate_value(value.operand, state)
             result = None if operand is None else operand * value.factor + value.offset

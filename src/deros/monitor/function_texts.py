@@ -6,31 +6,6 @@ because whoever certifies a safety node reads them.
 
 from __future__ import annotations
 
-
-def _c_of_unit(name: str, value: str) -> str:
-    return f"""\
-static double {name}(double ux, double uy, double uz, double uw)
-{{
-  return {value};
-}}
-"""
-
-
-def _c_extreme(name: str, relation: str) -> str:
-    return f"""\
-static RESULT {name}_BASE(const ELEMENT *values, size_t count)
-{{
-  RESULT found = NONE;
-  for (size_t i = 0U; i < count; ++i) {{
-    if ((i == 0U) || (values[i] {relation} found)) {{
-      found = values[i];
-    }}
-  }}
-  return found;
-}}
-"""
-
-
 PYTHON_OF_UNIT: dict[str, tuple[str, ...]] = {
     "roll": (
         "sine = 2.0 * (uw * ux + uy * uz)",
@@ -171,35 +146,6 @@ def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
 """Definitions in Python by the function's name; ``None`` is *unknown*."""
 
 C: dict[str, str] = {
-    "roll": _c_of_unit(
-        "roll", "atan2(2.0 * ((uw * ux) + (uy * uz)), 1.0 - (2.0 * ((ux * ux) + (uy * uy))))"
-    ),
-    "pitch": _c_of_unit("pitch", "asin(clamped(2.0 * ((uw * uy) - (uz * ux))))"),
-    "yaw": _c_of_unit(
-        "yaw", "atan2(2.0 * ((uw * uz) + (ux * uy)), 1.0 - (2.0 * ((uy * uy) + (uz * uz))))"
-    ),
-    "tilt": _c_of_unit(
-        "tilt", "2.0 * atan2(sqrt((ux * ux) + (uy * uy)), sqrt((uz * uz) + (uw * uw)))"
-    ),
-    "length_of": """\
-static double length_of(double x, double y, double z, double w)
-{
-  const double length = sqrt((((x * x) + (y * y)) + (z * z)) + (w * w));
-  return ((length > 0.0) && (length < INFINITY)) ? length : NAN;
-}
-""",
-    "clamped": """\
-static double clamped(double sine)
-{
-  return (sine > 1.0) ? 1.0 : ((sine < -1.0) ? -1.0 : sine);
-}
-""",
-    "norm": """\
-static double norm(double x, double y, double z)
-{
-  return sqrt(((x * x) + (y * y)) + (z * z));
-}
-""",
     "rate": """\
 static double rate(double value, int64_t t, double *last, int64_t *last_t)
 {
@@ -310,8 +256,6 @@ static int64_t magnitude(int64_t value)
   return (value < 0) ? -value : value;
 }
 """,
-    "min": _c_extreme("least", "<"),
-    "max": _c_extreme("greatest", ">"),
     "beam": """\
 static double beam(
   double measured, double bearing, double range_min, double range_max, double start, double end)
@@ -374,11 +318,8 @@ static bool scan_usable(const float *ranges, size_t count, double range_min)
 }
 """Definitions in C99 by the function's name; ``NAN`` is *unknown*.
 
-They need ``<math.h>``, the fixed-width integers and ``bool``, and of each other: ``pitch`` needs
-``clamped``. Those of quaternions take the parts divided by ``length_of`` them, which is NaN for a
-quaternion that has no attitude. ``nearest`` needs ``beam``, which gives the distance that one beam
-of a scan shows in the sector, and ``is_number``, which says of a number that it is no NaN;
-``scan_usable`` needs ``valid_range``. Of those of arrays there is one per type of element: ``BASE``
-stands for the name of the type in ROS 2, ``ELEMENT`` for that in C, ``RESULT`` for the type of the
-result and ``NONE`` for what an empty array gives (``abs`` of an integer is ``magnitude``).
+They need ``<math.h>``, the fixed-width integers, ``bool`` and ``is_number``, which tests for a NaN.
+``nearest`` calls ``beam``, the distance that one beam of a scan shows in the sector, and
+``scan_usable`` calls ``valid_range``. ``magnitude`` is ``abs`` of an integer. What is not here is
+printed from the form of the function's row.
 """

@@ -19,7 +19,7 @@ The angles of a scan are sums of 32-bit floats; over a full turn their error sta
 
 def roll(x: float, y: float, z: float, w: float) -> float | None:
     """Return the rotation about the x axis, in radians (REP 103: fixed axes, roll-pitch-yaw)."""
-    unit = _normalised(x, y, z, w)
+    unit = normalised(x, y, z, w)
     if unit is None:
         return None
     x, y, z, w = unit
@@ -28,7 +28,7 @@ def roll(x: float, y: float, z: float, w: float) -> float | None:
 
 def pitch(x: float, y: float, z: float, w: float) -> float | None:
     """Return the rotation about the y axis, in radians, from -pi/2 to pi/2."""
-    unit = _normalised(x, y, z, w)
+    unit = normalised(x, y, z, w)
     if unit is None:
         return None
     x, y, z, w = unit
@@ -38,7 +38,7 @@ def pitch(x: float, y: float, z: float, w: float) -> float | None:
 
 def yaw(x: float, y: float, z: float, w: float) -> float | None:
     """Return the rotation about the z axis, in radians."""
-    unit = _normalised(x, y, z, w)
+    unit = normalised(x, y, z, w)
     if unit is None:
         return None
     x, y, z, w = unit
@@ -51,14 +51,15 @@ def tilt(x: float, y: float, z: float, w: float) -> float | None:
     It is acos(1 - 2(x² + y²)) of the normalised quaternion, written so that small angles keep all
     their digits.
     """
-    unit = _normalised(x, y, z, w)
+    unit = normalised(x, y, z, w)
     if unit is None:
         return None
     x, y, z, w = unit
     return 2.0 * math.atan2(math.sqrt(x * x + y * y), math.sqrt(z * z + w * w))
 
 
-def _normalised(x: float, y: float, z: float, w: float) -> tuple[float, float, float, float] | None:
+def normalised(x: float, y: float, z: float, w: float) -> tuple[float, float, float, float] | None:
+    """Return a quaternion at length 1; ``None`` for one whose length is zero or infinite."""
     # The root of the sum of squares is the same number in every language, which hypot() is not. No
     # quaternion of use is so short (1e-162) or so long (1e154) that the squares leave their range.
     length = math.sqrt(x * x + y * y + z * z + w * w)
@@ -90,14 +91,6 @@ def rate(value: float, previous: float, elapsed_ns: int) -> float | None:
         return None
     change = (value - previous) / (elapsed_ns / 1e9)
     return None if math.isnan(change) else change
-
-
-def shortest_way(change: float, turn: float) -> float | None:
-    """Return a change of an angle, brought to at most half a turn; unknown for an infinite one.
-
-    The remainder is exact. It keeps the sign of a change of exactly half a turn.
-    """
-    return math.remainder(change, turn) if math.isfinite(change) else None
 
 
 def least(values: Sequence[float]) -> float | None:

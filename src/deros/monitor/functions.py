@@ -1,23 +1,33 @@
-"""The function table: all that the rules' functions are, one row each.
+"""The function table: one row for each function that rules can call.
 
-A row says what a function may be applied to, what it yields in which unit, which fields of a
-message it reads, and what it computes: once as the reference, in
-:mod:`deros.monitor.function_values`, once as the text that each target emits. Adding a function is
-adding a row. Source: paper, section 4.2, for ``toRad``, ``toDeg``, ``roll`` and ``pitch``.
+A row states what a function applies to, the unit of its result, which fields of a message it reads,
+and what it computes. To add a function, add a row with one of three forms:
 
-Python text is the definition of a module-level function that returns ``None`` for *unknown*; its
-module imports ``math`` and, from ``collections.abc``, ``Sequence``, and as the text needs them
-``functools`` and ``numpy as np``. C text is a C99 definition
-(``<math.h>``, ``<stddef.h>``) that returns ``NAN`` for *unknown*; an array is passed as a pointer
-and a count.
+* a ``formula`` of one message (:class:`~deros.monitor.formulas.Formula`);
+* a ``step`` from one message to the next, for a function with a memory
+  (:class:`~deros.monitor.function_forms.Step`);
+* a ``loop`` over the elements of an array (:class:`~deros.monitor.function_forms.Loop`).
+
+The reference engine interprets the form. The Python and C monitors print it, the ACSL contracts are
+derived from it, the decoders read the row's ``leaves``, the random programs of the property tests
+draw the row, and the table in the documentation holds its ``usage`` and ``gives``.
+
+A row may name a text of :mod:`deros.monitor.function_texts` that is emitted instead, and a function
+of :mod:`deros.monitor.function_values` that is the reference instead; tests compare these with one
+another. A target refuses, by name, a function for which it has neither a form nor a text.
+
+Python text defines a function of the module. It returns ``None`` for *unknown* if ``may_be_none``,
+else NaN. Its module imports ``math``, ``Sequence``, ``functools`` and ``numpy as np`` as needed. C
+text is a C99 definition (``<math.h>``, ``<stddef.h>``) that returns ``NAN`` for *unknown*; an array
+is passed as a pointer and a count.
+
+Source: paper, section 4.2, for ``toRad``, ``toDeg``, ``roll`` and ``pitch``.
 """
 
 from __future__ import annotations
 
-import enum
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 from deros.interfaces.types import FieldType
@@ -25,119 +35,30 @@ from deros.monitor import function_texts as texts
 from deros.monitor import function_values as values
 from deros.monitor import memories
 from deros.monitor.bounds import Ends, bounds_of_absolute, bounds_of_length, type_bounds
+from deros.monitor.formulas import parse
+from deros.monitor.function_forms import Remembered, loop, step
+from deros.monitor.function_rows import UNIT_PARTS, Argument, Function, Guard, Result, UnitRule
 
-
-class Argument(enum.Enum):
-    """What a function is applied to; the value is how a diagnostic names it."""
-
-    CONSTANT = "a constant angle"
-    QUATERNION = "a quaternion"
-    VECTOR = "a vector"
-    NUMBER = "a number"
-    NUMBERS = "an array of numbers"
-    ARRAY = "an array"
-    SCAN = "a laser scan"
-    INPUT = "an input"
-    ANY = "an input or a function of one"
-
-
-class Result(enum.Enum):
-    """What a function yields."""
-
-    FLOAT = "float"
-    INTEGER = "integer"
-    ELEMENT = "element"  # the type of the number, or of the array's elements, it is applied to
-    BOOLEAN = "boolean"
-    DURATION = "duration"
-
-
-class UnitRule(enum.Enum):
-    """Which unit the result has."""
-
-    FIXED = "fixed"  # that of the row
-    SAME = "same"  # that of the argument
-    PER_SECOND = "per second"  # that of the argument, per second
-    NONE = "none"  # it is a plain number
-
-
-@dataclass(frozen=True, slots=True)
-class Guard:
-    """A test of a message without which the whole input is unknown and does not count.
-
-    Attributes:
-        arguments: which of the function's arguments the test takes.
-        evaluate: the reference.
-        python_call: the name that Python text defines.
-        python: the Python text.
-        c_call: the name that the C text defines.
-        c: the C text.
-    """
-
-    arguments: tuple[int, ...]
-    evaluate: Callable[..., bool]
-    python_call: str
-    python: str
-    c_call: str
-    c: str
-
-
-@dataclass(frozen=True, slots=True)
-class Function:
-    """One row of the table.
-
-    Attributes:
-        name: as the rules call it.
-        argument: what it is applied to.
-        result: the kind of its result.
-        unit_rule: how the unit of the result comes about; ``unit`` is that of a ``FIXED`` one.
-        leaves: the fields of the argument that it reads, in the order of its arguments; the empty
-            name is the argument itself.
-        parameters: the units of the constants that follow in parentheses, by name.
-        evaluate: the reference, on the leaves, then the parameters. ``None`` where the compiler
-            folds the function away (conversions) or the monitor itself keeps the answer.
-        memory: what it remembers from message to message, and computes its result with.
-        over: the row that stands for calls with an argument, where this one has none.
-        turns: whether it is an angle that jumps by a full turn where it begins anew.
-        is_written: whether rules call it; others are made of what they call.
-        nan_is_unknown: whether a NaN in the first leaf makes the input unknown.
-        bounds: least and greatest result, where the function itself bounds it.
-        bounds_from: of a function whose bounds follow from those of its leaves, how they do.
-        bearings: whether its parameters are the ends of a sector, counter-clockwise.
-        guard: what a message must satisfy to count at all.
-        python_call: what Python text calls with the arguments in order.
-        python: the definition that Python text needs; empty for what Python has built in.
-        python_of_unit: of a function of a quaternion, in place of both, lines on the parts ux, uy,
-            uz, uw of the quaternion brought to length 1; the last is the result.
-        c_call: what C text calls.
-        c: the definition that C text needs.
-    """
-
-    name: str
-    argument: Argument
-    result: Result
-    unit_rule: UnitRule
-    unit: str = ""
-    leaves: tuple[str, ...] = ()
-    parameters: tuple[tuple[str, str], ...] = ()
-    evaluate: Callable[..., float | None] | None = None
-    memory: Callable[[], memories.Memory] | None = None
-    over: str = ""
-    turns: bool = False
-    is_written: bool = True
-    nan_is_unknown: bool = True
-    bounds: tuple[float, float] = (-math.inf, math.inf)
-    bounds_from: Callable[..., Ends] | None = None
-    bearings: bool = False
-    guard: Guard | None = None
-    python_call: str = ""
-    python: str = ""
-    python_of_unit: tuple[str, ...] = ()
-    c_call: str = ""
-    c: str = ""
+__all__ = [
+    "FUNCTIONS",
+    "UNIT_PARTS",
+    "WRITTEN",
+    "Argument",
+    "Function",
+    "Guard",
+    "Result",
+    "UnitRule",
+    "result_bounds",
+    "usage_table",
+]
 
 
 def _of_quaternion(
-    name: str, evaluate: Callable[..., float | None], bounds: tuple[float, float]
+    name: str,
+    evaluate: Callable[..., float | None],
+    bounds: tuple[float, float],
+    formula: str,
+    gives: str,
 ) -> Function:
     return Function(
         name,
@@ -145,109 +66,194 @@ def _of_quaternion(
         Result.FLOAT,
         UnitRule.FIXED,
         unit="rad",
+        usage=f"q.{name}()",
+        gives=gives,
         leaves=("x", "y", "z", "w"),
+        formula=parse(formula),
         evaluate=evaluate,
         bounds=bounds,
         turns=name in ("roll", "yaw"),
         python_of_unit=texts.PYTHON_OF_UNIT[name],
         c_call=name,
-        c=texts.C[name],
     )
 
 
-def _of_numbers(name: str, evaluate: Callable[..., float | None]) -> Function:
+def _of_numbers(
+    name: str, evaluate: Callable[..., float | None], relation: str, c_call: str
+) -> Function:
     return Function(
         name,
         Argument.NUMBERS,
         Result.ELEMENT,
         UnitRule.SAME,
+        usage=f"a.{name}()",
+        gives=f"its {c_call} element",
         leaves=("",),
+        loop=loop("found", math.nan, f"element if first or element {relation} found else found"),
         evaluate=evaluate,
         python_call=f"array_{name}",
         python=texts.PYTHON[name],
-        c_call={"min": "least", "max": "greatest"}[name],
-        c=texts.C[name],
+        may_be_none=True,
+        c_call=c_call,
+        c_integer=c_call,
     )
 
 
 _ROWS = (
-    Function("toRad", Argument.CONSTANT, Result.FLOAT, UnitRule.FIXED, unit="rad"),
-    Function("toDeg", Argument.CONSTANT, Result.FLOAT, UnitRule.FIXED, unit="deg"),
-    _of_quaternion("roll", values.roll, (-math.pi, math.pi)),
-    _of_quaternion("pitch", values.pitch, (-math.pi / 2.0, math.pi / 2.0)),
-    _of_quaternion("yaw", values.yaw, (-math.pi, math.pi)),
-    _of_quaternion("tilt", values.tilt, (0.0, math.pi)),
+    Function(
+        "toRad",
+        Argument.CONSTANT,
+        Result.FLOAT,
+        UnitRule.FIXED,
+        unit="rad",
+        usage="toRad(10 deg)",
+        gives="the constant in the other unit",
+    ),
+    Function(
+        "toDeg",
+        Argument.CONSTANT,
+        Result.FLOAT,
+        UnitRule.FIXED,
+        unit="deg",
+        usage="toDeg(0.1 rad)",
+        gives="the constant in the other unit",
+    ),
+    _of_quaternion(
+        "roll",
+        values.roll,
+        (-math.pi, math.pi),
+        "atan2(2.0 * (uw * ux + uy * uz), 1.0 - 2.0 * (ux * ux + uy * uy))",
+        "an angle in rad",
+    ),
+    _of_quaternion(
+        "pitch",
+        values.pitch,
+        (-math.pi / 2.0, math.pi / 2.0),
+        "asin(clamped(2.0 * (uw * uy - uz * ux)))",
+        "an angle in rad",
+    ),
+    _of_quaternion(
+        "yaw",
+        values.yaw,
+        (-math.pi, math.pi),
+        "atan2(2.0 * (uw * uz + ux * uy), 1.0 - 2.0 * (uy * uy + uz * uz))",
+        "an angle in rad",
+    ),
+    _of_quaternion(
+        "tilt",
+        values.tilt,
+        (0.0, math.pi),
+        "2.0 * atan2(sqrt(ux * ux + uy * uy), sqrt(uz * uz + uw * uw))",
+        "the angle between the robot's z axis and the vertical, in rad",
+    ),
     Function(
         "norm",
         Argument.VECTOR,
         Result.FLOAT,
         UnitRule.SAME,
+        usage="v.norm()",
+        gives="its length",
         leaves=("x", "y", "z"),
+        formula=parse("sqrt(x * x + y * y + z * z)"),
         evaluate=values.norm,
         bounds=(0.0, math.inf),
         bounds_from=bounds_of_length,
         python_call="vector_norm",
         python=texts.PYTHON["norm"],
         c_call="norm",
-        c=texts.C["norm"],
     ),
     Function(
         "abs",
         Argument.NUMBER,
         Result.ELEMENT,
         UnitRule.SAME,
+        usage="x.abs()",
+        gives="its absolute value",
         evaluate=values.absolute,
         bounds=(0.0, math.inf),
         bounds_from=bounds_of_absolute,
         python_call="abs",
         c_call="fabs",
-    ),
-    Function(
-        "rate",
-        Argument.NUMBER,
-        Result.FLOAT,
-        UnitRule.PER_SECOND,
-        evaluate=values.rate,
-        memory=memories.Rate,
-        over="rate_over",
-        python_call="rate_per_second",
-        python=texts.PYTHON["rate"],
-        c_call="rate",
-        c=texts.C["rate"],
+        c_integer="magnitude",
     ),
     Function(
         "rate_over",
         Argument.NUMBER,
         Result.FLOAT,
         UnitRule.PER_SECOND,
+        usage="x.rate(0.1 sec)",
+        gives="its change per second over the last messages that span so much time, by their"
+        " header stamps if they have some",
         parameters=(("span", "s"),),
         memory=memories.RateOver,
+        over_span=True,
         is_written=False,
+        python_call="RateWindow",
         python=texts.PYTHON["rate_over"],
+        may_be_none=True,
+        python_needs=("rate",),
         c_call="rate_over",
         c=texts.C["rate_over"],
+    ),
+    Function(
+        "rate",
+        Argument.NUMBER,
+        Result.FLOAT,
+        UnitRule.PER_SECOND,
+        usage="x.rate()",
+        gives="its change per second between the last two arrivals; a span is usually better",
+        step=step(
+            """
+change = (value - last) / elapsed
+last = value
+change
+""",
+            Remembered("last", "the value before"),
+            exact_integers=True,
+            forgets_time=False,
+        ),
+        over="rate_over",
+        python_call="rate_per_second",
+        python=texts.PYTHON["rate"],
+        may_be_none=True,
+        c_call="rate",
+        c=texts.C["rate"],
     ),
     Function(
         "unwrapped",
         Argument.NUMBER,
         Result.FLOAT,
         UnitRule.SAME,
-        memory=memories.Unwrapped,
+        parameters=(("turn", "rad"),),
+        step=step(
+            """
+way = remainder(value - last, turn)
+total = total + way if known(way) else double(value)
+last = value
+total
+""",
+            Remembered("last", "the value before"),
+            Remembered("total", "the angle without its jumps", None),
+            exact_integers=True,
+        ),
         is_written=False,
         python_call="unwrapped",
         python=texts.PYTHON["unwrapped"],
         c_call="unwrapped",
         c=texts.C["unwrapped"],
     ),
-    _of_numbers("min", values.least),
-    _of_numbers("max", values.greatest),
+    _of_numbers("min", values.least, "<", "least"),
+    _of_numbers("max", values.greatest, ">", "greatest"),
     Function(
         "count",
         Argument.ARRAY,
         Result.INTEGER,
         UnitRule.NONE,
+        usage="a.count()",
+        gives="its length",
         leaves=("",),
         evaluate=values.count,
+        reads_length=True,
         nan_is_unknown=False,
         bounds=(0.0, math.inf),
         python_call="len",
@@ -258,6 +264,8 @@ _ROWS = (
         Result.FLOAT,
         UnitRule.FIXED,
         unit="m",
+        usage="scan.nearest(-30 deg, 30 deg)",
+        gives="the least valid range between two bearings, in m",
         leaves=("ranges", "angle_min", "angle_increment", "range_min", "range_max"),
         parameters=(("start", "rad"), ("end", "rad")),
         evaluate=values.nearest,
@@ -274,14 +282,39 @@ _ROWS = (
         ),
         python_call="scan_nearest",
         python=texts.PYTHON["nearest"],
+        may_be_none=True,
         c_call="nearest",
         c=texts.C["nearest"],
     ),
     Function(
-        "age", Argument.INPUT, Result.DURATION, UnitRule.FIXED, unit="s", bounds=(0.0, math.inf)
+        "age",
+        Argument.INPUT,
+        Result.DURATION,
+        UnitRule.FIXED,
+        unit="s",
+        usage="i.age()",
+        gives="the time since its last message; compared with a constant only",
+        subject="any input",
+        bounds=(0.0, math.inf),
     ),
-    Function("missing", Argument.INPUT, Result.BOOLEAN, UnitRule.NONE),
-    Function("unknown", Argument.ANY, Result.BOOLEAN, UnitRule.NONE),
+    Function(
+        "missing",
+        Argument.INPUT,
+        Result.BOOLEAN,
+        UnitRule.NONE,
+        usage="i.missing()",
+        gives="whether the timeout has passed",
+        subject="an input with a timeout",
+    ),
+    Function(
+        "unknown",
+        Argument.ANY,
+        Result.BOOLEAN,
+        UnitRule.NONE,
+        usage="x.unknown()",
+        gives="whether its value is unknown, for whatever reason",
+        subject="an input with a timeout, or a function of one",
+    ),
 )
 
 FUNCTIONS: Mapping[str, Function] = {row.name: row for row in _ROWS}
@@ -302,3 +335,20 @@ def result_bounds(row: Function, kind: FieldType, *arguments: Ends) -> Ends:
         Fraction(least) if math.isfinite(least) else least,
         Fraction(greatest) if math.isfinite(greatest) else greatest,
     )
+
+
+def usage_table() -> str:
+    """Return the table of the documentation: how each function is written, on what, what it gives.
+
+    Functions in a row that apply to the same and give the same share a line.
+    """
+    lines: dict[tuple[str, str], list[str]] = {}
+    for row in FUNCTIONS.values():
+        if row.usage:
+            subject = row.subject or _SUBJECTS.get(row.argument, row.argument.value)
+            lines.setdefault((subject, row.gives), []).append(f"`{row.usage}`")
+    rows = [f"| {', '.join(usages)} | {on} | {gives} |" for (on, gives), usages in lines.items()]
+    return "\n".join(["| function | of | value |", "|---|---|---|", *rows])
+
+
+_SUBJECTS = {Argument.CONSTANT: "a constant"}

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from deros.interfaces.durations import NS_PER_S
-from deros.monitor.function_values import rate, shortest_way
+from deros.monitor.function_values import rate
 
 SAMPLES = 9
 """The most samples that a rate over a span of time keeps."""
@@ -29,53 +29,6 @@ class Memory(Protocol):
 
     def follow(self, t_ns: int, /, *arguments: float | None) -> None:
         """Take the function's arguments, as a message that came at ``t_ns`` gives them."""
-
-
-class Rate:
-    """``rate()``: the change per second between the last two messages, by when they came.
-
-    Unknown for two messages of one instant, and from an infinity to itself.
-    """
-
-    def __init__(self) -> None:
-        """Remember no message."""
-        self.result: float | None = None
-        self._at_ns: int | None = None
-        self._value: float | None = None
-
-    def follow(self, t_ns: int, *arguments: float | None) -> None:
-        """Take the value of a message."""
-        (value,) = arguments
-        self.result = None
-        if self._at_ns is not None and self._value is not None and value is not None:
-            self.result = rate(value, self._value, t_ns - self._at_ns)
-        self._at_ns, self._value = t_ns, value
-
-
-class Unwrapped:
-    """An angle without its jumps: from message to message it goes the shortest way round.
-
-    It begins with the angle itself. A change of exactly half a turn keeps its sign. An infinity is
-    taken as it is, and after one it begins anew.
-    """
-
-    def __init__(self) -> None:
-        """Remember no message."""
-        self.result: float | None = None
-        self._value: float | None = None
-
-    def follow(self, _t_ns: int, *arguments: float | None) -> None:
-        """Take the angle of a message, and a full turn."""
-        value, turn = arguments
-        assert turn is not None  # a constant
-        way = None
-        if value is not None and self._value is not None:
-            way = shortest_way(value - self._value, turn)
-        if way is not None and self.result is not None:
-            self.result += way
-        else:
-            self.result = None if value is None else float(value)
-        self._value = value
 
 
 class RateOver:

@@ -7,6 +7,7 @@ import re
 from deros.interfaces.durations import seconds_text
 from deros.monitor import walk
 from deros.monitor.evaluate import evaluate_condition, evaluate_value
+from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import (
     Age,
     Apply,
@@ -88,9 +89,10 @@ def _field_name(program: Program, read: Read) -> str:
 
 
 def _function_name(program: Program, function: Apply) -> str:
-    if function.function in ("unwrapped", "rate_over"):  # as rules call what they stand for
+    row = FUNCTIONS[function.function]
+    if not row.is_written:  # named as in the rules
         subject = _operand_name(program, function.arguments[0])
-        return subject if function.function == "unwrapped" else _rate_over_name(subject, function)
+        return _name_over_span(subject, function) if row.over_span else subject
     subject = program.inputs[function.input].name
     constants = [each for each in function.arguments if isinstance(each, Const)]
     operands = [each for each in function.arguments if not isinstance(each, Const)]
@@ -100,11 +102,12 @@ def _function_name(program: Program, function: Apply) -> str:
     return f"{subject}.{function.function}({written})"
 
 
-def _rate_over_name(subject: str, function: Apply) -> str:
+def _name_over_span(subject: str, function: Apply) -> str:
+    name = next(row.name for row in FUNCTIONS.values() if row.over == function.function)
     span = function.arguments[1]
     assert isinstance(span, Const)
     assert isinstance(span.value, int)
-    return f"{subject}.rate({seconds_text(span.value)})"
+    return f"{subject}.{name}({seconds_text(span.value)})"
 
 
 def _operand_name(program: Program, value: ValueExpression) -> str:

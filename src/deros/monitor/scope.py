@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from deros import codes
@@ -24,7 +24,7 @@ from deros.metamodels.common import Name
 from deros.metamodels.flatten import resolve_name
 from deros.monitor import ir
 from deros.monitor.bounds import rounded
-from deros.monitor.resolved import DeclaredInput
+from deros.monitor.resolved import DeclaredInput, Quantity
 from deros.monitor.topics import SystemTopics
 
 _HEADER = InterfaceType("std_msgs", "msg", "Header")
@@ -345,6 +345,13 @@ class Scope:
         elif nan_is_unknown and not self.leaves[index].nan_is_unknown:
             self.leaves[index] = dataclasses.replace(self.leaves[index], nan_is_unknown=True)
         return ir.Read(index)
+
+    def constants_of(
+        self, units: Iterable[tuple[str, str]], values: Iterable[Quantity]
+    ) -> Iterator[ir.Const]:
+        """Yield the constants in a function's parentheses, each in the unit that its row states."""
+        for value, (_, unit) in zip(values, units, strict=True):
+            yield ir.Const(rounded(value.in_unit(self.units.parse(unit))))
 
     def stamp(self, each: DeclaredInput) -> tuple[ir.Read, ...]:
         """Return seconds and nanoseconds of a message's header; nothing if its type has none."""

@@ -43,7 +43,7 @@ class State:
     Attributes:
         values: of each leaf, ``None`` while its input is unknown.
         inputs: of each input.
-        rates: of each function with a ``state`` number.
+        memories: of each function with a ``state`` number.
         since: of each ``For``, since when its operand has been true without a break.
         verdicts: of each rule, as of the last event.
         turned_ns: of each rule, when it last became true or ceased to be; the start, or the last
@@ -68,7 +68,7 @@ class State:
         self.turned_ns = [t_ns] * len(self._program.rules)
         self.values: list[LeafValue] = [None] * len(self._program.leaves)
         self.inputs = [InputState(t_ns + grace_ns) for _ in self._program.inputs]
-        self.rates: dict[int, Memory] = {}
+        self.memories: dict[int, Memory] = {}
         self.since: dict[int, int] = {}
 
     def make_unknown(self, index: int) -> None:

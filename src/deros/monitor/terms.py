@@ -15,7 +15,7 @@ from deros.metamodels import rules
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.monitor import ir, shapes
 from deros.monitor.bearings import check_sector
-from deros.monitor.bounds import Ends, bounds_of_change, rounded, type_bounds
+from deros.monitor.bounds import Ends, bounds_of_change, type_bounds
 from deros.monitor.functions import (
     FUNCTIONS,
     WRITTEN,
@@ -365,17 +365,19 @@ class Terms:
         unit = self._unit(row, operand.unit)
         arguments: list[ir.ValueExpression] = [operand.expression]
         bounds = result_bounds(row, kind, operand.bounds)
-        if row.memory is not None and operand.turn is not None:
+        if row.is_stateful and operand.turn is not None:
             turn = (operand.expression, ir.Const(operand.turn))
             arguments = [self._applied("unwrapped", turn, operand)]
-        if parameters:
+        if row.over_span:
             span_ns = self._span_ns(call.arguments[0], parameters[0])
             if span_ns is None:
                 return None
             arguments += [ir.Const(span_ns), *self._scope.stamp(operand.input)]
             if operand.turn is None:
                 bounds = bounds_of_change(operand.bounds, Fraction(span_ns, 10**9))
-        elif row.over:
+        else:
+            arguments += self._scope.constants_of(row.parameters, parameters)
+        if row.over:
             self._scope.fault(
                 codes.RATE_OF_ARRIVALS,
                 f"'{call.span.text}' divides by the time between two arrivals, which may be next to"
@@ -391,7 +393,7 @@ class Terms:
         self, function: str, arguments: Iterable[ir.ValueExpression], operand: Value
     ) -> ir.Apply:
         state = None
-        if FUNCTIONS[function].memory is not None:
+        if FUNCTIONS[function].is_stateful:
             state = self._states
             self._states += 1
         return ir.Apply(function, tuple(arguments), self._scope.use(operand.input), state)
@@ -424,9 +426,7 @@ class Terms:
             nan_is_unknown = row.nan_is_unknown or not kind.is_array
             arguments.append(self._scope.read(part.input, path, kind, nan_is_unknown))
         owner = self._scope.use(part.input)
-        for parameter, (_, wanted) in zip(parameters, row.parameters, strict=True):
-            exact = parameter.in_unit(self._scope.units.parse(wanted))
-            arguments.append(ir.Const(rounded(exact)))
+        arguments += self._scope.constants_of(row.parameters, parameters)
         applied = ir.Apply(row.name, tuple(arguments), owner)
         first = (*part.path, row.leaves[0]) if row.leaves[0] else part.path
         unit = self._unit(row, self._scope.unit_of(part.input.topic, part.input.type, first))

@@ -126,7 +126,7 @@ def _reason(function: AppliedFunction) -> str:
 
 def _header(function: ir.Apply) -> tuple[ir.ValueExpression, ...]:
     """Return the header fields that a rate over a span reads; none for other functions."""
-    return function.arguments[2:] if function.function == "rate_over" else ()
+    return function.arguments[2:] if FUNCTIONS[function.function].over_span else ()
 
 
 def _key(function: ir.Apply) -> _Key:

@@ -7,8 +7,9 @@ instead, and the two are proved to agree.
 
 from __future__ import annotations
 
-from deros.generators.monitor.c.expressions import SYMBOLS, known_of, number
+from deros.generators.monitor.c.expressions import SYMBOLS, known_of
 from deros.generators.monitor.c.layout import Layout, compared
+from deros.generators.monitor.c.literals import number
 from deros.monitor.ir import (
     Age,
     And,

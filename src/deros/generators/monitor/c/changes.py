@@ -5,8 +5,10 @@ The earlier moment is that of the call in a contract (``\old``), and ``Before`` 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 
+from deros.generators.monitor.c.acsl_terms import constant
 from deros.generators.monitor.c.contracts import all_of, any_of, iff
 from deros.generators.monitor.c.predicates import Predicates, predicate
 from deros.generators.monitor.c.view import Forget, MonitorView, Timeout
@@ -145,13 +147,14 @@ class Changes:
             found += [f"m->{name} == 0" for name in (fields.came, fields.missing) if name]
         found += [f"m->{name} == m->now" for name in layout.turned.values()]
         memories = layout.memories.values()
-        found += [f"m->{each.last_t} == m->now" for each in memories if each.last_t]
+        times = [each.last_t for each in memories if each.last_t and not each.forgotten_t]
+        found += [f"m->{name} == m->now" for name in times]
         return found + [each for forget in self._view.forgets for each in self.forgotten(forget)]
 
     def forgotten(self, forget: Forget) -> list[str]:
         """Return that no value of an input is known, and none is remembered."""
-        last = [f"\\is_NaN(m->{name})" for name in forget.last]
-        return [*(f"m->{name} == 0" for name in (*forget.known, *forget.counts)), *last]
+        cleared = [f"m->{name} == 0" for name in (*forget.known, *forget.counts)]
+        return [*cleared, *(text for _, text in _forgotten_numbers(forget))]
 
     def forgets_of(self, function: str) -> list[Forget]:
         """Return what a function forgets; nothing if it is empty, since there is none."""
@@ -166,9 +169,9 @@ class Changes:
         for forget in self.forgets_of(timeout.forget):
             cleared = (*forget.known, *forget.counts)
             found += [f"m->{name} == ({gone} ? 0 : \\old(m->{name}))" for name in cleared]
-            for name in forget.last:
-                kept = f"same(m->{name}, \\old(m->{name}))"
-                found.append(f"({gone} ==> \\is_NaN(m->{name})) && (!{gone} ==> {kept})")
+            for name, forgotten in _forgotten_numbers(forget):
+                kept = self.same([name])[1:-1]
+                found.append(f"({gone} ==> {forgotten}) && (!{gone} ==> {kept})")
         return found
 
     def emission_done(self) -> list[str]:
@@ -220,6 +223,15 @@ class Changes:
 
     def _macro(self, name: str) -> str:
         return self._predicates.macro(name)
+
+
+def _forgotten_numbers(forget: Forget) -> Iterator[tuple[str, str]]:
+    """Yield the fields of functions with a step, each with what holds once it is forgotten."""
+    for name, value in forget.doubles:
+        is_unknown = f"\\is_NaN(m->{name})"
+        yield name, is_unknown if math.isnan(value) else f"same(m->{name}, {constant(value)})"
+    for name in forget.times:
+        yield name, f"m->{name} == -1"
 
 
 def _since(text: str) -> str:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from deros.generators.monitor.c.layout import Layout, compared, type_of
+from deros.generators.monitor.c.literals import integer, literal, number
 from deros.generators.text.c import Call, Expression, Infix
 from deros.monitor.evaluate import COMPARE
-from deros.monitor.functions import FUNCTIONS, Argument
+from deros.monitor.functions import FUNCTIONS, Argument, Result
 from deros.monitor.ir import (
     Age,
     And,
@@ -41,27 +41,6 @@ SYMBOLS: dict[Operator, str] = {
     ">": ">",
     ">=": ">=",
 }
-
-
-def number(value: float) -> str:
-    """Return the literal of a double: the shortest text that reads back as the same number."""
-    if math.isinf(value):
-        return "-INFINITY" if value < 0 else "INFINITY"
-    return repr(value)
-
-
-def integer(value: int) -> str:
-    """Return the literal of an ``int64_t``."""
-    if value == -(2**63):
-        return "(-INT64_C(9223372036854775807) - INT64_C(1))"
-    return f"INT64_C({value})" if value >= 0 else f"-INT64_C({-value})"
-
-
-def literal(value: bool | int | float) -> str:
-    """Return the literal of a constant."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return integer(value) if isinstance(value, int) else number(value)
 
 
 class Conditions:
@@ -247,11 +226,14 @@ def expression(value: ValueExpression, program: Program, arguments: Arguments) -
         case Apply():
             if value in arguments.computed:
                 return arguments.computed[value]
-            if value.function == "count":
-                (array,) = value.arguments
+            if FUNCTIONS[value.function].reads_length:
+                array = value.arguments[0]
                 assert isinstance(array, Read)
                 return f"(int64_t){arguments.counts[array.leaf]}"
-            texts = [expression(each, program, arguments) for each in value.arguments]
+            row = FUNCTIONS[value.function]
+            is_cast = row.argument is Argument.NUMBER and type_of(program, value) == "double"
+            text_of = as_double if is_cast else expression
+            texts = [text_of(each, program, arguments) for each in value.arguments]
             if value.arguments in arguments.lengths:
                 texts = [f"{text} / {arguments.lengths[value.arguments]}" for text in texts]
             return f"{function_name(value, program)}({', '.join(texts)})"
@@ -270,8 +252,9 @@ def present(value: ValueExpression, program: Program, arguments: Arguments) -> s
     """Return what must hold for an integer to be known: that arrays with a least have elements."""
     if type_of(program, value) == "double" or not isinstance(value, Apply):
         return ""
-    (operand,) = value.arguments
-    if value.function not in ("min", "max"):
+    operand = value.arguments[0]
+    row = FUNCTIONS[value.function]
+    if row.loop is None or row.result is not Result.ELEMENT:
         return present(operand, program, arguments)
     assert isinstance(operand, Read)
     return f"({arguments.counts[operand.leaf]} > 0U)"
@@ -280,9 +263,9 @@ def present(value: ValueExpression, program: Program, arguments: Arguments) -> s
 def function_name(value: Apply, program: Program) -> str:
     """Return the name of the C function that computes a value; arrays have one per element type."""
     row, first = FUNCTIONS[value.function], value.arguments[0]
-    if value.function == "abs" and type_of(program, first) != "double":
-        return "magnitude"
+    if row.argument is Argument.NUMBER and type_of(program, value) != "double":
+        return row.c_integer
     if row.argument is Argument.NUMBERS:
         assert isinstance(first, Read)
-        return f"{row.c_call}_{program.leaves[first.leaf].type.base}"
-    return row.c_call
+        return f"{row.c_name}_{program.leaves[first.leaf].type.base}"
+    return row.c_name

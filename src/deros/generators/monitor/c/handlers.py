@@ -214,7 +214,7 @@ class _Writer:
             return True
         return any(
             isinstance(value, Apply)
-            and value.function != "count"
+            and not FUNCTIONS[value.function].reads_length
             and Read(leaf.index) in value.arguments
             for value in walk.values(walk.conditions(self._program))
         )
@@ -286,20 +286,17 @@ class _Writer:
         yield from self._lengths(each)
         for value, memory in self._layout.memories_of(each.index).items():
             yield from self._angle(value.arguments[0])
-            operand = as_double(value.arguments[0], self._program, self._arguments)
-            parts = (memory.last, "rate")
-            arguments = [operand, "m->now", f"&m->{memory.last}", f"&m->{memory.last_t}"]
-            if memory.window:
-                parts = (memory.window, "rate")
+            arguments = [as_double(value.arguments[0], self._program, self._arguments)]
+            if memory.row.over_span:
                 span = expression(value.arguments[1], self._program, self._arguments)
-                arguments = [operand, self._stamp(value), span, f"&m->{memory.window}"]
-            elif memory.total:
-                parts = ("new", memory.total)
-                turn = expression(value.arguments[1], self._program, self._arguments)
-                arguments = [operand, turn, f"&m->{memory.last}", f"&m->{memory.total}"]
-            name = self._names.new(*parts)
-            call = f"{FUNCTIONS[value.function].c_call}({', '.join(arguments)})"
-            yield f"  const double {name} = {call};"
+                arguments += [self._stamp(value), span]
+            else:
+                constants = value.arguments[1:]
+                arguments += [expression(c, self._program, self._arguments) for c in constants]
+                arguments += ["m->now"] if memory.last_t else []
+            arguments += [f"&m->{name}" for name in memory.names]
+            name = self._names.new(memory.names[0], memory.row.name)
+            yield f"  const double {name} = {memory.row.c_name}({', '.join(arguments)});"
             self._arguments.computed[value] = name
         known = self._layout.inputs[each.index].known
         if known:

@@ -9,12 +9,15 @@ import re
 from collections.abc import Iterable, Iterator
 
 from deros.generators.monitor.c import quantities, scans, windows
+from deros.generators.monitor.c.acsl_formulas import loop_contract, loop_invariants, step_contract
+from deros.generators.monitor.c.formulas import printed, shared_texts
 from deros.generators.monitor.c.layout import ELEMENTS
 from deros.interfaces.types import FLOAT_TYPES
-from deros.monitor import walk
+from deros.monitor.formulas import SHARED
+from deros.monitor.function_forms import LENGTH_OF
 from deros.monitor.function_texts import C
-from deros.monitor.functions import FUNCTIONS, Argument
-from deros.monitor.ir import Apply, Program, Read
+from deros.monitor.functions import FUNCTIONS, Argument, Function
+from deros.monitor.ir import Program
 
 _IS_NUMBER = """\
 /* Tells whether a number is one: no comparison holds of a NaN. */
@@ -271,23 +274,25 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     yield "is_text", _IS_TEXT
     for kind, type_ in _STORED.items():
         yield f"store_{kind}", _PUT.replace("KIND", kind).replace("TYPE", type_)
-    for name in ("length_of", "clamped"):
-        yield name, quantities.contract(name, _PARTS[name]) + C[name]
-    for row in FUNCTIONS.values():
-        if row.c and row.memory is None and row.argument in _PLAIN:
-            yield row.c_call, quantities.contract(row.c_call, _PARTS.get(row.c_call, "")) + row.c
+    parameters = {"length_of": LENGTH_OF[0], **{name: each for name, (each, _) in SHARED.items()}}
+    for name, text in shared_texts():
+        yield name, quantities.contract(name, parameters[name]) + text
+    rows = [row for row in FUNCTIONS.values() if row.argument in _OF_NUMBERS and printed(row)]
+    for row in rows:
+        if not row.is_stateful:
+            yield row.c_name, _contract(row) + printed(row)
     yield "magnitude", _MAGNITUDE + C["magnitude"]
-    yield "rate", _RATE + C["rate"]
-    yield "unwrapped", windows.UNWRAPPED + C["unwrapped"]
+    for row in rows:
+        if row.step is not None:
+            yield row.c_name, _contract(row) + printed(row)
     yield "between", windows.BETWEEN + C["between"]
     yield "stamp_of", windows.STAMP_OF + C["stamp_of"]
     yield "base_of", windows.BASE_OF + windows.with_loop("base_of", C["base_of"])
     yield "drop", windows.DROP + windows.with_loop("drop", C["drop"])
     yield "keep", windows.KEEP + C["keep"]
     yield "rate_over", windows.RATE_OVER + C["rate_over"]
-    for base in _extremes(program):
-        for name, call in (("min", "least"), ("max", "greatest")):
-            yield f"{call}_{base}", _of_elements(_ARRAY + _with_loop(C[name], "i, found"), base)
+    for row, base in quantities.loops_of(program):
+        yield f"{row.c_name}_{base}", _of_array(row, base)
     yield "beam", scans.BEAM + C["beam"]
     yield (
         "nearest",
@@ -307,15 +312,28 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     yield "turned", _TURNED
 
 
-_PLAIN = (Argument.NUMBER, Argument.QUATERNION, Argument.VECTOR)
+_OF_NUMBERS = (Argument.NUMBER, Argument.QUATERNION, Argument.VECTOR)
 """What functions without a loop are applied to."""
 
-_PARTS = {
-    "length_of": "x, y, z, w",
-    "clamped": "sine",
-    **dict.fromkeys(("roll", "pitch", "yaw"), "ux, uy, uz, uw"),
-}
-"""The parameters of the functions of which it is stated what number they give."""
+
+def _contract(row: Function) -> str:
+    """Return the contract of a function without a loop."""
+    if row.c:
+        return _BY_HAND.get(row.c_name, "/*@ assigns \\nothing; */\n")
+    if row.step is not None:
+        return step_contract(row, row.step)
+    return quantities.contract(row.c_name, row.variables)
+
+
+def _of_array(row: Function, base: str) -> str:
+    """Return a function of arrays, with its contract, for one type of elements."""
+    if row.loop is None:
+        return _of_elements(_ARRAY + row.c, base)
+    is_float = base in FLOAT_TYPES
+    kept = loop_invariants(row, row.loop, base, is_float)
+    text = _with_loop(printed(row), f"i, {row.loop.accumulator}", kept)
+    return loop_contract(row, base, is_float) + _of_elements(text, base)
+
 
 _ARRAY = """\
 /*@ requires \\valid_read(values + (0 .. count - 1));
@@ -341,15 +359,8 @@ _RATE = """\
 """.replace("CHANGE", quantities.change_per_second("\\old(*last)", "t - \\old(*last_t)"))
 
 
-def _extremes(program: Program) -> list[str]:
-    """Return the element types of the arrays whose least or greatest element is asked for."""
-    found: set[str] = set()
-    for value in walk.values(walk.conditions(program)):
-        if isinstance(value, Apply) and value.function in ("min", "max"):
-            read = value.arguments[0]
-            assert isinstance(read, Read)
-            found.add(str(program.leaves[read.leaf].type.base))
-    return sorted(found)
+_BY_HAND = {"rate": _RATE, "unwrapped": windows.UNWRAPPED}
+"""The contracts of functions with a memory whose text is written by hand."""
 
 
 def _of_elements(text: str, base: str) -> str:

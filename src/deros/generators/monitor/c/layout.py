@@ -12,7 +12,8 @@ from deros.generators.monitor.c.names import new_names, prefix_of
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, STRING_TYPES, FieldType
 from deros.monitor import walk
-from deros.monitor.functions import FUNCTIONS, Result
+from deros.monitor.function_forms import Remembered
+from deros.monitor.functions import FUNCTIONS, Function, Result
 from deros.monitor.ir import (
     Age,
     Apply,
@@ -93,24 +94,41 @@ class InputFields:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """What a function remembers; the names are empty where it does not.
+    """The fields that a function remembers something in.
 
     Attributes:
-        last: the value of the message before.
-        last_t: when it came.
-        total: an angle without its jumps.
-        window: the samples of a rate over a span of time.
+        row: of the function.
+        doubles: what its step remembers, each with the name of the field.
+        last_t: the time of the last message; empty if the step does not ask for it.
+        window: the samples in a span of time; empty if the function does not keep any.
     """
 
-    last: str = ""
+    row: Function
+    doubles: tuple[tuple[Remembered, str], ...] = ()
     last_t: str = ""
-    total: str = ""
     window: str = ""
 
     @property
-    def numbers(self) -> list[str]:
-        """The fields that are numbers."""
-        return [name for name in (self.last, self.last_t, self.total) if name]
+    def names(self) -> tuple[str, ...]:
+        """The names of all fields, in the order in which the function takes pointers to them."""
+        doubles = (name for _, name in self.doubles)
+        return tuple(name for name in (*doubles, self.last_t, self.window) if name)
+
+    @property
+    def numbers(self) -> tuple[str, ...]:
+        """The names of the fields that are numbers."""
+        return tuple(name for name in self.names if name != self.window)
+
+    @property
+    def forgotten(self) -> dict[str, float]:
+        """The fields that are set to a number when the input becomes unknown."""
+        return {name: each.initial for each, name in self.doubles if each.initial is not None}
+
+    @property
+    def forgotten_t(self) -> str:
+        """The field of a time that is forgotten with the input, if it has one."""
+        step = self.row.step
+        return self.last_t if step is not None and step.forgets_time else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +197,7 @@ def lay_out(program: Program) -> Layout:
     for value in walk.values(walk.conditions(program)):
         if isinstance(value, Apply) and value.state is not None and value not in layout.memories:
             name = program.inputs[value.input].name
-            layout.memories[value] = MEMORIES[value.function](name, layout.names)
+            layout.memories[value] = _memory(FUNCTIONS[value.function], name, layout.names)
     for condition in walk.conditions(program):
         _name_finding(condition, layout)
     for each in program.inputs:
@@ -193,20 +211,11 @@ def lay_out(program: Program) -> Layout:
     return layout
 
 
-def _window(name: str, names: UniqueNames) -> Memory:
-    return Memory(window=names.new(name, "window"))
-
-
-def _total(name: str, names: UniqueNames) -> Memory:
-    return Memory(names.new(name, "last"), total=names.new(name, "total"))
-
-
-def _before(name: str, names: UniqueNames) -> Memory:
-    return Memory(names.new(name, "last"), names.new(name, "last_t"))
-
-
-MEMORIES = {"rate": _before, "rate_over": _window, "unwrapped": _total}
-"""The functions that remember something, and what makes the names of their fields."""
+def _memory(row: Function, name: str, names: UniqueNames) -> Memory:
+    if row.step is None:
+        return Memory(row, window=names.new(name, "window"))
+    doubles = tuple((each, names.new(name, each.name)) for each in row.step.memory)
+    return Memory(row, doubles, names.new(name, "last_t") if row.step.is_timed else "")
 
 
 def compared(condition: Condition) -> list[ValueExpression]:

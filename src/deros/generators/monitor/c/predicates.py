@@ -128,6 +128,7 @@ class Predicates:
         sinces = set(self._layout.since.values())
         free = {term.name for term in self._layout.terms.values()} | {"due"}
         free |= set(self._layout.turned.values())
+        times = {each.forgotten_t for each in self._layout.memories.values()}
         found = []
         for name in names:
             if name.endswith(".count"):  # of a rate's samples
@@ -140,6 +141,8 @@ class Predicates:
                 found.append(f"(m->{name} == 0 || m->{name} == 1)")
             elif kind.endswith("_verdict"):
                 found.append(f"is_verdict(m->{name})")
+            elif name in times:
+                found.append(f"-1 <= m->{name} <= {latest}")
             elif kind == "int64_t" and name not in free:
                 found.append(f"0 <= m->{name} <= {latest}")
         return found

@@ -145,7 +145,9 @@ class _Writer:
         for each in self._view.timeouts:
             known = [name for f in self.changes.forgets_of(each.forget) for name in f.known]
             last = [
-                name for f in self.changes.forgets_of(each.forget) for name in (*f.last, *f.counts)
+                name
+                for f in self.changes.forgets_of(each.forget)
+                for name in (*f.remembered, *f.counts)
             ]
             names += [each.base, each.missing, *known]
             changed += [each.missing, *known, *last]

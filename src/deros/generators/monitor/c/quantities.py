@@ -1,28 +1,22 @@
-"""How the values that rules read are computed, in ACSL: by relations between double numbers.
+"""The values that rules read, in ACSL: the predicate of each function, and what it is applied to.
 
-In ACSL an equation of doubles is one of real numbers, which says nothing of NaN. So what a function
-gives is stated by a predicate, ``is_roll(r, x, y, z, w)``, and that two numbers are the same by
-``same()``: equal under any function of them whatever.
+What a function gives is stated by a predicate, ``is_roll(r, x, y, z, w)``, derived from its row.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
+from deros.generators.monitor.c.acsl_formulas import called_by, formula_predicate, loop_declarations
+from deros.generators.monitor.c.acsl_terms import constant, of
 from deros.generators.monitor.c.contracts import wrapped
+from deros.generators.monitor.c.layout import ELEMENTS
+from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
-from deros.monitor.functions import FUNCTIONS, Argument
+from deros.monitor.formulas import SHARED, Formula
+from deros.monitor.function_forms import LENGTH_OF
+from deros.monitor.functions import FUNCTIONS, Argument, Function
 from deros.monitor.ir import Apply, Const, Program, Read, Scale, ValueExpression
-
-
-def constant(value: float | str) -> str:
-    """Return a constant as a double."""
-    return f"(double){value!r}" if isinstance(value, float) else f"(double){value}"
-
-
-def of(operation: str, first: str, second: str) -> str:
-    """Return an operation on two doubles, rounded as C rounds it."""
-    return f"\\{operation}_double({first}, {second})"
 
 
 def change_per_second(previous: str, elapsed: str) -> str:
@@ -32,96 +26,87 @@ def change_per_second(previous: str, elapsed: str) -> str:
     return change.replace(", \\div", ",\n      \\div")
 
 
-def _sum(*parts: str) -> str:
-    total = parts[0]
-    for part in parts[1:]:
-        total = of("add", total, part)
-    return total
+def _formula_of(row: Function) -> tuple[tuple[str, ...], Formula] | None:
+    """Return the parameters and the formula of a row that is printed from one."""
+    formula = row.strict_formula if not row.c else None
+    return (row.variables, formula) if formula is not None else None
 
 
-def _product(first: str, second: str) -> str:
-    return of("mul", first, second)
+def _used(program: Program) -> dict[str, tuple[tuple[str, ...], Formula]]:
+    """Return the formulas that a program calls, by the names of the functions, callees first."""
+    found: dict[str, tuple[tuple[str, ...], Formula]] = {}
+    for value in walk.values(walk.conditions(program)):
+        row = FUNCTIONS[value.function] if isinstance(value, Apply) else None
+        own = _formula_of(row) if row is not None else None
+        if row is None or own is None:
+            continue
+        for name in called_by(own[1]):
+            found[name] = SHARED[name]
+        if row.argument is Argument.QUATERNION:
+            found["length_of"] = LENGTH_OF
+        found[row.c_name] = own
+    return found
 
 
-ONE, TWO, ZERO = constant(1.0), constant(2.0), constant(0.0)
-INFINITY, NAN = of("div", ONE, ZERO), of("div", ZERO, ZERO)
+def _loops(program: Program) -> Iterator[list[str]]:
+    """Yield the declarations of functions of arrays, one for each type of elements."""
+    for row, base in loops_of(program):
+        if row.loop is not None and base in FLOAT_TYPES:
+            yield loop_declarations(row, row.loop, base, ELEMENTS[base])
 
 
-def _angle(above: tuple[str, str, str, str], first: str, second: str) -> str:
-    """Return roll or yaw: atan2(2 (a b + c d), 1 - 2 (e e + f f))."""
-    a, b, c, d = above
-    sine = _product(TWO, _sum(_product(a, b), _product(c, d)))
-    squares = _sum(_product(first, first), _product(second, second))
-    return f"is_atan2(r, {sine}, {of('sub', ONE, _product(TWO, squares))})"
-
-
-def _usable(length: str) -> str:
-    return f"\\gt_double({length}, {ZERO}) && \\lt_double({length}, {INFINITY})"
-
-
-_SQUARES = _sum(*(_product(each, each) for each in "xyzw"))
-_SINE = _product(TWO, of("sub", _product("uw", "uy"), _product("uz", "ux")))
-_PARTS = "double r, double ux, double uy, double uz, double uw"
-
-PREDICATES = {
-    "clamped": (
-        "double r, double sine",
-        f"(\\gt_double(sine, {ONE}) ==> same(r, {ONE})) && "
-        f"(\\lt_double(sine, {constant(-1.0)}) ==> same(r, {constant(-1.0)})) && "
-        f"(!\\gt_double(sine, {ONE}) && !\\lt_double(sine, {constant(-1.0)}) ==> same(r, sine))",
-    ),
-    "length_of": (
-        "double r, double x, double y, double z, double w",
-        f"\\exists double l; is_sqrt(l, {_SQUARES}) && ({_usable('l')} ==> same(r, l)) && "
-        f"(!({_usable('l')}) ==> same(r, {NAN}))",
-    ),
-    "roll": (_PARTS, _angle(("uw", "ux", "uy", "uz"), "ux", "uy")),
-    "yaw": (_PARTS, _angle(("uw", "uz", "ux", "uy"), "uy", "uz")),
-    "pitch": (_PARTS, f"\\exists double c; is_clamped(c, {_SINE}) && is_asin(r, c)"),
-}
-"""Of each function, the parameters of the predicate ``is_...`` and what it says."""
-
-_NEEDS = {"pitch": ("clamped",)}
+def loops_of(program: Program) -> list[tuple[Function, str]]:
+    """Return the functions of arrays that a program calls, each with a type of elements."""
+    found: set[tuple[str, str]] = set()
+    for value in walk.values(walk.conditions(program)):
+        if isinstance(value, Apply) and FUNCTIONS[value.function].argument is Argument.NUMBERS:
+            read = value.arguments[0]
+            assert isinstance(read, Read)
+            found.add((value.function, str(program.leaves[read.leaf].type.base)))
+    bases = sorted({base for _, base in found})
+    return [
+        (row, base) for base in bases for row in FUNCTIONS.values() if (row.name, base) in found
+    ]
 
 
 def declarations(program: Program) -> str:
     """Return the predicates of the functions that a program calls."""
-    used: list[str] = []
-    for value in walk.values(walk.conditions(program)):
-        if isinstance(value, Apply):
-            name = FUNCTIONS[value.function].c_call
-            quaternion = FUNCTIONS[value.function].argument is Argument.QUATERNION
-            for each in (*_NEEDS.get(name, ()), *(("length_of",) if quaternion else ()), name):
-                if each in PREDICATES and each not in used:
-                    used.append(each)
-    if not used:
-        return ""
-    lines = ["/* is_f(r, ...) holds if r is what the function f gives; formula_of_f() says how. */"]
-    named = " ".join(f"predicate is_{name}({PREDICATES[name][0]});" for name in used)
-    lines += wrapped(f"/*@ axiomatic Functions {{ {named} }} */")
-    for name in used:
-        parameters, body = PREDICATES[name]
+    lines: list[str] = []
+    used = {name: formula_predicate(*each) for name, each in _used(program).items()}
+    if used:
+        said = (
+            "/* is_f(r, ...) holds if r is what the function f gives; formula_of_f() says how. */"
+        )
+        lines.append(said)
+        named = " ".join(f"predicate is_{name}({each});" for name, (each, _) in used.items())
+        lines += wrapped(f"/*@ axiomatic Functions {{ {named} }} */")
+    for name, (parameters, body) in used.items():
         lines += wrapped(f"/*@ predicate formula_of_{name}({parameters}) = {body}; */")
-    return "\n".join([*lines, ""])
+    for each in _loops(program):
+        lines += each
+    return "\n".join([*lines, ""]) if lines else ""
 
 
-def contract(name: str, parameters: str) -> str:
-    """Return the contract of the function that computes a value, by the names of its parameters.
+def contract(name: str, parameters: Sequence[str]) -> str:
+    """Return the contract of the function that computes a formula.
 
     The formula is proved, but not handed on: the proofs of callers would be about its rounding.
     They get the value by its name, which is defined as what the function gives.
     """
-    if name not in PREDICATES:
-        return "/*@ assigns \\nothing; */\n"
+    arguments = ", ".join(["\\result", *parameters])
     return (
         "/*@ assigns \\nothing;\n"
-        f"    check ensures formula_of_{name}(\\result, {parameters});\n"
-        f"    admit ensures is_{name}(\\result, {parameters}); */\n"
+        f"    check ensures formula_of_{name}({arguments});\n"
+        f"    admit ensures is_{name}({arguments}); */\n"
     )
 
 
 def is_value(
-    name: str, value: ValueExpression, leaves: Mapping[int, str], lengths: Mapping[object, str]
+    name: str,
+    value: ValueExpression,
+    leaves: Mapping[int, str],
+    bases: Mapping[int, str],
+    lengths: Mapping[object, str],
 ) -> str:
     """Return that the double called ``name`` is a value; nothing if there is no predicate for it.
 
@@ -129,28 +114,40 @@ def is_value(
         name: the double.
         value: what it is computed as.
         leaves: the doubles that hold the leaves.
+        bases: the types of floating-point arrays, by leaf.
         lengths: those that hold the lengths of quaternions, by their parts.
     """
-    if isinstance(value, Apply) and FUNCTIONS[value.function].argument is Argument.SCAN:
-        return _of_scan(name, value, leaves)
     if isinstance(value, Apply):
-        call = FUNCTIONS[value.function].c_call
-        if call not in PREDICATES or value.arguments not in lengths:
+        row = FUNCTIONS[value.function]
+        match row.argument:
+            case Argument.SCAN:
+                return _of_array(name, row.c_name, value, leaves)
+            case Argument.NUMBERS if row.loop is not None:
+                read = value.arguments[0]
+                assert isinstance(read, Read)
+                base = bases.get(read.leaf, "")
+                return _of_array(name, f"{row.c_name}_{base}", value, leaves) if base else ""
+            case Argument.QUATERNION if value.arguments not in lengths:
+                return ""
+        if _formula_of(row) is None or row.argument is Argument.NUMBERS:
             return ""
-        parts = [_term(each, leaves) for each in value.arguments]
-        shares = [of("div", each, lengths[value.arguments]) for each in parts]
-        return f"is_{call}({name}, {', '.join(shares)})" if all(parts) else ""
+        terms = [_term(each, leaves) for each in value.arguments]
+        if not all(terms):
+            return ""
+        if row.argument is Argument.QUATERNION:
+            terms = [of("div", each, lengths[value.arguments]) for each in terms]
+        return f"is_{row.c_name}({', '.join([name, *terms])})"
     term = _term(value, leaves)
     return f"same({name}, {term})" if term else ""
 
 
-def _of_scan(name: str, value: Apply, leaves: Mapping[int, str]) -> str:
-    """Return that a double is what a function of a scan gives."""
+def _of_array(name: str, function: str, value: Apply, leaves: Mapping[int, str]) -> str:
+    """Return that a double is what a function of an array, and of more, gives."""
     ranges, *rest = value.arguments
     assert isinstance(ranges, Read)
     array = leaves[ranges.leaf]
     terms = [array, f"{array}_count", *(_term(each, leaves) for each in rest)]
-    return f"is_{FUNCTIONS[value.function].c_call}({', '.join([name, *terms])})"
+    return f"is_{function}({', '.join([name, *terms])})" if all(terms) else ""
 
 
 def _term(value: ValueExpression, leaves: Mapping[int, str]) -> str:
@@ -164,6 +161,6 @@ def _term(value: ValueExpression, leaves: Mapping[int, str]) -> str:
             operand = _term(value.operand, leaves)
             if not operand:
                 return ""
-            scaled = _product(operand, constant(value.factor))
-            return _sum(scaled, constant(value.offset)) if value.offset else scaled
+            scaled = of("mul", operand, constant(value.factor))
+            return of("add", scaled, constant(value.offset)) if value.offset else scaled
     return ""

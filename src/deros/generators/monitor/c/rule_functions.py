@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from deros.generators.monitor.c.expressions import Conditions, integer
+from deros.generators.monitor.c.expressions import Conditions
 from deros.generators.monitor.c.layout import Layout
+from deros.generators.monitor.c.literals import integer
 from deros.generators.text.c import Call, comment, lay_out, lay_out_if
 from deros.generators.text.provenance import header
 from deros.monitor import walk

@@ -7,8 +7,8 @@ stands for is proved of the function itself.
 
 from __future__ import annotations
 
+from deros.generators.monitor.c.acsl_terms import INFINITY, ZERO, constant, of
 from deros.generators.monitor.c.contracts import wrapped
-from deros.generators.monitor.c.quantities import INFINITY, ZERO, constant, of
 from deros.monitor import walk
 from deros.monitor.function_values import BEARING_TOLERANCE, FULL_TURN
 from deros.monitor.functions import FUNCTIONS, Argument

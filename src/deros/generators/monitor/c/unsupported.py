@@ -8,7 +8,8 @@ from typing import NoReturn
 from deros import codes
 from deros.diagnostics import Span, report
 from deros.generators.api.protocol import GenerationError
-from deros.generators.monitor.c.layout import MEMORIES, compared, rule_parts, type_of
+from deros.generators.monitor.c.formulas import printed
+from deros.generators.monitor.c.layout import compared, rule_parts, type_of
 from deros.generators.monitor.functions import refuse_unknown
 from deros.interfaces.durations import LATEST_NS
 from deros.monitor import walk
@@ -25,12 +26,8 @@ from deros.monitor.ir import (
     ValueExpression,
 )
 
-_OF_ARRAYS = ("count", "max", "min", "nearest")
-"""The functions of arrays, each of which is emitted in its own way."""
 _LIBRARY = ("fabs",)
 """What is called without a text of ours."""
-_OF_INTEGERS = ("abs", "max", "min")
-"""The functions that have a text for integers."""
 
 
 def refuse_unsupported(program: Program) -> None:
@@ -55,11 +52,9 @@ def refuse_unsupported(program: Program) -> None:
 
 def knows(row: Function) -> bool:
     """Return whether the function of a row can be emitted as C."""
-    if row.memory is not None:
-        return row.name in MEMORIES
-    if row.argument in (Argument.NUMBERS, Argument.ARRAY, Argument.SCAN):
-        return row.name in _OF_ARRAYS
-    return bool(row.c) or row.c_call in _LIBRARY
+    if row.memory is not None and not row.over_span:
+        return False
+    return bool(row.reads_length or printed(row) or row.c_call in _LIBRARY)
 
 
 def _refuse(message: str, span: Span, hint: str = "") -> NoReturn:
@@ -69,10 +64,14 @@ def _refuse(message: str, span: Span, hint: str = "") -> NoReturn:
 def _refuse_integer(program: Program, condition: Condition, span: Span) -> None:
     """Refuse a function of integers that has a text for numbers of floating point alone."""
     for value in walk.values([condition]):
-        if not isinstance(value, Apply) or value.function in _OF_INTEGERS:
+        if not isinstance(value, Apply):
             continue
         row = FUNCTIONS[value.function]
-        if row.result is Result.ELEMENT and type_of(program, value) != "double":
+        if (
+            not row.c_integer
+            and row.result is Result.ELEMENT
+            and type_of(program, value) != "double"
+        ):
             _refuse(f"{row.name}() of an integer does not exist in C", span)
 
 
@@ -82,7 +81,7 @@ def _refuse_wide(program: Program, condition: Condition, span: Span) -> None:
         if not isinstance(term, Apply) or FUNCTIONS[term.function].argument is not Argument.NUMBER:
             continue
         if _is_wide(program, term.arguments[0]):
-            name = "rate" if FUNCTIONS[term.function].memory is not None else term.function
+            name = "rate" if FUNCTIONS[term.function].is_stateful else term.function
             _refuse(f"{name}() of a 64-bit integer does not fit the numbers of C", span)
 
 
@@ -106,7 +105,7 @@ def _is_wide(program: Program, value: ValueExpression) -> bool:
     match value:
         case Read():
             return program.leaves[value.leaf].type.base in ("int64", "uint64")
-        case Apply(function="min" | "max" | "abs"):
+        case Apply() if FUNCTIONS[value.function].result is Result.ELEMENT:
             return _is_wide(program, value.arguments[0])
         case _:
             return False
@@ -118,7 +117,7 @@ def _durations(program: Program) -> Iterator[tuple[int, Span]]:
             yield each.timeout_ns, each.span
     for rule in program.rules:
         for value in walk.values(walk.parts(rule.condition)):
-            if isinstance(value, Apply) and value.function == "rate_over":
+            if isinstance(value, Apply) and FUNCTIONS[value.function].over_span:
                 span = value.arguments[1]
                 assert isinstance(span, Const)
                 assert isinstance(span.value, int)

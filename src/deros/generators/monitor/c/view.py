@@ -6,38 +6,17 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from deros.generators.monitor.c.expressions import integer, literal, number
 from deros.generators.monitor.c.handlers import Handler, handlers
 from deros.generators.monitor.c.layout import Layout, compared, input_of, lay_out
+from deros.generators.monitor.c.literals import integer, literal, number
 from deros.generators.monitor.c.rule_functions import Function, Sites, behave, judge, settle, sites
+from deros.generators.monitor.c.struct_fields import Field, struct_fields
 from deros.generators.monitor.c.unsupported import refuse_unsupported
 from deros.generators.text.c import comment
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
 from deros.monitor.ir import Age, Condition, For, Missing, Program, Unknown
 from deros.monitor.memories import SAMPLES
-
-WINDOW_SIZE = 16 * SAMPLES + 16
-"""The bytes of the samples of one rate over a span of time."""
-
-
-@dataclass(frozen=True, slots=True)
-class Field:
-    """A field of the struct.
-
-    Attributes:
-        type, name, comment: its declaration.
-        size: in bytes.
-        started: what it is at the start; empty if a restart sets it.
-        restarted: what a start and a step of the clock set it to; empty if they do not.
-    """
-
-    type: str
-    name: str
-    comment: str
-    size: int
-    started: str = ""
-    restarted: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +34,21 @@ class Timeout:
 
 @dataclass(frozen=True, slots=True)
 class Forget:
-    """The function that makes an input's values unknown: the flags it clears, the NaN it stores."""
+    """The function that makes an input's values unknown.
+
+    Attributes:
+        function, input: its name, and that of the input.
+        known: the flags that it clears.
+        doubles: the numbers that it stores, by the names of their fields.
+        times: the times that it stores as -1.
+        windows: the samples of which it keeps none.
+    """
 
     function: str
     input: str
     known: tuple[str, ...]
-    last: tuple[str, ...]
+    doubles: tuple[tuple[str, float], ...]
+    times: tuple[str, ...]
     windows: tuple[str, ...]
 
     @property
@@ -71,7 +59,18 @@ class Forget:
     @property
     def changed(self) -> tuple[str, ...]:
         """All fields that it sets."""
-        return (*self.known, *self.last, *self.counts)
+        return (*self.known, *self.remembered, *self.counts)
+
+    @property
+    def remembered(self) -> tuple[str, ...]:
+        """The fields of functions with a step."""
+        return (*(name for name, _ in self.doubles), *self.times)
+
+    @property
+    def stores(self) -> tuple[tuple[str, str], ...]:
+        """The same fields, each with what is stored in it."""
+        doubles = ((name, number(value)) for name, value in self.doubles)
+        return (*doubles, *((name, "-1") for name in self.times))
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,7 +244,7 @@ def monitor_view(program: Program) -> MonitorView:
         program=program,
         layout=layout,
         sites=places,
-        fields=tuple(_fields(program, layout)),
+        fields=tuple(struct_fields(program, layout)),
         texts=tuple(
             TextTable(t.name, tuple((_c_text(each), len(each.encode())) for each in t.texts))
             for t in layout.terms.values()
@@ -270,78 +269,17 @@ def monitor_view(program: Program) -> MonitorView:
     )
 
 
-def _fields(program: Program, layout: Layout) -> list[Field]:
-    """Return the struct's fields, the widest first."""
-    fields = [
-        Field("void *", "owner", "handed on to the callback", 8, "owner"),
-        Field("int64_t ", "now", "the instant of the last event, or later", 8, "bounded(t)"),
-        Field("int64_t ", "due", "when to call advance at the latest", 8),
-        *_input_fields(program, layout),
-        *_verdict_fields(program, layout),
-    ]
-    return sorted(fields, key=lambda each: -each.size)
-
-
-def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
-    for each in program.inputs:
-        fields = layout.inputs[each.index]
-        if fields.base:
-            what = "when its timeout began" if fields.missing else "when its last message came"
-            yield Field("int64_t ", fields.base, what, 8, "", "from")
-            yield Field("bool ", fields.came, "whether a message has counted", 1, "", "false")
-        if fields.missing:
-            yield Field("bool ", fields.missing, "whether its timeout has passed", 1, "", "false")
-        if fields.known:
-            yield Field("bool ", fields.known, f"whether {each.name} is known", 1, "false")
-    for term in layout.terms.values():
-        size = {"bool": 1, "uint32_t": 4}.get(term.type, 8)
-        initial = {"bool": "false", "uint32_t": "0U", "double": "0.0"}.get(term.type, "0")
-        yield Field(f"{term.type} ", term.name, "as of the last message", size, initial)
-        if term.known != layout.inputs[term.input].known:
-            yield Field("bool ", term.known, "whether it is known", 1, "false")
-    for finding in layout.findings.values():
-        yield Field("bool ", finding.name, "how values compare", 1, "false")
-    for memory in layout.memories.values():
-        if memory.last:
-            yield Field("double ", memory.last, "the value before", 8)
-        if memory.last_t:
-            yield Field("int64_t ", memory.last_t, "when it came", 8, "", "m->now")
-        if memory.total:
-            yield Field("double ", memory.total, "the angle without its jumps", 8, "0.0")
-        if memory.window:
-            yield Field(f"{layout.prefix}_window ", memory.window, "its samples", WINDOW_SIZE)
-
-
-def _verdict_fields(program: Program, layout: Layout) -> Iterator[Field]:
-    verdict, unknown = f"{layout.prefix}_verdict ", f"{layout.macro}_UNKNOWN"
-    unset = f"{layout.macro}_UNSET"
-    for rule in program.rules:
-        name = layout.verdicts[rule.index]
-        yield Field(verdict, name, f"rule {rule.full_name}", 4, unknown)
-        what = "when it last became true or ceased to be"
-        yield Field("int64_t ", layout.turned[rule.index], what, 8, "", "m->now")
-    for name in layout.since.values():
-        yield Field("int64_t ", name, "since when its operand has been true", 8, "", unset)
-    for name in layout.conditions.values():
-        yield Field(verdict, name, "its condition and all around it", 4, unknown)
-    for name in layout.enabled.values():
-        yield Field("bool ", name, "whether it may act", 1, "true")
-    for name in layout.active.values():
-        yield Field("bool ", name, "whether it was run and not reset since", 1, "false")
-    for name in layout.ran.values():
-        yield Field("bool ", name, "whether it ran in this event", 1, "false")
-    yield Field("bool ", "started", "whether there has been an event", 1, "false")
-
-
 def _forgets(program: Program, layout: Layout) -> Iterator[Forget]:
     for index, function in layout.forgets.items():
         known = dict.fromkeys(term.known for term in layout.terms_of(index))
         if layout.inputs[index].known:
             known[layout.inputs[index].known] = None
         memories = layout.memories_of(index).values()
-        last = tuple(each.last for each in memories if each.last)
+        doubles = tuple(each for memory in memories for each in memory.forgotten.items())
+        times = tuple(each.forgotten_t for each in memories if each.forgotten_t)
         windows = tuple(each.window for each in memories if each.window)
-        yield Forget(function, program.inputs[index].name, tuple(known), last, windows)
+        name = program.inputs[index].name
+        yield Forget(function, name, tuple(known), doubles, times, windows)
 
 
 def _timeouts(program: Program, layout: Layout) -> Iterator[Timeout]:

@@ -5,9 +5,11 @@ An angle without its jumps, and rates over a span of time; what they keep is of 
 
 from __future__ import annotations
 
+from deros.generators.monitor.c.acsl_terms import of
 from deros.generators.monitor.c.contracts import wrapped
-from deros.generators.monitor.c.quantities import change_per_second, of
+from deros.generators.monitor.c.quantities import change_per_second
 from deros.monitor import walk
+from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import Apply, Program
 
 _FILLED = "w->count <= $_SAMPLES"
@@ -131,12 +133,10 @@ def with_loop(name: str, text: str) -> str:
 
 def declarations(program: Program) -> str:
     """Return the names that the contracts use; nothing where no rate is asked over a span."""
-    functions = {
-        value.function
+    if not any(
+        isinstance(value, Apply) and FUNCTIONS[value.function].over_span
         for value in walk.values(walk.conditions(program))
-        if isinstance(value, Apply)
-    }
-    if "rate_over" not in functions:
+    ):
         return ""
     return "\n".join(
         [

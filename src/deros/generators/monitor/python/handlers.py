@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from deros.generators.monitor.python.conditions import literal, scaled
+from deros.generators.monitor.python.formulas import function_name, is_printed
 from deros.generators.monitor.python.layout import Layout, input_of
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.monitor.python.rules import Judge
@@ -17,7 +18,7 @@ from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
-from deros.monitor.functions import FUNCTIONS
+from deros.monitor.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
 from deros.monitor.ir import Age, Apply, Const, Input, Leaf, Program, Read, Scale, ValueExpression
 
 
@@ -181,29 +182,58 @@ class _Writer:
         units: set[tuple[ValueExpression, ...]] = set()
         for function in self._functions_of(each):
             row = FUNCTIONS[function.function]
-            if row.python_of_unit:
+            if row.argument is Argument.QUATERNION:
                 if function.arguments not in units:
                     units.add(function.arguments)
                     lines += self._of_quaternion(each, function.arguments, indent)
                 continue
             slot = self._layout.values[function].name
             name = self._locals[function] = self._names.new(slot)
-            arguments = [self._value(argument) for argument in function.arguments]
-            call = row.python_call
-            if function in self._layout.windows:
-                call = f"self._{self._layout.windows[function]}.rate"
-                arguments = [arguments[0], _stamp(arguments[2:]), arguments[1]]
-            elif function.state is not None:
-                last, last_t = self._layout.last[function]
-                before = f"t - self._{last_t}" if last_t else f"self._{slot}"
-                arguments += [f"self._{last}", before]
+            call, arguments, after = self._call(function, row)
             lines += lay_out_call(indent, f"{name} = {call}(", arguments)
-            if function in self._layout.last:
-                lines.append(f"{blank}self._{last} = {arguments[0]}")
-                lines += [f"{blank}self._{last_t} = t"] if last_t else []
-            if row.python and function.function != "unwrapped":
+            lines += [f"{blank}{statement}" for statement in after]
+            if row.may_be_none:
                 lines += [f"{blank}if {name} is None:", f"{blank}    {name} = NAN"]
         return lines
+
+    def _call(self, function: Apply, row: Function) -> tuple[str, list[str], list[str]]:
+        """Return what is called for a function, its arguments, and the statements after the call.
+
+        A function whose memory is an object keeps it up to date. Of others the memory is handed in,
+        and stored afterwards: each number is the result or a copy of an argument.
+        """
+        memory = self._layout.memories.get(function)
+        arguments = [
+            self._as_float(value, text) if is_printed(row) else text
+            for value, text in ((each, self._value(each)) for each in function.arguments)
+        ]
+        if memory is not None and row.over_span:
+            value, span, *header = arguments
+            return f"self._{memory}.rate", [value, _stamp(header), span], []
+        if memory is not None and row.step is not None:
+            timed = ["t"] if row.step.is_timed else []
+            return f"self._{memory}.follow", [*arguments, *timed], []
+        if row.step is None:
+            return function_name(row), arguments, []
+        names = self._layout.remembered[function]
+        slot = self._layout.values[function].name
+        before = [f"self._{names.get(each.name, slot)}" for each in row.step.memory]
+        given = dict(zip(row.variables, arguments, strict=True))
+        copied = row.step.copied
+        after = [f"self._{names[name]} = {given[copied[name]]}" for name in names if name in copied]
+        if row.step.is_timed:
+            before.append(f"t - self._{names['last_t']}")
+            after.append(f"self._{names['last_t']} = t")
+        return row.python_call, [*arguments, *before], after
+
+    def _as_float(self, value: ValueExpression, text: str) -> str:
+        """Return the text of an argument of a printed function, which computes with doubles."""
+        if isinstance(value, Read):
+            leaf = self._program.leaves[value.leaf]
+            if leaf.type.base in INTEGER_RANGES and not leaf.type.is_array:
+                return f"float({text})"
+        is_float = not isinstance(value, Apply) or FUNCTIONS[value.function].result is Result.FLOAT
+        return text if is_float else f"float({text})"
 
     def _of_quaternion(
         self, each: Input, parts: tuple[ValueExpression, ...], indent: int
@@ -215,17 +245,18 @@ class _Writer:
         names: list[str] = []
         for function in self._functions_of(each):
             row = FUNCTIONS[function.function]
-            if row.python_of_unit and function.arguments == parts:
+            if row.argument is Argument.QUATERNION and function.arguments == parts:
                 name = self._locals[function] = self._names.new(self._layout.values[function].name)
-                results += [f"{blank}    {line}" for line in row.python_of_unit[:-1]]
-                results.append(f"{blank}    {name} = {row.python_of_unit[-1]}")
+                *before, result = row.python_of_unit or (_call_of_unit(row),)
+                results += [f"{blank}    {line}" for line in before]
+                results.append(f"{blank}    {name} = {result}")
                 names.append(name)
         return [
             *_lay_out_length(indent, texts),
             f"{blank}if 0.0 < length < math.inf:",
             *(
                 f"{blank}    {unit} = {part} / length"
-                for unit, part in zip(("ux", "uy", "uz", "uw"), texts, strict=True)
+                for unit, part in zip(UNIT_PARTS, texts, strict=True)
             ),
             *results,
             f"{blank}else:",
@@ -318,9 +349,13 @@ class _Writer:
 
 def needed_texts(function: Apply) -> tuple[str, ...]:
     """Return the names of the texts that the text of a function, or its call, needs beside it."""
-    if function.function != "rate_over":
-        return ()
-    return ("rate", "stamp_of") if len(function.arguments) > 2 else ("rate",)
+    row = FUNCTIONS[function.function]
+    is_stamped = row.over_span and len(function.arguments) > 2
+    return (*row.python_needs, "stamp_of") if is_stamped else row.python_needs
+
+
+def _call_of_unit(row: Function) -> str:
+    return f"{function_name(row)}({', '.join(row.variables)})"
 
 
 def _stamp(header: Sequence[str]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from deros.generators.monitor.python.formulas import printed
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
@@ -42,9 +43,9 @@ class Layout:
     Attributes:
         names: of them all, and of the methods.
         values: what the conditions read of the inputs' messages, and every function of them.
-        last: of a function with a memory, what the message before gave, and when it came; the
-            latter is empty where it does not matter.
-        windows: of a rate over a span of time, its samples.
+        remembered: of a function with a step, what it remembers beside its result, by the name in
+            the step, and under ``last_t`` the time of the last message if the step asks for it.
+        memories: of a function whose memory is an object, that object.
         heard: of an input with a timeout, from when it counts: the last counted message, or the
             start.
         silent: of such an input, whether it waits for its first message, or for the first after its
@@ -68,8 +69,8 @@ class Layout:
 
     names: UniqueNames
     values: dict[ValueExpression, Slot] = field(default_factory=dict)
-    last: dict[ValueExpression, tuple[str, str]] = field(default_factory=dict)
-    windows: dict[ValueExpression, str] = field(default_factory=dict)
+    remembered: dict[Apply, dict[str, str]] = field(default_factory=dict)
+    memories: dict[Apply, str] = field(default_factory=dict)
     heard: dict[int, str] = field(default_factory=dict)
     silent: dict[int, str] = field(default_factory=dict)
     missing: dict[int, str] = field(default_factory=dict)
@@ -178,15 +179,11 @@ def _name_causes(program: Program, layout: Layout) -> None:
         layout.why_holds[behaviour.index] = layout.names.new("why", behaviour.name)
 
 
-MEMORIES = {"rate": "time", "rate_over": "window", "unwrapped": "result"}
-"""The functions that remember something: beside the last value its time, or the last result."""
-
-
 def knows(row: Function) -> bool:
     """Return whether the function of a row can be emitted as Python."""
-    if row.memory is not None:
-        return row.name in MEMORIES
-    return bool(row.python_call or row.python_of_unit)
+    if row.memory is not None and not row.over_span:
+        return False
+    return bool(row.python_call or row.python_of_unit or printed(row))
 
 
 def _name_value(program: Program, value: ValueExpression, layout: Layout) -> None:
@@ -194,12 +191,14 @@ def _name_value(program: Program, value: ValueExpression, layout: Layout) -> Non
         return
     slot = layout.values[value] = _slot(program, value, layout.names)
     if isinstance(value, Apply) and value.state is not None:
-        if MEMORIES[value.function] == "window":
-            layout.windows[value] = layout.names.new(slot.name, "window")
+        row = FUNCTIONS[value.function]
+        if row.step is None or not row.python:
+            word = "window" if row.over_span else "memory"
+            layout.memories[value] = layout.names.new(slot.name, word)
             return
-        last = layout.names.new(slot.name, "last")
-        timed = MEMORIES[value.function] == "time"
-        layout.last[value] = (last, layout.names.new(slot.name, "last_t") if timed else "")
+        names = [each.name for each in row.step.memory if each.name != row.step.result_field]
+        names += ["last_t"] if row.step.is_timed else []
+        layout.remembered[value] = {name: layout.names.new(slot.name, name) for name in names}
 
 
 def _slot(program: Program, value: ValueExpression, names: UniqueNames) -> Slot:

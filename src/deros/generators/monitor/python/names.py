@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from deros.generators.monitor.python.formulas import function_name
 from deros.generators.text.identifiers import PYTHON_WORDS
 from deros.monitor.functions import FUNCTIONS
 
@@ -28,7 +29,7 @@ LOCAL_NAMES = frozenset(
     }
 )
 
-_FUNCTION_NAMES = {row.python_call for row in FUNCTIONS.values()} | {
+_FUNCTION_NAMES = {function_name(row) for row in FUNCTIONS.values()} | {
     row.guard.python_call for row in FUNCTIONS.values() if row.guard
 }
 RESERVED = MODULE_NAMES | METHOD_NAMES | LOCAL_NAMES | _FUNCTION_NAMES | PYTHON_WORDS

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from deros.generators.monitor.functions import refuse_unknown
 from deros.generators.monitor.python.behaviours import act_lines, latched_lines
+from deros.generators.monitor.python.formulas import class_name, printed
 from deros.generators.monitor.python.handlers import Handler, handlers, needed_texts
 from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory, slots_of
 from deros.generators.monitor.python.rule_state import rule_state_lines, rules_of, waiting_lines
@@ -131,7 +132,7 @@ def monitor_view(program: Program) -> MonitorView:
     attributes = [
         *(name for name, _ in initial),
         *(name for forget in forgets for name, _ in forget.unknown),
-        *(last_t for _, last_t in layout.last.values() if last_t),
+        *_times(layout),
         *(
             name
             for timeout in timeouts
@@ -192,8 +193,13 @@ def _function_texts(layout: Layout) -> tuple[str, ...]:
                 texts[row.guard.python] = None
             for name in needed_texts(value):
                 texts[PYTHON[name]] = None
-            texts[row.python] = None
+            texts.update(dict.fromkeys(printed(row)))
     return tuple(each for each in texts if each)
+
+
+def _times(layout: Layout) -> list[str]:
+    """Return the attributes that hold when a function's last message came."""
+    return [names["last_t"] for names in layout.remembered.values() if "last_t" in names]
 
 
 def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tuple[str, str], ...]:
@@ -210,7 +216,7 @@ def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tu
         pairs.append((name, f"{action.name!r} in latched" if action.latched else "False"))
     if any(each.optional for each in walk.behaviours(program)):
         pairs.append(("disabled", "set()"))
-    pairs += [(last_t, "start") for _, last_t in layout.last.values() if last_t]
+    pairs += [(name, "start") for name in _times(layout)]
     if known_at_start:
         pairs.append(("started", "False"))
     return tuple(pairs)
@@ -229,12 +235,13 @@ def _forgets(program: Program, layout: Layout) -> tuple[Forget, ...]:
         unknown = [(slot.name, slot.unknown) for slot in slots_of(layout, program, index)]
         if index in layout.known:
             unknown.append((layout.known[index], "False"))
-        for value, (last, _) in layout.last.items():
-            if isinstance(value, Apply) and value.input == index:
-                unknown.append((last, "NAN"))
-        for value, window in layout.windows.items():
-            if isinstance(value, Apply) and value.input == index:
-                unknown.append((window, "RateWindow()"))
+        for value, names in layout.remembered.items():
+            if value.input == index:
+                unknown += [(name, "NAN") for key, name in names.items() if key != "last_t"]
+        for value, memory in layout.memories.items():
+            if value.input == index:
+                row = FUNCTIONS[value.function]
+                unknown.append((memory, f"{class_name(row)}()"))
         found.append(Forget(method, program.inputs[index].name, tuple(unknown)))
     return tuple(found)
 

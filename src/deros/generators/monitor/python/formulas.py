@@ -1,0 +1,234 @@
+"""Functions of the table as definitions in Python, printed from the forms in their rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from itertools import takewhile
+
+from deros.generators.text.python import LINE_LENGTH, lay_out_call
+from deros.monitor.formulas import (
+    SHARED,
+    Binary,
+    Call,
+    Choice,
+    Expression,
+    Formula,
+    Logical,
+    Name,
+    Negation,
+    Negative,
+    Number,
+    Relation,
+    calls,
+)
+from deros.monitor.function_forms import COUNT, ELAPSED, ELEMENT, FIRST, Loop, Step
+from deros.monitor.functions import Function, Result
+
+_INDENT = "    "
+_CHOICE, _OR, _AND, _NOT, _RELATION, _SUM, _PRODUCT, _SIGN, _ATOM = range(9)
+_PRECEDENCE: Mapping[str, int] = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT}
+
+
+class Printer:
+    """Prints expressions; ``names`` gives the text of each name that is not its own."""
+
+    def __init__(self, names: Mapping[str, str]) -> None:
+        """Print names as ``names`` says."""
+        self._names = names
+
+    def text(self, value: Expression, least: int = _CHOICE) -> str:
+        """Return an expression, in parentheses if it binds less tightly than ``least``."""
+        text, precedence = self._text(value)
+        return text if precedence >= least else f"({text})"
+
+    def _text(self, value: Expression) -> tuple[str, int]:
+        match value:
+            case Number():
+                return _literal(value.value), _ATOM if value.value >= 0.0 else _SIGN
+            case Name():
+                text = self._names.get(value.name, value.name)
+                return text, _RELATION if " " in text else _ATOM
+            case Negative():
+                return f"-{self.text(value.operand, _SIGN)}", _SIGN
+            case Binary():
+                own = _PRECEDENCE[value.operator]
+                left, right = self.text(value.left, own), self.text(value.right, own + 1)
+                return f"{left} {value.operator} {right}", own
+            case Relation():
+                left, right = self.text(value.left, _SUM), self.text(value.right, _SUM)
+                return f"{left} {value.operator} {right}", _RELATION
+            case Logical():
+                own = _OR if value.operator == "or" else _AND
+                operands = (self.text(each, own + 1) for each in value.operands)
+                return f" {value.operator} ".join(operands), own
+            case Negation(operand=Call(function="known", arguments=(operand,))):
+                return f"math.isnan({self.text(operand)})", _ATOM
+            case Negation():
+                return f"not {self.text(value.operand, _NOT)}", _NOT
+            case Choice():
+                then, test = self.text(value.then, _OR), self.text(value.condition, _OR)
+                return f"{then} if {test} else {self.text(value.otherwise)}", _CHOICE
+            case Call():
+                return self._call(value), _NOT if value.function == "known" else _ATOM
+        raise AssertionError(f"{value} is not an expression")
+
+    def _call(self, value: Call) -> str:
+        arguments = ", ".join(map(self.text, value.arguments))
+        if value.function == "known":
+            return f"not math.isnan({arguments})"
+        if value.function == "double":
+            return f"float({arguments})"
+        module = "" if value.function in SHARED else "math."
+        return f"{module}{value.function}({arguments})"
+
+    def assign(self, place: str, value: Expression) -> list[str]:
+        """Return the statement that stores a value, which may be what is in the place already."""
+        match value:
+            case Choice(condition=condition, then=then, otherwise=Name(name=kept)):
+                if self._names.get(kept, kept) == place:
+                    test = self.text(condition)
+                    return [f"if {test}:", f"{_INDENT}{place} = {self.text(then)}"]
+        return [f"{place} = {self.text(value)}"]
+
+
+def _literal(value: float) -> str:
+    if math.isnan(value):
+        return "math.nan"
+    if math.isinf(value):
+        return "math.inf" if value > 0 else "-math.inf"
+    return repr(value)
+
+
+def class_name(row: Function) -> str:
+    """Return the name of the class that keeps the memory of a function."""
+    return row.python_call or "".join(word.capitalize() for word in row.name.split("_"))
+
+
+def printed(row: Function) -> tuple[str, ...]:
+    """Return the definitions of a row's function, those that it needs first.
+
+    It is the row's text if it has one, else its form, printed; nothing for what Python has.
+    """
+    if row.python or row.python_of_unit:
+        return (row.python,) if row.python else ()
+    if row.step is not None:
+        return (*_shared(row.step.formula), _step_class(row, row.step))
+    if row.loop is not None:
+        return (*_shared(row.loop.each), *_shared(row.loop.result), _loop_function(row, row.loop))
+    formula = row.strict_formula
+    if formula is not None:
+        return (
+            *_shared(formula),
+            _function(function_name(row), row.variables, formula, _says(row)),
+        )
+    return ()
+
+
+def is_printed(row: Function) -> bool:
+    """Return whether a row's function is printed from its form, and so computes with doubles."""
+    return bool(printed(row)) and not row.python
+
+
+def function_name(row: Function) -> str:
+    """Return what text calls for a row's function."""
+    return row.python_call or f"{row.name}_of"
+
+
+def _says(row: Function) -> str:
+    return f"Return {row.name}(), {row.gives}; NaN is unknown."
+
+
+def _shared(formula: Formula) -> Iterable[str]:
+    for name in calls(formula):
+        if name in SHARED:
+            parameters, shared = SHARED[name]
+            yield _function(name, parameters, shared, f"Return the value of {name}().")
+
+
+def _function(name: str, parameters: tuple[str, ...], formula: Formula, says: str) -> str:
+    printer = Printer({})
+    lines = [
+        *(f"{name} = {printer.text(value)}" for name, value in formula.assignments),
+        f"return {printer.text(formula.result)}",
+    ]
+    return _definition(0, name, [f"{each}: float" for each in parameters], says, lines)
+
+
+def _step_class(row: Function, step: Step) -> str:
+    fields = [each.name for each in step.memory]
+    printer = Printer({name: f"self.{name}" for name in fields})
+    initial = [
+        f"self.{each.name} = {_literal(math.nan if each.initial is None else each.initial)}"
+        for each in step.memory
+    ]
+    parameters = ["self", *(f"{each}: float" for each in row.variables)]
+    lines: list[str] = []
+    if step.is_timed:
+        parameters.append("t: int")
+        fields.append("last_t")
+        initial.append("self.last_t: int | None = None")
+        since = "(t - self.last_t) / 1e9"
+        lines.append(f"{ELAPSED} = math.nan if self.last_t is None else {since}")
+    for name, value in step.formula.assignments:
+        place = f"self.{name}" if name in fields else name
+        lines += printer.assign(place, value)
+    lines += ["self.last_t = t"] if step.is_timed else []
+    lines.append(f"return {printer.text(step.formula.result)}")
+    slots = ", ".join(repr(name) for name in sorted(fields))
+    return "\n".join(
+        [
+            f"class {class_name(row)}:",
+            f'{_INDENT}"""What {row.name}() remembers between messages."""',
+            "",
+            f"{_INDENT}__slots__ = ({slots}{',' if len(fields) == 1 else ''})",
+            "",
+            _definition(1, "__init__", ["self"], "Remember no message.", initial, "None"),
+            _definition(1, "follow", parameters, _says(row), lines),
+        ]
+    )
+
+
+def _loop_function(row: Function, loop: Loop) -> str:
+    names = {FIRST: "place == 0", COUNT: "len(values)"}
+    printer = Printer(names)
+    numbered = FIRST in loop.each.names
+    of_elements = row.result is Result.ELEMENT
+    array = "np.asarray(values).tolist()" if of_elements else "map(float, values)"
+    head = f"place, {ELEMENT} in enumerate({array})" if numbered else f"{ELEMENT} in {array}"
+    inner = [f"{name} = {printer.text(value)}" for name, value in loop.each.assignments]
+    inner += printer.assign(loop.accumulator, loop.each.result)
+    lines = [
+        f"{loop.accumulator} = {_literal(loop.initial)}",
+        f"for {head}:",
+        *(f"{_INDENT}{line}" for line in inner),
+        f"return {printer.text(loop.result.result)}",
+    ]
+    parameters = ["values: Sequence[float]", *(f"{each}: float" for each in row.variables)]
+    return _definition(0, function_name(row), parameters, _says(row), lines)
+
+
+def _definition(
+    level: int,
+    name: str,
+    parameters: list[str],
+    says: str,
+    lines: Iterable[str],
+    result: str = "float",
+) -> str:
+    blank = _INDENT * level
+    body = f"{blank}{_INDENT}"
+    head = lay_out_call(len(blank), f"def {name}(", parameters, f") -> {result}:")
+    texts = [*head, f'{body}"""{_shortened(says, len(body))}"""']
+    texts += [f"{body}{line}" for line in lines]
+    return "\n".join([*texts, ""])
+
+
+def _shortened(says: str, indent: int) -> str:
+    """Return a docstring that fits into its line, by the words that do."""
+    room = LINE_LENGTH - indent - len('""""""') - len("...")
+    if len(says) <= room:
+        return says
+    lengths = [len(" ".join(says.split()[: n + 1])) for n in range(len(says.split()))]
+    words = says.split()[: len(list(takewhile(lambda length: length <= room, lengths)))]
+    return f"{' '.join(words)}..."
