@@ -14,7 +14,7 @@ pytest.importorskip("rclpy")
 pytest.importorskip("diagnostic_msgs.msg")
 
 from deros.generators.runtime.python.deros_runtime.diagnostics import CHUNK, Diagnostics
-from deros.generators.runtime.python.deros_runtime.event_reporter import Behaviour
+from deros.generators.runtime.python.deros_runtime.report_types import Behaviour
 
 OK, WARN, ERROR, STALE = range(4)
 
@@ -45,6 +45,10 @@ class Event(NamedTuple):
     action: str
     behaviour: str = "stopping"
     t: int = 5_000_000_000
+    arguments: tuple[Any, ...] = ()
+    line: int = 1
+    holding: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
 
 
 class Shown:

@@ -10,7 +10,8 @@ import pytest
 pytest.importorskip("rclpy")
 pytest.importorskip("diagnostic_msgs.msg")
 
-from deros.generators.runtime.python.deros_runtime.event_reporter import Behaviour, EventReporter
+from deros.generators.runtime.python.deros_runtime.event_reporter import EventReporter
+from deros.generators.runtime.python.deros_runtime.report_types import Behaviour
 
 
 class Event(NamedTuple):
@@ -32,6 +33,10 @@ class Rule(NamedTuple):
     name: str
     value: bool | None
     reads: tuple[tuple[str, Any], ...]
+    line: int = 1
+    text: str = ""
+    since: int = 0
+    causes: tuple[str, ...] = ()
 
 
 class Explanation(NamedTuple):

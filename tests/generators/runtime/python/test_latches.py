@@ -61,7 +61,7 @@ def test_pending_change_counts_as_active(tmp_path: Path) -> None:
     active, problem = file_in(tmp_path).load(KNOWN)
     assert active == frozenset(KNOWN)
     assert "is damaged" in problem
-    latches.record("trigger", "stop")
+    latches.record("stop", active=True)
     assert latches.persist() == ""
     latches.mark_pending("stop")
     assert file_in(tmp_path).load(KNOWN) == (frozenset({"stop"}), "")
@@ -70,13 +70,13 @@ def test_pending_change_counts_as_active(tmp_path: Path) -> None:
 def test_active_actions_survive_a_restart(tmp_path: Path) -> None:
     """The file contains exactly the state of the last process."""
     latches, _ = latches_in(tmp_path)
-    latches.record("trigger", "stop")
-    latches.record("trigger", "beep")
+    latches.record("stop", active=True)
+    latches.record("beep", active=True)
     assert latches.persist() == ""
     again, told = latches_in(tmp_path)
     assert again.active == {"stop"}
     assert told.texts == []
-    again.record("reset", "stop")
+    again.record("stop", active=False)
     again.persist()
     assert latches_in(tmp_path)[0].active == frozenset()
 
@@ -145,7 +145,7 @@ def test_full_disk_makes_all_active_after_a_restart(
 ) -> None:
     """The old file, without the trigger, must not remain valid."""
     latches, told = latches_in(tmp_path)
-    latches.record("trigger", "stop")
+    latches.record("stop", active=True)
     with monkeypatch.context() as full:
         without_space(full)
         assert "No space left" in latches.persist()
@@ -160,7 +160,7 @@ def test_reset_that_cannot_be_stored_is_refused(
 ) -> None:
     """The state before and after a restart must agree."""
     latches, _ = latches_in(tmp_path)
-    latches.record("trigger", "stop")
+    latches.record("stop", active=True)
     latches.persist()
     with monkeypatch.context() as full:
         without_space(full)
@@ -174,7 +174,7 @@ def test_reset_that_cannot_be_stored_is_refused(
 def test_no_partial_file_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A full disk is not filled further."""
     latches, _ = latches_in(tmp_path)
-    latches.record("trigger", "stop")
+    latches.record("stop", active=True)
     without_space(monkeypatch)
     latches.persist()
     assert [path.name for path in (tmp_path / "deros").iterdir()] == ["robot.latches"]

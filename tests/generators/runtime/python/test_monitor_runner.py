@@ -23,6 +23,7 @@ class Event(NamedTuple):
     """An action requested by the monitor."""
 
     action: str
+    arguments: tuple[Any, ...] = ()
 
 
 BAD: dict[str, BaseException] = {
@@ -67,17 +68,19 @@ class Owner:
         self.steady = Mock()
         node = Mock()
         node.get_parameter.return_value.value = False
-        self.runner = MonitorRunner(
-            node,
-            self.steady,
-            lambda _start, emit: Monitor(list(actions), emit, failing),
-            self.show,
-            self.run,
-            self.after,
-            lambda: self.calls.append("tell"),
-            lambda: self.calls.append("stepped"),
-        )
+        self.actions = list(actions)
+        self.failing = failing
+        host: Any = self
+        self.runner = MonitorRunner(node, self.steady, host)
         self.runner.start()
+
+    def begin(self, _start: int, emit: Callable[[Event], None]) -> Monitor:
+        """Return the monitor."""
+        return Monitor(self.actions, emit, self.failing)
+
+    def flush_reports(self) -> None:
+        """Record that the node ends."""
+        self.calls.append("flush")
 
     def show(self, event: Event) -> bool:
         """Show a stop at once; 'unshowable' fails once, and other actions are user code."""
@@ -141,7 +144,7 @@ def test_failing_user_code_does_not_prevent_other_actions(bad: str) -> None:
         f"run {bad}",
         "run beep",
         f"after {bad} beep stop",
-        "tell",
+        "flush",
     ]
 
 
@@ -150,15 +153,15 @@ def test_repeated_user_code_runs_despite_failures() -> None:
     owner = Owner()
     with pytest.raises(ActionError):
         owner.runner.run_again([Event("throws"), Event("beep")])
-    assert owner.calls == ["run throws", "run beep", "tell"]
+    assert owner.calls == ["run throws", "run beep", "flush"]
 
 
 def test_reentrant_user_code_executes_nothing_twice() -> None:
     """An action that spins its node does not run itself again."""
     owner = Owner("beep", "stop")
 
-    def come_back(event: Event) -> None:
-        owner.run(event)
+    def come_back(call: Any) -> None:
+        owner.run(call)
         owner.runner.settle()
 
     owner.runner._run = come_back
@@ -217,16 +220,19 @@ class Counter:
         return self.count
 
 
-def test_late_events_have_the_explanations_of_their_time() -> None:
+def test_late_events_have_the_explanations_of_their_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """A late call handles one deadline after the other, and publishes everything at once."""
     told: list[tuple[str, int]] = []
     owner = Owner()
     runner = owner.runner
-    runner.monitor = Counter(runner._take)
-    runner._show = lambda _event: True
-    runner._after = lambda events, _, states: told.extend(
-        (event.action, state) for event, state in zip(events, states, strict=True)
-    )
+    take: Any = runner._take
+    runner.monitor = Counter(take)
+    monkeypatch.setattr(runner, "_show", lambda _event: True)
+
+    def after(events: list[Event], _: list[int], states: list[int]) -> None:
+        told.extend((event.action, state) for event, state in zip(events, states, strict=True))
+
+    monkeypatch.setattr(owner, "after", after)
     runner.catch_up(3)
     assert told == []
     runner.settle()

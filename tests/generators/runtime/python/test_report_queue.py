@@ -45,7 +45,8 @@ class Telling(Clockwork):
     def add(self, *numbers: int) -> None:
         """Add reports."""
         for number in numbers:
-            self.reports.add([Mock(action="stop", number=number)], [7], ["states"])
+            states: list[Any] = ["states"]
+            self.reports.add([Mock(action="stop", number=number)], [7], states)
 
     def pass_time(self, time: int) -> None:
         """Advance the time, and let the executor call the timer."""

@@ -47,7 +47,7 @@ def test_files_match_golden(name: str, golden: Golden) -> None:
     Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
     ends = (".rnd", ".py", "_actions.py", "_actions_base.py")
-    own = {"origins.py", *(f"{name}_safety_node{end}" for end in ends)}
+    own = {"rule_metadata.py", *(f"{name}_safety_node{end}" for end in ends)}
     files = {path: file for path, file in files_of(name).items() if Path(path).name in own}
     assert len(files) == len(own)
     golden.check(f"safety_python/{name}", files)
@@ -135,7 +135,7 @@ def test_bound_actions_need_no_user_file() -> None:
 def test_output_does_not_import_deros() -> None:
     """Every import is of ROS 2, the standard library or the package itself."""
     allowed = {
-        "__future__", "abc", "collections", "contextlib", "ctypes", "dataclasses", "fcntl",
+        "__future__", "abc", "collections", "contextlib", "ctypes", "dataclasses", "enum", "fcntl",
         "functools", "gc", "hashlib", "itertools", "math", "numpy", "os", "resource", "select",
         "signal", "stat", "struct", "sys", "tempfile", "threading", "time", "traceback", "types",
         "typing", "glob", "pathlib", "setuptools", "launch", "launch_ros", "ament_index_python",

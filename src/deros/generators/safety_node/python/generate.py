@@ -10,11 +10,11 @@ from deros.generators.text.templates import environment
 
 
 def node_files(view: SafetyView, copyright_line: str) -> dict[str, File]:
-    """Return the node's class, the origins of its rules, and the classes of the user's actions."""
+    """Return the node's class, the metadata of its rules, and the classes of the user's actions."""
     root = f"{view.package}/{view.package}"
     files = {
         f"{root}/{view.node.module}.py": File(_render("node.py", view, copyright_line)),
-        f"{root}/origins.py": File(_render("origins.py", view, copyright_line)),
+        f"{root}/rule_metadata.py": File(_render("rule_metadata.py", view, copyright_line)),
     }
     if view.actions:
         base = _render("actions_base.py", view, copyright_line)

@@ -46,6 +46,7 @@ RUNTIME = (
     "duplicate_instance",
     "event_reporter",
     "instance",
+    "latches",
     "monitor_runner",
     "one_shot_timer",
     "process",
@@ -53,10 +54,13 @@ RUNTIME = (
     "realtime",
     "regular_file",
     "report_queue",
+    "report_types",
+    "safety_node_core",
     "start_order",
+    "states",
     "waker",
 )
-"""The modules of every safety node that are the same for all programs."""
+"""The modules of the runtime that every safety node needs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +98,24 @@ class ActionView:
 
 
 @dataclass(frozen=True, slots=True)
+class ActionMetadata:
+    """What the reports of a node say of an action.
+
+    Attributes:
+        lasts: whether it has a state, and is not just run.
+        is_latched: whether it is; only then, the rest is set.
+        triggered_by: the behaviours that trigger it.
+        arguments: those that the rules call it with first.
+    """
+
+    name: str
+    lasts: bool
+    is_latched: bool
+    triggered_by: tuple[str, ...]
+    arguments: tuple[Scalar, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class SafetyView:
     """All that the templates print.
 
@@ -102,11 +124,8 @@ class SafetyView:
         rules: the file name of the rules.
         imports: the statements that import the interfaces.
         shared: the watched topics that may have several publishers.
-        channels_of: of each bound action, the channel that carries its state.
-        lasting: of each action, whether it has a state.
-        latched: the latched actions, with the arguments that the rules call each with first.
+        metadata: what the reports say of each action.
         optional: the behaviours that can be disabled, with the field of their parameter.
-        callers: of each latched action, the behaviours that trigger it.
         trigger: the service class of ``~/reset`` as the module names it; empty without latches.
     """
 
@@ -119,30 +138,24 @@ class SafetyView:
     handlers: tuple[HandlerView, ...]
     shared: tuple[str, ...]
     channels: tuple[ChannelView, ...]
-    channels_of: tuple[tuple[str, str], ...]
     actions: tuple[ActionView, ...]
-    lasting: tuple[tuple[str, bool], ...]
-    latched: tuple[tuple[str, tuple[Scalar, ...]], ...]
+    metadata: tuple[ActionMetadata, ...]
     optional: tuple[tuple[str, str], ...]
     behaviours: tuple[BehaviourView, ...]
-    callers: tuple[tuple[str, tuple[str, ...]], ...]
     heartbeat: str
     trigger: str
     rule_count: int
 
     @property
-    def runtime_modules(self) -> tuple[str, ...]:
-        """The modules that are the same for every program that needs them."""
-        needed = {
-            "latches": bool(self.latched),
-            "states": bool(self.channels),
-        }
-        return (*RUNTIME, *(module for module, is_needed in needed.items() if is_needed))
+    def metadata_types(self) -> list[str]:
+        """The types that the metadata of the rules needs."""
+        needed = {"Action": self.metadata, "Behaviour": self.behaviours}
+        return [*(name for name, items in needed.items() if items), "RuleMetadata"]
 
     @property
-    def latched_code(self) -> bool:
-        """Whether a latched action is robot code."""
-        return bool({name for name, _ in self.latched} & {action.name for action in self.actions})
+    def latched(self) -> bool:
+        """Whether there are latched actions."""
+        return any(action.is_latched for action in self.metadata)
 
     @property
     def actions_module(self) -> str:
@@ -204,13 +217,10 @@ def safety_view(
         handlers=handlers,
         shared=tuple(sorted(shared)),
         channels=channels,
-        channels_of=tuple((name, c.identifier) for c in channels for name in c.actions),
         actions=actions,
-        lasting=tuple((a.name, lasts(a)) for a in program.actions if a.name != LOG_STATE),
-        latched=tuple(_latched(program)),
+        metadata=tuple(_metadata(program)),
         optional=tuple(_optional(program)),
         behaviours=tuple(behaviour_views(program)),
-        callers=tuple(_callers(program)),
         heartbeat=_alias(base, node, HEARTBEAT),
         trigger=_alias(base, node, RESET),
         rule_count=len(program.rules),
@@ -227,7 +237,7 @@ def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
     ]
     methods = [Emitted(a.method, f"action {a.name!r}", spans[a.name]) for a in view.actions]
     check_collisions([*reserved, *methods], f"the class {view.actions_class}")
-    modules = ["monitor", "origins", *view.runtime_modules, view.node.module, view.node.base_module]
+    modules = ["monitor", "rule_metadata", *RUNTIME, view.node.module, view.node.base_module]
     if view.handlers:
         modules.append("decoding")
     if view.actions:
@@ -249,31 +259,17 @@ def _imports(
     imports = interface_imports(dict(base.interfaces), used)
     package = node.package
     imports |= {
-        "rclpy.clock": {"Clock"},
-        "rclpy.clock_type": {"ClockType"},
         package: {"monitor"},
-        f"{runtime}.one_shot_timer": {"OneShotTimer"},
-        f"{runtime}.diagnostics": {"Diagnostics"},
-        f"{runtime}.event_reporter": {"EventReporter", "OK", "WARN", "ERROR"},
-        f"{runtime}.instance": {"claim"},
-        f"{package}.origins": {"ACTIONS", "BEHAVIOURS", "RULES"},
-        f"{runtime}.process": {"run"},
-        f"{runtime}.publishers": {"PublisherCheck"},
-        f"{runtime}.realtime": {"configure_process"},
-        f"{runtime}.report_queue": {"ReportQueue"},
-        f"{runtime}.duplicate_instance": {"DuplicateInstanceDetector"},
-        f"{runtime}.monitor_runner": {"MonitorRunner"},
+        f"{package}.rule_metadata": {"METADATA"},
         f"{package}.{base.base_module}": {base.base_class},
+        f"{runtime}.process": {"run"},
+        f"{runtime}.safety_node_core": {"SafetyNodeCore", "SafetyNodePorts"},
     }
     if base.subscriptions:
         imports[package].add("decoding")
     if channels:
         imports[f"{runtime}.states"] = {"StateTopic"}
-    if any(action.latched for action in program.actions):
-        imports[f"{runtime}.instance"].add("file_stem")
-        imports[f"{runtime}.latches"] = {"LatchFile", "Latches", "default_path"}
-        imports[f"{package}.origins"] |= {"CALLERS", "LATCHED"}
-    if any(each.optional for each in walk.behaviours(program)):
+    if any(behaviour.optional for behaviour in walk.behaviours(program)):
         imports[f"{package}.{base.base_module}"].add("Parameters")
     if has_actions:
         imports[f"{package}.{base.module}_actions"] = {f"{base.class_name}Actions"}
@@ -355,21 +351,21 @@ def _action(action: Action, program: Program, description: str) -> ActionView:
     )
 
 
-def _latched(program: Program) -> Iterator[tuple[str, tuple[Scalar, ...]]]:
+def _metadata(program: Program) -> Iterator[ActionMetadata]:
+    names = {behaviour.index: behaviour.name for behaviour in walk.behaviours(program)}
     for action in program.actions:
+        if action.name == LOG_STATE:
+            continue
+        triggered_by: tuple[str, ...] = ()
+        arguments: tuple[Scalar, ...] = ()
         if action.latched:
-            first = (call.arguments for call in calls(program) if call.action == action.index)
-            yield action.name, next(first, ())
+            triggered_by = tuple(names[index] for index in action.triggered_by)
+            own = (call.arguments for call in calls(program) if call.action == action.index)
+            arguments = next(own, ())
+        yield ActionMetadata(action.name, lasts(action), action.latched, triggered_by, arguments)
 
 
 def _optional(program: Program) -> Iterator[tuple[str, str]]:
     for each in walk.behaviours(program):
         if each.optional:
             yield each.name, python_identifier(enabled_parameter(each.name))
-
-
-def _callers(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
-    names = {each.index: each.name for each in walk.behaviours(program)}
-    for action in program.actions:
-        if action.latched:
-            yield action.name, tuple(names[index] for index in action.triggered_by)

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 import dataclasses
 from dataclasses import dataclass
 import itertools
 import time
-from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.clock import Clock
 from rclpy.node import Node
 
-from .event_reporter import Behaviour, cause, shown
+from .event_reporter import cause, shown
 from .one_shot_timer import OneShotTimer
+from .report_types import Behaviour, Event, EventKind, Explanation, RuleState
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
@@ -64,7 +64,10 @@ class Diagnostics:
         self._timer = OneShotTimer(node, steady, time.monotonic_ns, self._fire, defer)
 
     def begin(
-        self, explain: Callable[[], Any], now: Callable[[], int], summary: Callable[[], str]
+        self,
+        explain: Callable[[], Explanation],
+        now: Callable[[], int],
+        summary: Callable[[], str],
     ) -> None:
         """
         Start publishing.
@@ -82,12 +85,12 @@ class Diagnostics:
             self._timer.schedule(soon)
         self._again = True
 
-    def update(self, event: Any, explained: Any) -> None:
+    def update(self, event: Event, explained: Explanation) -> None:
         """Follow an event of the monitor; explained is what it explains after it."""
         before = self.actions.get(event.action)
-        if before is None or event.kind not in ('trigger', 'reset'):
+        if before is None or event.kind not in (EventKind.TRIGGER, EventKind.RESET):
             return
-        active = event.kind == 'trigger'
+        active = event.kind == EventKind.TRIGGER
         runs = before.runs + active
         if before.active and active:
             after = dataclasses.replace(before, runs=runs)
@@ -142,12 +145,12 @@ class Diagnostics:
         for rule in rules:
             yield _rule_status(f'{name}: {rule.name}', rule, rule.name in blamed, now)
 
-    def _causes(self, behaviour: str, rules: Any) -> list[Any]:
+    def _causes(self, behaviour: str, rules: Sequence[RuleState]) -> list[RuleState]:
         """Return the rules that make a behaviour hold: the true ones, else all it names."""
         named = [rule for rule in rules if rule.name in self._behaviours[behaviour].rules]
         return [rule for rule in named if rule.value] or named
 
-    def _node_status(self, name: str, rules: Any) -> DiagnosticStatus:
+    def _node_status(self, name: str, rules: Sequence[RuleState]) -> DiagnosticStatus:
         unready = self._summary()
         level = ERROR if self.faults else WARN if unready else OK
         message = '; '.join(self.faults.values()) or unready or f'watching {len(rules)} rules'
@@ -168,7 +171,7 @@ def _action_status(name: str, state: ActionState, now: int) -> DiagnosticStatus:
     return _status(WARN if state.active else OK, name, message, values)
 
 
-def _rule_status(name: str, rule: Any, blamed: bool, now: int) -> DiagnosticStatus:
+def _rule_status(name: str, rule: RuleState, blamed: bool, now: int) -> DiagnosticStatus:
     true = ERROR if blamed else WARN
     level = {None: STALE, False: ERROR if blamed else OK, True: true}[rule.value]
     values = {term: shown(value) for term, value in rule.reads}

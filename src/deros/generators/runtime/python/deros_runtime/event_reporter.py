@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
+from .report_types import Behaviour, Event, EventKind, Explanation
+
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
-
-
-class Behaviour(NamedTuple):
-    """What people want to know of a behaviour."""
-
-    origin: str  # file and line of the rules
-    condition: str
-    rules: tuple[str, ...]  # that it depends on, also through the behaviours around it
 
 
 class EventReporter:
@@ -35,7 +28,7 @@ class EventReporter:
         self._behaviours = behaviours
         self._publish = publish
 
-    def report_monitor_event(self, event: Any, done: int, after: Any) -> None:
+    def report_monitor_event(self, event: Event, done: int, after: Explanation) -> None:
         """
         Tell of an event of the monitor.
 
@@ -60,7 +53,7 @@ class EventReporter:
                 'cause': cause(event.behaviour, after),
             }
             told |= self._values(event.behaviour, after)
-        if event.kind == 'refused':
+        if event.kind == EventKind.REFUSED:
             told |= {'holding': ', '.join(event.holding), 'unknown': ', '.join(event.unknown)}
             told |= {f'cause {name}': cause(name, after) for name in event.holding}
             for name in (*event.holding, *event.unknown):
@@ -85,7 +78,7 @@ class EventReporter:
         found = self._behaviours[behaviour]
         return f'{behaviour} ({found.origin}: if {found.condition})'
 
-    def refusal(self, holding: Sequence[str], unknown: Sequence[str], present: Any) -> str:
+    def refusal(self, holding: Sequence[str], unknown: Sequence[str], present: Explanation) -> str:
         """
         Return why a reset is refused; nothing if it is not.
 
@@ -101,14 +94,14 @@ class EventReporter:
             reasons.append(f'not known to be false: {", ".join(told)}')
         return '; '.join(reasons)
 
-    def _origin_holding(self, behaviour: str, present: Any) -> str:
+    def _origin_holding(self, behaviour: str, present: Explanation) -> str:
         """Return a behaviour with its place in the rules, and what makes it hold."""
         found = cause(behaviour, present)
         if not found:
             return self.origin(behaviour)
         return f'{behaviour} ({self._behaviours[behaviour].origin}): {found}'
 
-    def _origin_unknown(self, behaviour: str, present: Any) -> str:
+    def _origin_unknown(self, behaviour: str, present: Explanation) -> str:
         """Return a behaviour as origin() does, with the terms without a value."""
         rules = self._behaviours[behaviour].rules
         terms = [
@@ -122,7 +115,7 @@ class EventReporter:
             return self.origin(behaviour)
         return f'{self.origin(behaviour)}, unknown: {", ".join(dict.fromkeys(terms))}'
 
-    def _values(self, behaviour: str, after: Any) -> dict[str, str]:
+    def _values(self, behaviour: str, after: Explanation) -> dict[str, str]:
         """Return what the rules are worth that a behaviour depends on, and what they read."""
         told = {}
         for state in after.rules:
@@ -140,19 +133,19 @@ class EventReporter:
         else:
             log.error(message)
 
-    def _described(self, event: Any, after: Any) -> tuple[str, bytes]:
-        if event.kind == 'clock_step':
+    def _described(self, event: Event, after: Explanation) -> tuple[str, bytes]:
+        if event.kind == EventKind.CLOCK_STEP:
             return 'the clock stepped back: all inputs are unknown until their next message', ERROR
-        if event.kind == 'reset':
+        if event.kind == EventKind.RESET:
             return f'{event.action} is reset', OK
-        if event.kind == 'refused':
+        if event.kind == EventKind.REFUSED:
             why = self.refusal(event.holding, event.unknown, after)
             return f'{event.action} stays active, {why}', WARN
         what = event.arguments[0] if event.action == 'log_state' else event.action
         return f'{what}, by {self._origin_holding(event.behaviour, after)}', WARN
 
 
-def cause(behaviour: str, explained: Any) -> str:
+def cause(behaviour: str, explained: Explanation) -> str:
     """
     Return what makes a behaviour hold: rules, with the true parts of their conditions.
 

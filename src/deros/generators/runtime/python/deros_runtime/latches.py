@@ -181,10 +181,10 @@ class Latches:
         if action in self._known and action not in self.active:
             self._file.mark_dirty()
 
-    def record(self, kind: str, action: str) -> None:
-        """Follow an event of the monitor."""
+    def record(self, action: str, active: bool) -> None:
+        """Note that the monitor has made an action active, or reset it."""
         if action in self._known:
-            self.active = self.active - {action} if kind == 'reset' else self.active | {action}
+            self.active = self.active | {action} if active else self.active - {action}
 
     def persist(self) -> str:
         """Have the file say what is active; return why it does not. To be tried again then."""

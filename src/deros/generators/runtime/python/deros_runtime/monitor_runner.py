@@ -1,11 +1,11 @@
-"""A monitor in time: it is told what time it is, and what it orders is done at once."""
+"""Drives a monitor from a clock, and carries out what it orders at once."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 import time
 import traceback
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from rclpy.clock import Clock, JumpThreshold, TimeJump
 from rclpy.duration import Duration
@@ -13,13 +13,50 @@ from rclpy.node import Node
 
 from .clock_choice import refuse_clock_change
 from .one_shot_timer import OneShotTimer
+from .report_types import ActionCall, Event, Explanation, Monitor
 
-NEAR = 2_000_000  # ns before a deadline in which nothing is begun that can wait
-AFTER = 1_000_000  # ns after it in which what it orders is done
+NEAR = 2_000_000  # ns before a deadline in which nothing is started that can wait
+AFTER = 1_000_000  # ns after a deadline in which what the monitor orders is done
+
+CallT = TypeVar('CallT', bound=ActionCall)
 
 
 class ActionError(Exception):
     """The code of an action has failed; the text names it."""
+
+
+class MonitorHost(Protocol):
+    """The node around a monitor, as the runner calls it."""
+
+    def begin(self, start: int, emit: Callable[[Event], None]) -> Monitor:
+        """
+        Return a monitor that starts at a time and calls emit with each event.
+
+        Called again when simulated time begins.
+        """
+
+    def show(self, event: Event) -> bool:
+        """
+        Publish the state that an event changes, and return whether nothing is left to be done.
+
+        Called in the middle of an evaluation.
+        """
+
+    def run(self, call: ActionCall) -> None:
+        """Run the robot code of an action."""
+
+    def after(self, events: list[Event], done: list[int], states: list[Explanation]) -> None:
+        """
+        Take the events that have been acted upon.
+
+        For each of them, done has the time of that, and states what the monitor explained.
+        """
+
+    def flush_reports(self) -> None:
+        """Publish all reports, because the failure of an action ends the node."""
+
+    def stepped(self) -> None:
+        """Publish at once, because simulated time has begun or stepped back."""
 
 
 class MonitorRunner:
@@ -30,43 +67,20 @@ class MonitorRunner:
     the monitor, and calls settle() then.
     """
 
-    def __init__(
-        self,
-        node: Node,
-        steady: Clock,
-        begin: Callable[[int, Callable[[Any], None]], Any],
-        show: Callable[[Any], bool],
-        run: Callable[[Any], None],
-        after: Callable[[list[Any], list[int], list[Any]], None],
-        tell: Callable[[], None],
-        stepped: Callable[[], None],
-    ) -> None:
-        """
-        Prepare; start() comes next.
-
-        begin makes a monitor that starts at a time and hands its events to a function; it is
-        called again when simulated time begins. show publishes and marks as pending what an event
-        asks for, in the middle of an evaluation, and returns whether nothing is left to be done;
-        run runs the robot code that is left. after is called with the events that have been dealt
-        with, and for each of them when it was done, and what the monitor explained then; tell
-        before an action's failure ends the node. stepped is called when simulated time has begun
-        or stepped back.
-        """
+    def __init__(self, node: Node, steady: Clock, host: MonitorHost) -> None:
+        """Choose the clock; start() comes next."""
         self.began_at = 0
-        self.monitor: Any = None
+        self.monitor: Any = None  # a Monitor, and a method for each of its inputs
         self._node = node
         self._steady = steady
-        self._begin = begin
-        self._show = show
-        self._run = run
-        self._after = after
-        self._tell = tell
-        self._stepped = stepped
-        self._events: list[Any] = []  # of this evaluation, in the monitor's order
+        self._host = host
+        self._show = host.show  # looked up once: it is called while others wait for it
+        self._run = host.run
+        self._events: list[Event] = []  # of this evaluation, in the monitor's order
         self._done: list[int] = []  # when each of these was done; 0 for not yet
         self._unpublished: list[int] = []  # the indices of those that could not be shown
         self._code: list[int] = []  # the indices of those whose code is still to be run
-        self._states: list[Any] = []  # what the monitor explained after each of them
+        self._states: list[Explanation] = []  # what the monitor explained after each of them
         refuse_clock_change(node)
         self.now, self.clock = self._choose_clock(steady)
         self._deadline = OneShotTimer(node, self.clock, self.now, self._on_deadline)
@@ -74,7 +88,7 @@ class MonitorRunner:
     def start(self) -> None:
         """Start the monitor: its timeouts count from now."""
         self.began_at = self.now()
-        self.monitor = self._begin(self.began_at, self._take)
+        self.monitor = self._host.begin(self.began_at, self._take)
         self._arm()
 
     def settle(self) -> None:
@@ -84,7 +98,7 @@ class MonitorRunner:
         self._arm()
 
     def advance(self) -> int:
-        """Settle all that is due, and return the time that it is now."""
+        """Evaluate all that is due, and return the time that it is now."""
         now = self.now()
         try:
             self.catch_up(now)
@@ -95,20 +109,20 @@ class MonitorRunner:
 
     def catch_up(self, now: int) -> None:
         """
-        Settle what was due up to now, before anything else.
+        Evaluate what was due up to now, before anything else.
 
-        Each instant is settled by itself: its events are explained by what was known then.
+        Each instant is evaluated by itself: its events are explained by what was known then.
         """
         while (due := self.monitor.next_deadline) is not None and due <= now:
             self.monitor.advance(due)
             self._explain()
 
-    def run_again(self, events: Iterable[Any]) -> None:
-        """Run the code of actions that were active before the start, of each of them."""
-        self._fail_with([error for event in events for error in self._attempt(self._run, event)])
+    def run_again(self, calls: Iterable[ActionCall]) -> None:
+        """Run the code of actions that were active before the start, each of them."""
+        self._fail_with([error for call in calls for error in self._attempt(self._run, call)])
 
     def defer(self) -> int:
-        """Return for how long what can wait has to, in nanoseconds, as a deadline is near."""
+        """Return for how many nanoseconds what can wait has to, because a deadline is near."""
         deadline = self.monitor.next_deadline
         if deadline is None or self.clock is not self._steady:
             return 0
@@ -117,8 +131,8 @@ class MonitorRunner:
 
     def _choose_clock(self, steady: Clock) -> tuple[Callable[[], int], Clock]:
         if not self._node.get_parameter('use_sim_time').value:
-            return time.monotonic_ns, steady  # what that clock shows, in a thirtieth of the time
-        # The callback of a jump may not do much, so it leaves the rest to an timer due at once.
+            return time.monotonic_ns, steady  # the same time as that clock's, in a thirtieth of it
+        # The callback of a jump may not do much, so it leaves the rest to a timer due at once.
         self._step = OneShotTimer(self._node, steady, time.monotonic_ns, self._on_step)
         jumps = JumpThreshold(
             min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
@@ -128,7 +142,7 @@ class MonitorRunner:
         return lambda: clock.now().nanoseconds, clock
 
     def _on_clock_jump(self, jump: TimeJump) -> None:
-        """Start when simulated time begins, and settle a step back without waiting."""
+        """Start when simulated time begins, and handle a step back without waiting."""
         begins = self.began_at == 0 and self.monitor is not None
         if begins:
             self.start()
@@ -136,7 +150,7 @@ class MonitorRunner:
             self._step.schedule(0)
 
     def _on_step(self) -> None:
-        self._stepped()
+        self._host.stepped()
         self._on_deadline()
 
     def _on_deadline(self) -> None:
@@ -144,18 +158,18 @@ class MonitorRunner:
         self.advance()
 
     def _arm(self) -> None:
-        """Set the timer to the monitor's next deadline; one that rings earlier may stay."""
+        """Schedule the timer for the monitor's next deadline, unless it fires earlier anyway."""
         deadline = self.monitor.next_deadline
         timer = self._deadline
         if deadline is not None and not (timer.is_scheduled and timer.due <= deadline):
             timer.schedule(deadline)
 
-    def _take(self, event: Any) -> None:
-        """Show at once what an event asks for; robot code waits until all of them are shown."""
+    def _take(self, event: Event) -> None:
+        """Show an event at once; robot code waits until all of them are shown."""
         try:
             left = None if self._show(event) else self._code
         except Exception:
-            left = self._unpublished  # it is tried again when the monitor is through
+            left = self._unpublished  # tried again when the evaluation is over
         if left is None:
             self._done.append(self.now())
         else:
@@ -178,33 +192,35 @@ class MonitorRunner:
 
     def _do_all(self) -> None:
         events, done, states = self._events, self._done, self._states
-        attempts = [(self._show, self._unpublished), (self._run, self._code)]
+        shown_late, code = self._unpublished, self._code
         # Code may spin the node, and so come back here: it must find nothing to be done.
         self._events, self._done, self._unpublished, self._code = [], [], [], []
         self._states = []
         failures: list[BaseException] = []
         try:
-            for act, indices in attempts:
-                for i in indices:
-                    failures += self._attempt(act, events[i])
-                    done[i] = self.now()
+            for i in shown_late:
+                failures += self._attempt(self._show, events[i])
+                done[i] = self.now()
+            for i in code:
+                failures += self._attempt(self._run, events[i])
+                done[i] = self.now()
         finally:
-            self._after(events, done, states)
+            self._host.after(events, done, states)
         self._fail_with(failures)
 
     def _fail_with(self, failures: list[BaseException]) -> None:
         """End the node, and its heartbeat with it, if anything was raised; sys.exit() counts."""
         if failures:
-            self._tell()
+            self._host.flush_reports()
             raise ActionError('an action failed, so the node ends') from failures[0]
 
-    def _attempt(self, act: Callable[[Any], object], event: Any) -> list[BaseException]:
+    def _attempt(self, act: Callable[[CallT], object], call: CallT) -> list[BaseException]:
         """Do something; log and return what it raised, even what is meant to end the process."""
         try:
-            act(event)
+            act(call)
         except BaseException as error:
             self._node.get_logger().fatal(
-                f'action {event.action} failed:\n{traceback.format_exc()}'
+                f'action {call.action} failed:\n{traceback.format_exc()}'
             )
             return [error]
         return []

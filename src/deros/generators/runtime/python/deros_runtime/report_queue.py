@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 import time
-from typing import Any
 
 from rclpy.clock import Clock
 from rclpy.node import Node
@@ -13,6 +12,7 @@ from rclpy.node import Node
 from .diagnostics import Diagnostics
 from .event_reporter import EventReporter
 from .one_shot_timer import OneShotTimer
+from .report_types import Event, Explanation
 
 SOON = 2_000_000  # ns after an action, when it is told of: those who have to act come first
 CHUNK = 4  # reports at once: more of them would keep the monitor waiting for too long
@@ -46,10 +46,14 @@ class ReportQueue:
         self._events = events
         self._diagnostics = diagnostics
         self._prepare = prepare
-        self._waiting: deque[tuple[Any, ...]] = deque()
+        self._waiting: deque[tuple[Sequence[Event], Sequence[int], Sequence[Explanation]]] = (
+            deque()
+        )
         self._timer = OneShotTimer(node, steady, time.monotonic_ns, self._fire, defer)
 
-    def add(self, events: Sequence[Any], done: Sequence[int], states: Sequence[Any]) -> None:
+    def add(
+        self, events: Sequence[Event], done: Sequence[int], states: Sequence[Explanation]
+    ) -> None:
         """
         Tell soon of events of the monitor.
 
@@ -76,7 +80,9 @@ class ReportQueue:
         self._prepare()
         self._diagnostics.changed()
 
-    def _tell(self, events: Sequence[Any], done: Sequence[int], states: Sequence[Any]) -> None:
+    def _tell(
+        self, events: Sequence[Event], done: Sequence[int], states: Sequence[Explanation]
+    ) -> None:
         for event, done_at, explained in zip(events, done, states, strict=False):
             self._events.report_monitor_event(event, done_at, explained)
             self._diagnostics.update(event, explained)

@@ -40,7 +40,7 @@ class StateTopic:
         The message of a set of active actions must always be the same unless it is stamped.
         publish takes it serialized.
         """
-        self._actions = actions
+        self.actions = actions
         self._message = message
         self._publish = publish
         self._stamped = stamped
@@ -54,7 +54,7 @@ class StateTopic:
 
     def begin(self, active: Set[str]) -> None:
         """Begin anew with some actions active; nothing is published yet."""
-        self._state = self._get(frozenset(active & self._actions))
+        self._state = self._get(frozenset(active & self.actions))
         self.prepare()
 
     def show(self, action: str, active: bool) -> None:
@@ -68,7 +68,7 @@ class StateTopic:
 
     def prepare(self) -> None:
         """Make the messages that can be next."""
-        for action in self._actions:
+        for action in self.actions:
             for active in (True, False):
                 self._next(action, active)
 
