@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,6 @@ from deros.pipeline.project import project_of
 if TYPE_CHECKING:
     from deros.metamodels.load import LoadedFile
     from deros.metamodels.rules import Rules
-    from deros.monitor.build_cache import BuildCache
 
 
 def plan(
@@ -96,7 +95,7 @@ def _worth_generating(
         package
         for each in workspace.files
         if isinstance(each.model, Rules)
-        for package in _packages_of_rules(each.model, options, workspace.builds)
+        for package in _packages_of_rules(each.model, options)
     }
 
     def is_wanted(model: Named, file: LoadedFile) -> bool:
@@ -112,20 +111,9 @@ def _worth_generating(
     ]
 
 
-def _packages_of_rules(
-    rules: Rules, options: Mapping[str, str], builds: BuildCache
-) -> Iterator[str]:
-    """Return the packages that a safety node, its gates and their descriptions are made in."""
-    from deros.generators.api.protocol import GenerationError
-    from deros.generators.safety_node.cpp.node import twin_options
-    from deros.generators.safety_node.node import safety_node
-    from deros.metamodels.safety_nodes import cpp_twin
+def _packages_of_rules(rules: Rules, options: Mapping[str, str]) -> tuple[str, str]:
+    """Return the packages of the safety node and its gates, in Python and in C++."""
+    from deros.metamodels.safety_nodes import CPP_SUFFIX, package_name
 
-    built = builds.of(rules)
-    if built.program is None:
-        return
-    try:
-        node = safety_node(built.program, built.topics, twin_options(options), rules.source)
-    except (GenerationError, ValueError):  # the generator itself will say so
-        return
-    yield from (node.package, cpp_twin(node).package)
+    package = options.get("package", package_name(rules.name)).removesuffix(CPP_SUFFIX)
+    return package, f"{package}{CPP_SUFFIX}"
