@@ -191,7 +191,7 @@ def safety_node_type(outline: Outline, offers: OffersOf, package: str, name: str
         start,
         start,
         start,
-        description=f"Watches the safety rules of {outline.name}",
+        description=f"Monitors the safety rules of {outline.name}",
         parameters=tuple(_parameters(outline)),
         ports=tuple(_safety_ports(outline, offers)),
     )
@@ -238,7 +238,7 @@ def _parameters(outline: Outline) -> Iterator[Parameter]:
         "startup_grace",
         kinds.DOUBLE,
         0.0,
-        "How long inputs may be late at the start; until they have come there is no heartbeat",
+        "How long inputs may be late at startup; there is no heartbeat until they have arrived",
         "s",
         Interval(0.0, 86400.0),
     )
@@ -247,7 +247,7 @@ def _parameters(outline: Outline) -> Iterator[Parameter]:
             "state_file",
             kinds.STRING,
             "",
-            "Where latched actions outlive the process; empty: in deros below $ROS_HOME or ~/.ros",
+            "File that keeps latched actions; empty: in deros below $ROS_HOME or ~/.ros",
         )
     yield fixed(
         "diagnostics_freq",
@@ -264,11 +264,15 @@ def _parameters(outline: Outline) -> Iterator[Parameter]:
         "Priority under SCHED_FIFO; 0 leaves the scheduling as it is",
         interval=Interval(0, 99),
     )
-    yield fixed("lock_memory", kinds.BOOL, False, "Whether the memory is never paged out")
-    yield fixed("garbage_collection", kinds.BOOL, True, "Whether Python looks for unused cycles")
+    yield fixed(
+        "lock_memory", kinds.BOOL, False, "Whether the memory is locked and never paged out"
+    )
+    yield fixed(
+        "garbage_collection", kinds.BOOL, True, "Whether Python's cyclic garbage collector runs"
+    )
     for behaviour in outline.optional:
         name = enabled_parameter(behaviour)
-        description = f"Whether the behaviour {behaviour} is watched"
+        description = f"Whether the behaviour {behaviour} is enabled"
         yield Parameter(name, kinds.BOOL, True, span, span, description=description)
 
 
@@ -287,7 +291,7 @@ def _safety_ports(outline: Outline, offers: OffersOf) -> list[Port]:
             PortKind.PUBLISHER, HEARTBEAT, HEARTBEAT_TYPE, start, safety_qos.HEARTBEAT, description
         )
     )
-    description = "Tells of each action, reset and fault"
+    description = "Reports each action, reset and fault"
     ports.append(
         synthesized_port(PortKind.PUBLISHER, EVENTS, _STATUS, start, safety_qos.EVENTS, description)
     )
@@ -303,7 +307,7 @@ def _safety_ports(outline: Outline, offers: OffersOf) -> list[Port]:
         for read in outline.inputs
     ]
     if outline.latched:
-        description = "Resets the latched actions that no behaviour calls for"
+        description = "Resets the latched actions that no behaviour triggers"
         ports.append(synthesized_port(PortKind.SERVICE, RESET, TRIGGER, start, None, description))
     return ports
 
@@ -330,7 +334,7 @@ def gate_node_types(outline: Outline, offers: OffersOf, safety_node: NodeType) -
 
 def _gate_node(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> NodeType:
     name = gate_node_name(gate.target)
-    described = f"Lets commands from {gate.source} through to {gate.target} as far as it is safe"
+    described = f"Passes commands from {gate.source} to {gate.target} as far as it is safe"
     return NodeType(
         name,
         safety_node.package,
@@ -349,8 +353,8 @@ def _gate_node(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> No
 
 def _losses_in_simulated_time(gate: GateOutline) -> Parameter:
     description = (
-        "Under use_sim_time, count losses and the period of zeros on /clock, for tests: where it"
-        " stands, nothing is lost"
+        "Under use_sim_time, measure losses and the period of zeros on /clock, for tests: while it"
+        " stands still, nothing is lost"
     )
     return Parameter(
         "losses_in_simulated_time",
@@ -365,13 +369,13 @@ def _losses_in_simulated_time(gate: GateOutline) -> Parameter:
 
 def _gate_ports(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> list[Port]:
     span = gate.span
-    description = "What safety lets through"
+    description = "Commands that have passed the gate"
     target = synthesized_port(
         PortKind.PUBLISHER, gate.target, gate.type, span, safety_qos.GATE_TARGET, description
     )
     qos = safety_qos.gate_source_qos(offers(gate.source))
     source = synthesized_port(
-        PortKind.SUBSCRIPTION, gate.source, gate.type, span, qos, "What is asked for"
+        PortKind.SUBSCRIPTION, gate.source, gate.type, span, qos, "Commands before the gate"
     )
     ports = {source.name: source}
     for line in gate.lines:
@@ -389,7 +393,7 @@ def _gate_ports(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> l
                 "",
             )
             ports.setdefault(name, beat)
-    description = "What applies"
+    description = "State of the gate"
     diagnostics = synthesized_port(
         PortKind.PUBLISHER, DIAGNOSTICS, DIAGNOSTICS_TYPE, span, safety_qos.DIAGNOSTICS, description
     )
