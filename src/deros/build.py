@@ -90,7 +90,7 @@ def _generate(request: Request, source: Path) -> _Outcome:
     output = source / FOLDER
     stamp, depfile, ros = output / "stamp", output / "depends.d", output / "ament_prefix_path"
     rests_on = (source / "setup.py", ros)
-    where = OutputSpec(output, True, source, depfile, stamp, rests_on)
+    spec = OutputSpec(output, True, source, depfile, stamp, rests_on)
     findings: Sequence[Diagnostic] = ()
     try:
         write_if_changed(output / ".gitignore", "*\n")
@@ -100,14 +100,14 @@ def _generate(request: Request, source: Path) -> _Outcome:
         whole = bool(there) and all((output / each).exists() for each in there)
         if whole and is_current(stamp, depfile):
             return _Outcome(there[0].partition("/")[0])
-        made = generate(request)
-        findings = made.findings
-        package = package_folder(made.files)
-        if f"{package}/setup.py" not in made.files:
+        generated = generate(request)
+        findings = generated.findings
+        package = package_folder(generated.files)
+        if f"{package}/setup.py" not in generated.files:
             raise ValueError(
                 f"the target {request.target} does not generate an ament_python package"
             )
-        _, lacking = write(made, where, started)
+        _, lacking = write(generated, spec, started)
         findings = (*findings, *lacking)
         if lacking:  # so that the next build reports it again
             os.utime(stamp, ns=(0, 0))

@@ -115,15 +115,15 @@ def generate(
     if output is None:
         output = output_of(requests)
     try:
-        made = pipeline.generate(*requests)
-        show(made.findings)
+        generated = pipeline.generate(*requests)
+        show(generated.findings)
         if scaffold is not None:
-            kept = scaffold_files(made, request, scaffold)
-            lacking = review_source_tree(made, scaffold)
+            kept = scaffold_files(generated, request, scaffold)
+            lacking = review_source_tree(generated, scaffold)
             written = writer.write(kept, scaffold, overwrite=overwrite)
         else:
-            where = OutputSpec(output, overwrite, source, depfile, stamp)
-            written, lacking = write(made, where, started)
+            spec = OutputSpec(output, overwrite, source, depfile, stamp)
+            written, lacking = write(generated, spec, started)
     except pipeline.Refused as refused:
         show(refused.diagnostics)
         ctx.exit(refused.code)

@@ -94,12 +94,12 @@ def _run_generator(
     from deros.pipeline.output import OutputSpec, now_ns, write
 
     started_ns = now_ns()
-    where = OutputSpec(Path(output_path) if output_path else Path(filename).parent, overwrite)
+    spec = OutputSpec(Path(output_path) if output_path else Path(filename).parent, overwrite)
     try:
-        made = generate(
+        generated = generate(
             Request(_as_named(filename), generator.target, options, interfaces, generator)
         )
-        written, lacking = write(made, where, started_ns)
+        written, lacking = write(generated, spec, started_ns)
     except Refused as refused:
         errors = [each for each in refused.diagnostics if each.is_error]
         raise TextXError(_render(errors).rstrip()) from refused

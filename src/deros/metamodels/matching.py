@@ -105,21 +105,21 @@ class _Compiler:
     """Makes one matcher for each parser expression; expressions refer to each other in circles."""
 
     def __init__(self) -> None:
-        self._made: dict[int, Matcher] = {}
+        self._matchers: dict[int, Matcher] = {}
 
     def matcher(self, expression: ParsingExpression) -> Matcher:
         """Return the matcher of an expression, made at its first use."""
-        known = self._made.get(id(expression))
+        known = self._matchers.get(id(expression))
         if known is not None:
             return known
 
         def forward(text: str, position: int, out: list[Any]) -> int:
-            return self._made[id(expression)](text, position, out)
+            return self._matchers[id(expression)](text, position, out)
 
-        self._made[id(expression)] = forward
-        made = self._make(expression)
-        self._made[id(expression)] = made
-        return made
+        self._matchers[id(expression)] = forward
+        matcher = self._make(expression)
+        self._matchers[id(expression)] = matcher
+        return matcher
 
     def _make(self, expression: ParsingExpression) -> Matcher:
         if isinstance(expression, EndOfFile):
@@ -131,16 +131,16 @@ class _Compiler:
         parts = [self.matcher(node) for node in expression.nodes]
         kind = type(expression)
         if kind is Sequence:
-            made = _sequence(parts)
+            matcher = _sequence(parts)
         elif kind is OrderedChoice:
-            made = _choice(parts)
+            matcher = _choice(parts)
         elif kind is Optional:
-            made = _optional(parts[0])
+            matcher = _optional(parts[0])
         elif kind in (ZeroOrMore, OneOrMore):
-            made = self._repetition(expression, parts[0])
+            matcher = self._repetition(expression, parts[0])
         else:
             raise TypeError(f"no matcher for {kind.__name__}, which no grammar here needs")
-        return _branch(expression, made) if expression.root else made
+        return _branch(expression, matcher) if expression.root else matcher
 
     def _repetition(self, expression: Repetition, part: Matcher) -> Matcher:
         separator = self.matcher(expression.sep) if expression.sep else None

@@ -154,7 +154,7 @@ class Recogniser:
     def __init__(self, root: ParsingExpression) -> None:
         """Compile the expressions that ``root`` leads to."""
         self.trace = Trace()
-        self._made: dict[int, Step] = {}
+        self._matchers: dict[int, Step] = {}
         self._known: dict[tuple[int, int], tuple[int, int]] = {}
         self._lists: dict[int, StatementList] = {}
         self.words: set[str] = set()
@@ -229,17 +229,17 @@ class Recogniser:
     # Compiling --------------------------------------------------------------------------------
 
     def _step(self, expression: ParsingExpression) -> Step:
-        known = self._made.get(id(expression))
+        known = self._matchers.get(id(expression))
         if known is not None:
             return known
 
         def forward(text: str, position: int) -> int:
-            return self._made[id(expression)](text, position)
+            return self._matchers[id(expression)](text, position)
 
-        self._made[id(expression)] = forward
-        made = self._make(expression)
-        self._made[id(expression)] = made
-        return made
+        self._matchers[id(expression)] = forward
+        matcher = self._make(expression)
+        self._matchers[id(expression)] = matcher
+        return matcher
 
     def _make(self, expression: ParsingExpression) -> Step:
         if isinstance(expression, EndOfFile):

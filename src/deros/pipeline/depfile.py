@@ -82,9 +82,9 @@ def prerequisites(text: str) -> list[str]:
 def is_current(stamp: Path, depfile: Path) -> bool:
     """Return whether nothing has changed since the run that wrote both files."""
     try:
-        made = stamp.stat().st_mtime_ns
+        written_ns = stamp.stat().st_mtime_ns
         found = prerequisites(read_regular(depfile, _LARGEST).decode())
-        return all(Path(each).stat().st_mtime_ns <= made for each in found)
+        return all(Path(each).stat().st_mtime_ns <= written_ns for each in found)
     except (OSError, UnicodeDecodeError):
         return False
 
@@ -103,7 +103,7 @@ def write_if_changed(path: Path, text: str) -> None:
         raise WriteError(f"cannot write {path}: {error.strerror or error}") from error
 
 
-def write_stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
+def write_stamp(path: Path, outputs: Iterable[str], started_ns: int) -> None:
     """Write the stamp of a run: its outputs, and as the file's time the start of the run.
 
     A model that is saved while deros runs is then newer than the stamp, and not overlooked.
@@ -117,7 +117,7 @@ def write_stamp(path: Path, made: Iterable[str], started_ns: int) -> None:
             b"",
         ):
             raise WriteError(f"refused to write {path}: it is not a stamp of deros")
-        write_if_changed(path, _STAMP + "".join(f"{each}\n" for each in made))
+        write_if_changed(path, _STAMP + "".join(f"{each}\n" for each in outputs))
         os.utime(path, ns=(started_ns, started_ns))
     except OSError as error:
         raise WriteError(f"cannot write {path}: {error.strerror or error}") from error

@@ -40,15 +40,15 @@ class OutputSpec:
 
 
 def write(
-    made: Generated, where: OutputSpec, started_ns: int
+    generated: Generated, spec: OutputSpec, started_ns: int
 ) -> tuple[WriteReport, tuple[Diagnostic, ...]]:
     """Write the files, and then dependency file and stamp.
 
     Returns a report on the files, and the findings about the user's files.
 
     Args:
-        made: what :func:`~deros.pipeline.generate.generate` returned.
-        where: the places.
+        generated: the files, as :func:`~deros.pipeline.generate.generate` returned them.
+        spec: the destinations.
         started_ns: when the run began, by ``time.time_ns``.
 
     Raises:
@@ -67,61 +67,61 @@ def write(
     )
     from deros.pipeline.depfile import depfile, inputs, read_stamp, write_if_changed, write_stamp
 
-    merged = Merged(made.files, (), ())
-    if where.source is not None:
-        merged = merge(made.files, where.source, where.output)
+    merged = Merged(generated.files, (), ())
+    if spec.source is not None:
+        merged = merge(generated.files, spec.source, spec.output)
     claims = [
         (
             {path: file for path, file in merged.files.items() if path in files},
-            Origin.of(generator.language, generator.target, model, where.output),
+            Origin.of(generator.language, generator.target, model, spec.output),
         )
-        for generator, (model, files) in zip(made.generators, made.outputs, strict=True)
+        for generator, (model, files) in zip(generated.generators, generated.outputs, strict=True)
     ]
     try:
         for files, origin in claims:
-            check_claims(files, where.output, origin)
+            check_claims(files, spec.output, origin)
     except GenerationError as error:
         raise Refused(error.diagnostics, FINDINGS) from error
-    present = _users_files(made, where.source, where.output)
-    written = writer.write(merged.files, where.output, overwrite=where.overwrite)
-    if where.stamp is None and where.source is None:  # else the build system owns the folder
+    present = _users_files(generated, spec.source, spec.output)
+    written = writer.write(merged.files, spec.output, overwrite=spec.overwrite)
+    if spec.stamp is None and spec.source is None:  # else the build system owns the folder
         for files, origin in claims:
-            record_claims(files, where.output, origin)
-    place(merged.placed, where.output)
+            record_claims(files, spec.output, origin)
+    place(merged.placed, spec.output)
     ours = {path for path, file in merged.files.items() if file.owner is Owner.GENERATOR}
     ours |= {each.path for each in merged.placed}
-    if where.depfile is not None:
-        everything = [str(where.output / path) for path in sorted(ours)]
-        targets = everything if where.stamp is None else [str(where.stamp)]
-        more = [*merged.inputs, *where.rests_on, *made.rests_on]
-        found = inputs(made.context, made.generators, more)
-        write_if_changed(where.depfile, depfile(targets, found))
-    if where.stamp is not None:
-        stale = sorted(set(read_stamp(where.stamp)) - ours)
-        remove_stale(stale, where.output, overwrite=where.overwrite)
-        write_stamp(where.stamp, sorted(ours), started_ns)
-    return written, _review(made, present)
+    if spec.depfile is not None:
+        everything = [str(spec.output / path) for path in sorted(ours)]
+        targets = everything if spec.stamp is None else [str(spec.stamp)]
+        more = [*merged.inputs, *spec.rests_on, *generated.rests_on]
+        found = inputs(generated.context, generated.generators, more)
+        write_if_changed(spec.depfile, depfile(targets, found))
+    if spec.stamp is not None:
+        stale = sorted(set(read_stamp(spec.stamp)) - ours)
+        remove_stale(stale, spec.output, overwrite=spec.overwrite)
+        write_stamp(spec.stamp, sorted(ours), started_ns)
+    return written, _review(generated, present)
 
 
-def review_source_tree(made: Generated, source: Path) -> tuple[Diagnostic, ...]:
+def review_source_tree(generated: Generated, source: Path) -> tuple[Diagnostic, ...]:
     """Return the findings about the user's files in the source tree of a package."""
-    return _review(made, _users_files(made, source, source))
+    return _review(generated, _users_files(generated, source, source))
 
 
-def _users_files(made: Generated, source: Path | None, output: Path) -> dict[str, Path]:
+def _users_files(generated: Generated, source: Path | None, output: Path) -> dict[str, Path]:
     """Return the user's files that exist, in the source tree of the package if it has one."""
     from deros.generators.output.source_tree import package_folder
     from deros.generators.user_files.review import users_files
 
     if source is None:
-        return users_files(made.files, output)
-    return users_files(made.files, source, package_folder(made.files))
+        return users_files(generated.files, output)
+    return users_files(generated.files, source, package_folder(generated.files))
 
 
-def _review(made: Generated, present: Mapping[str, Path]) -> tuple[Diagnostic, ...]:
+def _review(generated: Generated, present: Mapping[str, Path]) -> tuple[Diagnostic, ...]:
     from deros.generators.user_files.review import review
 
-    return tuple(review(made.files, present))
+    return tuple(review(generated.files, present))
 
 
 def now_ns() -> int:

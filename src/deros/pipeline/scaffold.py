@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from deros.pipeline.generate import Generated, Request
 
 
-def scaffold_files(made: Generated, request: Request, source: Path) -> dict[str, File]:
+def scaffold_files(generated: Generated, request: Request, source: Path) -> dict[str, File]:
     """Return the files in the source tree of a package that is generated while it is built.
 
     They include the build script, which belongs to the user once it is written.
@@ -22,13 +22,13 @@ def scaffold_files(made: Generated, request: Request, source: Path) -> dict[str,
     from deros.generators.api.protocol import File, Owner
     from deros.generators.output.source_tree import package_folder, scaffold
 
-    top = package_folder(made.files)
+    top = package_folder(generated.files)
     model = Path(os.path.relpath(request.file, source)).as_posix()
     folder = posixpath.dirname(model)
-    files = scaffold(made.files, source, "" if folder.startswith("..") else folder)
-    if f"{top}/CMakeLists.txt" in made.files:
+    files = scaffold(generated.files, source, "" if folder.startswith("..") else folder)
+    if f"{top}/CMakeLists.txt" in generated.files:
         files["CMakeLists.txt"] = File(_cmake_script(top, model, request), Owner.USER)
-    elif f"{top}/setup.py" in made.files:
+    elif f"{top}/setup.py" in generated.files:
         files["setup.py"] = File(_setup_script(model, request), Owner.USER)
     return files
 
