@@ -34,8 +34,8 @@ def test_safety_node_is_compared_with_both_receivers() -> None:
         }
     )
     verdicts = list(results.verdicts("paper", "scan"))
-    assert [each.found for each in verdicts] == [-3.5, 2.5, 2.0, 0.5]
-    assert [each.held for each in verdicts] == [True, False, False, True]
+    assert [verdict.found for verdict in verdicts] == [-3.5, 2.5, 2.0, 0.5]
+    assert [verdict.held for verdict in verdicts] == [True, False, False, True]
 
 
 def test_processor_time_covers_all_threads() -> None:

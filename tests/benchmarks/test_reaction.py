@@ -107,7 +107,7 @@ def test_short_run_measures_rclpy(tmp_path: Path) -> None:
     """Without rclcpp it says so, and measures only rclpy."""
     env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
     results = _run(tmp_path / "found.json", env=env, limit=120)
-    assert {each["client"] for each in results["series"]} == {"rclpy"}
+    assert {result["client"] for result in results["series"]} == {"rclpy"}
     assert results["not_measured"] == {"rclcpp": "no rclcpp in AMENT_PREFIX_PATH"}
 
 
@@ -118,7 +118,7 @@ def test_short_run_measures_rclcpp(tmp_path: Path) -> None:
     results = _run(
         tmp_path / "found.json", "--only", "rclcpp", env=os.environ, limit=BUILD_LIMIT + 120
     )
-    assert {each["client"] for each in results["series"]} == {"rclcpp"}
+    assert {result["client"] for result in results["series"]} == {"rclcpp"}
     asked = {bar["what"]: bar["allowed"] for bar in results["bars"]}
     assert asked["rclcpp, immediate, median / fastest relay's"] == "<= 1.1"
     assert asked["rclcpp, for 2 sec, 99 % late"] == "< 0.3 ms"

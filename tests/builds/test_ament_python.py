@@ -53,7 +53,7 @@ def _limit(workspace: Path) -> float:
     assert "deros." not in text
     compared = (n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Compare))
     numbers = (c.value for n in compared for c in n.comparators if isinstance(c, ast.Constant))
-    (limit,) = {each for each in numbers if isinstance(each, float)}
+    (limit,) = {number for number in numbers if isinstance(number, float)}
     return limit
 
 
@@ -81,8 +81,8 @@ def test_colcon_builds_the_current_models(package: Path, how: tuple[str, ...]) -
     assert (installed / "lib/robot_safety/robot_safety_node").is_file()
     assert (installed / "share/robot_safety/launch/robot_safety_node.launch.py").is_file()
     assert (installed / "share/ament_index/resource_index/packages/robot_safety").is_file()
-    made = {p.name for p in package.iterdir()}
-    assert made - {".deros"} == {"models", "package.xml", "setup.py", "robot_safety"}
+    names = {p.name for p in package.iterdir()}
+    assert names - {".deros"} == {"models", "package.xml", "setup.py", "robot_safety"}
     assert (package / ".deros/.gitignore").read_text() == "*\n"
 
 
@@ -129,9 +129,9 @@ def test_missing_user_code_is_reported_by_every_build(package: Path) -> None:
     replace(rules, "action resume;", "action resume;\naction horn;")
     replace(rules, "then { stop;", "then { horn; stop;")
     for _ in range(2):
-        told = build()
-        assert "has no method 'horn', which the model now asks for" in told
-        assert f"{ACTIONS}:" in told
+        build_output = build()
+        assert "has no method 'horn', which the model now asks for" in build_output
+        assert f"{ACTIONS}:" in build_output
     actions = package / ACTIONS
     actions.write_text(f"{actions.read_text()}\n    def horn(self) -> None:\n        pass\n")
     for _ in range(2):

@@ -283,8 +283,8 @@ def test_firmware_links_to_the_monitor(folder: Path, tool: str) -> None:
         'if drive.too_fast or drive.blind then { stop; log_state("stopped"); };'
     )
     program = str(project.build_folder / "firmware")
-    said = subprocess.run([program], capture_output=True, text=True, check=True).stdout
-    assert said.startswith(f"500000000 line {line}\n")
+    program_output = subprocess.run([program], capture_output=True, text=True, check=True).stdout
+    assert program_output.startswith(f"500000000 line {line}\n")
     before = times(project.build_folder)
     touch(rules)
     assert project.generated() == 1

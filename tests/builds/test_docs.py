@@ -64,7 +64,7 @@ def _snippets(language: str) -> list[str]:
 
 
 def _snippet(language: str, word: str) -> str:
-    (found,) = (each for each in _snippets(language) if word in each)
+    (found,) = (snippet for snippet in _snippets(language) if word in snippet)
     return found
 
 

@@ -52,7 +52,7 @@ def test_first_steps_print_the_documented_output(
             assert outcome.out == shown
         if arguments[0] == "simulate":
             events = [json.loads(line) for line in outcome.out.splitlines()]
-            times = {(each["t"], each["action"]) for each in events}
+            times = {(event["t"], event["action"]) for event in events}
             assert times == {("1.200000000", "stop"), ("1.200000000", "log_state")}
     assert ran == ["new", "check", "generate", "generate", "up", "simulate"]
 

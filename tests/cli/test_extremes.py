@@ -174,11 +174,11 @@ def test_pipe_in_place_of_an_output_is_kept(tmp_path: Path, place: str) -> None:
     """It is neither opened nor replaced, and no other file is written."""
     (tmp_path / "n.rnd").write_text(NODE)
     assert run("generate", "n.rnd", "--target", "python", "-o", "out", folder=tmp_path).code == 0
-    made = sorted(path for path in (tmp_path / "out").rglob("*") if path.is_file())
-    target = next(path for path in made if path.as_posix().endswith(place.partition("/")[2]))
+    written = sorted(path for path in (tmp_path / "out").rglob("*") if path.is_file())
+    target = next(path for path in written if path.as_posix().endswith(place.partition("/")[2]))
     target.unlink()
     os.mkfifo(target)
-    changed = [path for path in made if path != target]
+    changed = [path for path in written if path != target]
     for path in changed:
         path.unlink()
     done = run("generate", "n.rnd", "--target", "python", "-o", "out", folder=tmp_path)

@@ -107,4 +107,4 @@ def _assert_harmless(folder: Path, name: str) -> None:
 
 def _evil_lines(path: Path) -> list[str]:
     lines = path.read_text(encoding="utf-8").splitlines()
-    return [each for each in lines if each.strip(" #/*\"'").startswith(_EVIL)]
+    return [line for line in lines if line.strip(" #/*\"'").startswith(_EVIL)]

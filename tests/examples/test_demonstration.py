@@ -293,17 +293,19 @@ def test_four_steps_fit_into_the_shortest_timeout() -> None:
 
 def recording() -> Any:
     """Return a recording of two cases, one passed, one failed."""
-    made = recording_module.Recording()
+    recording_ = recording_module.Recording()
     for ms in range(0, 4000, 10):
-        made.feed(event(ms, "speed", 0.4 if ms < 2000 else 0.0))
-        made.feed(event(ms, "nearest", math.inf if ms < 1000 else 1.5))
-        made.feed(event(ms, "roll", 0.01))
-        made.feed(event(ms, "stop", ms >= 1000))
-        made.feed(event(ms, "heartbeat", ms))
+        recording_.feed(event(ms, "speed", 0.4 if ms < 2000 else 0.0))
+        recording_.feed(event(ms, "nearest", math.inf if ms < 1000 else 1.5))
+        recording_.feed(event(ms, "roll", 0.01))
+        recording_.feed(event(ms, "stop", ms >= 1000))
+        recording_.feed(event(ms, "heartbeat", ms))
     result = recording_module.Result
-    made.results.append(result(2, "Obstacle <b>", STOP, STOP, 0.0012, "", 0.5, 2.0))
-    made.results.append(result(9, "Fast", STOP, frozenset(), None, "no reaction & late", 2.5, 3.9))
-    return made
+    recording_.results.append(result(2, "Obstacle <b>", STOP, STOP, 0.0012, "", 0.5, 2.0))
+    recording_.results.append(
+        result(9, "Fast", STOP, frozenset(), None, "no reaction & late", 2.5, 3.9)
+    )
+    return recording_
 
 
 def test_recording_thins_curves_and_keeps_edges_of_states() -> None:
@@ -316,11 +318,11 @@ def test_recording_thins_curves_and_keeps_edges_of_states() -> None:
 
 def test_recorded_times_are_relative_to_the_first_event() -> None:
     """The absolute clock does not matter."""
-    made = recording_module.Recording()
-    made.feed(Event("speed", 0.1, 7 * 10**18, 7 * 10**18))
-    made.feed(Event("speed", 0.2, 7 * 10**18 + 10**9, 7 * 10**18 + 10**9))
-    assert made.tracks["speed"] == [(0.0, 0.1), (1.0, 0.2)]
-    assert made.end == 1.0
+    recording_ = recording_module.Recording()
+    recording_.feed(Event("speed", 0.1, 7 * 10**18, 7 * 10**18))
+    recording_.feed(Event("speed", 0.2, 7 * 10**18 + 10**9, 7 * 10**18 + 10**9))
+    assert recording_.tracks["speed"] == [(0.0, 0.1), (1.0, 0.2)]
+    assert recording_.end == 1.0
 
 
 @pytest.mark.parametrize(

@@ -109,11 +109,11 @@ def test_stack_light_shows_the_state(changes: dict[str, Any], light: Any) -> Non
 def arbiter(**state: Any) -> Any:
     """Return an arbiter in automatic mode with a recent command of 0.6 m/s."""
     limits = arbitration.Limits(top_speed=1.5, command_timeout=0.3)
-    made = arbitration.Arbiter(limits, command_at=0.0, mode=2)
-    made.command(0.6, 0.1, 0.0)
+    tested = arbitration.Arbiter(limits, command_at=0.0, mode=2)
+    tested.command(0.6, 0.1, 0.0)
     for name, value in state.items():
-        setattr(made, name, value)
-    return made
+        setattr(tested, name, value)
+    return tested
 
 
 def test_pedal_follows_the_command() -> None:
@@ -130,24 +130,24 @@ def test_pedal_is_neutral_outside_automatic_mode(mode: int) -> None:
 @pytest.mark.parametrize(("wanted", "pedal"), [(9.0, 1.0), (-9.0, -1.0), (0.0, 0.0)])
 def test_pedal_is_limited_to_its_range(wanted: float, pedal: float) -> None:
     """No command moves it further than it goes."""
-    made = arbiter()
-    made.command(wanted, 0.0, 0.0)
-    assert made.decide(0.1)[0] == pedal
+    tested = arbiter()
+    tested.command(wanted, 0.0, 0.0)
+    assert tested.decide(0.1)[0] == pedal
 
 
 def test_old_command_expires() -> None:
     """After the death of a gate the robot does not drive on."""
-    made = arbiter()
-    assert made.decide(0.3)[0] > 0
-    assert made.decide(0.31)[0] == 0.0
+    tested = arbiter()
+    assert tested.decide(0.3)[0] > 0
+    assert tested.decide(0.31)[0] == 0.0
 
 
 def test_nothing_moves_before_a_command_and_a_mode() -> None:
     """A new arbiter keeps the robot stopped."""
-    made = arbitration.Arbiter(arbitration.Limits(1.5, 0.3), command_at=0.0)
-    assert made.decide(0.0)[0] == 0.0
-    made.mode = 2
-    assert made.decide(0.0)[0] == 0.0
+    tested = arbitration.Arbiter(arbitration.Limits(1.5, 0.3), command_at=0.0)
+    assert tested.decide(0.0)[0] == 0.0
+    tested.mode = 2
+    assert tested.decide(0.0)[0] == 0.0
 
 
 # The mission --------------------------------------------------------------------------------------
@@ -155,23 +155,25 @@ def test_nothing_moves_before_a_command_and_a_mode() -> None:
 
 def test_mission_accelerates_to_cruising_speed() -> None:
     """The speed grows with the acceleration up to the cruising speed."""
-    made = mission.Mission(cruise_speed=0.4, acceleration=0.5)
-    speeds = [made.plan(True, 0.0, 0.0, 0.2).speed for _ in range(8)]
+    tested = mission.Mission(cruise_speed=0.4, acceleration=0.5)
+    speeds = [tested.plan(True, 0.0, 0.0, 0.2).speed for _ in range(8)]
     assert speeds == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.4, 0.4, 0.4, 0.4])
 
 
 def test_mission_restarts_from_standstill_after_a_stop() -> None:
     """It does not try to catch up."""
-    made = mission.Mission(0.4, 0.5, speed=0.4)
-    assert made.plan(False, 0.0, 0.0, 0.2) == mission.Command()
-    assert made.plan(True, 0.0, 0.0, 0.2).speed == pytest.approx(0.1)
+    tested = mission.Mission(0.4, 0.5, speed=0.4)
+    assert tested.plan(False, 0.0, 0.0, 0.2) == mission.Command()
+    assert tested.plan(True, 0.0, 0.0, 0.2).speed == pytest.approx(0.1)
 
 
 def test_mission_steers_back_into_the_lane() -> None:
     """Left of the lane it steers right, within the steering range."""
-    made = mission.Mission(0.4, 0.5)
-    assert made.plan(True, 0.3, 0.0, 0.1).steering < 0 < made.plan(True, 0.0, -0.2, 0.1).steering
-    assert made.plan(True, 50.0, 0.0, 0.1).steering == -mission.LARGEST_STEERING
+    tested = mission.Mission(0.4, 0.5)
+    assert (
+        tested.plan(True, 0.3, 0.0, 0.1).steering < 0 < tested.plan(True, 0.0, -0.2, 0.1).steering
+    )
+    assert tested.plan(True, 50.0, 0.0, 0.1).steering == -mission.LARGEST_STEERING
 
 
 # The sensors --------------------------------------------------------------------------------------

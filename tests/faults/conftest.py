@@ -17,8 +17,8 @@ RULES = Path(__file__).resolve().parent / "models" / "faulty.deros"
 @pytest.fixture(scope="session", params=["python", pytest.param("cpp", marks=needs_rclcpp)])
 def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Software:
     """Return the generated safety node and gate, in each language."""
-    made = PythonRobot if request.param == "python" else CppRobot
-    return made(RULES, tmp_path_factory.mktemp("faulty"))
+    robot_class = PythonRobot if request.param == "python" else CppRobot
+    return robot_class(RULES, tmp_path_factory.mktemp("faulty"))
 
 
 @pytest.fixture

@@ -36,8 +36,8 @@ def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     """Return the nodes of the robot with failsafe rules, in each language."""
     folder = tmp_path_factory.mktemp("watchful")
     models = shutil.copytree(RULES.parent, folder / "models")
-    made = PythonRobot if request.param == "python" else CppRobot
-    return made(_watchful(models), folder / "package")
+    robot_class = PythonRobot if request.param == "python" else CppRobot
+    return robot_class(_watchful(models), folder / "package")
 
 
 def _watchful(models: Path) -> Path:

@@ -28,7 +28,7 @@ def test_wall_clock_step_has_no_effect(robot: Robot, tmp_path: Path, seconds: in
         halts = len(robot.states["/halt"])
         wall_clock.step(seconds)
         robot.until_beats()
-        assert not any(each.value for each in robot.states["/halt"][halts:]), (
+        assert not any(state.value for state in robot.states["/halt"][halts:]), (
             "stopped without a cause"
         )
         sensors.play("/imu", imu(TILTED))

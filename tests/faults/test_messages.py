@@ -83,7 +83,7 @@ def test_garbage_counts_as_silence(robot: Robot, garbage: bytes) -> None:
         robot.until_free()
         sensors.play("/imu", garbage, rate=100.0)
         robot.until_stopped("/halt", limit=0.5 + PROMPT)
-        told = node.output().count("/imu has carried data that cannot be read")
-        assert told == robot.software.sees_what_it_cannot_read
+        report_count = node.output().count("/imu has carried data that cannot be read")
+        assert report_count == robot.software.sees_what_it_cannot_read
         sensors.play("/imu", imu())
         robot.until_free()

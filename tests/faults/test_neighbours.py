@@ -25,8 +25,8 @@ def until_fault(robot: Robot, topic: str, *texts: str) -> None:
     def is_reported() -> bool:
         # The publisher may not be identified at first.
         events = robot.fault_events.get(topic, [])[-1:]
-        told = [robot.faults.get(topic, ""), *events]
-        return bool(events) and all(text in each for text in texts for each in told)
+        reports = [robot.faults.get(topic, ""), *events]
+        return bool(events) and all(text in each for text in texts for each in reports)
 
     robot.until(is_reported)
 

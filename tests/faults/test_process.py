@@ -87,7 +87,7 @@ def test_latched_stop_survives_kill(robot: Robot) -> None:
         robot.until_silent()
         seen = len(robot.states["/stop"])
         node = robot.restart()
-        assert all(each.value for each in robot.states["/stop"][seen:]), (
+        assert all(state.value for state in robot.states["/stop"][seen:]), (
             "the stop was undone by a restart"
         )
 

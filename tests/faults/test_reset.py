@@ -98,8 +98,8 @@ def test_second_reset_has_nothing_to_reset(robot: Robot) -> None:
             robot.violate()
             assert robot.is_active("/stop")
             requests = [robot.call_reset() for _ in range(2)]
-            robot.until(lambda: all(each.done() for each in requests))
-            return sorted(each.result().message for each in requests)
+            robot.until(lambda: all(request.done() for request in requests))
+            return sorted(request.result().message for request in requests)
 
         answers = answers_of_two()
         for _ in range(20):  # a node that does not know yet that it is over refuses

@@ -59,7 +59,7 @@ def assert_waits(robot: Robot, why: str, since: int | None = None) -> None:
     heard = len(robot.wheels)
     robot.spin(1.0)
     robot.until(lambda: len(robot.wheels) >= heard + 10)
-    assert not any(each.value for each in robot.wheels[first:])
+    assert not any(wheel.value for wheel in robot.wheels[first:])
     assert _reason(robot).startswith(why)
 
 
@@ -238,8 +238,8 @@ def test_resets_from_other_participants_are_decided_like_any_other(robot: Robot)
         assert_waits(robot, RESET, 0)
         requests = [robot.call_reset(WHEELS_GATE) for _ in range(2)]
         assert stranger.call(client, Trigger.Request()).success
-        robot.until(lambda: all(each.done() for each in requests))
-        assert {each.result().message for each in requests} == {f"reset: {ZERO}"}
+        robot.until(lambda: all(request.done() for request in requests))
+        assert {request.result().message for request in requests} == {f"reset: {ZERO}"}
         assert_waits(robot, ZERO, 0)
         release(robot, sensors)
     stranger.close()

@@ -82,7 +82,7 @@ def test_unordered_stamps_change_no_verdict(robot: Robot) -> None:
         sensors.drive()
         robot.until_free()
         stamps = [50.0, 10.0, 90.0, 90.0, 0.0, 2e9, 30.0]
-        sensors.play("/imu", *(imu(TILTED, stamp=each) for each in stamps))
+        sensors.play("/imu", *(imu(TILTED, stamp=stamp) for stamp in stamps))
         robot.until_stopped("/halt", limit=0.4 + 1.0)
 
 

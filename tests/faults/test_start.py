@@ -41,7 +41,7 @@ def test_grace_has_neither_halt_nor_heartbeat(robot: Robot) -> None:
         assert not robot.beats
         sensors.drive()
         robot.until_alive()
-        assert not any(each.value for each in robot.states["/halt"])
+        assert not any(state.value for state in robot.states["/halt"])
         sensors.play("/speed", speed(2.0))
         robot.until_stopped(limit=PROMPT)
         node.end()

@@ -37,7 +37,9 @@ def test_user_code_that_ends_the_node_loses_neither_stop_nor_latch(robot: Robot,
         assert FAILURES[how] in node.output()
         seen = len(robot.states["/stop"])
         robot.restart()
-        assert all(each.value for each in robot.states["/stop"][seen:]), "a restart undid the stop"
+        assert all(state.value for state in robot.states["/stop"][seen:]), (
+            "a restart undid the stop"
+        )
 
 
 def test_failed_node_leaves_the_graph_at_once(robot: Robot) -> None:
@@ -61,7 +63,9 @@ def test_user_code_that_ends_the_process_loses_neither_stop_nor_latch(
         node.popen.wait(LIMIT)
         seen = len(robot.states["/stop"])
         robot.restart()
-        assert all(each.value for each in robot.states["/stop"][seen:]), "a restart undid the stop"
+        assert all(state.value for state in robot.states["/stop"][seen:]), (
+            "a restart undid the stop"
+        )
 
 
 def test_slow_user_code_does_not_delay_a_stop(robot: Robot) -> None:

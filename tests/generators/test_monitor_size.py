@@ -85,7 +85,7 @@ def test_text_grows_linearly_with_the_rules(name: str) -> None:
     make, size = SHAPES[name]
     texts = [{"python": render_python(p), **render_c(p)} for p in map(make, _sizes(size))]
     for part in texts[0]:
-        least, middle, most = (len("".join(each[part].split())) for each in texts)
+        least, middle, most = (len("".join(text[part].split())) for text in texts)
         assert most - middle <= 2.2 * (middle - least) + 200, part
 
 

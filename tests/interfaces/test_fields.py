@@ -41,12 +41,12 @@ def test_path_resolves_to_field(
     kind: str, path: tuple[str | int, ...], type_text: str, parent: str
 ) -> None:
     """Fields, nested fields and array elements have a type and a parent message."""
-    found = resolve(STORE, message(kind), path)
-    assert isinstance(found, ResolvedField)
-    assert str(found.type) == type_text
-    assert found.parent is not None
-    assert found.parent.type.name == parent
-    assert found.name in path
+    field = resolve(STORE, message(kind), path)
+    assert isinstance(field, ResolvedField)
+    assert str(field.type) == type_text
+    assert field.parent is not None
+    assert field.parent.type.name == parent
+    assert field.name in path
 
 
 def test_empty_path_is_the_whole_message() -> None:
@@ -77,11 +77,11 @@ def test_unresolved_path_gives_position_and_candidates(
     candidates: tuple[str, ...],
 ) -> None:
     """The error has the index of the wrong part, the reason, and similar names."""
-    found = resolve(STORE, message(kind), path)
-    assert isinstance(found, FieldError)
-    assert found.position == position
-    assert fragment in found.message
-    assert found.candidates == candidates
+    error = resolve(STORE, message(kind), path)
+    assert isinstance(error, FieldError)
+    assert error.position == position
+    assert fragment in error.message
+    assert error.candidates == candidates
 
 
 def test_leaves_are_primitive_fields_in_order(tmp_path: Path) -> None:

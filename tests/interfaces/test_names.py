@@ -104,9 +104,9 @@ def _accepted(validate: object, name: str) -> bool:
 )
 def test_invalid_topic_name_has_a_reason(name: str, reason: str) -> None:
     """The reason completes the sentence 'the name …'."""
-    told = check_topic_name(name)
-    assert told is not None
-    assert reason in told
+    problem = check_topic_name(name)
+    assert problem is not None
+    assert reason in problem
 
 
 @pytest.mark.parametrize("name", ["/scan", "scan", "~/reset", "a/b_1", "~", "_x"])

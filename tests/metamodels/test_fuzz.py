@@ -16,10 +16,13 @@ from tests.support.profiles import scaled
 def _sound(loaded: LoadedFile) -> None:
     """Check that a result has a model or a finding, and spans that lie in the text."""
     assert loaded.model is not None or loaded.diagnostics
-    for found in loaded.diagnostics:
-        assert found.message
-        assert 0 <= found.span.start <= found.span.end <= len(found.span.source.text)
-        assert (found.span.line, found.span.column) <= (found.span.end_line, found.span.end_column)
+    for finding in loaded.diagnostics:
+        assert finding.message
+        assert 0 <= finding.span.start <= finding.span.end <= len(finding.span.source.text)
+        assert (finding.span.line, finding.span.column) <= (
+            finding.span.end_line,
+            finding.span.end_column,
+        )
 
 
 @settings(max_examples=scaled(300))

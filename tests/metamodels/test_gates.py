@@ -49,7 +49,10 @@ def _gate(text: str) -> Gate:
 
 def _errors(text: str) -> list[tuple[str, str, str]]:
     loaded = Repository().load_text("a.deros", text)
-    return [(each.message, each.span.text, each.hint) for each in loaded.diagnostics]
+    return [
+        (diagnostic.message, diagnostic.span.text, diagnostic.hint)
+        for diagnostic in loaded.diagnostics
+    ]
 
 
 def test_documented_gate_is_parsed() -> None:
@@ -186,7 +189,10 @@ def test_gate_keywords_are_valid_names() -> None:
         ("limit",),
         ("zero", "to"),
     ]
-    assert [(each.name and each.name.text, each.optional) for each in rules.behaviours] == [
+    assert [
+        (behaviour.name and behaviour.name.text, behaviour.optional)
+        for behaviour in rules.behaviours
+    ] == [
         ("optional", False),
         ("gate", True),
     ]
@@ -218,8 +224,8 @@ def test_gate_keywords_after_a_number_are_not_units() -> None:
         """const a = 3 gate a -> b : x.Y rate 1 Hz { s: limit x to [0, 1] lost input for 1 s: zero }
         const b = 4 optional behaviour c: if e.r then { s; }"""
     )
-    values = [each.value for each in rules.constants]
-    assert [each.unit for each in values if isinstance(each, Number)] == [None, None]
+    values = [constant.value for constant in rules.constants]
+    assert [value.unit for value in values if isinstance(value, Number)] == [None, None]
     assert [limit.unit for limit in rules.gates[0].lines[0].limits] == [None]
 
 

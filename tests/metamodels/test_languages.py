@@ -72,7 +72,9 @@ def test_every_part_of_a_declaration_exists(language: Language) -> None:
 
 def test_names_suffixes_and_kinds_are_unique() -> None:
     """No two languages share a name, a suffix or the word for ``deros new``."""
-    for values in zip(*((each.name, each.suffix, each.kind) for each in LANGUAGES), strict=True):
+    for values in zip(
+        *((language.name, language.suffix, language.kind) for language in LANGUAGES), strict=True
+    ):
         assert len(set(values)) == len(LANGUAGES)
 
 
@@ -87,7 +89,7 @@ def test_textx_metamodel_accepts_comments() -> None:
     model = metamodel(ROSNODE).model_from_str(f"// first\n{paper.FIGURE_11}/* last */")
     assert model.name == "ci_safety_node"
     parameters = get_children_of_type("Parameter", model)
-    assert [each.name for each in parameters] == [
+    assert [parameter.name for parameter in parameters] == [
         "time_update_freq",
         "publish_freq",
         "upside_down",
@@ -117,8 +119,8 @@ def test_syntax_error_position_matches_textx() -> None:
     text = "node a : p\nparameters // none\n  name x double"
     with pytest.raises(TextXSyntaxError) as raised:
         metamodel(ROSNODE).model_from_str(text)
-    (found,) = Repository().load_text("a.rnd", text).diagnostics
-    assert (found.span.line, found.span.column) == (raised.value.line, raised.value.col)
+    (finding,) = Repository().load_text("a.rnd", text).diagnostics
+    assert (finding.span.line, finding.span.column) == (raised.value.line, raised.value.col)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

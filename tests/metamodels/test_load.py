@@ -170,9 +170,9 @@ def test_syntax_error_is_reported_in_the_imported_file(tmp_path: Path) -> None:
     )
     repository = Repository()
     assert repository.load(tmp_path / "x.system").diagnostics == ()
-    (found,) = repository.diagnostics
-    assert found.code is codes.SYNTAX_ERROR
-    assert found.span.file.endswith("camera.rnd")
+    (finding,) = repository.diagnostics
+    assert finding.code is codes.SYNTAX_ERROR
+    assert finding.span.file.endswith("camera.rnd")
 
 
 def test_import_cycle_is_reported_with_its_chain(tmp_path: Path) -> None:
@@ -185,11 +185,11 @@ def test_import_cycle_is_reported_with_its_chain(tmp_path: Path) -> None:
     )
     repository = Repository()
     repository.load(tmp_path / "a.system")
-    (found,) = repository.diagnostics
-    assert found.code is codes.CYCLIC_IMPORT
-    assert found.span.file.endswith("c.system")
-    assert [Path(each.span.file).name for each in found.related] == ["a.system", "b.system"]
-    assert "a.system' → " in found.message
+    (finding,) = repository.diagnostics
+    assert finding.code is codes.CYCLIC_IMPORT
+    assert finding.span.file.endswith("c.system")
+    assert [Path(each.span.file).name for each in finding.related] == ["a.system", "b.system"]
+    assert "a.system' → " in finding.message
 
 
 def test_system_that_imports_itself(tmp_path: Path) -> None:
@@ -205,7 +205,7 @@ def test_long_import_chain_is_rejected(tmp_path: Path) -> None:
         (tmp_path / f"s{number}.system").write_text(text, encoding="utf-8")
     repository = Repository()
     repository.load(tmp_path / "s0.system")
-    assert [found.code for found in repository.diagnostics] == [codes.NESTED_TOO_DEEPLY]
+    assert [finding.code for finding in repository.diagnostics] == [codes.NESTED_TOO_DEEPLY]
 
 
 def test_node_type_defined_twice_is_ambiguous(tmp_path: Path) -> None:

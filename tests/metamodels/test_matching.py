@@ -19,7 +19,7 @@ from deros.metamodels.recovery import recogniser
 from tests.support.mutations import TEXTS, mutated
 from tests.support.profiles import scaled
 
-_BY_SUFFIX = {each.suffix.removeprefix("."): each for each in LANGUAGES}
+_BY_SUFFIX = {language.suffix.removeprefix("."): language for language in LANGUAGES}
 
 
 def _tree(node: Any) -> Any:

@@ -33,7 +33,7 @@ def _port(text: str, section: str = "publishes") -> Port:
 
 def _findings(body: str) -> list[tuple[Code, str]]:
     loaded = Repository().load_text("a.rnd", f"node a : p {body}")
-    return [(found.code, found.span.text) for found in loaded.diagnostics]
+    return [(finding.code, finding.span.text) for finding in loaded.diagnostics]
 
 
 def test_node_header_has_description_executable_and_lifecycle() -> None:
@@ -259,7 +259,7 @@ def test_repeated_section_is_kept() -> None:
 def test_special_parameter_names_are_quoted(text: str, name: str) -> None:
     """Quotes are needed where the name would be read as a comment or a number."""
     node = _node(f"parameters name {text} : double publishes topic t : std_msgs.Bool via {text}")
-    assert [each.name for each in node.parameters] == [name]
+    assert [parameter.name for parameter in node.parameters] == [name]
     assert [port.via for port in node.ports] == [name]
 
 

@@ -59,7 +59,7 @@ def test_every_listing_checks_without_errors(system: Path, listing: str) -> None
     loaded = repository.load_text(system.with_name("paper.deros"), listing)
     findings = check([loaded], repository, InterfaceStore())
     blind = {codes.UNHANDLED_UNKNOWN} if ".roll()" in listing else set()
-    assert {found.code for found in findings} == {codes.INPUT_WITHOUT_TIMEOUT, *blind}
+    assert {finding.code for finding in findings} == {codes.INPUT_WITHOUT_TIMEOUT, *blind}
 
 
 def test_figure_2_constants_and_inputs_are_exact(system: Path) -> None:

@@ -43,7 +43,7 @@ def _all_policies() -> list[Policies]:
 def test_compatibility_of_every_pair_agrees_with_rclpy() -> None:
     """Errors and warnings of qos_check_compatible match certain and possible shortfalls."""
     qos = pytest.importorskip("rclpy.qos")
-    every = [(each, profile(each)) for each in _all_policies()]
+    every = [(policy, profile(policy)) for policy in _all_policies()]
     compared = 0
     for (offered, publisher), (requested, subscription) in itertools.product(every, every):
         verdict, reason = qos.qos_check_compatible(publisher, subscription)
@@ -129,7 +129,8 @@ def test_violations_of_pinned_qos_are_found(
     """A publisher must offer at least the pinned QoS, a subscription request exactly that."""
     found = (publisher_violations(pin, profile), subscription_violations(pin, profile))
     assert wrong == tuple(
-        "".join("more" if each.excess else "less" for each in violations) for violations in found
+        "".join("more" if violation.excess else "less" for violation in violations)
+        for violations in found
     )
     assert all(each.certain for each in (*found[0], *found[1]))
     assert [each for each in found[1] if each.excess] == list(excess(pin, profile))
@@ -139,7 +140,9 @@ def test_open_policy_is_not_a_certain_violation() -> None:
     """The middleware chooses its value."""
     open_profile = QosProfile(preset="system_default")
     for pin in (QosProfile(reliability="reliable"), QosProfile(depth=3)):
-        assert [each.certain for each in publisher_violations(pin, open_profile)] == [False]
+        assert [violation.certain for violation in publisher_violations(pin, open_profile)] == [
+            False
+        ]
     (found,) = subscription_violations(QosProfile(reliability="best_effort"), open_profile)
     assert (found.excess, found.certain) == (True, False)
 
@@ -194,25 +197,27 @@ MIDDLEWARES = {
 
 def _as_in(middleware: str, each: Policies, end: int) -> Policies:
     """Return a profile with the middleware's choice for its open policies."""
-    made = {
+    replacements = {
         policy: kinds[end]
         for policy, kinds in MIDDLEWARES[middleware].items()
         if getattr(each, policy) == SYSTEM_DEFAULT
     }
-    return dataclasses.replace(each, **made)  # type: ignore[arg-type]
+    return dataclasses.replace(each, **replacements)  # type: ignore[arg-type]
 
 
 def test_met_by_default_agrees_with_every_middleware() -> None:
     """Pairs left unreported connect in all of them; reported pairs fail in at least one."""
-    every = [each for each in _all_policies() if (each.deadline, each.lease) == (None, None)]
+    every = [
+        policy for policy in _all_policies() if (policy.deadline, policy.lease) == (None, None)
+    ]
     for offered, requested in itertools.product(every, every):
         found = shortfalls(offered, requested)
-        told = [each for each in found if not is_met_by_default(each)]
+        reported = [each for each in found if not is_met_by_default(each)]
         apart = [
             bool(shortfalls(_as_in(name, offered, 0), _as_in(name, requested, 1)))
             for name in MIDDLEWARES
         ]
-        assert bool(told) == any(apart), (offered, requested)
+        assert bool(reported) == any(apart), (offered, requested)
 
 
 def test_default_ends_match() -> None:

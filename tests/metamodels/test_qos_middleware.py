@@ -81,8 +81,8 @@ class Asking:
 
     def close(self) -> None:
         """Destroy the subscriptions."""
-        for each in self._subscriptions:
-            self._peer.node.destroy_subscription(each)
+        for subscription in self._subscriptions:
+            self._peer.node.destroy_subscription(subscription)
 
 
 def test_compatibility_of_every_pair_agrees_with_the_middleware(
@@ -148,7 +148,8 @@ def test_clients_and_servers_must_match_in_both_directions(
     compared = 0
     for number, served in enumerate(SERVICES):
         expected = [
-            not shortfalls(served, each) and not shortfalls(each, served) for each in SERVICES
+            not shortfalls(served, service) and not shortfalls(service, served)
+            for service in SERVICES
         ]
         found = clients_of(ros_peer, other_peer, f"pair_{number}", served, sum(expected))
         assert found == expected, served
@@ -166,7 +167,7 @@ def clients_of(peer: Peer, other_peer: Peer, name: str, served: Policies, ready:
     def create_client(each: Policies) -> Any:
         return peer.node.create_client(Trigger, name, qos_profile=profile(each))
 
-    clients = [create_client(each) for each in SERVICES]
+    clients = [create_client(service) for service in SERVICES]
     server = other_peer.node.create_service(Trigger, name, answer, qos_profile=profile(served))
     # A last client with the profile of the server shows when the server has been discovered: the
     # older clients have been matched by then, or never will be.

@@ -90,7 +90,9 @@ def _load(name: str, text: str) -> LoadedFile:
 
 
 def _errors(loaded: LoadedFile) -> list[Diagnostic]:
-    return [each for each in loaded.diagnostics if each.code is codes.SYNTAX_ERROR]
+    return [
+        diagnostic for diagnostic in loaded.diagnostics if diagnostic.code is codes.SYNTAX_ERROR
+    ]
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -98,7 +100,7 @@ def test_every_syntax_error_is_reported_once(name: str) -> None:
     """Ten errors in one file are ten findings, each on its own line."""
     text = FILES[name]
     wrong = [number for number, line in enumerate(text.splitlines(), 1) if "// here" in line]
-    found = sorted(each.span.line for each in _errors(_load(name, text)))
+    found = sorted(error.span.line for error in _errors(_load(name, text)))
     assert len(wrong) >= 10
     assert found == wrong
 
@@ -108,13 +110,13 @@ def test_sound_parts_of_a_broken_node_are_read() -> None:
     loaded = _load("camera.rnd", NODE)
     node = loaded.model
     assert isinstance(node, NodeType)
-    assert [each.name for each in node.parameters] == ["width", "height", "frame", "rate"]
-    assert [each.name for each in node.ports] == ["image", "info", "trigger", "reset"]
-    assert [each.name for each in node.timers] == ["grab", "poll"]
-    named = [(each.name, each.name_span) for each in node.parameters]
-    named += [(each.name, each.name_span) for each in node.ports]
+    assert [parameter.name for parameter in node.parameters] == ["width", "height", "frame", "rate"]
+    assert [port.name for port in node.ports] == ["image", "info", "trigger", "reset"]
+    assert [timer.name for timer in node.timers] == ["grab", "poll"]
+    named = [(parameter.name, parameter.name_span) for parameter in node.parameters]
+    named += [(port.name, port.name_span) for port in node.ports]
     assert all(span.text == name for name, span in named)
-    assert all(each.name_span.text == each.name for each in node.timers)
+    assert all(timer.name_span.text == timer.name for timer in node.timers)
     assert loaded.source is not None
     assert {"gain", "stop"} <= loaded.source.lost
 
@@ -123,9 +125,9 @@ def test_sound_parts_of_a_broken_system_are_read() -> None:
     """A node with a broken header or wiring keeps its sound parts."""
     system = _load("demo.system", SYSTEM).model
     assert isinstance(system, System)
-    nodes = [each for each in system.members if isinstance(each, NodeInstance)]
-    assert [each.name for each in nodes] == ["front", "side", "top"]
-    assert [each.name for each in nodes[0].parameters] == ["width", "height"]
+    nodes = [member for member in system.members if isinstance(member, NodeInstance)]
+    assert [node.name for node in nodes] == ["front", "side", "top"]
+    assert [parameter.name for parameter in nodes[0].parameters] == ["width", "height"]
     assert [each.port for each in nodes[0].wirings] == ["image", "info", "stop"]
     for wiring in nodes[0].wirings:
         assert wiring.target_span.text == wiring.target
@@ -136,7 +138,7 @@ def test_sound_parts_of_broken_rules_are_read() -> None:
     rules = _load("demo.deros", RULES).model
     assert isinstance(rules, Rules)
     assert "pose" in [each.name.text for each in rules.inputs]
-    assert [each.name.text for each in rules.entities[0].rules] == ["far", "gone", "near"]
+    assert [rule.name.text for rule in rules.entities[0].rules] == ["far", "gone", "near"]
     assert len(rules.behaviours) == 3
 
 
@@ -150,7 +152,7 @@ def test_sound_parts_of_broken_rules_are_read() -> None:
 )
 def test_broken_header_does_not_hide_later_errors(name: str, text: str) -> None:
     """Errors after an unreadable header are reported as well."""
-    assert [each.span.line for each in _errors(_load(name, text))] == [1, 3]
+    assert [error.span.line for error in _errors(_load(name, text))] == [1, 3]
 
 
 @pytest.mark.parametrize(
@@ -170,10 +172,10 @@ def test_broken_header_does_not_hide_later_errors(name: str, text: str) -> None:
 )  # fmt: skip
 def test_fix_repairs_the_statement(name: str, text: str, edited: str) -> None:
     """A certain fix is part of the finding, and the fixed text parses."""
-    (found,) = _errors(_load(name, text))
-    assert found.fix is not None
-    span = found.fix.span
-    mended = f"{text[: span.start]}{found.fix.text}{text[span.end :]}"
+    (finding,) = _errors(_load(name, text))
+    assert finding.fix is not None
+    span = finding.fix.span
+    mended = f"{text[: span.start]}{finding.fix.text}{text[span.end :]}"
     assert mended == edited
     assert not _errors(_load(name, mended))
 
@@ -201,8 +203,8 @@ def test_statements_are_derived_from_the_grammar(language: Language) -> None:
 )
 def test_span_of_a_repaired_last_word_stays_in_the_file(name: str, text: str) -> None:
     """A finding about a word that was read as a longer one ends with the file."""
-    for each in _load(name, text).diagnostics:
-        assert 0 <= each.span.start <= each.span.end <= len(text)
+    for diagnostic in _load(name, text).diagnostics:
+        assert 0 <= diagnostic.span.start <= diagnostic.span.end <= len(text)
 
 
 def test_findings_beyond_the_limit_are_counted() -> None:

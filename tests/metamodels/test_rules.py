@@ -282,7 +282,7 @@ def test_spans_cover_exactly_their_words() -> None:
 def test_duplicates_and_misplaced_terms_are_findings(text: str, code: Code, place: str) -> None:
     """Duplicates and terms in the wrong place are reported where they are."""
     loaded = Repository().load_text("a.deros", text)
-    assert [(found.code, found.span.text) for found in loaded.diagnostics] == [(code, place)]
+    assert [(finding.code, finding.span.text) for finding in loaded.diagnostics] == [(code, place)]
 
 
 def test_action_named_twice_is_kept() -> None:

@@ -48,26 +48,26 @@ def _load(name: str, marked: str) -> tuple[tuple[Diagnostic, ...], tuple[int, in
     start = marked.index("«")
     end = marked.index("»") - 1
     text = marked.replace("«", "").replace("»", "")
-    found = Repository().load_text(name, text).diagnostics
-    return tuple(each for each in found if each.code is codes.SYNTAX_ERROR), (start, end)
+    findings = Repository().load_text(name, text).diagnostics
+    return tuple(each for each in findings if each.code is codes.SYNTAX_ERROR), (start, end)
 
 
 @pytest.mark.parametrize(("name", "marked", "words"), CASES, ids=[case[1] for case in CASES])
 def test_syntax_error_has_position_and_expected_token(name: str, marked: str, words: str) -> None:
     """The error starts exactly where the text goes wrong, and names the expected token."""
     diagnostics, (start, end) = _load(name, marked)
-    (found,) = diagnostics
-    assert found.span.start == start
-    assert found.span.end >= end
-    assert words in f"{found.message} | {found.hint}"
+    (finding,) = diagnostics
+    assert finding.span.start == start
+    assert finding.span.end >= end
+    assert words in f"{finding.message} | {finding.hint}"
 
 
 @pytest.mark.parametrize(("name", "marked", "words"), CASES, ids=[case[1] for case in CASES])
 def test_messages_show_no_parser_internals(name: str, marked: str, words: str) -> None:
     """No message shows a regular expression, a grammar rule or a Python type."""
     diagnostics, _ = _load(name, marked)
-    (found,) = diagnostics
-    shown = f"{found.message} {found.hint}".replace(words, "")
+    (finding,) = diagnostics
+    shown = f"{finding.message} {finding.hint}".replace(words, "")
     assert not re.search(r"\\b|\(\?|\[A-Z|EOF|NoMatch|__|\b[A-Z][a-z]+[A-Z]\w*", shown)
 
 
@@ -88,5 +88,5 @@ def test_quote_in_a_comment_is_ignored() -> None:
 def test_comments_do_not_shift_positions() -> None:
     """Text after comments keeps its line and column."""
     text = "/* one\n two */ node a : p // three\n parameters /* x */ name x double"
-    (found,) = Repository().load_text("a.rnd", text).diagnostics
-    assert (found.span.line, found.span.column) == (3, 28)
+    (finding,) = Repository().load_text("a.rnd", text).diagnostics
+    assert (finding.span.line, finding.span.column) == (3, 28)

@@ -145,8 +145,8 @@ def test_keywords_are_valid_names_where_unambiguous(folder: Path) -> None:
 
 def test_keywords_are_whole_words(folder: Path) -> None:
     """``nodefoo`` is not ``node foo``."""
-    (found,) = _load(folder, "nodefoo : camera").diagnostics
-    assert (found.code, found.span.text) == (codes.SYNTAX_ERROR, "nodefoo")
+    (finding,) = _load(folder, "nodefoo : camera").diagnostics
+    assert (finding.code, finding.span.text) == (codes.SYNTAX_ERROR, "nodefoo")
 
 
 @pytest.mark.parametrize(
@@ -173,8 +173,8 @@ def test_imported_subsystem_cannot_have_a_body(tmp_path: Path) -> None:
     """``subsystem a : Arm { … }`` is contradictory."""
     (tmp_path / "arm.system").write_text("system Arm", encoding="utf-8")
     text = 'system S imports import "arm.system" subsystem a : Arm { topics topic /x }'
-    (found,) = Repository().load_text(tmp_path / "s.system", text).diagnostics
-    assert (found.code, found.span.text) == (codes.SYNTAX_ERROR, "a")
+    (finding,) = Repository().load_text(tmp_path / "s.system", text).diagnostics
+    assert (finding.code, finding.span.text) == (codes.SYNTAX_ERROR, "a")
 
 
 @pytest.mark.parametrize(
@@ -211,7 +211,7 @@ def test_settings_of_any_parameter_name_and_number(folder: Path) -> None:
         "parameters param qos_overrides./tf.publisher.depth = 3 param a-b = [nan, -inf]"
         ' param "3d" = inf param rate = nan',
     )
-    assert [(each.name, repr(each.value)) for each in node.parameters] == [
+    assert [(parameter.name, repr(parameter.value)) for parameter in node.parameters] == [
         ("qos_overrides./tf.publisher.depth", "3"),
         ("a-b", "(nan, -inf)"),
         ("3d", "inf"),

@@ -52,14 +52,18 @@ def test_usual_sectors_have_no_findings(sector: str) -> None:
 )
 def test_probably_mistyped_bearings_are_reported(sector: str, place: str, hint: str) -> None:
     """Constants count as their values."""
-    found = _findings(sector, "const view = 45\nconst wide = 500 deg\n")
-    assert (found[0].code.name, found[0].span.text, found[0].hint) == ("DRS364", place, hint)
+    findings = _findings(sector, "const view = 45\nconst wide = 500 deg\n")
+    assert (findings[0].code.name, findings[0].span.text, findings[0].hint) == (
+        "DRS364",
+        place,
+        hint,
+    )
 
 
 def test_finding_names_the_declaration_of_the_constant() -> None:
     """The missing unit belongs there."""
-    found = _findings("-view, view", "const view = 45\n")
-    assert [each.related[0].span.text for each in found] == ["const view = 45"] * 2
+    findings = _findings("-view, view", "const view = 45\n")
+    assert [each.related[0].span.text for each in findings] == ["const view = 45"] * 2
 
 
 @pytest.mark.parametrize(
@@ -78,13 +82,13 @@ def test_finding_names_the_declaration_of_the_constant() -> None:
 )
 def test_probably_unintended_sectors_are_reported(sector: str, wrong: str) -> None:
     """Both ends are plausible, but the sector between them is not."""
-    (found,) = _findings(sector, "const view = toRad(44.9)\n")
-    assert (found.code.name, found.span.text) == ("DRS365", sector)
-    assert wrong in found.message
+    (finding,) = _findings(sector, "const view = toRad(44.9)\n")
+    assert (finding.code.name, finding.span.text) == ("DRS365", sector)
+    assert wrong in finding.message
 
 
 def test_hint_for_swapped_ends_fixes_the_finding() -> None:
     """It proposes the sector ahead."""
-    (found,) = _findings("30 deg, -30 deg")
-    assert found.hint.endswith("the rest is '-30 deg, 30 deg'")
+    (finding,) = _findings("30 deg, -30 deg")
+    assert finding.hint.endswith("the rest is '-30 deg, 30 deg'")
     assert _findings("-30 deg, 30 deg") == []

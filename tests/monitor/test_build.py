@@ -23,8 +23,8 @@ def test_listing_of_the_paper_has_no_errors(listing: str, tmp_path: Path) -> Non
     paper.write_system(tmp_path)
     repository = Repository()
     loaded = repository.load_text(tmp_path / "safety.deros", paper.RULES[listing])
-    found = check([loaded], repository, embedded_store())
-    assert not has_errors(found), [each.message for each in found]
+    findings = check([loaded], repository, embedded_store())
+    assert not has_errors(findings), [each.message for each in findings]
     assert isinstance(loaded.model, Rules)
     assert build(loaded.model, embedded_store()).program is not None
 
@@ -147,8 +147,8 @@ def test_behaviours_are_numbered_outer_before_inner() -> None:
     assert isinstance(slow, ir.Trigger)
     assert isinstance(log, ir.Trigger)
     assert (slow.action, log.action, log.arguments) == (1, 2, ("slow",))
-    assert [each.name for each in built.actions] == ["stop", "slow", "log_state"]
-    assert [each.triggered_by for each in built.actions] == [(1, 2), (0,), (0,)]
+    assert [action.name for action in built.actions] == ["stop", "slow", "log_state"]
+    assert [action.triggered_by for action in built.actions] == [(1, 2), (0,), (0,)]
 
 
 def test_intervals_are_numbered_in_evaluation_order() -> None:
@@ -204,7 +204,7 @@ def test_no_program_without_its_system() -> None:
     assert isinstance(loaded.model, Rules)
     result = build(loaded.model, embedded_store())
     assert (result.program, result.diagnostics) == (None, ())
-    assert [each.code.name for each in loaded.diagnostics] == ["DRS201"]
+    assert [diagnostic.code.name for diagnostic in loaded.diagnostics] == ["DRS201"]
 
 
 def test_every_fault_is_reported() -> None:
@@ -219,5 +219,5 @@ def test_every_fault_is_reported() -> None:
         """
     )
     assert result.program is None
-    codes = [each.code.name for each in result.diagnostics]
+    codes = [diagnostic.code.name for diagnostic in result.diagnostics]
     assert codes == ["DRS301", "DRS306", "DRS329", "DRS312", "DRS310", "DRS310"]

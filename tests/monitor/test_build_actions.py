@@ -51,7 +51,7 @@ def test_binding_has_topic_and_type() -> None:
 def test_indistinguishable_active_state_is_a_warning() -> None:
     """Publishing the default of the field makes active and inactive look the same."""
     result = build_rules("action slow publishes 0 on /mode : std_msgs.UInt8;")
-    assert [each.code.name for each in result.diagnostics] == ["DRS333"]
+    assert [diagnostic.code.name for diagnostic in result.diagnostics] == ["DRS333"]
     assert result.program is not None
 
 
@@ -64,7 +64,7 @@ def test_actions_may_have_a_reset_or_a_latch() -> None:
         action ok;
         """
     )
-    assert [(each.reset_by, each.latched) for each in built.actions] == [
+    assert [(action.reset_by, action.latched) for action in built.actions] == [
         (2, False),
         (None, True),
         (None, False),
@@ -84,5 +84,5 @@ def test_arguments_keep_their_types() -> None:
     trigger = built.behaviours[0].body[0]
     assert isinstance(trigger, ir.Trigger)
     assert trigger.arguments == (3, 3.0, 3.141592653589793, True, "x")
-    assert [type(each) for each in trigger.arguments] == [int, float, float, bool, str]
+    assert [type(argument) for argument in trigger.arguments] == [int, float, float, bool, str]
     assert built.actions[0].parameters == ("a", "b", "c", "d", "f")

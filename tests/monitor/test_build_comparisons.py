@@ -28,10 +28,10 @@ MODE = "topic /mode.data"
 
 def bound(text: str, declarations: str = "") -> ir.Scalar:
     """Return the constant that a rule compares with."""
-    found = condition(text, declarations)
-    assert isinstance(found, ir.Compare)
-    assert isinstance(found.right, ir.Const)
-    return found.right.value
+    parsed_condition = condition(text, declarations)
+    assert isinstance(parsed_condition, ir.Compare)
+    assert isinstance(parsed_condition.right, ir.Const)
+    return parsed_condition.right.value
 
 
 @pytest.mark.parametrize(
@@ -137,8 +137,8 @@ def test_interval_bounds_of_integers_are_narrowed(
 
 def test_interval_bounds_may_be_fields() -> None:
     """The bounds may be read from topics."""
-    found = condition(f"topic /speed.data in [{MODE}, 3]")
-    assert found == ir.Within(ir.Read(0), ir.Read(1), ir.Const(3.0), True, True)
+    parsed_condition = condition(f"topic /speed.data in [{MODE}, 3]")
+    assert parsed_condition == ir.Within(ir.Read(0), ir.Read(1), ir.Const(3.0), True, True)
 
 
 def test_two_fields_are_compared_in_one_unit() -> None:
@@ -160,8 +160,8 @@ def test_message_constant_by_name() -> None:
 
 def test_numeric_message_constants_are_ordered() -> None:
     """Levels are compared as levels: at least a warning."""
-    found = condition("topic /status.level >= WARN")
-    assert found == ir.Compare(ir.Read(0), ">=", ir.Const(1))
+    parsed_condition = condition("topic /status.level >= WARN")
+    assert parsed_condition == ir.Compare(ir.Read(0), ">=", ir.Const(1))
 
 
 def test_booleans_and_strings_can_be_compared() -> None:
@@ -208,9 +208,9 @@ def test_age_is_compared_in_nanoseconds(text: str, expected: ir.Condition) -> No
 )
 def test_duration_is_exact(duration: str, nanoseconds: int) -> None:
     """Durations are exact in nanoseconds."""
-    found = condition(f"topic /flag.data for {duration}")
-    assert isinstance(found, ir.For)
-    assert found.duration_ns == nanoseconds
+    parsed_condition = condition(f"topic /flag.data for {duration}")
+    assert isinstance(parsed_condition, ir.For)
+    assert parsed_condition.duration_ns == nanoseconds
 
 
 # Functions ------------------------------------------------------------------------------------
@@ -219,22 +219,22 @@ def test_duration_is_exact(duration: str, nanoseconds: int) -> None:
 def test_functions_may_be_nested() -> None:
     """The rate of an angle is an angle per second; each rate has its own memory."""
     declared = "input q = topic /imu.orientation"
-    found = condition("q.yaw().rate().abs() > 90 deg/s or q.yaw().rate() > 1", declared)
+    parsed_condition = condition("q.yaw().rate().abs() > 90 deg/s or q.yaw().rate() > 1", declared)
     yaw = ir.Apply("yaw", tuple(ir.Read(leaf) for leaf in range(4)), 0)
     turn = ir.Const(2.0 * math.pi)
     ways = [ir.Apply("unwrapped", (yaw, turn), 0, state) for state in (0, 2)]
     rates = [ir.Apply("rate", (way,), 0, state) for way, state in zip(ways, (1, 3), strict=True)]
     first = ir.Apply("abs", (rates[0],), 0)
-    assert isinstance(found, ir.Or)
-    assert found.operands[0] == ir.Compare(first, ">", ir.Const(math.pi / 2.0))
-    assert found.operands[1] == ir.Compare(rates[1], ">", ir.Const(1.0))
+    assert isinstance(parsed_condition, ir.Or)
+    assert parsed_condition.operands[0] == ir.Compare(first, ">", ir.Const(math.pi / 2.0))
+    assert parsed_condition.operands[1] == ir.Compare(rates[1], ">", ir.Const(1.0))
 
 
 def test_norm_has_the_unit_of_its_components() -> None:
     """The norm of a velocity is a speed."""
-    found = condition("topic /odom.twist.twist.linear.norm() > 3.6 km/h")
+    parsed_condition = condition("topic /odom.twist.twist.linear.norm() > 3.6 km/h")
     reads = tuple(ir.Read(leaf) for leaf in range(3))
-    assert found == ir.Compare(ir.Apply("norm", reads, 0), ">", ir.Const(1.0))
+    assert parsed_condition == ir.Compare(ir.Apply("norm", reads, 0), ">", ir.Const(1.0))
 
 
 def test_nearest_reads_ranges_and_geometry() -> None:
@@ -292,7 +292,7 @@ def test_unit_may_come_from_a_node_description(tmp_path: Path) -> None:
     built = build(model, embedded_store()).program
     assert built is not None
     bounds = [
-        each.condition.right for each in built.rules if isinstance(each.condition, ir.Compare)
+        rule.condition.right for rule in built.rules if isinstance(rule.condition, ir.Compare)
     ]
     assert bounds == [ir.Const(200.0), ir.Const(2000.0), ir.Const(10.0)]
 
@@ -316,4 +316,8 @@ def test_functions_apply_to_user_defined_messages(tmp_path: Path) -> None:
     assert result.program is not None
     norm = ir.Apply("norm", (ir.Read(0), ir.Read(1), ir.Const(0.0)), 0)
     assert result.program.rules[0].condition == ir.Compare(norm, ">", ir.Const(2.0))
-    assert [each.operand.bounds for each in result.comparisons] == [(0, math.inf), (0, 4), (3, 3)]
+    assert [comparison.operand.bounds for comparison in result.comparisons] == [
+        (0, math.inf),
+        (0, 4),
+        (3, 3),
+    ]

@@ -15,8 +15,11 @@ STORE = InterfaceStore()
 def names(kind: str) -> dict[str, tuple[list[str], list[str]]]:
     """Return for each type in a command the fields to check and the fields that zero changes."""
     return {
-        each.type.name: ([name for name, _ in each.finite], [name for name, _ in each.zeros])
-        for each in command_types(STORE, message_type(kind))
+        command_type.type.name: (
+            [name for name, _ in command_type.finite],
+            [name for name, _ in command_type.zeros],
+        )
+        for command_type in command_types(STORE, message_type(kind))
     }
 
 

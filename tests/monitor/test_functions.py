@@ -309,11 +309,11 @@ def call_c(library: ctypes.CDLL, name: str, *arguments: Any) -> float | None:
     function = getattr(library, name)
     function.restype = ctypes.c_double
     passed: list[Any] = []
-    for each in arguments:
-        if isinstance(each, ctypes.Array):
-            passed += [each, ctypes.c_size_t(len(each))]
+    for argument in arguments:
+        if isinstance(argument, ctypes.Array):
+            passed += [argument, ctypes.c_size_t(len(argument))]
         else:
-            passed.append(ctypes.c_double(each))
+            passed.append(ctypes.c_double(argument))
     result: float = function(*passed)
     return None if math.isnan(result) else result
 

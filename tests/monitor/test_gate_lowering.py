@@ -33,7 +33,9 @@ def choices(program: form.GateProgram) -> dict[str, list[tuple[form.Condition, L
     """Return the possible limits of each field, with their conditions."""
     steps = (step for step in program.settle if isinstance(step, form.ChooseLimits))
     return {
-        ".".join(map(str, field.path)): [(each.condition, each.limit) for each in field.choices]
+        ".".join(map(str, field.path)): [
+            (choice.condition, choice.limit) for choice in field.choices
+        ]
         for step in steps
         for field in step.fields
     }

@@ -156,7 +156,7 @@ def test_only_finite_commands_are_published(
     """NaN and infinity never pass, whatever the lines."""
     run = Run(gate)
     run.live(history)
-    assert all(is_finite(each.message) for each in run.engine.outputs)
+    assert all(is_finite(output.message) for output in run.engine.outputs)
 
 
 @given(gates(ZERO_FIRST), histories(waits_and_steps))
@@ -239,13 +239,13 @@ def test_zeros_are_periodic(gate: tuple[Gate, Program], history: list[Happening]
     """When all inputs are silent, zeros are never further apart than the period."""
     run = Run(gate)
     run.live([*history, (LONG, "wait", None)])
-    lost = run.now - LONG + max(each.lost_ns or 0 for each in gate[0].lines)
-    times = [each.t_ns for each in run.engine.outputs if each.t_ns > lost]
+    lost = run.now - LONG + max(line.lost_ns or 0 for line in gate[0].lines)
+    times = [output.t_ns for output in run.engine.outputs if output.t_ns > lost]
     period = gate[0].period_ns
     assert all(b - a == period for a, b in pairwise(times))
     assert times[0] - lost <= period
     assert run.now - times[-1] <= period
-    assert all(is_zero(each.message) for each in run.engine.outputs if each.t_ns > lost)
+    assert all(is_zero(output.message) for output in run.engine.outputs if output.t_ns > lost)
 
 
 @given(gates(*ALL_ORDERS), histories(waits_and_steps))
@@ -259,5 +259,5 @@ def test_late_calls_give_the_same_commands(
     for wait, call, value in history:
         late.now += wait
         late.happen(call, value)
-    driven = [each for each in timely.engine.outputs if each.kind != "zero"]
-    assert [each for each in late.engine.outputs if each.kind != "zero"] == driven
+    driven = [output for output in timely.engine.outputs if output.kind != "zero"]
+    assert [output for output in late.engine.outputs if output.kind != "zero"] == driven

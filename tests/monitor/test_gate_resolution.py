@@ -36,8 +36,8 @@ def _limit(text: str, kind: str = "geometry_msgs.Twist", declarations: str = "")
 
 
 def _findings(text: str) -> list[tuple[str, str, str]]:
-    found = build_rules(f"{ACTIONS}{text}").diagnostics
-    return [(each.code.name, each.span.text, each.message) for each in found]
+    findings = build_rules(f"{ACTIONS}{text}").diagnostics
+    return [(each.code.name, each.span.text, each.message) for each in findings]
 
 
 def test_gate_is_built_with_topics_and_lines() -> None:
@@ -62,7 +62,7 @@ def test_gate_is_built_with_topics_and_lines() -> None:
 def test_gates_are_numbered_in_source_order() -> None:
     """Each gate has its index."""
     text = "".join(f"gate /a -> /b{n} : std_msgs.Int8 rate 1 Hz {{ {LOST} }}\n" for n in range(3))
-    assert [(each.index, each.target) for each in program(text).gates] == [
+    assert [(gate.index, gate.target) for gate in program(text).gates] == [
         (0, "/b0"),
         (1, "/b1"),
         (2, "/b2"),
@@ -164,13 +164,13 @@ def test_array_layout_cannot_be_limited() -> None:
     """It does not command anything."""
     text = """gate /a -> /b : std_msgs.Float64MultiArray rate 1 Hz {
       stop: limit layout.data_offset to [0, 1]; }"""
-    assert [each[0] for each in _findings(text)] == ["DRS337"]
+    assert [finding[0] for finding in _findings(text)] == ["DRS337"]
 
 
 def test_incompatible_unit_of_one_bound_is_an_error() -> None:
     """The span is that bound."""
     text = "gate /a -> /b : geometry_msgs.Twist rate 1 Hz { stop: limit linear.x to [-1, 1 rad]; }"
-    assert [each[:2] for each in _findings(text)] == [("DRS306", "1 rad")]
+    assert [finding[:2] for finding in _findings(text)] == [("DRS306", "1 rad")]
 
 
 def test_limit_read_from_a_topic_is_an_error() -> None:
@@ -190,8 +190,8 @@ def test_type_with_an_unknown_part_is_an_error(tmp_path: Path) -> None:
     text = f"gate /a -> /b : my_msgs.Wish rate 1 Hz {{ {LOST} }}"
     rules = Repository().load_text("a.deros", text).model
     assert isinstance(rules, Rules)
-    found = build(rules, InterfaceStore((tmp_path,), prefixes=())).diagnostics
-    assert [(each.code.name, each.message) for each in found] == [
+    findings = build(rules, InterfaceStore((tmp_path,), prefixes=())).diagnostics
+    assert [(each.code.name, each.message) for each in findings] == [
         ("DRS101", "unknown interface package 'other_msgs'"),
     ]
 
@@ -211,7 +211,10 @@ def test_optional_behaviours_are_marked() -> None:
         optional behaviour a: if e.r then { log_state("a"); };
         behaviour b: if e.r then { log_state("b"); };"""
     )
-    assert [(each.name, each.optional) for each in built.behaviours] == [("a", True), ("b", False)]
+    assert [(behaviour.name, behaviour.optional) for behaviour in built.behaviours] == [
+        ("a", True),
+        ("b", False),
+    ]
 
 
 @pytest.mark.parametrize(

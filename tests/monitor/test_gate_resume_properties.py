@@ -71,11 +71,11 @@ def test_zero_command_precedes_motion(gate: tuple[Gate, Program], history: list[
     run = Waiting(gate)
     run.live(history)
     waits = True
-    for each in run.engine.outputs:
-        if each.kind == "zero":
+    for output in run.engine.outputs:
+        if output.kind == "zero":
             waits = True
-            assert is_zero(each.message)
-        elif is_zero(each.message):
+            assert is_zero(output.message)
+        elif is_zero(output.message):
             waits = False
         else:
             assert not waits
@@ -145,5 +145,5 @@ def test_late_calls_give_the_same_commands(
     for wait, call, value in history:
         late.now += wait
         late.happen(call, value)
-    driven = [each for each in timely.engine.outputs if each.kind != "zero"]
-    assert [each for each in late.engine.outputs if each.kind != "zero"] == driven
+    driven = [output for output in timely.engine.outputs if output.kind != "zero"]
+    assert [output for output in late.engine.outputs if output.kind != "zero"] == driven

@@ -162,10 +162,10 @@ def test_leaves_of_an_angle_rate() -> None:
     """Yaw and roll are unwrapped, pitch and tilt are not; a full turn has the angle's unit."""
     declared = "input q = topic /imu.orientation"
     for name, jumps in (("yaw", True), ("roll", True), ("pitch", False), ("tilt", False)):
-        found = condition(f"q.{name}().rate(0.1 sec) > 1", declared)
-        assert isinstance(found, ir.Compare)
-        assert isinstance(found.left, ir.Apply)
-        angle, span, sec, nanosec = found.left.arguments
+        parsed_condition = condition(f"q.{name}().rate(0.1 sec) > 1", declared)
+        assert isinstance(parsed_condition, ir.Compare)
+        assert isinstance(parsed_condition.left, ir.Apply)
+        angle, span, sec, nanosec = parsed_condition.left.arguments
         assert span == ir.Const(100 * MS)
         assert (sec, nanosec) == (ir.Read(4), ir.Read(5))
         assert isinstance(angle, ir.Apply)
@@ -176,7 +176,7 @@ def test_leaves_of_an_angle_rate() -> None:
 def test_rate_without_a_header_uses_receipt() -> None:
     """A plain number has no stamp, so its message has one leaf."""
     found = program("input v = topic /speed.data entity e { r: v.rate(0.1 sec) > 1; }")
-    assert [each.path for each in found.leaves] == [("data",)]
+    assert [leaf.path for leaf in found.leaves] == [("data",)]
 
 
 @pytest.mark.parametrize(
@@ -194,5 +194,5 @@ def test_rate_without_a_header_uses_receipt() -> None:
 )
 def test_invalid_rates_are_findings(term: str, code: str) -> None:
     """A span is a positive constant duration; internal functions are not available."""
-    found = build_rules(f"input v = topic /speed.data entity e {{ r: {term} > 1; }}").diagnostics
-    assert [each.code.name for each in found] == [code]
+    findings = build_rules(f"input v = topic /speed.data entity e {{ r: {term} > 1; }}").diagnostics
+    assert [each.code.name for each in findings] == [code]

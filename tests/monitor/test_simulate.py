@@ -72,7 +72,7 @@ def played(
     trace = read(*lines)
     assert not trace.diagnostics, trace.diagnostics
     until_ns = None if until is None else nanoseconds(until)
-    told = []
+    events = []
     for each in play(monitor, trace.lines, until_ns, gates):
         line = (
             event_line(each.event, each.causes)
@@ -80,8 +80,8 @@ def played(
             else answer_line(each)
         )
         time, _, rest = line.partition(" ")
-        told.append(f"{time.rstrip('0').rstrip('.')} {rest}")
-    return told
+        events.append(f"{time.rstrip('0').rstrip('.')} {rest}")
+    return events
 
 
 def answers(*lines: dict[str, Any], until: str, tell_all: bool = False) -> list[GateAnswer]:
@@ -109,7 +109,7 @@ def test_each_trigger_has_its_cause(monitor: Any) -> None:
 @monitors
 def test_reset_is_refused_with_causes_then_done(monitor: Any) -> None:
     """The refusal lists holding conditions with values, and unknown ones."""
-    told = played(
+    events = played(
         monitor(PROGRAM),
         {"t": "0.0", "disable": "ease"},
         speed("0.1", 31.2),
@@ -118,7 +118,7 @@ def test_reset_is_refused_with_causes_then_done(monitor: Any) -> None:
         {"t": "0.9", "reset": True},
         speed("1.0", "NaN"),  # type: ignore[arg-type]
     )
-    assert told[2:] == [
+    assert events[2:] == [
         "0.7 stop stays active, called for by protect: drive.fast: v 31.2 > 30 for 0.5 sec",
         "0.9 stop is reset",
     ]
@@ -128,15 +128,15 @@ def test_reset_is_refused_with_causes_then_done(monitor: Any) -> None:
 def test_optional_behaviour_is_switched(monitor: Any) -> None:
     """Enabled while its condition is true, it acts."""
     lines = [{"t": "0.1", "disable": "ease"}, speed("0.2", 25), {"t": "0.3", "enable": "ease"}]
-    told = played(monitor(PROGRAM), *lines)
-    assert told == ["0.3 slow, by ease (rules.deros:14): drive.warm: v 25.0 > 20"]
+    events = played(monitor(PROGRAM), *lines)
+    assert events == ["0.3 slow, by ease (rules.deros:14): drive.warm: v 25.0 > 20"]
 
 
 @monitors
 def test_grace_delays_missing_inputs(monitor: Any) -> None:
     """The effect is that of the node's parameter startup_grace."""
-    told = played(monitor(PROGRAM, grace_ns=2 * 10**9), until="3.5")
-    assert [each.split(" ")[0] for each in told] == ["3", "3"]
+    events = played(monitor(PROGRAM, grace_ns=2 * 10**9), until="3.5")
+    assert [each.split(" ")[0] for each in events] == ["3", "3"]
 
 
 @monitors
@@ -144,20 +144,20 @@ def test_clock_step_is_explained_before_the_message(monitor: Any) -> None:
     """Everything is unknown then, so nothing holds."""
     (event, *_) = play(monitor(PROGRAM), read(speed("5", 15), speed("0.1", 25)).lines[1:], None)
     assert isinstance(event, Explained)
-    told = list(play(monitor(PROGRAM), read(speed("0.5", 15), speed("0.1", 25)).lines))
-    kinds = [(each.event.kind, each.causes) for each in told if isinstance(each, Explained)]
+    events = list(play(monitor(PROGRAM), read(speed("0.5", 15), speed("0.1", 25)).lines))
+    kinds = [(each.event.kind, each.causes) for each in events if isinstance(each, Explained)]
     assert kinds == [("clock_step", {}), ("trigger", {"ease": "drive.warm: v 25.0 > 20"})]
 
 
 def test_event_record_contains_its_cause() -> None:
     """It is listed next to action and behaviour, or next to each behaviour that refuses a reset."""
     lines = read(speed("0.1", 31.2), {"t": "0.7", "reset": True}).lines
-    told = [each for each in play(Engine(PROGRAM), lines) if isinstance(each, Explained)]
-    records = [event_record(each.event, each.causes) for each in told]
+    events = [each for each in play(Engine(PROGRAM), lines) if isinstance(each, Explained)]
+    records = [event_record(each.event, each.causes) for each in events]
     cause = "drive.fast: v 31.2 > 30 for 0.5 sec"
     assert (records[1]["action"], records[1]["cause"]) == ("stop", cause)
     assert (records[3]["event"], records[3]["causes"]) == ("refused", {"protect": cause})
-    assert "cause" not in event_record(told[1].event)
+    assert "cause" not in event_record(events[1].event)
 
 
 # Gates --------------------------------------------------------------------------------------------
@@ -166,7 +166,7 @@ def test_event_record_contains_its_cause() -> None:
 def test_gate_reports_output_and_reason() -> None:
     """From the start, through a reset and a zero command, to limits and the stop."""
     gates = GateSimulation(PROGRAM, embedded_store())
-    told = played(
+    events = played(
         Engine(PROGRAM),
         speed("0.1", 15),
         command("0.3", 0.0),
@@ -180,7 +180,7 @@ def test_gate_reports_output_and_reason() -> None:
         gates=gates,
         until="1.25",
     )
-    gated = [each.replace(" /cmd_vel:", "") for each in told if "/cmd_vel" in each]
+    gated = [each.replace(" /cmd_vel:", "") for each in events if "/cmd_vel" in each]
     assert gated == [
         f"0 zero, stop: zero; {LOST_BEAT}; {LOST_INPUT}",
         f"0.05 zero, {LOST_BEAT}; {LOST_INPUT}",
@@ -206,7 +206,7 @@ def test_invalid_command_is_refused() -> None:
 
 def test_silent_safety_node_stops_the_robot() -> None:
     """The stop lasts until the reset, which is refused during the silence."""
-    told = answers(
+    events = answers(
         speed("0.1", 15),
         command("0.5", 0.0),
         {"t": "0.55", "reset": "/cmd_vel"},
@@ -218,7 +218,7 @@ def test_silent_safety_node_stops_the_robot() -> None:
         {"t": "1.0", "heartbeat": True},
         until="1.3",
     )
-    after = [(each.event, each.why) for each in told if each.t_ns > 800 * 10**6]
+    after = [(each.event, each.why) for each in events if each.t_ns > 800 * 10**6]
     assert ("gate_reset_refused", ("stop: zero", LOST_BEAT)) in after
     assert after[0][0] == "zero"
     assert after[-1] == ("zero", (f"waits for a reset, after {LOST_BEAT}",))
@@ -237,8 +237,8 @@ def test_heartbeat_waits_for_inputs_during_the_grace() -> None:
     """The gate stays closed until they have arrived."""
     gates = GateSimulation(PROGRAM, embedded_store(), grace_ns=10**9)
     lines = read(command("0.1", 0.0), speed("0.6", 15)).lines
-    told = play(Engine(PROGRAM, grace_ns=10**9), lines, 9 * 10**8, gates)
-    closed = [each for each in told if isinstance(each, GateAnswer) and LOST_BEAT in each.why]
+    events = play(Engine(PROGRAM, grace_ns=10**9), lines, 9 * 10**8, gates)
+    closed = [each for each in events if isinstance(each, GateAnswer) and LOST_BEAT in each.why]
     assert closed[-1].t_ns == 550 * 10**6 or closed[-1].t_ns > 550 * 10**6
     assert gates.next_ns is not None
 
@@ -265,10 +265,10 @@ def test_invalid_line_is_reported_and_skipped(
 ) -> None:
     """The span is the wrong key or name."""
     trace = read({"t": "1", **line})
-    (found,) = trace.diagnostics
-    assert found.code.name == "DRS501"
-    assert message in found.message
-    assert place is None or found.span.text == place
+    (finding,) = trace.diagnostics
+    assert finding.code.name == "DRS501"
+    assert message in finding.message
+    assert place is None or finding.span.text == place
     assert trace.lines == ()
 
 
@@ -279,9 +279,9 @@ def test_missing_latches_and_gates_cannot_be_used() -> None:
         ('{"t": 1, "reset": true}', "no action is 'latched'"),
         ('{"t": 1, "heartbeat": false}', "no gate that hears"),
     ):
-        (found,) = read_trace(SourceFile("t", line), plain, embedded_store()).diagnostics
-        assert message in found.message
+        (finding,) = read_trace(SourceFile("t", line), plain, embedded_store()).diagnostics
+        assert message in finding.message
     free = program(RULES + GATE.replace(" until reset", ""))
     line = '{"t": 1, "reset": "/cmd_vel"}'
-    (found,) = read_trace(SourceFile("t", line), free, embedded_store()).diagnostics
-    assert "no line 'until reset'" in found.message
+    (finding,) = read_trace(SourceFile("t", line), free, embedded_store()).diagnostics
+    assert "no line 'until reset'" in finding.message

@@ -87,7 +87,7 @@ def test_generated_monitor_prints_the_same(case: Timeline, tmp_path: Path) -> No
         CliRunner().invoke(command, [*arguments, "--monitor", monitor])
         for monitor in ("reference", "python")
     ]
-    assert [each.exit_code for each in outputs] == [0, 0]
+    assert [output.exit_code for output in outputs] == [0, 0]
     assert outputs[0].stdout == outputs[1].stdout
     assert _printed(outputs[1].stdout) == _expected(case)
 
@@ -103,7 +103,7 @@ def _arguments(case: Timeline, folder: Path) -> list[str]:
 
 def _printed(output: str) -> list[tuple[str, str, str]]:
     records = [json.loads(line) for line in output.splitlines()]
-    return [(each["t"], each["action"], each["event"]) for each in records]
+    return [(record["t"], record["action"], record["event"]) for record in records]
 
 
 def _expected(case: Timeline) -> list[tuple[str, str, str]]:

@@ -96,7 +96,7 @@ def test_times_are_exact(text: str, expected: int | None) -> None:
 def test_times_may_be_json_numbers(text: str, expected: int) -> None:
     """A JSON number is read as exactly as a string."""
     trace = read(f'{{"t": {text}, "topic": "/speed"}}')
-    assert [each.t_ns for each in trace.messages] == [expected]
+    assert [message.t_ns for message in trace.messages] == [expected]
 
 
 # Values -------------------------------------------------------------------------------------------
@@ -198,10 +198,10 @@ def test_faulty_line_is_reported_and_skipped(text: str, code: str, message: str)
     """The finding is at its line, and only that line is skipped."""
     good = line("/speed", {"data": 1})
     trace = read(good, "", text, good)
-    (found,) = trace.diagnostics
-    assert (found.code.name, found.span.line) == (code, 3)
-    assert found.is_error
-    assert message in found.message
+    (finding,) = trace.diagnostics
+    assert (finding.code.name, finding.span.line) == (code, 3)
+    assert finding.is_error
+    assert message in finding.message
     assert len(trace.messages) == 2
 
 
@@ -219,8 +219,8 @@ def test_faulty_line_is_reported_and_skipped(text: str, code: str, message: str)
 )
 def test_span_of_a_fault_is_its_key_or_line(text: str, place: str | None) -> None:
     """The span is the faulty key, or the whole line if the key is not found as written."""
-    (found,) = read(text).diagnostics
-    assert found.span.text == (place or text)
+    (finding,) = read(text).diagnostics
+    assert finding.span.text == (place or text)
 
 
 def test_missing_nested_definition_is_reported(tmp_path: Path) -> None:
@@ -237,16 +237,16 @@ def test_missing_nested_definition_is_reported(tmp_path: Path) -> None:
         leaves=PROGRAM.leaves[:1],
     )
     source = SourceFile("trace", line("/speed", {"data": 1, "lost": {"x": 1}}))
-    (found,) = read_trace(source, program, InterfaceStore([tmp_path])).diagnostics
-    assert "lost_msgs" in found.message
+    (finding,) = read_trace(source, program, InterfaceStore([tmp_path])).diagnostics
+    assert "lost_msgs" in finding.message
 
 
 def test_unread_topic_is_a_warning() -> None:
     """A topic that no rule reads is reported once, with the most similar topic."""
     trace = read(line("/sped", {"data": 1}), line("/sped", {"data": 2}))
-    (found,) = trace.diagnostics
-    assert (found.code.name, found.is_error, trace.messages) == ("DRS505", False, ())
-    assert found.hint == "did you mean '/speed'?"
+    (finding,) = trace.diagnostics
+    assert (finding.code.name, finding.is_error, trace.messages) == ("DRS505", False, ())
+    assert finding.hint == "did you mean '/speed'?"
 
 
 json_values = st.recursive(

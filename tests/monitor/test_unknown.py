@@ -37,7 +37,7 @@ def _scan(ahead: float) -> dict[int, LeafValue]:
 
 def _verdicts(engine: Engine) -> list[bool | None]:
     """Return the verdict of ``near`` and the values of both forms of ``unknown()``."""
-    return [each.value for each in engine.explain().rules]
+    return [rule.value for rule in engine.explain().rules]
 
 
 @monitors
@@ -58,7 +58,7 @@ def test_documented_timeline_holds(monitor: Monitor) -> None:
     assert _verdicts(engine) == [False, False, False]
     engine.advance(2500 * MS)
     assert _verdicts(engine) == [True, True, True]
-    assert [each.t_ns for each in engine.events] == [1900 * MS, 2500 * MS]
+    assert [event.t_ns for event in engine.events] == [1900 * MS, 2500 * MS]
 
 
 @monitors
@@ -68,7 +68,7 @@ def test_sensor_that_never_starts_acts_after_grace_and_timeout(
     """This is the time at which the input is missing."""
     engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
     engine.advance(3000 * MS)
-    assert [each.t_ns for each in engine.events] == [2500 * MS]
+    assert [event.t_ns for event in engine.events] == [2500 * MS]
 
 
 @monitors
@@ -77,7 +77,7 @@ def test_blind_first_scan_acts_during_the_grace(monitor: Monitor, ahead: float) 
     """The sensor has started, so the monitor no longer waits."""
     engine = monitor(program(RULES), 0, grace_ns=2000 * MS)
     engine.message(100 * MS, "/scan", _scan(ahead))
-    assert [each.t_ns for each in engine.events] == [100 * MS]
+    assert [event.t_ns for event in engine.events] == [100 * MS]
 
 
 @monitors
@@ -88,7 +88,7 @@ def test_reset_is_refused_while_blind_or_waiting(monitor: Monitor) -> None:
     assert not engine.reset(20 * MS)
     engine.message(100 * MS, "/scan", _scan(0.0))
     assert not engine.reset(110 * MS)
-    refused = [each for each in engine.events if each.kind == "refused"][-1]
+    refused = [event for event in engine.events if event.kind == "refused"][-1]
     assert (refused.holding, refused.unknown) == (("behaviour_1",), ())
     engine.message(200 * MS, "/scan", _scan(2.0))
     assert engine.reset(210 * MS)

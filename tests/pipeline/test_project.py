@@ -172,12 +172,12 @@ def test_project_allows_by_code_and_path(shared: bool) -> None:
 def test_faults_in_the_project_file_are_findings(text: str, code: Code) -> None:
     """They point into the project file, and ``generate`` reports them too."""
     Path("deros.toml").write_bytes(text.encode(errors="surrogateescape"))
-    found = [(c, f) for c, f, _ in _findings("models/plain.rnd")]
-    assert (code.name, "deros.toml") in found
+    findings = [(c, f) for c, f, _ in _findings("models/plain.rnd")]
+    assert (code.name, "deros.toml") in findings
     outcome = deros("generate", "models/plain.rnd", "--target", "python", "-o", "ws")
     assert code.name in outcome.err
     assert (outcome.code == 0) == (
-        not any(codes.ALL_CODES[c].severity.value == "error" for c, _ in found)
+        not any(codes.ALL_CODES[c].severity.value == "error" for c, _ in findings)
     )
 
 
@@ -197,8 +197,8 @@ def test_faults_in_the_project_file_are_findings(text: str, code: Code) -> None:
 def test_table_in_pyproject_may_have_any_notation(text: str, expected: Code | None) -> None:
     """A value that is not a table is a finding; a file without the table is ignored."""
     Path("pyproject.toml").write_text(text)
-    found = [(code, file) for code, file, _ in _findings("models/plain.rnd")]
-    assert found == ([] if expected is None else [(expected.name, "pyproject.toml")])
+    findings = [(code, file) for code, file, _ in _findings("models/plain.rnd")]
+    assert findings == ([] if expected is None else [(expected.name, "pyproject.toml")])
 
 
 def test_finding_has_the_line_of_the_key_and_similar_keys() -> None:

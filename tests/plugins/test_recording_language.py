@@ -73,8 +73,8 @@ def test_textx_knows_the_language() -> None:
 
 def test_commands_know_the_language(tmp_path: Path) -> None:
     """``deros new`` starts a model that ``deros check`` finds in its folder and accepts."""
-    made = _deros("new", "recording", "lap", "-o", tmp_path)
-    assert made.returncode == 0, made.stderr
+    created = _deros("new", "recording", "lap", "-o", tmp_path)
+    assert created.returncode == 0, created.stderr
     assert (tmp_path / "lap.recording").read_text() == "recording lap topics /odom\n"
     checked = _deros("check", tmp_path)
     assert (checked.returncode, checked.stdout) == (0, "1 file checked, no findings\n")

@@ -18,7 +18,9 @@ REPEAT = Path(__file__).resolve().parents[2] / "tools" / "repeat.py"
         ("raise ValueError", 1, ["round 1 of 2: 1 failed, ", "::test_it", "0 of 2 rounds passed"]),
     ],
 )
-def test_each_round_is_reported(tmp_path: Path, body: str, code: int, told: list[str]) -> None:
+def test_each_round_is_reported(
+    tmp_path: Path, body: str, code: int, expected_output: list[str]
+) -> None:
     """A failure is named, stored and counted, and does not end the round."""
     test = tmp_path / "test_one.py"
     test.write_text(f"def test_it():\n    {body}\n", encoding="utf-8")
@@ -27,5 +29,5 @@ def test_each_round_is_reported(tmp_path: Path, body: str, code: int, told: list
         [sys.executable, str(REPEAT), *options, str(test)], capture_output=True, text=True
     )
     assert run.returncode == code, run.stderr
-    assert all(each in run.stdout for each in told), run.stdout
+    assert all(each in run.stdout for each in expected_output), run.stdout
     assert ("ValueError" in (tmp_path / "logs" / "2.log").read_text(encoding="utf-8")) is bool(code)

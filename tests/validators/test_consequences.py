@@ -14,7 +14,7 @@ from deros.metamodels.load import Repository
 from deros.validators.check import check
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "intelligent_one"
-FILES = {each.name: each.read_text(encoding="utf-8") for each in sorted(EXAMPLE.glob("*.*[dsm]"))}
+FILES = {path.name: path.read_text(encoding="utf-8") for path in sorted(EXAMPLE.glob("*.*[dsm]"))}
 MODELS = {name: text for name, text in FILES.items() if not name.endswith(".md")}
 NAMED = ("intelligent_one.system", "intelligent_one.deros")
 _TOKEN = re.compile(r'"[^"\n]*"|//[^\n]*|/\*.*?\*/|[\w.]+|[^\s\w]', re.DOTALL)
@@ -25,8 +25,8 @@ def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
     repository = Repository()
     repository.load_text(folder / changed, text)
     named = [repository.load(folder / name) for name in NAMED]
-    found = check(named, repository, InterfaceStore(()))
-    return [each for each in found if each.severity is not Severity.INFO]
+    findings = check(named, repository, InterfaceStore(()))
+    return [each for each in findings if each.severity is not Severity.INFO]
 
 
 def _garbled(text: str) -> list[tuple[int, str]]:
@@ -39,9 +39,9 @@ def _garbled(text: str) -> list[tuple[int, str]]:
 def test_syntax_error_anywhere_gives_one_finding(name: str) -> None:
     """A syntax error anywhere in a sound project of seven files gives one finding, at its place."""
     for at, text in _garbled(MODELS[name]):
-        found = _findings(EXAMPLE, name, text)
-        places = [(each.code.name, each.span.file.rsplit("/", 1)[-1]) for each in found]
-        assert places == [("DRS003", name)], (text[max(0, at - 30) : at + 30], found)
+        findings = _findings(EXAMPLE, name, text)
+        places = [(each.code.name, each.span.file.rsplit("/", 1)[-1]) for each in findings]
+        assert places == [("DRS003", name)], (text[max(0, at - 30) : at + 30], findings)
 
 
 @pytest.mark.parametrize(
@@ -61,5 +61,5 @@ def test_unknown_name_gives_one_finding(name: str, old: str, new: str, code: obj
     """A typo in a type, import, topic, port or node type is reported once, at its place."""
     text = MODELS[name]
     assert old in text
-    found = _findings(EXAMPLE, name, text.replace(old, new, 1))
-    assert [each.code for each in found] == [code], found
+    findings = _findings(EXAMPLE, name, text.replace(old, new, 1))
+    assert [each.code for each in findings] == [code], findings

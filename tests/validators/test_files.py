@@ -34,9 +34,9 @@ def _findings(folder: Path, prefix: Path, value: str, name: str = "file") -> lis
     )
     repository = Repository()
     named = [repository.load(folder / "s.system")]
-    found = check(named, repository, InterfaceStore((), prefixes=[prefix]))
-    assert {each.code.name for each in found} <= {"DRS028"}, found
-    return [(each.span.text, each.hint) for each in found]
+    findings = check(named, repository, InterfaceStore((), prefixes=[prefix]))
+    assert {each.code.name for each in findings} <= {"DRS028"}, findings
+    return [(each.span.text, each.hint) for each in findings]
 
 
 @pytest.mark.parametrize(
@@ -100,5 +100,5 @@ def test_only_package_paths_of_defaults_are_checked(tmp_path: Path, prefix: Path
         '  name b : string = "maps/ofice.yaml"\n'
     )
     repository = Repository()
-    found = check([repository.load(path)], repository, InterfaceStore((), prefixes=[prefix]))
-    assert [(each.code.name, each.span.line) for each in found] == [("DRS028", 3)]
+    findings = check([repository.load(path)], repository, InterfaceStore((), prefixes=[prefix]))
+    assert [(each.code.name, each.span.line) for each in findings] == [("DRS028", 3)]

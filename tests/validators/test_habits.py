@@ -285,8 +285,8 @@ def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
         (folder / name).write_text(sound, encoding="utf-8")
     repository.load_text(folder / changed, text)
     named = [repository.load(folder / name) for name in ("demo.system", "demo.deros")]
-    found = check(named, repository, InterfaceStore(()))
-    return [each for each in found if each.severity is not Severity.INFO]
+    findings = check(named, repository, InterfaceStore(()))
+    return [each for each in findings if each.severity is not Severity.INFO]
 
 
 @pytest.mark.parametrize("name", BASE)
@@ -301,12 +301,12 @@ def test_mistake_gives_one_finding_with_a_working_hint(mistake: Mistake, tmp_pat
     right = BASE[mistake.file]
     assert mistake.right in right
     text = right.replace(mistake.right, mistake.wrong, 1)
-    found = _findings(tmp_path, mistake.file, text)
-    said = [f"{each.code.name} {each.message} | {each.hint}" for each in found]
-    assert len(found) == 1, said
-    (finding,) = found
+    findings = _findings(tmp_path, mistake.file, text)
+    descriptions = [f"{each.code.name} {each.message} | {each.hint}" for each in findings]
+    assert len(findings) == 1, descriptions
+    (finding,) = findings
     assert mistake.words in f"{finding.message} | {finding.hint}"
-    assert (finding.fix is not None) == mistake.fix, said
+    assert (finding.fix is not None) == mistake.fix, descriptions
     if finding.fix is not None:
         span = finding.fix.span
         mended = f"{text[: span.start]}{finding.fix.text}{text[span.end :]}"

@@ -174,7 +174,7 @@ def test_invalid_ros_name_is_an_error_at_its_place(tmp_path: Path, place: str, n
     ]
     # The span of a quoted name includes the quotes.
     places = range(at - 1, at + len(name))
-    assert any(each.span.start in places for each in errors), errors
+    assert any(error.span.start in places for error in errors), errors
 
 
 @pytest.mark.parametrize("place", PLACES)
@@ -188,6 +188,6 @@ def test_valid_name_is_accepted_everywhere(tmp_path: Path, place: str) -> None:
         sound = "/odom" if set(TOPICS) <= set(names) else "sound"
     repository = Repository()
     loaded = repository.load_text(tmp_path / f"model{suffix}", template.replace("NAME", sound))
-    found = check([loaded], repository, InterfaceStore((), ()))
+    findings = check([loaded], repository, InterfaceStore((), ()))
     refused = ("DRS003", "DRS007", "DRS105", "DRS223", "DRS332")
-    assert [each.message for each in found if each.code.name in refused] == []
+    assert [each.message for each in findings if each.code.name in refused] == []

@@ -46,7 +46,7 @@ def test_there_are_fourteen_systems_of_three_to_fifteen_nodes() -> None:
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_findings_match_the_reviewed_list(name: str) -> None:
     """No finding is new, and none is missing."""
-    found = [_listed(each) for each in real_systems.findings(name)]
+    found = [_listed(finding) for finding in real_systems.findings(name)]
     listed = [{key: each[key] for key in found_keys(each)} for each in LISTED if _is_of(each, name)]
     assert sorted(found, key=str) == sorted(listed, key=str)
 

@@ -56,7 +56,7 @@ def check_text(directory: Path, system: str, text: str) -> list[str]:
     (directory / "S.system").write_text(f'system S imports import "talker.rnd" {system}')
     model = Repository().load_text(directory / "x.deros", f'use "S.system" import S {text}').model
     assert isinstance(model, Rules)
-    return [shown(each)[0] for each in check_rules(model, build(model, embedded_store()))]
+    return [shown(finding)[0] for finding in check_rules(model, build(model, embedded_store()))]
 
 
 READ = """

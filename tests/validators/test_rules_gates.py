@@ -71,14 +71,14 @@ def _findings(members: str, topics: str = TOPICS, rules: str = RULES) -> list[Di
     Path("s.deros").write_text(rules, encoding="utf-8")
     repository = Repository()
     loaded = repository.load("s.deros")
-    found = check([loaded], repository, InterfaceStore((), prefixes=()))
+    findings = check([loaded], repository, InterfaceStore((), prefixes=()))
     return [
-        each for each in found if each.code.name != "DRS222"
+        each for each in findings if each.code.name != "DRS222"
     ]  # the system may leave imports unused
 
 
 def _codes(members: str, topics: str = TOPICS, rules: str = RULES) -> list[str]:
-    return [each.code.name for each in _findings(members, topics, rules)]
+    return [finding.code.name for finding in _findings(members, topics, rules)]
 
 
 def test_sound_gate_has_no_findings() -> None:
@@ -134,8 +134,8 @@ def test_unwired_bypass_is_reported_at_its_node() -> None:
     Path("planner.rnd").write_text(
         "node planner : demo\npublishes\n  topic /cmd_vel : geometry_msgs.Twist"
     )
-    found = _findings("node planner : planner\n" + GATE + DRIVE)
-    assert ("DRS339", "planner") in [(each.code.name, each.span.text) for each in found]
+    findings = _findings("node planner : planner\n" + GATE + DRIVE)
+    assert ("DRS339", "planner") in [(each.code.name, each.span.text) for each in findings]
 
 
 def test_gate_on_wrong_topics_is_reported_at_its_connection() -> None:
@@ -191,8 +191,8 @@ def _resuming(*lines: str, stop: str = "latched") -> list[tuple[str, list[str]]]
     """Return the causes after which a gate resumes by itself, and the related lines."""
     head = RULES.partition("gate /nav")[0].replace("latched", stop)
     gate = f"gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {{ {'; '.join(lines)}; }}"
-    found = _findings(PLANNER + GATE + DRIVE, rules=head + gate)
-    named = [each for each in found if each.code.name == "DRS357"]
+    findings = _findings(PLANNER + GATE + DRIVE, rules=head + gate)
+    named = [each for each in findings if each.code.name == "DRS357"]
     assert all((each.severity.value, each.span.text) == ("info", "/cmd_vel") for each in named)
     return [
         (each.message.partition(" after ")[2], [line.span.text for line in each.related])

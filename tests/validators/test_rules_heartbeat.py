@@ -75,8 +75,8 @@ def _findings(members: str, rules: str = RULES, topics: str = TOPICS) -> list[Di
     Path("s.system").write_text(text, encoding="utf-8")
     Path("s.deros").write_text(rules, encoding="utf-8")
     repository = Repository()
-    found = check([repository.load("s.deros")], repository, InterfaceStore((), prefixes=()))
-    return [each for each in found if each.code.name in ("DRS343", "DRS345", "DRS363")]
+    findings = check([repository.load("s.deros")], repository, InterfaceStore((), prefixes=()))
+    return [each for each in findings if each.code.name in ("DRS343", "DRS345", "DRS363")]
 
 
 def test_default_heartbeat_rate_suffices() -> None:
@@ -105,7 +105,7 @@ def test_each_half_of_the_hint_fixes_the_finding() -> None:
 def test_raised_rate_allows_a_shorter_timeout() -> None:
     """50 heartbeats per second suffice for a timeout of 0.05 s."""
     hasty = RULES.replace("for 0.3 sec", "for 0.05 sec")
-    assert [each.code.name for each in _findings(_safety() + _gate(), hasty)] == ["DRS345"]
+    assert [finding.code.name for finding in _findings(_safety() + _gate(), hasty)] == ["DRS345"]
     assert _findings(_safety(publish_freq=50.0) + _gate(), hasty) == []
 
 

@@ -16,7 +16,7 @@ from tests.support.profiles import scaled
 from tests.support.rules import embedded_store
 
 _CASES = Path(__file__).resolve().parents[1] / "cases"
-_TEXTS = [re.sub(r"//.*", "", each.read_text()) for each in sorted(_CASES.glob("DRS3*.deros"))]
+_TEXTS = [re.sub(r"//.*", "", path.read_text()) for path in sorted(_CASES.glob("DRS3*.deros"))]
 _TOKENS = [re.findall(r'"[^"]*"|->|[~/]?[\w/.]+|[^\w\s]', text) for text in _TEXTS]
 _WORDS = sorted({token for tokens in _TOKENS for token in tokens})
 

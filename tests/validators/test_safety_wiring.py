@@ -58,7 +58,7 @@ def test_wiring_difference_is_an_error_with_both_places(name: str, file: str) ->
     old, new, code, words = DIFFERENCES[name]
     write_hand_wired()
     edit("robot.system", (old, new))
-    found = [each for each in findings(file) if each.code.name == code]
+    found = [finding for finding in findings(file) if finding.code.name == code]
     assert len(found) == (2 if "swap" in name else 1), findings(file)
     assert words in found[0].message
     assert found[0].is_error
@@ -224,7 +224,7 @@ def test_second_hand_wired_instance_is_an_error() -> None:
     """Two nodes of one generated type are an error in any namespace."""
     write_hand_wired()
     edit("robot.system", ("subsystem Safety {", "subsystem Safety {\n  node again : command_gate"))
-    found = [each for each in findings() if each.code.name == "DRS238"]
+    found = [finding for finding in findings() if finding.code.name == "DRS238"]
     assert [each.message for each in found] == ["'/gate' is a second gate of the rules 'robot'"]
 
 
@@ -253,7 +253,7 @@ def test_statement_and_hand_wired_node_are_an_error() -> None:
     """The rules would run twice."""
     with_statement('safety "robot.deros"', "node again : robot_safety_node")
     edit("robot.system", ("topics\n", 'imports\n  import "robot_safety_node.rnd"\ntopics\n'))
-    found = {each.code.name: each for each in findings()}
+    found = {finding.code.name: finding for finding in findings()}
     assert "a second safety node of the rules 'robot'" in found["DRS238"].message
 
 
@@ -282,7 +282,7 @@ def test_faults_in_a_statement_are_reported_once() -> None:
         + "parameters param publish_freq = 0.0 param unheard_of = 1 param use_sim_time = 3\n"
         "wirings connect ~/heart to /beat\n"
     )
-    found = [(each.code.name, each.span.text) for each in findings() if each.is_error]
+    found = [(finding.code.name, finding.span.text) for finding in findings() if finding.is_error]
     assert sorted(found) == [
         ("DRS204", "~/heart"),
         ("DRS206", "unheard_of"),
@@ -296,7 +296,9 @@ def test_errors_in_the_rules_are_reported_once() -> None:
     """They are reported in the rules; nothing is reported as missing in the system."""
     with_statement('safety "robot.deros"')
     edit("robot.deros", ("front.ranges[0]", "front.rages[0]"))
-    assert [(each.code.name, each.span.file) for each in findings()] == [("DRS302", "robot.deros")]
+    assert [(finding.code.name, finding.span.file) for finding in findings()] == [
+        ("DRS302", "robot.deros")
+    ]
     Path("robot.deros").write_text('use "robot.system" import Robot entity {', encoding="utf-8")
     assert codes() == ["DRS003"]
 
@@ -319,7 +321,7 @@ def test_bypass_around_an_imported_system_is_reported() -> None:
         'system Fleet imports import "robot.system" import "joystick.rnd"\n'
         "subsystem one : Robot\nnode joystick : joystick wirings connect out to /command\n"
     )
-    found = {each.code.name: each for each in findings("fleet.system")}
+    found = {finding.code.name: finding for finding in findings("fleet.system")}
     assert "/joystick (out) bypasses the gate '/command_gate'" in found["DRS339"].message
 
 

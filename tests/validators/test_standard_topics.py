@@ -68,8 +68,8 @@ def test_standard_topics_are_external(tmp_path: Path, name: str, kind: str, sect
 
 def test_topic_of_another_type_is_not_standard(tmp_path: Path) -> None:
     """A topic in a namespace may have the same name and another type."""
-    found = _check(tmp_path, "publishes topic /air/tf : std_msgs.Bool")
-    assert [each.code.name for each in found] == ["DRS213"]
+    findings = _check(tmp_path, "publishes topic /air/tf : std_msgs.Bool")
+    assert [each.code.name for each in findings] == ["DRS213"]
 
 
 @pytest.mark.parametrize("name", ["/tf", "/clock", "/rosout", "/parameter_events"])
@@ -99,8 +99,8 @@ def test_markers_need_a_publisher_but_no_reader(tmp_path: Path) -> None:
     kind = "visualization_msgs.MarkerArray"
     wired = "topics topic /markers\nnode user : user wirings connect m to /markers"
     assert _check(tmp_path, f"publishes topic m : {kind}", wired) == []
-    found = _check(tmp_path, f"subscribes topic m : {kind}", wired)
-    assert [each.code.name for each in found] == ["DRS210"]
+    findings = _check(tmp_path, f"subscribes topic m : {kind}", wired)
+    assert [each.code.name for each in findings] == ["DRS210"]
 
 
 def test_interactive_markers_need_no_partners(tmp_path: Path) -> None:

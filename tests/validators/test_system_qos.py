@@ -119,7 +119,7 @@ def test_unstated_qos_of_a_program_is_only_a_warning(tmp_path: Path) -> None:
     )
     wiring = "node c : c wirings connect x to /x"
     findings = _check(tmp_path, "qos best_effort", "qos best_effort", wiring)
-    assert [each.code.name for each in findings] == ["DRS229"]
+    assert [finding.code.name for finding in findings] == ["DRS229"]
 
 
 RULES = sorted(
@@ -163,4 +163,4 @@ def test_type_and_qos_come_from_the_outermost_declaration(tmp_path: Path) -> Non
     repository = Repository()
     named = [repository.load(tmp_path / "demo.system")]
     findings = check(named, repository, InterfaceStore((), prefixes=()))
-    assert {each.code.name for each in findings} >= {"DRS209", "DRS230"}
+    assert {finding.code.name for finding in findings} >= {"DRS209", "DRS230"}

@@ -30,7 +30,7 @@ def _check(folder: Path, system: str) -> list[Diagnostic]:
 
 
 def _likely(findings: list[Diagnostic]) -> list[Diagnostic]:
-    return [each for each in findings if each.code.name == "DRS214"]
+    return [finding for finding in findings if finding.code.name == "DRS214"]
 
 
 def test_topic_already_in_use_is_suggested(tmp_path: Path) -> None:
@@ -74,8 +74,8 @@ topics topic /scan topic /scan_filtered
 node filter : filter wirings connect in to /scan connect out to /scan_filtered
 """
     findings = _check(tmp_path, system)
-    assert [each.code.name for each in findings] == ["DRS210", "DRS211"]
-    assert all("/scan" not in each.hint for each in findings)
+    assert [finding.code.name for finding in findings] == ["DRS210", "DRS211"]
+    assert all("/scan" not in finding.hint for finding in findings)
 
 
 @pytest.mark.parametrize("left", ["left", "robot1/base"])
@@ -91,8 +91,8 @@ subsystem right namespace /{right} {{
   node compass : compass wirings connect in to imu }}
 """
     findings = _check(tmp_path, system)
-    assert sorted(each.code.name for each in findings) == ["DRS210", "DRS211"]
-    assert all("imu" not in each.hint for each in findings)
+    assert sorted(finding.code.name for finding in findings) == ["DRS210", "DRS211"]
+    assert all("imu" not in finding.hint for finding in findings)
 
 
 def test_topic_of_another_type_is_not_suggested(tmp_path: Path) -> None:
@@ -129,7 +129,7 @@ subsystem left : Part namespace /left
 subsystem right : Part namespace /right
 """
     findings = [each for each in _check(tmp_path, system) if each.code.name == "DRS213"]
-    assert [each.span.text for each in findings] == ["compass"]
+    assert [finding.span.text for finding in findings] == ["compass"]
 
 
 def test_misspelt_transform_topic_is_reported(tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ def test_misspelt_transform_topic_is_reported(tmp_path: Path) -> None:
         folder.mkdir()
         (folder / "program.rnd").write_text(node.format(name))
         findings = _check(folder, "node program : program\n")
-        assert [each.code.name for each in findings] == expected
+        assert [finding.code.name for finding in findings] == expected
 
 
 def test_program_output_is_matched_with_unpublished_external_topics(tmp_path: Path) -> None:
@@ -150,6 +150,6 @@ def test_program_output_is_matched_with_unpublished_external_topics(tmp_path: Pa
     )
     system = "topics external topic /robot/map : nav_msgs.OccupancyGrid\n"
     findings = _check(tmp_path, f"{system}node program : program namespace /robot\n")
-    assert [each.code.name for each in findings] == ["DRS213"]
+    assert [finding.code.name for finding in findings] == ["DRS213"]
     other = system.replace("/robot/map", "/robot/costs")
     assert _check(tmp_path, f"{other}node program : program namespace /robot\n") == []

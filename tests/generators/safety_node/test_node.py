@@ -94,7 +94,9 @@ def test_diagnostics_topic_is_private_if_the_rules_use_the_common_one() -> None:
 
 def test_parameters_are_fixed_except_for_optional_behaviours() -> None:
     """Latches have a file; optional behaviours can be switched at run time."""
-    read_only = {each.name: each.read_only for each in node_of("every_thing").parameters}
+    read_only = {
+        parameter.name: parameter.read_only for parameter in node_of("every_thing").parameters
+    }
     assert read_only == {
         "publish_freq": True,
         "startup_grace": True,

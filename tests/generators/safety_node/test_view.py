@@ -59,13 +59,13 @@ def test_actions_share_a_field_in_declaration_order(built: Program) -> None:
 
 def test_bound_actions_have_a_state_and_others_need_code(built: Program) -> None:
     """Bound actions have a state, others are user code; the built-in one is neither."""
-    assert [each.name for each in built.actions if needs_code(each)] == ["release", "beep"]
-    assert [each.name for each in built.actions if lasts(each)] == ["stop", "crawl", "creep"]
+    assert [action.name for action in built.actions if needs_code(action)] == ["release", "beep"]
+    assert [action.name for action in built.actions if lasts(action)] == ["stop", "crawl", "creep"]
 
 
 def test_reset_is_refused_by_behaviours_that_trigger_the_action(built: Program) -> None:
     """These are the behaviours that trigger the action."""
-    refusing = {each.name: refusing_behaviours(each) for each in built.actions}
+    refusing = {action.name: refusing_behaviours(action) for action in built.actions}
     assert {name: found for name, found in refusing.items() if found} == {
         "stop": (0,),
         "crawl": (1,),
@@ -100,7 +100,7 @@ def test_notes_describe_an_action_and_its_callers(built: Program) -> None:
 
 def test_nested_behaviour_depends_on_outer_rules(built: Program) -> None:
     """Its condition is shown without comments, on one line."""
-    assert [(each.name, each.condition, each.rules) for each in behaviour_views(built)] == [
+    assert [(view.name, view.condition, view.rules) for view in behaviour_views(built)] == [
         ("outer", "e.fast", ("e.fast",)),
         ("behaviour_2", "e.near", ("e.fast", "e.near")),
         ("behaviour_3", "e.near", ("e.near",)),

@@ -65,10 +65,10 @@ def test_collision_has_both_places() -> None:
     emitted = [Emitted("on_imu", "port 'imu'", SPAN), Emitted("on_imu", "port '/imu'", OTHER)]
     with pytest.raises(GenerationError) as raised:
         check_collisions(emitted, "class A")
-    (found,) = raised.value.diagnostics
-    assert found.code.name == "DRS401"
-    assert (found.span, found.related[0].span) == (OTHER, SPAN)
-    assert "'on_imu'" in found.message
+    (finding,) = raised.value.diagnostics
+    assert finding.code.name == "DRS401"
+    assert (finding.span, finding.related[0].span) == (OTHER, SPAN)
+    assert "'on_imu'" in finding.message
 
 
 def test_different_names_do_not_collide() -> None:

@@ -43,7 +43,7 @@ def _tree(logic: Logic) -> ast.expr:
             return ast.UnaryOp(ast.Not(), _tree(logic.operand))
         case AllOf() | AnyOf():
             word = ast.And() if isinstance(logic, AllOf) else ast.Or()
-            return ast.BoolOp(word, [_tree(each) for each in logic.operands])
+            return ast.BoolOp(word, [_tree(operand) for operand in logic.operands])
 
 
 @given(formulas, st.sampled_from([0, 4, 8, 12]), st.sampled_from(["if ", "elif ", "return "]))

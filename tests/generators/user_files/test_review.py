@@ -86,9 +86,9 @@ def test_missing_handler_is_reported(language: str, tmp_path: Path) -> None:
     """The span is the name of the class, and the message names the method."""
     _write(_files(OLD, language), tmp_path)
     new = OLD.replace("services", "  topic rear : sensor_msgs.LaserScan\nservices")
-    (found,) = _review(new, language, tmp_path)
-    assert (found.code, found.span.text) == (codes.MISSING_METHOD, "Base")
-    assert "'on_rear'" in found.message
+    (finding,) = _review(new, language, tmp_path)
+    assert (finding.code, finding.span.text) == (codes.MISSING_METHOD, "Base")
+    assert "'on_rear'" in finding.message
 
 
 @pytest.mark.usefixtures("reader")
@@ -105,9 +105,9 @@ def test_renamed_port_suggests_a_rename(
 ) -> None:
     """The old and the new method refer to each other."""
     _write(_files(OLD, language), tmp_path)
-    found = _review(OLD.replace(*change), language, tmp_path)
-    assert _words(found) == {("DRS407", "Base"), ("DRS408", old)}
-    by_code = {each.code.name: each for each in found}
+    findings = _review(OLD.replace(*change), language, tmp_path)
+    assert _words(findings) == {("DRS407", "Base"), ("DRS408", old)}
+    by_code = {each.code.name: each for each in findings}
     assert by_code["DRS408"].hint == f"rename it to '{new}'"
     assert by_code["DRS407"].hint.startswith(f"rename '{old}' in line ")
 
@@ -136,9 +136,9 @@ def test_uses_of_removed_ports_and_parameters_are_reported(language: str, tmp_pa
         path.write_text(path.read_text().replace("RCLCPP_WARN", f"{line}\n  RCLCPP_WARN", 1))
     assert _review(OLD, language, tmp_path) == []
     new = OLD.replace("topic odom", "topic odometry").replace("name speed", "name velocity")
-    found = _review(new, language, tmp_path)
-    assert _words(found) == {("DRS408", "publish_odom"), ("DRS408", "speed")}
-    hints = {each.span.text: each.hint for each in found}
+    findings = _review(new, language, tmp_path)
+    assert _words(findings) == {("DRS408", "publish_odom"), ("DRS408", "speed")}
+    hints = {each.span.text: each.hint for each in findings}
     assert hints["publish_odom"] == "did you mean 'publish_odometry'?"
 
 
@@ -187,9 +187,9 @@ def test_missing_functions_of_user_modules_are_reported(tmp_path: Path) -> None:
     path = tmp_path / "robot/robot/base.py"
     text = path.read_text()
     path.write_text(text.replace("def main(", "def start("))
-    (found,) = _review(OLD, "python", tmp_path)
-    assert found.code is codes.MISSING_METHOD
-    assert "'base.py' has no function 'main'" in found.message
+    (finding,) = _review(OLD, "python", tmp_path)
+    assert finding.code is codes.MISSING_METHOD
+    assert "'base.py' has no function 'main'" in finding.message
     for more in ("main = start\n", "from robot.other import main\n", "from robot.other import *\n"):
         path.write_text(text.replace("def main(", "def start(") + more)
         assert _review(OLD, "python", tmp_path) == []
@@ -214,8 +214,8 @@ def test_spans_count_characters_in_any_alphabet(language: str, tmp_path: Path) -
     mark = "#" if language == "python" else "//"
     path = tmp_path / name
     path.write_text(f"{mark} Übergröße 名前\n{path.read_text()}")
-    found = _review(OLD.replace("topic front", "topic rear"), language, tmp_path)
-    assert _words(found) == {("DRS407", "Base"), ("DRS408", "on_front")}
+    findings = _review(OLD.replace("topic front", "topic rear"), language, tmp_path)
+    assert _words(findings) == {("DRS407", "Base"), ("DRS408", "on_front")}
 
 
 def test_missing_dependency_in_package_xml_is_reported(language: str, tmp_path: Path) -> None:
@@ -224,11 +224,11 @@ def test_missing_dependency_in_package_xml_is_reported(language: str, tmp_path: 
     path = tmp_path / "robot/package.xml"
     path.write_text(path.read_text().replace("</package>", "  <depend>own</depend>\n</package>"))
     new = OLD.replace("services", "  topic imu : geometry_msgs.Twist\nservices")
-    found = [each for each in _review(new, language, tmp_path) if each.code.name == "DRS409"]
-    assert [each.message for each in found] == [
+    findings = [each for each in _review(new, language, tmp_path) if each.code.name == "DRS409"]
+    assert [each.message for each in findings] == [
         "package.xml lacks what the generated code needs: geometry_msgs"
     ]
-    assert "depend>geometry_msgs</" in found[0].hint
+    assert "depend>geometry_msgs</" in findings[0].hint
 
 
 @pytest.mark.parametrize(
@@ -246,9 +246,9 @@ def test_package_xml_must_fit(
     _write(_files(OLD, language), tmp_path)
     path = tmp_path / "robot/package.xml"
     path.write_text(change(path.read_text()))
-    (found,) = _review(OLD, language, tmp_path)
-    assert found.code is codes.INCOMPLETE_MANIFEST
-    assert part in found.message
+    (finding,) = _review(OLD, language, tmp_path)
+    assert finding.code is codes.INCOMPLETE_MANIFEST
+    assert part in finding.message
 
 
 RULES = """action horn;
@@ -273,7 +273,7 @@ def test_actions_of_a_safety_node_are_reviewed(language: str, tmp_path: Path) ->
     assert review(files, users_files(files, tmp_path)) == []
     changed = load(RULES.replace("lights", "lamp"))
     files = generator(changed, context, {"package": "r_safety"})
-    found = review(files, users_files(files, tmp_path))
-    assert ("DRS408", "lights") in _words(found)
+    findings = review(files, users_files(files, tmp_path))
+    assert ("DRS408", "lights") in _words(findings)
     if language == "python":
-        assert ("DRS407", "RSafetyNodeActions") in _words(found)
+        assert ("DRS407", "RSafetyNodeActions") in _words(findings)

@@ -13,7 +13,7 @@ from tools.fuzzing.limits import Limits, limited
 from tools.fuzzing.mutants import Mutant
 from tools.fuzzing.running import Runner, Wrong
 
-KEPT = sorted(each for each in CORPUS.iterdir() if each.is_dir())
+KEPT = sorted(path for path in CORPUS.iterdir() if path.is_dir())
 
 
 @pytest.mark.parametrize("folder", KEPT, ids=lambda folder: folder.name)
@@ -28,7 +28,7 @@ def test_former_failure_passes(tmp_path: Path, folder: Path) -> None:
     with limited(Limits()):
         runner.run(mutant)
     assert sorted(runner.ends) == expected["ends"]
-    errors = Counter(each.code.name for each in runner.findings(mutant) if each.is_error)
+    errors = Counter(finding.code.name for finding in runner.findings(mutant) if finding.is_error)
     assert errors == expected["errors"]
 
 

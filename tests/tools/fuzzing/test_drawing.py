@@ -27,7 +27,7 @@ def test_same_seed_and_number_give_the_same_mutant() -> None:
 def test_every_kind_is_drawn_with_changes() -> None:
     """Models and definitions differ from their project; traces and messages are drawn later."""
     drawing = Drawing(PROJECTS, 1, RULES)
-    sources = {each.name: each.files for each in PROJECTS}
+    sources = {project.name: project.files for project in PROJECTS}
     kinds: Counter[str] = Counter()
     changed = 0
     for number in range(400):

@@ -17,7 +17,7 @@ from tools.fuzzing.pool import Job, Report, minimised, run
 
 def job(*entries: str, seconds: float = 5.0) -> Job:
     """Return a job of mutants that behave as their names say."""
-    mutants = tuple(Mutant("model", "p", {"text": b"a\nbad b\nc\n"}, each) for each in entries)
+    mutants = tuple(Mutant("model", "p", {"text": b"a\nbad b\nc\n"}, entry) for entry in entries)
     return Job(limits=Limits(seconds=seconds), given=mutants, runner=Victim)
 
 
@@ -80,7 +80,7 @@ def test_no_mutant_starts_after_the_time_limit() -> None:
 def test_finding_is_minimised() -> None:
     """Content that the failure does not need is removed."""
     mutant = job("raise if bad").given[0]
-    (finding,) = [found for each in reports(job("raise if bad")) for found in each.findings]
+    (finding,) = [found for report in reports(job("raise if bad")) for found in report.findings]
     smallest = minimised(job(), Finding(finding.signature, "", 0, mutant), 20.0)
     assert smallest is not None
     assert smallest.files == {"text": b"bad"}

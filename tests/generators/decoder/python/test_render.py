@@ -117,7 +117,7 @@ def test_names_do_not_collide() -> None:
     ]
     module: dict[str, object] = {}
     exec(render_decoders(topics, STORE), module)
-    assert {f"decode_{each.name}" for each in topics} <= set(module)
+    assert {f"decode_{topic.name}" for topic in topics} <= set(module)
 
 
 @pytest.mark.parametrize(

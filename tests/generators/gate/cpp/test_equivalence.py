@@ -64,8 +64,8 @@ def check_trace(players: Players, gates: Sequence[Gate], number: int, trace: Tra
         assert answer.is_done == (not against) or not gate.is_latching
         assert not engine.outputs or answer.applying == engine.applying
         expected = tuple(
-            (each.t_ns, each.kind, encoded(gate.type, each.message))
-            for each in engine.outputs[before:]
+            (output.t_ns, output.kind, encoded(gate.type, output.message))
+            for output in engine.outputs[before:]
         )
         assert answer.outputs == expected, f"{gate}\nstep {step} of {trace}"
         assert answer.next_deadline is None or answer.next_deadline > t_ns

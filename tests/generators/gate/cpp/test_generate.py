@@ -158,8 +158,8 @@ def test_gates_have_no_user_files(files: Files) -> None:
 def test_licence_is_above_every_source() -> None:
     """With a copyright holder, each C++ file has the header."""
     text = (MODELS / "gates.deros").read_text(encoding="utf-8")
-    made = gate_package(text, {"copyright": "2026 A. Robot"})
-    for path, file in made.items():
+    generated = gate_package(text, {"copyright": "2026 A. Robot"})
+    for path, file in generated.items():
         if path.endswith((".cpp", ".hpp")):
             assert file.text.startswith("// Copyright 2026 A. Robot"), path
 
@@ -169,5 +169,5 @@ def test_topics_that_differ_only_in_slashes_are_rejected() -> None:
     text = f"{HEAD}gate /mode/x -> /mode_x : std_msgs.Int32 rate 5 Hz {{ stop: zero; }}\n"
     with pytest.raises(GenerationError) as caught:
         gate_package(text)
-    (found,) = caught.value.diagnostics
-    assert found.code is codes.NAME_COLLISION
+    (finding,) = caught.value.diagnostics
+    assert finding.code is codes.NAME_COLLISION

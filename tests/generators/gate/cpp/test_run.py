@@ -87,9 +87,9 @@ def test_both_languages_report_the_same_statuses(
                 # A status follows a change within 50 ms, so the second one from here on includes
                 # it.
                 world.wish_until(0.3, lambda settled=settled: world.reports >= settled + 2)
-                told = dict(world.status)
-                del told["since"], told["since_ns"]
-                statuses.append(told)
+                status = dict(world.status)
+                del status["since"], status["since_ns"]
+                statuses.append(status)
             process.send_signal(signal.SIGTERM)
             output, _ = process.communicate(timeout=LIMIT)
         assert process.returncode == 0, output

@@ -55,10 +55,10 @@ def commands_without_states(world: World) -> set[tuple[float, float, float]]:
         world.until_driving()
         beats.clear()
         world.beating.callback = beat
-        told = set(world.wish_for(1.0))
+        commands = set(world.wish_for(1.0))
         if max(after - before for before, after in itertools.pairwise(beats)) < 0.2:
             break
-    return told
+    return commands
 
 
 def test_state_counts_from_its_arrival(
@@ -70,8 +70,8 @@ def test_state_counts_from_its_arrival(
         world.assert_stands(1.0)  # the heartbeat alone opens nothing
         world.stop(False)
         world.mode(0)
-        told = commands_without_states(world)
-        assert told == {(0.3, 0.0, 0.0)}
+        commands = commands_without_states(world)
+        assert commands == {(0.3, 0.0, 0.0)}
         world.stop(True)
         world.wish_until(0.3, lambda: world.last == STILL)
         world.assert_stands(1.0)

@@ -50,10 +50,10 @@ def test_files_match_golden(golden: Golden) -> None:
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load(MODELS / "gates.deros").model
     assert isinstance(model, Rules)
-    made = generate(model, context, {})
+    generated = generate(model, context, {})
     ends = (".py", ".rnd", "_logic.py", "_message.py")
     own = {f"{gate}{end}" for gate in GATES[:3] for end in ends}
-    kept = {path: file for path, file in made.items() if Path(path).name in own}
+    kept = {path: file for path, file in generated.items() if Path(path).name in own}
     assert len(kept) == len(own)
     golden.check("gate_python/gates", kept)
 
@@ -148,7 +148,7 @@ def test_two_gates_of_one_name_are_rejected() -> None:
     text += "gate /d -> /b_c : std_msgs.Int32 rate 5 Hz { stop: zero; }"
     with pytest.raises(GenerationError) as caught:
         files_of(HEAD + text)
-    (found,) = caught.value.diagnostics
-    assert found.code is codes.NAME_COLLISION
-    assert "'/b/c'" in found.message
-    assert "'/b_c'" in found.message
+    (finding,) = caught.value.diagnostics
+    assert finding.code is codes.NAME_COLLISION
+    assert "'/b/c'" in finding.message
+    assert "'/b_c'" in finding.message

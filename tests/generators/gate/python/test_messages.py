@@ -67,15 +67,17 @@ def test_zeros_and_nan_agree_with_the_reference_for_every_type(kind: InterfaceTy
     from builtin_interfaces.msg import Time
 
     rng = random.Random(str(kind))
-    made = functions(kind)
+    message_functions = functions(kind)
     stamp = Time(sec=STAMP_NS // 10**9, nanosec=STAMP_NS % 10**9)
     takes_stamp = [stamp] if view_of_type(kind).stamped else []
     for _ in range(5):
         message = Messages().draw(kind, rng)
         data = plain(message, kind)
-        assert made.get("is_finite", lambda _: True)(message) == commands.is_finite(data)
-        if "make_zero" in made:
-            made["make_zero"](message, *takes_stamp)
+        assert message_functions.get("is_finite", lambda _: True)(message) == commands.is_finite(
+            data
+        )
+        if "make_zero" in message_functions:
+            message_functions["make_zero"](message, *takes_stamp)
         assert plain(message, kind) == commands.zero(STORE, kind, data, STAMP_NS)
 
 
@@ -116,10 +118,10 @@ def test_limits_on_every_kind_of_field(name: str) -> None:
         )
         if not limits:
             continue
-        made = functions(kind, limits)
+        message_functions = functions(kind, limits)
         message = Messages().draw(kind, rng)
         data = plain(message, kind)
-        values = made["limited_fields"](message)
+        values = message_functions["limited_fields"](message)
         assert repr(list(values)) == repr([commands.value_at(data, e.path) for e in limits])
         if not commands.is_finite(values):
             continue
@@ -127,19 +129,19 @@ def test_limits_on_every_kind_of_field(name: str) -> None:
             None if value is None else max(limit.lower, min(limit.upper, value))
             for value, limit in zip(values, limits, strict=True)
         ]
-        made["limit"](message, tuple(within))
+        message_functions["limit"](message, tuple(within))
         assert repr(plain(message, kind)) == repr(commands.limited(data, limits))
         checked += 1
     assert checked > 3
 
 
 def _limit(kind: InterfaceType, path: tuple[str | int, ...]) -> Limit | None:
-    found = resolve(STORE, kind, path)
-    assert isinstance(found, ResolvedField)
-    if not found.type.is_number:
+    field = resolve(STORE, kind, path)
+    assert isinstance(field, ResolvedField)
+    if not field.type.is_number:
         return None
-    ends = (-0.5, 0.5) if found.type.is_float else (0, 3)
-    return Limit(path, found.type, *ends)
+    ends = (-0.5, 0.5) if field.type.is_float else (0, 3)
+    return Limit(path, field.type, *ends)
 
 
 def test_types_of_one_name_get_separate_functions(tmp_path: Path) -> None:

@@ -184,8 +184,8 @@ def test_status_reports_output_and_reason(
         world.wish_until(0.3, lambda: world.status.get("message") == "commands pass")
         assert world.status["level"] == "0"
         world.stop(True)
-        told = "stop: zero (gates.deros:24)"
-        world.wish_until(0.3, lambda: world.status["message"] == told)
+        reason = "stop: zero (gates.deros:24)"
+        world.wish_until(0.3, lambda: world.status["message"] == reason)
         assert world.status["level"] == "1"
         assert world.status["name"] == f"/{GATE}"
         first = world.status["since_ns"]
@@ -195,7 +195,7 @@ def test_status_reports_output_and_reason(
         process.send_signal(signal.SIGTERM)
         output, _ = process.communicate(timeout=LIMIT)
     assert process.returncode == 0
-    assert told in output
+    assert reason in output
     assert "Traceback" not in output
 
 
@@ -363,12 +363,12 @@ def test_zero_keeps_the_shape_of_the_command(
     stop = node.create_publisher(Bool, "/stop", kept)
     mode = node.create_publisher(UInt8, "/mode", kept)
     heartbeat = node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
-    said = {stop: Bool(data=False), mode: UInt8(data=0)}
+    states = {stop: Bool(data=False), mode: UInt8(data=0)}
     beats = itertools.count(1)
 
     def live() -> None:
         heartbeat.publish(UInt64(data=next(beats)))
-        for publisher, state in said.items():
+        for publisher, state in states.items():
             publisher.publish(state)
 
     node.create_timer(0.05, live)
@@ -385,9 +385,9 @@ def test_zero_keeps_the_shape_of_the_command(
             return bool(heard[-1] == message)
 
         ros_peer.until(wished)
-        said[mode] = UInt8(data=1)
+        states[mode] = UInt8(data=1)
         ros_peer.until(lambda: list(heard[-1].points[0].velocities) == [0.5, -0.5])
-        said |= {mode: UInt8(data=0), stop: Bool(data=True)}
+        states |= {mode: UInt8(data=0), stop: Bool(data=True)}
         ros_peer.until(lambda: heard[-1].points and not any(heard[-1].points[0].velocities))
     zero = heard[-1]
     assert zero.joint_names == ["lift", "turn"]

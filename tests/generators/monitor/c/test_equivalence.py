@@ -27,7 +27,7 @@ def test_events_match_the_reference(focus: str, tmp_path: Path) -> None:
     """Both give the same events at the same nanosecond, and the same state after every call."""
     cases = c_pairs.cases(c_pairs.FOCUSES[focus], PROGRAMS, 1)
     assert len(cases) > PROGRAMS // 2, "most programs are refused"
-    library = Loaded([each.unit for each in cases], tmp_path, "-O0")
+    library = Loaded([case.unit for case in cases], tmp_path, "-O0")
     for pair, error in c_pairs.differences(library, cases):
         raise AssertionError(f"{error}\nof {pair}") from error
 
@@ -48,10 +48,10 @@ def test_former_counterexample_passes(path: Path) -> None:
 def test_difference_is_minimised(tmp_path: Path) -> None:
     """A failing pair is reported without unnecessary steps."""
     cases = c_pairs.cases(("number", "boolean"), 20, 1)
-    units = [each.unit for each in cases]
-    for each in units:  # every action runs while its behaviour holds
-        name = f"{each.prefix}_monitor.c"
-        each.texts[name] = each.texts[name].replace("&& (!held)", "|| held")
+    units = [case.unit for case in cases]
+    for unit in units:  # every action runs while its behaviour holds
+        name = f"{unit.prefix}_monitor.c"
+        unit.texts[name] = unit.texts[name].replace("&& (!held)", "|| held")
     found = [pair for pair, _ in c_pairs.differences(Loaded(units, tmp_path), cases)]
     assert found
     assert min(len(pair.steps) for pair in found) <= 3

@@ -108,7 +108,7 @@ def test_mutation_is_detected(slip: str, tmp_path: Path) -> None:
     """Some random program and trace distinguishes the mutated monitor from the reference."""
     found = mutants(slip)
     while cases := list(itertools.islice(found, BATCH)):
-        units = [each.unit for each in cases]
+        units = [case.unit for case in cases]
         library = Loaded(units, tmp_path / units[0].prefix, "-O0", "-Wno-error")
         if _differs(library, cases):
             return

@@ -76,7 +76,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     model = repository.load_text(folder / "everything.deros", _rules(names)).model
     assert isinstance(model, Rules), repository.diagnostics
     built = build(model, InterfaceStore([folder]))
-    assert built.program is not None, [each.message for each in built.diagnostics][:3]
+    assert built.program is not None, [diagnostic.message for diagnostic in built.diagnostics][:3]
     return c_proof.write(built.program, folder / "c")
 
 

@@ -127,12 +127,12 @@ def example() -> Unit:
     return unit(found)
 
 
-def written(made: Unit, folder: Path, source: str | None = None) -> Path:
+def written(monitor: Unit, folder: Path, source: str | None = None) -> Path:
     """Write a monitor, possibly mutated, and return its source."""
-    path = folder / f"{made.prefix}_monitor.c"
-    for name, text in made.texts.items():
+    path = folder / f"{monitor.prefix}_monitor.c"
+    for name, text in monitor.texts.items():
         (folder / name).write_text(text, encoding="utf-8")
-    path.write_text(source or made.source, encoding="utf-8")
+    path.write_text(source or monitor.source, encoding="utf-8")
     return path
 
 
@@ -219,10 +219,10 @@ def test_lemmas_must_be_proved(tmp_path: Path) -> None:
 def test_every_function_has_a_contract() -> None:
     """The contracts cover exactly the functions that the monitor defines."""
     for program in (everything(), *examples()):
-        made = unit(program)
-        contracts = made.texts[f"{made.prefix}_contracts.h"]
+        monitor = unit(program)
+        contracts = monitor.texts[f"{monitor.prefix}_contracts.h"]
         declared = re.findall(r"^\w[^;{}=#\"]*?\b(\w+)\([^;{}]*\);", contracts, re.MULTILINE)
-        assert declared == [f"{made.prefix}_emit", *c_proof.functions_in(made.source)]
+        assert declared == [f"{monitor.prefix}_emit", *c_proof.functions_in(monitor.source)]
         assert len(declared) == len(re.findall(r"^/\*@ (?:requires|assigns)", contracts, re.M))
 
 

@@ -32,19 +32,19 @@ def slips(example: Unit) -> list[Mutant]:
 
 def test_every_kind_of_mutation_is_generated(slips: list[Mutant]) -> None:
     """There are at least fifty of each kind, and no two are equal."""
-    kinds = Counter(each.kind for each in slips)
+    kinds = Counter(slip.kind for slip in slips)
     assert set(kinds) == set(KINDS)
     assert all(count >= 50 for count in kinds.values())
-    assert len({each.source for each in slips}) == len(slips)
+    assert len({slip.source for slip in slips}) == len(slips)
 
 
 def test_mutations_change_only_code(example: Unit, slips: list[Mutant]) -> None:
     """Contracts and comments stay, unless a whole loop is removed with its own."""
     comments = _COMMENT.findall(example.source)
-    for each in slips:
-        assert each.source != example.source
+    for slip in slips:
+        assert slip.source != example.source
         rest = iter(comments)
-        assert all(text in rest for text in _COMMENT.findall(each.source)), each.name
+        assert all(text in rest for text in _COMMENT.findall(slip.source)), slip.name
 
 
 def test_equivalent_mutations_exist_with_a_reason(slips: list[Mutant]) -> None:
@@ -58,7 +58,7 @@ def test_equivalent_mutations_exist_with_a_reason(slips: list[Mutant]) -> None:
 def test_mutation_in_a_loop_header_is_named_by_its_change() -> None:
     """Neither the loop body nor the rest of the file is part of the name."""
     loop = "int f(int n)\n{\n  for (int i = 0; i < n; ++i) {\n    g(i);\n  }\n  return n;\n}\n"
-    named = {each.name for each in mutants(loop, "") if each.kind == "comparison"}
+    named = {mutant.name for mutant in mutants(loop, "") if mutant.kind == "comparison"}
     assert named == {"f: i < n -> i <= n", "f: i < n -> i > n"}
 
 

@@ -33,7 +33,7 @@ def slipped(made: Unit, right: str, wrong: str) -> Unit:
 def test_sanitizers_find_nothing(tmp_path: Path) -> None:
     """Random monitors have no out-of-bounds access and no undefined behaviour."""
     cases = c_pairs.cases(c_pairs.FOCUSES["mixed"], 12, 5)
-    with Watched([each.unit for each in cases], tmp_path) as library:
+    with Watched([case.unit for case in cases], tmp_path) as library:
         assert list(c_pairs.differences(library, cases)) == []
 
 
@@ -41,8 +41,8 @@ def test_sanitizers_find_nothing(tmp_path: Path) -> None:
 def test_sanitizers_detect_an_overrun(tmp_path: Path) -> None:
     """Reading one element too far ends the program with a report."""
     cases = c_pairs.cases(("floats",), 20, 5)
-    reads = [each for each in cases if "i < count;" in each.unit.source]
-    units = [slipped(each.unit, "i < count;", "i <= count;") for each in reads]
+    reads = [case for case in cases if "i < count;" in case.unit.source]
+    units = [slipped(read.unit, "i < count;", "i <= count;") for read in reads]
     watched = Watched(units, tmp_path)
     _, error = next(c_pairs.differences(watched, reads))
     assert isinstance(error, CrashError)

@@ -103,7 +103,7 @@ def test_events_of_parsed_rules_match(data: st.DataObject, robot: Path) -> None:
     note(text)
     built = _build(text, robot)
     steps = [each for each in data.draw(traces(meant)) if each.topic in ("", *built.topics)]
-    read = [_as_read_by(meant, built, each) for each in steps]
+    read = [_as_read_by(meant, built, step) for step in steps]
     assert _happened(meant, steps) == _happened(built, read)
     compare(built, read, render_monitor(built))
 

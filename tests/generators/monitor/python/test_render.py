@@ -83,7 +83,7 @@ def _lint(folder: Path) -> str:
         )
         for command in commands
     ]
-    return "".join(each.stdout + each.stderr for each in results)
+    return "".join(result.stdout + result.stderr for result in results)
 
 
 def test_monitor_text_matches_golden(golden: Golden) -> None:
@@ -188,7 +188,7 @@ def test_names_do_not_collide() -> None:
     methods = [each.method for each in view.handlers]
     assert methods == ["on_a_b", "on_a_b_2", "on_a_b_3", "on_class", "on_t", "on_now", "on_act"]
     for handler in view.handlers:
-        parameters = [each.name for each in handler.parameters]
+        parameters = [parameter.name for parameter in handler.parameters]
         assert len({"self", "t", *parameters}) == len(parameters) + 2
         assert not any(keyword.iskeyword(name) for name in parameters)
     monitor = GeneratedMonitor(program)
@@ -203,7 +203,9 @@ def test_missing_element_is_passed_as_nan(present: float | None) -> None:
     case = next(each for each in timelines.ALL if each.name == "element_of_an_array")
     program = case.program()
     (handler,) = monitor_view(program).handlers
-    assert [(each.name, each.path) for each in handler.parameters] == [("ranges_2", ("ranges", 2))]
+    assert [(parameter.name, parameter.path) for parameter in handler.parameters] == [
+        ("ranges_2", ("ranges", 2))
+    ]
     monitor = GeneratedMonitor(program)
     monitor.message(1, "/scan", {0: present})
     assert len(monitor.events) == (present is not None)
@@ -224,7 +226,7 @@ if e.some or e.none then {{ stop; }};
     monitor.message(1, "/scan", {0: None})
     assert not monitor.events
     monitor.advance(1_000_000_000)
-    assert [each.action for each in monitor.events] == ["stop"]
+    assert [event.action for event in monitor.events] == ["stop"]
 
 
 REPEATED = """use "robot.system" import Robot

@@ -380,10 +380,10 @@ def test_nan_infinity_and_special_names_arrive_from_a_parameter_file(
           param needed = nan
         wirings connect map to /map
     """
-    made = load_text(tmp_path, system, mapper=(MODELS / "mapper.rnd").read_text())
+    system_model = load_text(tmp_path, system, mapper=(MODELS / "mapper.rnd").read_text())
     file = tmp_path / "test.params.yaml"
     context = Context(InterfaceStore(), Repository())
-    file.write_text(generate_params(made, context, {})[file.name].text)
+    file.write_text(generate_params(system_model, context, {})[file.name].text)
     with start("mapping", "mapper", "--ros-args", "--params-file", str(file)):
         words = shown_by(ros_peer, "/map")
     expected = "inf -inf nan inf -1 elbow=1 wrist=inf elbow:2 wrist:0 -2 0"

@@ -20,6 +20,6 @@ def test_clock_change_is_rejected_with_a_reason(ros_peer: Peer) -> None:
     (refused,) = node.set_parameters([Parameter("use_sim_time", value=True)])
     assert not refused.successful
     assert "use_sim_time cannot change" in refused.reason
-    assert "/clock" not in [each.topic_name for each in node.subscriptions]
+    assert "/clock" not in [subscription.topic_name for subscription in node.subscriptions]
     for allowed in (Parameter("use_sim_time", value=False), Parameter("other", value=2)):
         assert node.set_parameters([allowed])[0].successful

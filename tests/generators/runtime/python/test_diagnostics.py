@@ -128,7 +128,7 @@ def test_action_shows_cause_and_start() -> None:
     shown.diagnostics.update(Event("trigger", "stop"), why)
     shown.diagnostics.update(Event("trigger", "stop", "another", 5_500_000_000), why)
     status = shown.ring()["action stop"]
-    values = {each.key: each.value for each in status.values}
+    values = {value.key: value.value for value in status.values}
     assert (status.level[0], status.message) == (WARN, "active")
     assert values == {
         "runs": "2",
@@ -146,7 +146,7 @@ def test_action_shows_cause_and_start() -> None:
 def test_true_rule_shows_its_true_parts() -> None:
     """They are listed next to all values that it reads."""
     rule = Rule("drive.fast", True, causes=("speed 2.0 > 1", "lidar.missing()"))
-    values = {each.key: each.value for each in Shown(rule).ring()["drive.fast"].values}
+    values = {value.key: value.value for value in Shown(rule).ring()["drive.fast"].values}
     assert values["speed"] == "2.0"
     assert values["cause"] == "speed 2.0 > 1 and lidar.missing()"
 

@@ -71,7 +71,7 @@ def told(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
         each for each in (log.info, log.warning, log.error) if each.called
     ).call_args
     assert line == status.message
-    return line, {each.key: each.value for each in status.values}
+    return line, {value.key: value.value for value in status.values}
 
 
 def test_trigger_shows_its_cause() -> None:

@@ -24,7 +24,7 @@ PROGRAMS = 60
 
 # The C monitor stores no text that its rules do not contain, and so reports none.
 KINDS = {
-    "all kinds": tuple(each for each in ALL_KINDS if not each.startswith("text")),
+    "all kinds": tuple(kind for kind in ALL_KINDS if not kind.startswith("text")),
     "few values": ("number", "boolean"),
 }
 

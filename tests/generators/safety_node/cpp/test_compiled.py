@@ -61,10 +61,10 @@ def test_explanations_match_the_python_monitor(
     """The diagnostics of both nodes agree after the same messages."""
     program = compiled(HERE / "explained.cpp", tmp_path, generate(*model, {}))
     lines = "".join(f"{topic} {t} {value}\n" for topic, t, value in MESSAGES if value == value)
-    told = subprocess.run(
+    output = subprocess.run(
         [program], input=lines, capture_output=True, text=True, timeout=60, check=True
     ).stdout
-    assert told == "".join(_explained(*model))
+    assert output == "".join(_explained(*model))
 
 
 def _explained(model: Rules, context: Context) -> list[str]:
@@ -74,7 +74,7 @@ def _explained(model: Rules, context: Context) -> list[str]:
     names: dict[str, Any] = {}
     exec(compile(render_monitor(program), "monitor.py", "exec"), names)
     monitor = names["Monitor"](0, lambda _: None)
-    told: list[str] = []
+    output: list[str] = []
     for topic, t, value in MESSAGES:
         if value != value:
             continue  # C++ streams do not read NaN
@@ -83,11 +83,11 @@ def _explained(model: Rules, context: Context) -> list[str]:
         for rule in state.rules:
             reads = (f"{term}={_shown(read)}" for term, read in rule.reads)
             words = (rule.name, str(rule.line), rule.text, _shown(rule.value), str(rule.since))
-            told.append("\t".join((*words, *reads, *rule.causes)) + "\n")
+            output.append("\t".join((*words, *reads, *rule.causes)) + "\n")
         assert tuple(state.causes) == monitor.holding
-        told += [f"holds\t{name}\t{' and '.join(why)}\n" for name, why in state.causes.items()]
-        told.append(".\n")
-    return told
+        output += [f"holds\t{name}\t{' and '.join(why)}\n" for name, why in state.causes.items()]
+        output.append(".\n")
+    return output
 
 
 def _take(monitor: Any, topic: str, t: int, value: float) -> None:

@@ -124,7 +124,7 @@ class Part:
         self._wish = node.create_publisher(Twist, f"/{name}/wish", 10)
 
     def _take_event(self, message: Any) -> None:
-        self.events.append({each.key: each.value for each in message.values})
+        self.events.append({value.key: value.value for value in message.values})
 
     def load_node(self, container: Container, *options: str) -> str:
         """Load the safety node, and return its number."""
@@ -145,7 +145,7 @@ class Part:
 
     def actions(self) -> set[str]:
         """Return the triggered actions."""
-        return {each["action"] for each in self.events if each["kind"] == "trigger"}
+        return {event["action"] for event in self.events if event["kind"] == "trigger"}
 
     def forget(self) -> None:
         """Clear the recorded messages."""

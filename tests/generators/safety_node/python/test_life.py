@@ -169,8 +169,8 @@ def test_undecodable_data_is_ignored(start: Start, robot: Robot, node: Software)
         robot.drive_until(0.9, lambda: robot.stop[-1])
         code, lines = end(process, robot)
     assert code == 0
-    told = [each for each in robot.events if each["kind"] == "undecodable"]
-    assert len(told) == node.sees_what_it_cannot_read
+    undecodable = [event for event in robot.events if event["kind"] == "undecodable"]
+    assert len(undecodable) == node.sees_what_it_cannot_read
     assert "Traceback" not in "\n".join(lines)
 
 

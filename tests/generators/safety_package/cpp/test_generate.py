@@ -43,8 +43,8 @@ def test_files_match_golden(name: str, golden: Golden) -> None:
 
     Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
-    made = ("", "_main", "_messages", "_rule_metadata", "_actions", "_actions_base", "_cpp")
-    stems = {f"{name}_safety_node{part}" for part in made}
+    suffixes = ("", "_main", "_messages", "_rule_metadata", "_actions", "_actions_base", "_cpp")
+    stems = {f"{name}_safety_node{part}" for part in suffixes}
     files = {
         path: file
         for path, file in files_of(name).items()

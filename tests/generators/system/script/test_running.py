@@ -64,8 +64,8 @@ def test_every_node_gets_its_settings_as_arguments(start: Start) -> None:
         nodes=node,
     )
     assert run.end() == 0
-    told = next(line for line in run.lines if line.startswith("[ears] "))
-    assert json.loads(told.removeprefix("[ears] ")) == [
+    arguments_line = next(line for line in run.lines if line.startswith("[ears] "))
+    assert json.loads(arguments_line.removeprefix("[ears] ")) == [
         *("--ros-args", "-r", "__node:=ears", "-r", "__ns:=/front"),
         *("-p", "rate:=3.0", "-p", 'mode.kind:="yes"'),
         *("-r", "in:=/words", "--log-level", "front.ears:=debug"),
@@ -93,8 +93,8 @@ def test_unusual_parameter_names_are_passed_in_a_file(start: Start) -> None:
     """
     run = start(members, nodes=node)
     assert run.end() == 0
-    told = next(line for line in run.lines if line.startswith("[ears] "))
-    arguments = json.loads(told.removeprefix("[ears] "))
+    arguments_line = next(line for line in run.lines if line.startswith("[ears] "))
+    arguments = json.loads(arguments_line.removeprefix("[ears] "))
     file = Path(arguments.pop())
     assert arguments == [
         *("--ros-args", "-r", "__node:=ears", "-r", "__ns:=/"),
