@@ -101,7 +101,9 @@ def test_outdated_generated_description_is_rejected(source: Path) -> None:
     _write(source, {"models/node.rnd": with_banner("node.rnd", "node node : p\n")})
     _merge(PYTHON, source)
     _write(source, {"models/node.rnd": with_banner("node.rnd", "node old : p\n")})
-    with pytest.raises(SourceTreeError, match=r"models/node\.rnd was not generated from the present version"):
+    with pytest.raises(
+        SourceTreeError, match=r"models/node\.rnd was not generated from the present version"
+    ):
         _merge(PYTHON, source)
     _write(source, {"models/node.rnd": "node by_hand : p\n"})
     _merge(PYTHON, source)
@@ -110,7 +112,10 @@ def test_outdated_generated_description_is_rejected(source: Path) -> None:
 @pytest.mark.parametrize(
     ("manifest", "complaint"),
     [
-        (MANIFEST.replace("<name>p", "<name>q"), "of package 'q', but the generated package is 'p'"),
+        (
+            MANIFEST.replace("<name>p", "<name>q"),
+            "of package 'q', but the generated package is 'p'",
+        ),
         (MANIFEST.replace(">rclpy<", ">x<"), "lacks <depend> tags for .*: rclpy"),
         ("<package>", "cannot be read"),
     ],
