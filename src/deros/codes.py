@@ -342,7 +342,7 @@ UNREAD_TRACE_TOPIC = _declare(
     505, "unread-trace-topic", "topic of a trace that the rules do not read", _W
 )
 
-MENDED_AFTER_GENERATION = frozenset(
+CORRECTED_BY_GENERATING = frozenset(
     {GATE_BYPASSED, GATE_NOT_IN_SYSTEM, SAFETY_DESCRIPTION_DIFFERS, SAFETY_NOT_GENERATED}
 )
 """Errors of a system whose safety nodes have to be generated, or generated again, before."""

@@ -189,21 +189,21 @@ def _monitor(engine: str, program: Program, grace_ns: int) -> Monitor:
 
 
 def _show(happenings: Iterable[Explained | GateAnswer], as_text: bool) -> None:
-    from deros.monitor import simulate as told
+    from deros.monitor import simulate as events
 
     for each in happenings:
-        if isinstance(each, told.Explained):
+        if isinstance(each, events.Explained):
             event = each.event
             if event.kind == "clock_step":
-                click.echo(f"the clock stepped back to {told.seconds(event.t_ns)}", err=True)
+                click.echo(f"the clock stepped back to {events.seconds(event.t_ns)}", err=True)
             elif as_text:
-                click.echo(told.event_line(event, each.causes))
+                click.echo(events.event_line(event, each.causes))
             else:
-                click.echo(json.dumps(told.event_record(event, each.causes)))
+                click.echo(json.dumps(events.event_record(event, each.causes)))
         elif as_text:
-            click.echo(told.answer_line(each))
+            click.echo(events.answer_line(each))
         else:
-            click.echo(json.dumps(told.answer_record(each)))
+            click.echo(json.dumps(events.answer_record(each)))
 
 
 def _fail(ctx: click.Context, findings: Sequence[Diagnostic]) -> NoReturn:

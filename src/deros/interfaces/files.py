@@ -11,8 +11,7 @@ from pathlib import Path
 def read_regular(path: Path, most: int) -> bytes:
     """Read a regular file, or what a symbolic link to one leads to.
 
-    A pipe or a device is not opened for longer than it takes to see what it is: it may keep the
-    reader waiting, or go on for ever.
+    Pipes and devices are rejected: they may block, or never end.
 
     Args:
         path: the file.

@@ -2,7 +2,7 @@
 
 ROS prescribes SI units and radians (REP 103), and the message definitions say the rest in comments;
 ``rep103.json`` holds both as data. A unit given to a field of message type holds for all that is
-nested in it: ``geometry_msgs/Twist.linear`` tells ``x``, ``y`` and ``z`` wherever there is a Twist.
+nested in it: ``geometry_msgs/Twist.linear`` applies to ``x``, ``y`` and ``z`` of every Twist.
 A unit with ``wrapping`` behind it is that of an angle that jumps by a full turn.
 """
 

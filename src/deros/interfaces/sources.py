@@ -1,4 +1,4 @@
-"""The places that definitions come from: folders of a workspace, and prefixes with an ament index.
+"""Sources of definitions: folders of a workspace, and prefixes with an ament index.
 
 The third place, the definitions embedded in deros, is :mod:`deros.interfaces.embedded`.
 """
@@ -30,14 +30,14 @@ _PACKAGE_XML_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
 
 @dataclass(frozen=True, slots=True)
 class DefinitionProblem:
-    """A definition that is there but cannot be read: its file, the line (from 1), and why."""
+    """A definition that cannot be read: its file, the line (from 1), and the reason."""
 
     path: str
     line: int
     message: str
 
     def about(self, kind: InterfaceType) -> str:
-        """Say in a sentence that the definition of ``kind`` cannot be used, and why."""
+        """Return a sentence that says why the definition of ``kind`` cannot be used."""
         where = "" if self.path == str(kind) else f" ({self.path}:{self.line})"
         return f"the definition of {kind.short} cannot be used: {self.message}{where}"
 
@@ -47,7 +47,7 @@ Definition = tuple[MessageDefinition, ...] | DefinitionProblem | None
 
 
 class Source(Protocol):
-    """One place that definitions come from."""
+    """One source of definitions."""
 
     def has_package(self, package: str) -> bool:
         """Return whether the place has interfaces of ``package``."""
@@ -66,7 +66,7 @@ class Source(Protocol):
         ...
 
     def inputs(self) -> Iterable[Path]:
-        """Return the files and folders of the user that the answers given so far rest on."""
+        """Return the files and folders of the user that the results so far depend on."""
         ...
 
 
@@ -77,7 +77,7 @@ class FolderSource:
     """
 
     def __init__(self, root: Path) -> None:
-        """Remember the folder; it is searched at the first question."""
+        """Store the folder; it is searched at the first query."""
         self._root = root
         self._inputs: list[Path] = []
 
@@ -127,7 +127,7 @@ class AmentSource:
     """
 
     def __init__(self, prefix: Path) -> None:
-        """Remember the prefix."""
+        """Store the prefix."""
         self._prefix = prefix
         self._inputs: list[Path] = []
 

@@ -27,7 +27,7 @@ OF_EVERY_NODE: Mapping[str, InterfaceType] = {
     ),
     **_services("type_description_interfaces", get_type_description="GetTypeDescription"),
 }
-"""What every node serves, by the last part of its name, below the node's own."""
+"""The services of every node, by the last part of their names below the node's name."""
 
 OF_MANAGED_NODES: Mapping[str, InterfaceType] = _services(
     "lifecycle_msgs",
@@ -37,4 +37,4 @@ OF_MANAGED_NODES: Mapping[str, InterfaceType] = _services(
     get_state="GetState",
     get_transition_graph="GetAvailableTransitions",
 )
-"""What every managed node serves besides."""
+"""The additional services of every managed node."""

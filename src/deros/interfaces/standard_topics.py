@@ -1,4 +1,4 @@
-"""Topics that have ends in every ROS 2 system, whoever describes it: transforms, time, logs, tools.
+"""Topics with ends in every ROS 2 system: transforms, time, logs, tools.
 
 ``standard_topics.json`` holds them as data, each with the reason why nothing is said to be missing
 there: its other end is in libraries, tools or an operator's hands, and not in a system description.
@@ -38,12 +38,12 @@ class StandardTopic:
     of: str = ""
 
     def has(self, kind: InterfaceType | None) -> bool:
-        """Return whether it may be of a type; of one that nobody gives, it may."""
+        """Return whether the topic may have a type; an unknown type is accepted."""
         return kind is None or not self.types or _text(kind) in self.types
 
 
 TypeOf = Callable[[str], InterfaceType | None]
-"""Returns the type of a topic, or ``None`` if nobody gives it one, or there is no such topic."""
+"""Returns the type of a topic, or ``None`` if it is unknown or there is no such topic."""
 
 
 def standard_topic(name: str, kind: InterfaceType | None) -> StandardTopic | None:
@@ -75,7 +75,7 @@ def has_topic_of_its_own(kind: InterfaceType) -> bool:
 def wrong_type(name: str, kind: InterfaceType, type_of: TypeOf) -> StandardTopic | None:
     """Return the entry of a topic that has another type than it has everywhere else, or ``None``.
 
-    One in a namespace may be somebody's own, and so may a derived one whose origin is not there.
+    A topic in a namespace may be private, and so may a derived one without its origin.
     """
     for entry in _entries(name):
         if entry.of:

@@ -1,7 +1,7 @@
 """Physical units: reading them, comparing their dimensions, converting values exactly.
 
 The unit library is pint, but loading its registry takes longer than checking a whole system, so the
-units that robots are described in stand in a table (``units.json``) and pint is asked only about a
+units that are common in robotics are in a table (``units.json``) and pint is asked only about a
 word that the table lacks. Both use exact fractions: ``0.4 sec`` is 400,000,000 ns, not nearly so.
 
 Unlike in SI and pint, an angle is a dimension of its own here: ``rad`` against a plain ratio, or

@@ -82,7 +82,7 @@ def load_rules(loading: Loading) -> Rules:
 
 
 class RulesConverter(Converter):
-    """Converts one DeRoS program; each ``use`` statement has an index of its own file."""
+    """Converts one DeRoS program; each ``use`` statement has its own index."""
 
     def __init__(self, source: SourceFile, indexes: Mapping[int, FileIndex]) -> None:
         """Store the indexes by the position of their ``use`` statement."""

@@ -167,7 +167,7 @@ class SystemConverter(Converter):
                 "system": reference.target,
             }
             if found.parts:
-                message = f"'{found.name}' uses a system and has parts of its own"
+                message = f"'{found.name}' uses a system and also has its own parts"
                 hint = "put the parts into a subsystem of their own"
                 self.report(codes.SYNTAX_ERROR, message, self.token_span(found.name), hint)
         safety = self._parts(found.parts, topics, members)

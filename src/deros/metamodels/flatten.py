@@ -1,10 +1,10 @@
 """The system at run time: every node by its full name, every topic by its graph name.
 
 Names resolve as ROS 2 resolves them (ROS 2 design, "Topic and Service name mapping"): an absolute
-name stands as it is, a relative one is put under the namespace where it is written, ``~/x`` under
+name is kept, a relative one is resolved in the namespace where it is written, ``~/x`` under
 the node's own full name. An absolute ``namespace`` replaces the enclosing one, a relative one
 extends it. An imported system used as ``subsystem left : Arm namespace /left`` is flattened under
-``/left``. A ``safety`` statement becomes the nodes that it stands for.
+``/left``. A ``safety`` statement becomes its nodes.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class FlatPort:
 
     ``topic`` is the graph name it ends on. Without a ``wiring`` that is its own name, because ROS 2
     lets an unwired port talk there all the same. ``requested`` is the full name that the node's
-    code asks for; where ``sets_parameter``, the wiring has told it the topic.
+    code asks for; where ``sets_parameter``, the wiring has set the topic.
     """
 
     port: Port
@@ -227,7 +227,7 @@ def nodes_of_rules(rules: Rules, target: str = "python", package: str = "") -> t
     """Return the safety node that rules become, followed by its gates.
 
     Args:
-        rules: as written; inputs whose type no used system tells are left out.
+        rules: as written; inputs whose type is in no used system are left out.
         target: the language that they are generated in, ``python`` or ``cpp``.
         package: that they are generated in, with or without what the target appends.
     """

@@ -16,7 +16,7 @@ MOST_FOLDERS = 20_000
 """The number of folders that a pattern may search."""
 
 
-class TooManyFolders(Exception):  # noqa: N818 - a finding of the model, and no fault of the program
+class TooManyFolders(Exception):  # noqa: N818 - a finding about the model, not an error of the program
     """The pattern searches more folders than :data:`MOST_FOLDERS`."""
 
 

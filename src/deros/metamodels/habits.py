@@ -40,7 +40,7 @@ class _Row:
     Attributes:
         pattern: of the text; the fault lies where its group ``at`` begins, or the whole match.
         text: what to write instead of the match, with its groups as ``\g<name>``; ``None`` if
-            that cannot be told.
+            that is unknown.
         hint: in words, with the groups likewise.
         message: what is wrong, if the words for any syntax error do not say it.
         languages: those that have the habit; none for all.

@@ -33,9 +33,9 @@ from arpeggio import (
 from deros.metamodels.repaired_text import RepairedText, restore_places
 
 Matcher = Callable[[str, int, list[Any]], int]
-"""Matches a text at a position that is no blank and appends to the list what it makes of it.
+"""Matches a text at a non-blank position and appends the parse tree to the list.
 
-It returns the position of the next character that is no blank, or -1, and then what it appended is
+It returns the position of the next non-blank character, or -1, and then anything appended is
 to be thrown away.
 """
 

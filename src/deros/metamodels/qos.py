@@ -3,7 +3,7 @@
 Each policy follows the request-offered rule of DDS (OMG DDS 1.4, section 2.2.3): a publisher
 *offers*, a subscription *requests*, and the two are connected only if no policy offers less than is
 requested. Sources: ``rmw/qos_profiles.h`` for the profiles, ``rmw_dds_common/src/qos.cpp`` for the
-rules, and for what nobody knows before run time.
+rules, and for values that are known only at run time.
 """
 
 from __future__ import annotations
@@ -183,7 +183,7 @@ def is_met_by_default(shortfall: Shortfall) -> bool:
 def pinned_policies(pin: QosProfile) -> Mapping[Policy, PolicyValue]:
     """Return the policies that a topic's QoS pins: those stated, and the kinds of its preset.
 
-    What the middleware chooses is no pin, and the depth of a preset is only its usual one.
+    A value that the middleware chooses is not pinned, and the depth of a preset is only usual.
     """
     found = {policy: value for policy in _FIELDS if (value := stated(pin, policy)) is not None}
     if pin.preset is not None:

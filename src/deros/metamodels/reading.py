@@ -37,7 +37,7 @@ _QUOTED = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"')
 _NOT_LINE_END = re.compile(r"[^\r\n]")
 
 
-class Unreadable(Exception):  # noqa: N818 - it carries a finding, and is no fault of the program
+class Unreadable(Exception):  # noqa: N818 - it carries a finding and is not an error of the program
     """The text cannot be parsed; ``diagnostic`` says why."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:

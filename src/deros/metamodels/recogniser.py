@@ -28,7 +28,7 @@ from deros.interfaces.names import near
 from deros.metamodels.grammar import first_tokens, is_name, is_statement, matches, words_of
 
 Step = Callable[[str, int], int]
-"""Matches a text at a position that is no blank; returns where the next token starts, or -1."""
+"""Matches a text at a non-blank position; returns where the next token starts, or -1."""
 
 skip_blanks = re.compile(r"[\t\n\r ]*").match
 
@@ -40,7 +40,7 @@ class StatementList:
     """A repetition of statements in a grammar.
 
     Attributes:
-        number: tells the lists of a grammar apart.
+        number: the identity of the list in its grammar.
         step: matches one statement.
         first: the tokens that a statement may begin with.
     """
@@ -142,8 +142,8 @@ class Attempt:
 class Recogniser:
     """The expressions of one grammar as steps over a text.
 
-    Statements that matched are remembered, so that a text in which something was mended is not read
-    again from its start; :meth:`forget_from` drops what the mended place may change.
+    Statements that matched are cached, so that a repaired text is not read again from its start;
+    :meth:`forget_from` discards what the repair may change.
 
     Attributes:
         trace: how far the last text was read.

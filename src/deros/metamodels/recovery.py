@@ -1,6 +1,6 @@
 """Recovery from syntax errors: all errors of a file, and the rest of its model.
 
-Where the text fits nowhere, the statement that it belongs to is mended if one edit does it (see
+Where the text does not parse, the statement is repaired if a single edit suffices (see
 :mod:`deros.metamodels.repairs`), so that whatever follows is read as the hint means it; else it
 becomes blank, and what it says is lost: its words are noted in the source, and what seems to be
 missing because of them is not reported. Then reading goes on from there. Every other character

@@ -2,7 +2,7 @@
 
 A rule ``NAME:=TARGET`` gives the name ``TARGET`` to every topic and every service that the node's
 code calls ``NAME``; ``rostopic://NAME:=TARGET`` does so for topics alone, ``rosservice://…`` for
-services alone. No rule tells the two ends of a topic apart, or those of a service. Source: ROS 2
+services alone. No rule distinguishes the two ends of a topic, or those of a service. Source: ROS 2
 design, "Remapping Names"; ``rcl/src/rcl/remap.c``. An action consists of services and topics (ROS 2
 design, "Actions"); later versions of rcl than Jazzy's remap its own name as a topic's.
 """

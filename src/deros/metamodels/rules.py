@@ -283,7 +283,7 @@ class Behaviour:
 class GateLimit:
     """``linear.x to [-0.1, 0.1] m/s``: a field of the command and the interval it is kept in.
 
-    ``unit`` follows the interval and is that of both ends; an end may have one of its own instead.
+    ``unit`` follows the interval and is that of both ends; an end may have its own instead.
     """
 
     path: tuple[str | int, ...]

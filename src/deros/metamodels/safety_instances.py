@@ -1,6 +1,6 @@
 """The nodes of a ``safety`` statement: node types from rules as written, and their instances.
 
-A rule's topic is named as the rules write it: an absolute name stands as it is, a relative one goes
+A rule's topic is named as the rules write it: an absolute name is kept, a relative one goes
 under the namespace where the system that the rules use begins.
 """
 

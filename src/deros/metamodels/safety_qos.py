@@ -3,8 +3,8 @@
 This is its only definition: the generators give it to the nodes, and the checks compare it with the
 rest of a system.
 
-A subscription of the safety node or of a gate asks for nothing that some publisher of its topic
-might not offer, so that whoever publishes is heard: it is as reliable, and as durable, as the topic
+A subscription of the safety node or of a gate requests nothing that some publisher of its topic
+might not offer, so that it matches every publisher: it is as reliable, and as durable, as the topic
 is pinned to be, or as all of its publishers are stated to be. Silence is noticed by the timeouts of
 the rules and the ``lost`` lines of the gates, not by deadlines of the middleware.
 """

@@ -1,6 +1,6 @@
 """The classes of textX's plug-in registration, for the rooms that offer plug-ins to textX.
 
-textX recognises a generator by its class, so a look-alike will not do; no other room imports textX.
+textX recognises a generator by its class. No other room imports textX.
 """
 
 from textx.exceptions import TextXError

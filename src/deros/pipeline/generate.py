@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from deros.metamodels.load import LoadedFile
 
 
-class Refused(Exception):  # noqa: N818 - it carries findings, and is no fault of the program
+class Refused(Exception):  # noqa: N818 - it carries findings and is not an error of the program
     """Nothing is generated; ``diagnostics`` says why, and ``code`` is the exit code."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic], code: int) -> None:

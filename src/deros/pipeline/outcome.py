@@ -40,5 +40,5 @@ def blocking_diagnostics(findings: Sequence[Diagnostic], path: str) -> list[Diag
 
     A system is to contain the gates that its rules declare, and those are generated from the rules.
     """
-    mended = codes.MENDED_AFTER_GENERATION if language_of(path) is DEROS else frozenset()
-    return [each for each in findings if each.code not in mended]
+    corrected = codes.CORRECTED_BY_GENERATING if language_of(path) is DEROS else frozenset()
+    return [each for each in findings if each.code not in corrected]

@@ -30,7 +30,7 @@ Key = tuple[str, str]
 """A file, relative to the folder of the baseline, and a fingerprint in it."""
 
 
-class Unusable(Exception):  # noqa: N818 - it carries a finding, and is no fault of the program
+class Unusable(Exception):  # noqa: N818 - it carries a finding and is not an error of the program
     """The baseline cannot be read or written; ``diagnostic`` says why."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
@@ -73,7 +73,7 @@ class Compared:
     Attributes:
         new: the findings that are not in the baseline, and all errors.
         known: the findings that are in it.
-        absent: its entries that were not found again, where that can be told.
+        absent: its entries that were not found again, if that is certain.
     """
 
     new: tuple[Diagnostic, ...]
@@ -137,8 +137,8 @@ def read(path: Path) -> Baseline:
 def compare(findings: Sequence[Diagnostic], baseline: Baseline, named: Iterable[str]) -> Compared:
     """Compare findings, in file order, with a baseline.
 
-    That an entry is absent can be told only where everything was checked that was checked when the
-    baseline was written, and no error may hide it.
+    An entry counts as absent only if all files of the baseline were checked, and no error may hide
+    it.
     """
     root = baseline.path.parent
     left = {(entry.file, entry.fingerprint): entry for entry in baseline.entries}

@@ -59,10 +59,10 @@ def render_sarif(
 ) -> str:
     """Return a log of the Static Analysis Results Interchange Format, version 2.1.0 (OASIS).
 
-    Compared with a baseline, it has what is known as well, and tells the two apart.
+    With a baseline, it also contains the known findings, marked as such.
     """
     known = set(compared.known) if compared is not None else set()
-    # What is absent has results of its own.
+    # Absent findings have separate results.
     every = [each for each in diagnostics if each.code is not ABSENT_FINDING]
     if known:
         every = in_file_order(known.union(every))

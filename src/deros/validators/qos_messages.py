@@ -36,7 +36,7 @@ class Side:
     Attributes:
         noun: "publisher", "subscription", "client" or "server".
         profile: what their descriptions state.
-        assumed: whether the profile is unknown, as nobody describes that of an existing program.
+        assumed: whether the profile is unknown, as a description of a program may state none.
     """
 
     noun: str
@@ -119,7 +119,7 @@ def cure(found: Iterable[Shortfall], offering: Side, requesting: Side) -> str:
 
     Ends that are generated stay as they are, but what a safety node or a gate asks for may follow
     from what was offered when it was generated. Otherwise it is the side with fewer descriptions,
-    and rather one that is not of an existing program; of two alike, both are named.
+    preferably not of an existing program; if two are equal, both are named.
     """
     found = tuple(found)
     weaker = {each.policy: _least(each) for each in found}

@@ -28,7 +28,7 @@ def check_pin(
 ) -> Iterator[Diagnostic]:
     """Yield each end that does not meet the QoS that its topic is declared with.
 
-    A safety node and a gate may ask for less than is pinned, so that they hear whoever publishes.
+    A safety node and a gate may request less than is pinned, so that every publisher matches.
     """
     qos = pin.declaration.qos
     assert qos is not None

@@ -218,12 +218,12 @@ def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic
     known = topics.get(target)
     if target in read or (known is not None and (_open(known) or known.subscriptions)):
         return
-    heard = [each.name for each in topics if each.subscriptions or _open(each)]
+    subscribed = [each.name for each in topics if each.subscriptions or _open(each)]
     yield report(
         codes.GATE_UNREAD,
         f"no node in the system subscribes to '{target}'",
         gate.target.span,
-        did_you_mean(near(target, heard))
+        did_you_mean(near(target, subscribed))
         or f"if it is read outside the model, declare 'external topic {target}'",
         (Related(known.place, "the topic"),) if known is not None else (),
     )

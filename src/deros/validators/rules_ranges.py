@@ -72,7 +72,7 @@ class _Ranges:
     def __init__(self, rules: Rules, comparisons: Sequence[ResolvedComparison]) -> None:
         self.findings: list[Diagnostic] = []
         self._constants = {each.name.text: each.value for each in rules.constants}
-        # The models are trees that live as long as this: identity tells equal comparisons apart.
+        # The models are trees that live as long as this: identity distinguishes equal comparisons.
         self._comparisons = {id(each.condition): each for each in comparisons}
 
     def solve(self, condition: Condition) -> _Solution | None:

@@ -68,12 +68,12 @@ def _unread(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic
     known = topics.get(topic)
     if known is not None and _has_end(known, known.subscriptions):
         return
-    heard = [each.name for each in topics if _has_end(each, each.subscriptions)]
+    subscribed = [each.name for each in topics if _has_end(each, each.subscriptions)]
     yield report(
         codes.ACTION_TOPIC_NOT_IN_SYSTEM,
         f"no node in the system subscribes to '{topic}'",
         name.span,
-        did_you_mean(near(topic, heard))
+        did_you_mean(near(topic, subscribed))
         or f"if it is read outside the model, declare 'external topic {topic}'",
         (Related(known.place, "the topic"),) if known else (),
     )

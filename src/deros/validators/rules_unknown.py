@@ -201,7 +201,7 @@ def _unasked(written: rules.Rules, program: ir.Program, used: _Used) -> Iterator
             continue
         if each.index in (firmly if each.index in read_firmly else everywhere):
             continue
-        # Before the first message there is no age, so age() does not tell that none comes.
+        # Before the first message there is no age, so age() does not detect that none arrives.
         when = "never arrive" if each.index in aged else "stop"
         yield report(
             codes.UNUSED_TIMEOUT,

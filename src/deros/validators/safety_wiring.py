@@ -393,6 +393,6 @@ def check_gate_targets(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[
                 f"{End(node, end).name} bypasses the gate '{past[0].full_name}': it publishes"
                 f" '{end.topic}' itself",
                 End(node, end).span,
-                "give it a topic of its own, by a relative name under the namespace of its system",
+                "give it its own topic, by a relative name in the namespace of its system",
                 (Related(End(*past).span, "the gate"),),
             )

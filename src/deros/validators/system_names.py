@@ -117,7 +117,7 @@ def _unused_imports(system: System) -> Iterator[Diagnostic]:
     defining = {t.source.path for t in system.node_types.values()}
     defining.update(s.source.path for s in system.systems.values())
     for line in system.imports:
-        # A file that defines nothing has a finding of its own; it is not also called unused.
+        # A file that defines nothing has a separate finding; it is not also reported as unused.
         files = defining.intersection(line.files)
         if files and used.isdisjoint(files):
             yield report(

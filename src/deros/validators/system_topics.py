@@ -116,7 +116,7 @@ def _types(channel: Channel) -> Iterator[Diagnostic]:
 
 
 def _unusual_types(channel: Channel, types: Mapping[str, InterfaceType]) -> Iterator[Diagnostic]:
-    """Find a standard topic of another type; a pin goes first where no library relies on it."""
+    """Yield ends of a standard topic with another type, unless a pin may override it."""
     pinned = channel.pin
     places = [(end.type, end.span, f"{end.name} has") for end in (*channel.sources, *channel.sinks)]
     if pinned is not None and pinned.type is not None and pinned.type_span is not None:
@@ -164,10 +164,10 @@ def _missing_ends(
                 f"'{other.name}' has the same type and no node subscribes to it; " if other else "",
             )
         elif topic.sources and _is_unread(topic) and not is_shown_only(topic.type):
-            somebody = "no other node subscribes" if topic.sinks else "no node subscribes"
+            who = "no other node subscribes" if topic.sinks else "no node subscribes"
             yield _one_sided(
                 codes.NO_SUBSCRIBER,
-                f"{somebody} to '{topic.name}', which {_names(topic.sources)} "
+                f"{who} to '{topic.name}', which {_names(topic.sources)} "
                 f"publish{'es' if len(topic.sources) == 1 else ''}",
                 topic,
                 topic.sources,
@@ -218,7 +218,7 @@ def _missing_server(channel: Channel, nodes: Mapping[str, FlatNode]) -> Iterator
     owner, _, service = name.rpartition("/")
     node = nodes.get(owner) if channel.vertex[0] == "service" else None
     if node is not None and node.type is None:
-        return  # whether it is a managed one cannot be told
+        return  # whether it is a managed node is unknown
     served = _own_service(node, service) if node is not None else None
     for end in channel.sources:
         if served is not None:

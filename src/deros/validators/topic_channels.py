@@ -51,7 +51,7 @@ class Channel:
 
     @property
     def undeclared(self) -> bool:
-        """Whether a wiring names a topic that nobody declares, which is a finding of its own."""
+        """Whether a wiring names an undeclared topic, which is a separate finding."""
         return self.declared is None and any(end.wired for end in (*self.sources, *self.sinks))
 
     @property
@@ -76,7 +76,7 @@ def channel_of(
     attributes = graph.nodes[vertex]
     declared: FlatTopic | None = attributes.get("topic")
     if vertex[0] != "topic":
-        # A service has no declaration of its own; an external topic of its name speaks for it.
+        # A service has no declaration; an external topic of its name counts as one.
         declared = graph.nodes.get(("topic", vertex[1]), {}).get("topic")
     sources, sinks = publishers(graph, vertex), subscribers(graph, vertex)
     pin = pins.get(vertex[1]) if vertex[0] == "topic" else None
@@ -109,7 +109,7 @@ def _is_standard(name: str, pin: Topic | None, ends: list[End]) -> bool:
 def targets_of_unknown_ports(flat: FlatSystem) -> set[str]:
     """Return the topics wired to ports that are not known, which other findings report.
 
-    Whether such a port publishes or subscribes cannot be told: nothing is said to be missing there.
+    Whether such a port publishes or subscribes is unknown, so nothing is reported missing there.
     """
     targets: set[str] = set()
     for node in flat.nodes:

@@ -46,7 +46,7 @@ _KNOWN = frozenset(_NAMES_OF_THINGS.split())
 
 
 def likeness(first: str, second: str) -> float:
-    """Return from 0 to 1 how alike two graph names are as names of one topic.
+    """Return the likeness of two graph names as names of one topic, from 0 to 1.
 
     A name is its last part and the namespace before it, each a list of words: split at ``_``,
     ``/``, capitals and digits, without plural ends, and with synonyms (``command``, ``cmd``) made
@@ -101,7 +101,7 @@ class LikelyTopics:
 
         Args:
             name: the name that lacks a partner.
-            rank: returns what speaks for a candidate beside its name, ``None`` if it is out of the
+            rank: returns the weight of a candidate besides its name, ``None`` if it is out of the
                 question.
             n: how many are wanted at most.
         """

@@ -41,14 +41,14 @@ def check_unwired(
 ) -> Iterator[Diagnostic]:
     """Yield a finding for each port that is not connected, once for each place where it is written.
 
-    An existing program publishes much that nobody in the system asks for: that is no finding.
+    Unused publishers of an existing program are not reported.
     Standard topics have their other ends in libraries and tools.
 
     Args:
         flat: the system.
         by_vertex: its topics, services and actions.
         partners: finds the topics that one was probably meant to be.
-        read_by_rules: tells whether safety rules read the topic of a name.
+        read_by_rules: returns whether safety rules read the topic of a name.
     """
     asked = _Asked(by_vertex.values(), partners)
     reported: set[tuple[int, PortKind, str]] = set()
@@ -93,7 +93,7 @@ def _is_output_of_program(node: FlatNode, port: FlatPort) -> bool:
 
 
 class _Asked:
-    """The topics that nodes subscribe to, to tell whether one of them was meant for a publisher."""
+    """The topics that nodes subscribe to, to decide whether one was meant for a publisher."""
 
     def __init__(self, found: Iterable[Channel], partners: Partners[Channel]) -> None:
         """Index the subscribed topics by their type, and by their type and last word."""
