@@ -365,8 +365,12 @@ class _Printer:
         self.column = len(start)
 
     def put_flat(self, document: Document) -> None:
-        self.texts += _flat_texts(document)
-        self.column += _width(document)
+        if isinstance(document, str):
+            self.texts.append(document)
+            self.column += len(document)
+        else:
+            self.texts += _flat_texts(document)
+            self.column += document.flat
 
     def fits(self, size: int) -> bool:
         """Tell whether so much fits on the line, with the text behind it up to a line break."""
@@ -385,22 +389,23 @@ class _Printer:
     def fill(self, margin: str, node: _Fill) -> None:
         """Print one item, or those up to the next broken line, and leave the others for later."""
         items, line = node.items, node.line
+        between = line.text or ""
+        last = len(items) - 1
         for number in range(node.start, len(items)):
             item = items[number]
-            size = _width(item)
-            is_last = number == len(items) - 1
-            between = line.flat if number else 0
-            if is_last:
-                is_room = self.fits(between + size)
+            size = len(item) if isinstance(item, str) else item.flat
+            size += line.flat if number else 0
+            if number < last:
+                has_room = self.column + size + line.lead <= self.width
             else:
-                is_room = self.column + between + size + line.lead <= self.width
-            if not is_room:
+                has_room = self.fits(size)
+            if not has_room:
                 if number:
                     self.break_line(margin, line)
-                if not is_last:
+                if number < last:
                     self.push(margin, _Fill(items, line, number + 1, 0))
                 self.push(margin, _Group(item))
                 return
             if number:
-                self.put_flat(line)
+                self.put_flat(between)
             self.put_flat(item)
