@@ -26,28 +26,28 @@ from deros.generators.text.python import LINE_LENGTH
 
 @dataclass(frozen=True, slots=True)
 class Atom:
-    """Text that binds more tightly than ``and``: a comparison, a name, ``not`` of a name."""
+    """An operand that needs no brackets: a comparison, a name, or ``not`` of a name."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class AllOf:
-    """``and`` of its operands, of which there are two or more."""
+    """The conjunction of two or more operands."""
 
     operands: tuple[Logic, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class AnyOf:
-    """``or`` of its operands, of which there are two or more."""
+    """The disjunction of two or more operands."""
 
     operands: tuple[Logic, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class NoneOf:
-    """``not`` of its operand."""
+    """The negation of an operand."""
 
     operand: Logic
 
@@ -56,18 +56,18 @@ Logic = Atom | AllOf | AnyOf | NoneOf
 
 
 def all_of(operands: Iterable[Logic]) -> Logic:
-    """Return the conjunction, without needless nesting and repeats."""
+    """Return the conjunction, without nested conjunctions and repeated operands."""
     flat: dict[Logic, None] = {}
-    for each in operands:
-        flat.update(dict.fromkeys(each.operands if isinstance(each, AllOf) else (each,)))
+    for op in operands:
+        flat.update(dict.fromkeys(op.operands if isinstance(op, AllOf) else (op,)))
     return next(iter(flat)) if len(flat) == 1 else AllOf(tuple(flat))
 
 
 def any_of(operands: Iterable[Logic]) -> Logic:
-    """Return the disjunction, without needless nesting and repeats."""
+    """Return the disjunction, without nested disjunctions and repeated operands."""
     flat: dict[Logic, None] = {}
-    for each in operands:
-        flat.update(dict.fromkeys(each.operands if isinstance(each, AnyOf) else (each,)))
+    for op in operands:
+        flat.update(dict.fromkeys(op.operands if isinstance(op, AnyOf) else (op,)))
     return next(iter(flat)) if len(flat) == 1 else AnyOf(tuple(flat))
 
 

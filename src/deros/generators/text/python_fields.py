@@ -8,12 +8,12 @@ from deros.interfaces.types import FLOAT_TYPES, FieldType
 from deros.monitor.ir import Scalar
 
 
-def literal(kind: FieldType, value: Scalar) -> str:
+def literal(type_: FieldType, value: Scalar) -> str:
     """Return the literal that rclpy accepts for a field."""
-    if kind.base == "byte":
+    if type_.base == "byte":
         assert isinstance(value, int)
         return repr(bytes([value]))
-    if kind.base in FLOAT_TYPES:
+    if type_.base in FLOAT_TYPES:
         assert not isinstance(value, str)
         number = float(value)
         return repr(number) if math.isfinite(number) else f"float({str(number)!r})"

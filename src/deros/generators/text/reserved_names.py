@@ -123,13 +123,13 @@ def hidden_from_python(
 ) -> Iterator[Diagnostic]:
     """Yield a finding for each name that hides a module from the programs of a package in Python.
 
-    A package is found under its name wherever it is installed; a module of a package, when one of
+    A package is importable by its name wherever it is installed; a module of a package, when one of
     the package's modules is run as a program.
 
     Args:
         models: the nodes of the package.
         needed: the packages that it depends on.
-        modules: further modules of the package, each with its place.
+        modules: further modules of the package, with their locations.
         store: the known interfaces, or ``None``.
     """
     package = models[0].package
