@@ -147,7 +147,7 @@ def test_diagnostics_show_rules_actions_and_values(start: Start, robot: Robot) -
 
 
 def test_change_is_published_before_the_next_period(start: Start, robot: Robot) -> None:
-    """The diagnostics need no second to show it."""
+    """It need not wait for the period of the diagnostics."""
     with start("diagnostics_freq:=0.001"):
         break_the_rule(robot)
         robot.peer.until(lambda: robot.status("action stop").message == "active")
@@ -285,7 +285,7 @@ def test_reset_is_refused_without_a_state_file(start: Start, robot: Robot, tmp_p
 
 
 def test_suspended_node_has_no_heartbeat(start: Start, robot: Robot) -> None:
-    """The heartbeat comes from the monitor's own thread."""
+    """The monitor itself publishes the heartbeat: while it does nothing, there is none."""
     with start() as process:
         robot.meet()
         freeze(process.pid)
