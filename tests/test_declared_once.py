@@ -27,7 +27,7 @@ Declarations = Mapping[str, Mapping[str, Any]]
 
 
 def constants(text: str) -> Iterator[tuple[str, Any]]:
-    """Yield the constants of a module: names, and values as far as its text alone tells them."""
+    """Yield the constants of a module: names, and values if they follow from its text."""
     for statement in ast.parse(text).body:
         if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
             target: ast.expr = statement.targets[0]
@@ -42,7 +42,7 @@ def constants(text: str) -> Iterator[tuple[str, Any]]:
 
 
 def computed(expression: ast.expr) -> Any:
-    """Return the value of an expression that names nothing but a few builtins, else ``None``."""
+    """Return the value of an expression of literals and a few builtins, else ``None``."""
     known = {"frozenset": frozenset, "set": set, "Fraction": Fraction}
     if any(isinstance(n, ast.Name) and n.id not in known for n in ast.walk(expression)):
         return None
@@ -54,7 +54,7 @@ def computed(expression: ast.expr) -> Any:
 
 
 def declared() -> Declarations:
-    """Return the constants of all modules that are imported."""
+    """Return the constants of all imported modules."""
     return {
         str(path.relative_to(SOURCE)): dict(constants(path.read_text(encoding="utf-8")))
         for path in sorted(SOURCE.rglob("*.py"))
@@ -63,7 +63,7 @@ def declared() -> Declarations:
 
 
 def repeated_numbers(modules: Declarations) -> dict[str, list[str]]:
-    """Return the modules that declare a number by the same name, by that name and the number."""
+    """Return the modules that declare a number under the same name, by name and number."""
     places: dict[str, list[str]] = {}
     for module, values in modules.items():
         for name, value in values.items():
@@ -74,7 +74,7 @@ def repeated_numbers(modules: Declarations) -> dict[str, list[str]]:
 
 
 def repeated_words(modules: Declarations) -> dict[str, list[str]]:
-    """Return the declarations of the same words, in whatever order and by whatever name."""
+    """Return declarations of the same words, in any order and under any name."""
     places: dict[str, list[str]] = {}
     for module, values in modules.items():
         for name, value in values.items():
@@ -97,17 +97,17 @@ def words_of(value: Any) -> frozenset[str]:
 
 
 def test_no_two_modules_declare_the_same_default() -> None:
-    """A default, or a limit, that two modules need is imported by one of them."""
+    """A default or limit used by two modules is imported by one of them."""
     assert repeated_numbers(declared()) == {}
 
 
 def test_no_two_modules_declare_the_same_words() -> None:
-    """So are keywords, operators and names of hooks."""
+    """This covers keywords, operators and names of hooks."""
     assert repeated_words(declared()) == {}
 
 
 def test_repeats_are_found() -> None:
-    """Neither another name of the words, nor another spelling of the number, hides them."""
+    """Other names of the words and other spellings of the number do not hide them."""
     one = dict(constants('MAX_GOALS = 8\n_WORDS = frozenset("a b c d e".split())\n'))
     other = dict(constants('_MAX_GOALS: int = 2**3\nLIST = ("e", "d", "c", "b", "a")\n'))
     modules = {"one.py": one, "other.py": other}
@@ -130,8 +130,8 @@ def test_repeats_are_found() -> None:
         pytest.param(r"depth: float \| None = ", {"metamodels/qos.py"}, id="depth of QoS"),
     ],
 )
-def test_a_default_has_one_home(pattern: str, homes: set[str]) -> None:
-    """Durations are read and shown in one place; so are the default rate and depth set."""
+def test_each_default_has_one_home(pattern: str, homes: set[str]) -> None:
+    """One module reads and shows durations; the default rate and depth have one home each."""
     found = {
         str(path.relative_to(SOURCE))
         for path in sorted(SOURCE.rglob("*.py"))
@@ -142,19 +142,19 @@ def test_a_default_has_one_home(pattern: str, homes: set[str]) -> None:
 
 
 def test_templates_set_no_default_depth() -> None:
-    """The depth of a topic without QoS comes from the one default profile."""
+    """The depth of a topic without QoS comes from the default profile."""
     templates = SOURCE.joinpath("generators", "node").rglob("*.j2")
     assert [path.name for path in templates if re.search(r"or '\d+'", path.read_text())] == []
 
 
-# Two packages, one behaviour ----------------------------------------------------------------------
+# Constants of both runtimes -----------------------------------------------------------------------
 
 _PYTHON = re.compile(r"^([A-Z][A-Z_]+) = ([\d_]+|'[^']*')(?=\s|$)", re.MULTILINE)
 _CPP = re.compile(r"constexpr (?:const )?[\w:]+(?: \*)? ([A-Z][A-Z_]+) = ([\d']+|\"[^\"]*\");")
 
 
 def shared_constants() -> dict[str, tuple[set[str], set[str]]]:
-    """Return the constants of each module that both runtimes have, in Python and in C++."""
+    """Return the constants of each module that exists in both runtimes, in Python and in C++."""
     found: dict[str, tuple[set[str], set[str]]] = {}
     for path in sorted((RUNTIME / "python").rglob("*.py")):
         sources = [
@@ -177,7 +177,7 @@ def plain(literal: str) -> str:
 
 
 def test_both_runtimes_have_the_same_constants() -> None:
-    """The packages share no code, so what both declare has to be equal."""
+    """The packages share no code, so constants declared in both must be equal."""
     shared = shared_constants()
     assert shared.pop("latches.UNIQUE") == ({"8"}, {"2"})  # bytes, and words of four bytes
     assert {name for name, (python, cpp) in shared.items() if python != cpp} == set()

@@ -38,7 +38,7 @@ def test_exact_seconds_become_nanoseconds(seconds: Fraction, expected: int) -> N
         (Fraction(LONGEST_NS + 1, NS_PER_S), "is longer than 292 years"),
     ],
 )
-def test_other_durations_are_rejected(seconds: Fraction, message: str) -> None:
+def test_invalid_durations_are_rejected(seconds: Fraction, message: str) -> None:
     """The message completes a sentence."""
     with pytest.raises(ValueError, match=message):
         whole_nanoseconds(seconds)
@@ -60,14 +60,14 @@ def test_durations_use_the_largest_whole_unit(nanoseconds: int, text: str) -> No
     assert duration_text(nanoseconds) == text
 
 
-def test_units_can_be_bounded() -> None:
-    """A timer's period is never given in minutes."""
+def test_largest_unit_can_be_bounded() -> None:
+    """For example, the period of a timer is not given in minutes."""
     assert greatest_unit(120 * NS_PER_S, "sec") == (120, "sec")
     assert greatest_unit(20_000_000, "sec") == (20, "ms")
 
 
 def test_seconds_have_as_many_digits_as_needed() -> None:
-    """No digit is added, and nine are kept."""
+    """There are no trailing zeros, and at most nine significant digits."""
     assert seconds_text(500_000_000) == "0.5 sec"
     assert seconds_text(1_000_000_001) == "1 sec"
     assert seconds_text(2_000_000) == "0.002 sec"

@@ -204,7 +204,7 @@ def test_input_declarations_are_parsed() -> None:
     assert bare.term.path == ("data",)
 
 
-def test_behaviours() -> None:
+def test_behaviours_may_be_nested() -> None:
     """Names, nested behaviours and arguments; the body keeps its order."""
     (outer,) = _rules(
         "behaviour tilt: if e.r or not e.s then "

@@ -1,4 +1,4 @@
-"""A function of the table reaches every target by its row, or is rejected by name."""
+"""A function of the table reaches every target through its row, or is rejected by name."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ KINDS = ("number", "integer", "quaternion", "vector", "array", "floats", "ints")
 
 
 class Highest:
-    """The largest number so far, as a memory that no form states."""
+    """The largest number so far, as state without a form."""
 
     result: float | None = None
 
@@ -170,7 +170,7 @@ def calls(rules: Program, name: str) -> bool:
 
 @needs_c
 def test_rows_are_drawn_and_agree_everywhere(add: Callable[..., None], tmp_path: Path) -> None:
-    """A row gives the random programs, the reference and both monitors, which agree on traces."""
+    """A row defines random programs, reference and both monitors, which agree on traces."""
     add(*ROWS)
     cases = c_pairs.cases(KINDS, 160, 1)
     drawn = [case for case in cases if any(calls(case.pairs[0].program, row.name) for row in ROWS)]
@@ -185,7 +185,7 @@ def test_rows_are_drawn_and_agree_everywhere(add: Callable[..., None], tmp_path:
 
 
 def events(rules: Program, topic: str, *messages: tuple[int, object]) -> list[int]:
-    """Return the seconds at which the reference acts on messages."""
+    """Return the times in seconds of messages at which the reference acts."""
     engine = Engine(rules)
     for t, value in messages:
         engine.message(t * 10**9, topic, {0: value})  # type: ignore[dict-item]
@@ -193,12 +193,12 @@ def events(rules: Program, topic: str, *messages: tuple[int, object]) -> list[in
 
 
 def acting(condition: str, declared: str) -> Program:
-    """Return rules that act when a condition turns true."""
+    """Return rules that act when a condition becomes true."""
     return program(f"{declared} action a; entity e {{ r: {condition}; }} if e.r then {{ a; }};")
 
 
 def test_reference_interprets_rows(add: Callable[..., None]) -> None:
-    """The engine computes what a form says: of a message, of its memory, of an array."""
+    """The engine evaluates forms of a message, of state, and of an array."""
     add(*ROWS)
     speed = "input v = topic /speed.data"
     assert events(acting("v.square() > 3", speed), "/speed", (0, -1.0), (1, -2.0)) == [1]
@@ -211,16 +211,16 @@ def test_reference_interprets_rows(add: Callable[..., None]) -> None:
     assert events(mean, "/joints", (0, []), (1, [9.0, -9.0]), (2, [1.0, 4.0])) == [2]
 
 
-def test_unknown_input_drops_the_memory(add: Callable[..., None]) -> None:
-    """After a NaN a sum over time starts again, and the time before the NaN does not count."""
+def test_unknown_input_resets_the_state(add: Callable[..., None]) -> None:
+    """After a NaN a sum over time restarts, without the time before the NaN."""
     add(TOTAL)
     rules = acting("v.total() > 3", "input v = topic /speed.data")
     messages = ((0, 1.0), (3, 1.0), (4, math.nan), (5, 9.0), (6, 3.5))
     assert events(rules, "/speed", *messages) == [6]
 
 
-def test_decoders_read_the_leaves_of_a_row(add: Callable[..., None]) -> None:
-    """Of a message, only the fields that the row names are decoded."""
+def test_decoders_read_only_the_leaves_of_a_row(add: Callable[..., None]) -> None:
+    """Only the fields of a message that the row names are decoded."""
     add(PLANAR)
     rules = acting("w.planar() > 1", "input w = topic /imu.angular_velocity")
     (handler,) = monitor_view(rules).handlers
@@ -231,8 +231,8 @@ def test_decoders_read_the_leaves_of_a_row(add: Callable[..., None]) -> None:
     assert "Return angular_velocity.x, angular_velocity.y of a sensor_msgs/msg/Imu." in text
 
 
-def test_rows_are_in_the_table_of_the_documentation(add: Callable[..., None]) -> None:
-    """The documentation holds the table that the rows give, and a new row is a line of it."""
+def test_rows_are_in_the_documented_table(add: Callable[..., None]) -> None:
+    """The documentation contains the table of all rows, and a new row adds a line."""
     docs = Path(__file__).parents[3] / "docs/languages/rules.md"
     assert usage_table() in docs.read_text(encoding="utf-8"), f"it must hold\n{usage_table()}"
     add(SQUARE, HIGHEST, MEAN)
@@ -277,7 +277,7 @@ def monitor(add: Callable[..., None], tmp_path: Path) -> Path:
 
 @pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
 def test_contracts_follow_from_rows(monitor: Path) -> None:
-    """The contract of each function is derived from its row, and the printed C keeps it."""
+    """The contract of each function is derived from its row, and proved for the printed C."""
     proof = c_proof.prove(monitor, tuple(PROVED))
     assert proof.left == ()
     assert proof.complaints == ()
@@ -286,8 +286,8 @@ def test_contracts_follow_from_rows(monitor: Path) -> None:
 
 @pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
 @pytest.mark.parametrize("function", PROVED)
-def test_slip_in_a_printed_function_is_found(function: str, monitor: Path) -> None:
-    """A function that does not compute what its row says cannot be proved."""
+def test_mutation_of_a_printed_function_fails_the_proof(function: str, monitor: Path) -> None:
+    """A function that differs from its row cannot be proved."""
     right, wrong = PROVED[function]
     text = monitor.read_text(encoding="utf-8")
     start = text.index("{", text.index(f" {function}("))
@@ -321,6 +321,6 @@ def test_row_without_a_form_is_rejected(
     "text", ["value ** 2", "value.real", "sqrt(value, 2)", "sin(value)", "a = 1", "'a'"]
 )
 def test_text_that_is_not_a_formula_is_rejected(text: str) -> None:
-    """What the targets cannot print is rejected with the row, not when it is emitted."""
+    """Expressions that targets cannot print are rejected with the row, not during generation."""
     with pytest.raises(ValueError, match=r"formula|expression"):
         parse(text)

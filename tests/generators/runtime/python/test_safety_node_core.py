@@ -1,4 +1,4 @@
-"""The core of a safety node, around a monitor whose events the test chooses; without a graph."""
+"""The core of a safety node with a monitor controlled by the test, without a graph."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Explanation(NamedTuple):
 
 
 class Monitor:
-    """A monitor that emits the events that the test asks for."""
+    """A monitor that emits events on request of the test."""
 
     def __init__(self, emit: Callable[[Event], None], grace: int, latched: Collection[str]) -> None:
         """Start without a deadline."""
@@ -80,11 +80,11 @@ class Monitor:
         """Do nothing; time has no effect on these rules."""
 
     def enable(self, _now: int, behaviour: str, enabled: bool) -> None:
-        """Record what is enabled."""
+        """Record the behaviour and its state."""
         self.enabled[behaviour] = enabled
 
     def explain(self) -> Explanation:
-        """Explain nothing."""
+        """Return an empty explanation."""
         return Explanation()
 
     def reset(self, now: int) -> bool:
@@ -97,7 +97,7 @@ class Monitor:
 
 
 class Topic:
-    """A topic with the states of some actions, and what was published on it."""
+    """A topic with the states of some actions, and its published messages."""
 
     def __init__(self, *actions: str) -> None:
         """Start with no action active."""
@@ -123,10 +123,10 @@ class Topic:
 
 
 class Robot:
-    """A safety node without a graph: the hooks of the core, and the calls to them."""
+    """A safety node without a graph: the hooks of the core, and the recorded calls."""
 
     def __init__(self, folder: Path, **settings: Any) -> None:
-        """Create the core; start() comes next."""
+        """Create the core, which start() starts."""
         self.kinds: list[str] = []
         self.reports: list[str] = []
         self.calls: list[tuple[Any, ...]] = []
@@ -153,7 +153,7 @@ class Robot:
         self.core = SafetyNodeCore(self.node, METADATA, SimpleNamespace(**{**chosen, **settings}))
 
     def start(self, unfilled: Collection[str] = ()) -> None:
-        """Start watching."""
+        """Start the monitoring."""
         states: Any = [("/stop", self.stop)]
         ports = SafetyNodePorts(
             heartbeat="/robot/heartbeat",
@@ -164,7 +164,7 @@ class Robot:
         self.core.start(self, ports, str(self.file))
 
     def emit(self, *events: Event) -> None:
-        """Have the monitor emit events, as a message does."""
+        """Let the monitor emit events, as after a message."""
         runner = self.core.runner
         runner.catch_up(runner.now())
         try:
@@ -174,16 +174,16 @@ class Robot:
             runner.settle()
 
     def beep(self) -> None:
-        """Be robot code."""
+        """Record a call of user code."""
         self.calls.append(("beep", list(self.stop.published[-1])))
 
     def horn(self, times: int) -> None:
-        """Be robot code that fails when it is asked for too much."""
+        """Fail for a large argument, like faulty user code."""
         if times > 9:
             raise OSError("no air")
         self.calls.append(("horn", times))
 
-    # The hooks
+    # Hooks
 
     def create_monitor(self, _start: int, emit: Any, grace: int, latched: Collection[str]) -> Any:
         """Return a monitor."""
@@ -191,7 +191,7 @@ class Robot:
         return self.monitor
 
     def enabled_behaviours(self) -> dict[str, bool]:
-        """Return what the test has chosen."""
+        """Return the states chosen by the test."""
         return self.optional
 
     def beat(self, count: int) -> None:
@@ -209,13 +209,13 @@ class Robot:
 
 @pytest.fixture(autouse=True)
 def own_locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Keep the locks of these nodes in a folder of their own."""
+    """Use a private folder for the locks of these nodes."""
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
 
 
 @pytest.fixture
 def robot(tmp_path: Path) -> Robot:
-    """Return a robot that watches."""
+    """Return a running robot."""
     robot = Robot(tmp_path)
     robot.start()
     return robot
@@ -226,7 +226,7 @@ def stop_event(kind: str = "trigger", action: str = "stop", *arguments: Any) -> 
     return Event(5, kind, action, arguments=arguments)
 
 
-def test_a_second_instance_is_refused(tmp_path: Path) -> None:
+def test_second_instance_is_refused(tmp_path: Path) -> None:
     """The lock is taken before the node has any port."""
     first = Robot(tmp_path)
     with pytest.raises(Refusal, match="runs already"):
@@ -234,8 +234,8 @@ def test_a_second_instance_is_refused(tmp_path: Path) -> None:
     del first
 
 
-def test_the_start_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The report names refused settings and actions without code."""
+def test_start_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The report lists refused settings and actions without code."""
     monkeypatch.setattr(realtime, "can_lock_memory", lambda: False)
     robot = Robot(tmp_path, lock_memory=True)
     robot.start(unfilled=["beep"])
@@ -245,14 +245,14 @@ def test_the_start_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     assert robot.monitor.grace == SECOND
 
 
-def test_bound_actions_are_published_before_code_runs(robot: Robot) -> None:
-    """Even if the rules order the code first."""
+def test_bound_actions_are_published_before_user_code_runs(robot: Robot) -> None:
+    """This holds even if the rules call the user code first."""
     robot.emit(stop_event(action="beep"), stop_event())
     assert robot.stop.published[-1] == ["stop"]
     assert robot.calls == [("beep", ["stop"])]
 
 
-def test_a_refused_reset_publishes_nothing(robot: Robot) -> None:
+def test_refused_reset_publishes_nothing(robot: Robot) -> None:
     """The state does not change."""
     robot.emit(stop_event())
     before = list(robot.stop.published)
@@ -261,15 +261,15 @@ def test_a_refused_reset_publishes_nothing(robot: Robot) -> None:
 
 
 def test_reports_are_published_later_and_flushed_at_the_end(robot: Robot) -> None:
-    """No message waits for them."""
+    """Messages do not wait for reports."""
     robot.emit(stop_event())
     assert robot.kinds == ["start"]
     robot.core.flush_reports()
     assert robot.kinds == ["start", "trigger"]
 
 
-def test_a_failing_action_ends_the_node_after_all_is_done(robot: Robot) -> None:
-    """The state is published, other code runs, the latch is saved and the reports are out."""
+def test_failing_action_ends_the_node_after_all_others(robot: Robot) -> None:
+    """The state is published, other code runs, the latch is stored and the reports are flushed."""
     with pytest.raises(ActionError):
         robot.emit(stop_event("trigger", "horn", 10), stop_event(action="beep"), stop_event())
     assert robot.calls == [("beep", ["stop"])]
@@ -290,7 +290,7 @@ def test_latched_actions_survive_the_process(tmp_path: Path, robot: Robot) -> No
     assert again.kinds == ["start", "latched", "latched"]
 
 
-def test_a_reset_answers_for_each_action(robot: Robot) -> None:
+def test_reset_is_refused_while_its_cause_holds(robot: Robot) -> None:
     """It is refused while a behaviour that triggers the action holds or is unknown."""
     assert robot.core.reset() == (True, "no latched action was active")
     robot.emit(stop_event())
@@ -305,8 +305,8 @@ def test_a_reset_answers_for_each_action(robot: Robot) -> None:
     assert "stop\n" not in robot.file.read_text()
 
 
-def test_a_reset_that_cannot_be_saved_is_refused(robot: Robot) -> None:
-    """Nothing is reset, so that no restart forgets what is active."""
+def test_reset_that_cannot_be_stored_is_refused(robot: Robot) -> None:
+    """Nothing is reset, so that a restart forgets no active action."""
     robot.emit(stop_event())
     robot.monitor.latched = {"stop"}
     robot.file.unlink()
@@ -317,8 +317,8 @@ def test_a_reset_that_cannot_be_saved_is_refused(robot: Robot) -> None:
     assert robot.stop.published[-1] == ["stop"]
 
 
-def test_the_heartbeat_waits_for_the_inputs(robot: Robot) -> None:
-    """Within the grace, there is none until all inputs have come; after it, there is."""
+def test_heartbeat_waits_for_the_inputs(robot: Robot) -> None:
+    """During the grace period there is none until all inputs have arrived; after it, there is."""
     robot.monitor.waiting = True
     robot.core._publish()
     assert robot.beats == []
@@ -331,7 +331,7 @@ def test_the_heartbeat_waits_for_the_inputs(robot: Robot) -> None:
 
 
 def test_optional_behaviours_follow_their_parameters(tmp_path: Path) -> None:
-    """Those that are disabled at the start are so from the start; changes are reported."""
+    """Initial values apply from the start; changes are reported."""
     robot = Robot(tmp_path)
     robot.optional = {"halt": False, "slow": True}
     robot.start()
@@ -346,8 +346,8 @@ def test_optional_behaviours_follow_their_parameters(tmp_path: Path) -> None:
     assert robot.core._not_ready_reason() == "disabled: slow"
 
 
-def test_an_undecodable_message_is_reported_once_per_topic(robot: Robot) -> None:
-    """Others of the same topic are not news."""
+def test_undecodable_message_is_reported_once_per_topic(robot: Robot) -> None:
+    """Further messages of the topic are not reported."""
     for topic in ("/speed", "/speed", "/scan"):
         robot.core.report_undecodable(topic, ValueError("too short"))
     assert robot.reports[1:] == [
@@ -357,7 +357,7 @@ def test_an_undecodable_message_is_reported_once_per_topic(robot: Robot) -> None
 
 
 def test_housekeeping_restores_a_removed_state_file(robot: Robot) -> None:
-    """A file that somebody has removed is written again."""
+    """A removed file is written again."""
     robot.emit(stop_event())
     robot.file.unlink()
     robot.core._do_housekeeping()

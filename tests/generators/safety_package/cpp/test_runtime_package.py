@@ -1,4 +1,4 @@
-"""Packages with ``--runtime package``: they link the library ``deros_runtime_cpp`` and check it."""
+"""Packages with ``--runtime package`` link ``deros_runtime_cpp`` and check its version."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def generated(runtime: str, package: str = "base_safety") -> Files:
 
 
 def runtime_in(folder: Path, version: str = __version__) -> None:
-    """Write the package of the runtime into a folder, in some version."""
+    """Write the runtime package into a folder, in a given version."""
     write(runtime_package(CPP_RUNTIME), folder)
     manifest = folder / CPP_RUNTIME / "package.xml"
     text = manifest.read_text(encoding="utf-8")
@@ -49,7 +49,7 @@ def runtime_in(folder: Path, version: str = __version__) -> None:
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give an install folder with the runtime and a package that is linked with it."""
+    """Return an install folder with the runtime and a package linked with it."""
     workspace = tmp_path_factory.mktemp("linked")
     runtime_in(workspace)
     write(generated("package"), workspace)
@@ -58,14 +58,14 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def other_runtime(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give an install folder with another version of the runtime."""
+    """Return an install folder with another version of the runtime."""
     workspace = tmp_path_factory.mktemp("other")
     runtime_in(workspace, OTHER_VERSION)
     return colcon_build(workspace)
 
 
-def test_package_names_the_runtime_and_carries_no_copy() -> None:
-    """The manifest and the build script depend on it, in the version of this deros."""
+def test_package_depends_on_the_runtime_and_has_no_copy() -> None:
+    """Manifest and build script require the version of this deros."""
     files = generated("package")
     assert not [path for path in files if "/runtime/" in path]
     script = files[f"{PACKAGE}/CMakeLists.txt"].text
@@ -89,7 +89,7 @@ def test_copy_is_the_default() -> None:
 
 
 def test_other_values_of_the_option_are_rejected() -> None:
-    """The message names the values that there are."""
+    """The message lists the valid values."""
     with pytest.raises(ValueError, match="'shared' is neither 'copy' nor 'package'"):
         generated("shared")
 
@@ -100,8 +100,8 @@ def test_package_with_the_name_of_the_runtime_is_rejected() -> None:
         generated("package", package=CPP_RUNTIME)
 
 
-def test_linked_package_passes_the_linters_of_ament(tmp_path: Path) -> None:
-    """So does a package that carries a copy, which another test lints."""
+def test_linked_package_passes_the_ament_linters(tmp_path: Path) -> None:
+    """Packages with a copy are linted in another test."""
     write(generated("package"), tmp_path)
     assert_cpp_lint_clean(tmp_path / PACKAGE)
 
@@ -109,7 +109,7 @@ def test_linked_package_passes_the_linters_of_ament(tmp_path: Path) -> None:
 @pytest.mark.ros
 @needs_rclcpp
 def test_linked_nodes_run(installed: Path, ros_env: dict[str, str], ros_peer: Peer) -> None:
-    """The safety node sends heartbeats, and its gate passes a command on."""
+    """The safety node publishes heartbeats, and its gate passes a command."""
     from geometry_msgs.msg import Twist
     from std_msgs.msg import Float64, UInt64
 
@@ -136,10 +136,8 @@ def test_linked_nodes_run(installed: Path, ros_env: dict[str, str], ros_peer: Pe
 
 @needs_rclcpp
 @needs_cmake
-def test_other_version_of_the_runtime_is_refused_at_build(
-    other_runtime: Path, tmp_path: Path
-) -> None:
-    """CMake takes no version but the one that the package was generated for."""
+def test_other_runtime_version_fails_the_build(other_runtime: Path, tmp_path: Path) -> None:
+    """CMake accepts only the version that the package was generated for."""
     write(generated("package"), tmp_path)
     env = rclcpp_environment()
     assert env is not None
@@ -157,10 +155,10 @@ def test_other_version_of_the_runtime_is_refused_at_build(
 @pytest.mark.ros
 @needs_rclcpp
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_other_version_of_the_runtime_is_refused_at_start(
+def test_other_runtime_version_prevents_the_start(
     name: str, installed: Path, other_runtime: Path, ros_env: dict[str, str]
 ) -> None:
-    """The program says which versions do not match, and ends before it makes a node."""
+    """The program reports both versions, and exits before it creates a node."""
     env = overlay(installed, ros_env)
     env["LD_LIBRARY_PATH"] = f"{other_runtime / 'lib'}:{env['LD_LIBRARY_PATH']}"
     done = subprocess.run(
