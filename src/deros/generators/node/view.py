@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -32,10 +32,16 @@ TimerT = TypeVar("TimerT")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NodeBase(Generic[PortT, TimerT]):
-    """What the views of a node have in common.
+    """The parts of a node's view that all languages have.
 
     Attributes:
+        name: the name of the node type.
+        class_name: the user's class.
+        lifecycle: whether it is a managed node.
         source: file name of the node description.
+        summary: its purpose, as a sentence.
+        of_kind: its ports, by their kind.
+        timers: its timers.
     """
 
     name: str
@@ -43,28 +49,65 @@ class NodeBase(Generic[PortT, TimerT]):
     lifecycle: bool
     source: str
     summary: str
-    publishers: tuple[PortT, ...]
-    subscriptions: tuple[PortT, ...]
-    services: tuple[PortT, ...]
-    clients: tuple[PortT, ...]
-    actions: tuple[PortT, ...]
-    action_clients: tuple[PortT, ...]
+    of_kind: Mapping[PortKind, tuple[PortT, ...]]
     timers: tuple[TimerT, ...]
 
     @property
+    def publishers(self) -> tuple[PortT, ...]:
+        """The publishers."""
+        return self.of_kind[PortKind.PUBLISHER]
+
+    @property
+    def subscriptions(self) -> tuple[PortT, ...]:
+        """The subscriptions."""
+        return self.of_kind[PortKind.SUBSCRIPTION]
+
+    @property
+    def services(self) -> tuple[PortT, ...]:
+        """The services."""
+        return self.of_kind[PortKind.SERVICE]
+
+    @property
+    def clients(self) -> tuple[PortT, ...]:
+        """The clients of services."""
+        return self.of_kind[PortKind.CLIENT]
+
+    @property
+    def actions(self) -> tuple[PortT, ...]:
+        """The action servers."""
+        return self.of_kind[PortKind.ACTION]
+
+    @property
+    def action_clients(self) -> tuple[PortT, ...]:
+        """The action clients."""
+        return self.of_kind[PortKind.ACTION_CLIENT]
+
+    @property
+    def ports(self) -> tuple[PortT, ...]:
+        """All ports, kind by kind."""
+        return tuple(port for ports in self.of_kind.values() for port in ports)
+
+    @property
     def base_class(self) -> str:
-        """Class that the generator owns."""
+        """The class that the generator owns."""
         return f"{self.class_name}Base"
 
     @property
     def has_handlers(self) -> bool:
-        """Whether the user's class has something to fill in."""
+        """Whether the user's class has methods to fill in."""
         return bool(self.subscriptions or self.timers or self.services or self.actions)
 
     @property
     def gated(self) -> bool:
         """Whether there are callbacks that rest while a managed node is not active."""
         return self.lifecycle and bool(self.subscriptions or self.timers)
+
+
+def ports_by_kind(
+    model: NodeType, view: Callable[[Port], PortT]
+) -> dict[PortKind, tuple[PortT, ...]]:
+    """Return the views of a node's ports, by their kind."""
+    return {kind: tuple(map(view, model.ports_of(kind))) for kind in PortKind}
 
 
 # Names --------------------------------------------------------------------------------------------

@@ -18,6 +18,7 @@ from deros.generators.node.view import (
     handle,
     period_text,
     port_notes,
+    ports_by_kind,
     timer_notes,
     topic_parameter,
 )
@@ -197,14 +198,6 @@ class NodeView(NodeBase[PortView, TimerView]):
         return Chain("", tuple(f"{name} == other.{name}" for name in fields), " && ")
 
     @property
-    def ports(self) -> tuple[PortView, ...]:
-        """All ports."""
-        return (
-            *(*self.publishers, *self.subscriptions, *self.services),
-            *(*self.clients, *self.actions, *self.action_clients),
-        )
-
-    @property
     def library(self) -> tuple[str, ...]:
         """The sources of the node's library."""
         own = self.provided.sources if self.provided else (f"src/{self.stem}.cpp",)
@@ -348,9 +341,6 @@ def _node(model: NodeType, provided: Provided | None, runtime: CppRuntime) -> No
     name = (provided and provided.default_name) or model.name
     class_name = camel_case(name)
     check_names(model, class_name, "struct Parameters", cpp_identifier)
-    views = {
-        kind: tuple(_port(p, model, provided) for p in model.ports_of(kind)) for kind in PortKind
-    }
     return NodeView(
         name=model.name,
         stem=cpp_identifier(name),
@@ -363,12 +353,7 @@ def _node(model: NodeType, provided: Provided | None, runtime: CppRuntime) -> No
         runtime=runtime,
         parameters=cpp_parameter_views(model),
         maps=cpp_map_views(model),
-        publishers=views[PortKind.PUBLISHER],
-        subscriptions=views[PortKind.SUBSCRIPTION],
-        services=views[PortKind.SERVICE],
-        clients=views[PortKind.CLIENT],
-        actions=views[PortKind.ACTION],
-        action_clients=views[PortKind.ACTION_CLIENT],
+        of_kind=ports_by_kind(model, lambda port: _port(port, model, provided)),
         timers=tuple(
             TimerView(
                 cpp_identifier(timer.name),

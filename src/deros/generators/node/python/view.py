@@ -19,6 +19,7 @@ from deros.generators.node.view import (
     handle,
     period_text,
     port_notes,
+    ports_by_kind,
     timer_notes,
     topic_parameter,
 )
@@ -194,9 +195,6 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
     maps = map_views(model)
     own = {each.struct for each in maps if each.struct is not None}
     interfaces = _interface_names(model, {class_name, f"{class_name}Base", *own})
-    views = {
-        kind: tuple(_port(p, interfaces, model) for p in model.ports_of(kind)) for kind in PortKind
-    }
     return NodeView(
         name=model.name,
         module=python_identifier(model.name),
@@ -208,12 +206,7 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
         interfaces=tuple(interfaces.items()),
         parameters=parameter_views(model),
         maps=maps,
-        publishers=views[PortKind.PUBLISHER],
-        subscriptions=views[PortKind.SUBSCRIPTION],
-        services=views[PortKind.SERVICE],
-        clients=views[PortKind.CLIENT],
-        actions=views[PortKind.ACTION],
-        action_clients=views[PortKind.ACTION_CLIENT],
+        of_kind=ports_by_kind(model, lambda port: _port(port, interfaces, model)),
         timers=tuple(
             TimerView(
                 python_identifier(timer.name),
