@@ -156,7 +156,7 @@ def test_limit_of_a_whole_array_is_an_error() -> None:
     """An index is needed."""
     text = "gate /a -> /b : std_msgs.Float64MultiArray rate 1 Hz { stop: limit data to [0, 1]; }"
     assert _findings(text) == [
-        ("DRS303", "data", "a number is needed here, 'data' is a float64[]"),
+        ("DRS303", "data", "a number is needed here, but 'data' is a float64[]"),
     ]
 
 
@@ -178,7 +178,7 @@ def test_limit_read_from_a_topic_is_an_error() -> None:
     text = """input v = topic /speed.data timeout 1 sec
     gate /a -> /b : geometry_msgs.Twist rate 1 Hz { stop: limit linear.x to [0, v]; }"""
     assert _findings(text) == [
-        ("DRS324", "v", "the end of a limit is a constant number, 'v' is none"),
+        ("DRS324", "v", "the end of a limit must be a constant number, not 'v'"),
     ]
 
 

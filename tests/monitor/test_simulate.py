@@ -84,9 +84,9 @@ def played(
     return events
 
 
-def answers(*lines: dict[str, Any], until: str, tell_all: bool = False) -> list[GateAnswer]:
+def answers(*lines: dict[str, Any], until: str, report_all: bool = False) -> list[GateAnswer]:
     """Play lines, and return the answers of the gate."""
-    gates = GateSimulation(PROGRAM, embedded_store(), tell_all=tell_all)
+    gates = GateSimulation(PROGRAM, embedded_store(), report_all=report_all)
     found = play(Engine(PROGRAM), read(*lines).lines, nanoseconds(until), gates)
     return [each for each in found if isinstance(each, GateAnswer)]
 
@@ -226,7 +226,7 @@ def test_silent_safety_node_stops_the_robot() -> None:
 
 def test_every_command_can_be_listed() -> None:
     """The list includes repeated zeros, with all their fields."""
-    every = answers(until="0.2", tell_all=True)
+    every = answers(until="0.2", report_all=True)
     changed = answers(until="0.2")
     assert len(every) > len(changed)
     assert [each.t_ns // 10**6 for each in every] == [0, 50, 100, 150, 200]

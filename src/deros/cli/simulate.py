@@ -144,7 +144,7 @@ def simulate(
     if with_gates or all_commands:
         from deros.monitor.gate_simulation import GateSimulation
 
-        gates = GateSimulation(program, store, grace_ns, publish_hz, tell_all=all_commands)
+        gates = GateSimulation(program, store, grace_ns, publish_hz, report_all=all_commands)
     happenings = play(_monitor(engine, program, grace_ns), trace.lines, until_ns, gates)
     _show(happenings, output_format == "text")
 

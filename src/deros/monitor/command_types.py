@@ -1,4 +1,4 @@
-"""Commands as gates in all languages see them: the fields they look at, zero and limit."""
+"""The fields of commands that gates check, set to zero and limit."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class CommandType:
 
     Attributes:
         type: its name in ROS 2.
-        finite: the fields that hold floats, themselves or in the messages that they are.
-        zeros: the fields that zero changes; of a header that is its stamp.
-        numbers: those of them that are 0 in a command to do nothing; no header is among them.
+        finite: the fields that are floats, or messages with floats in them.
+        zeros: the fields that zero changes; of a header, that is its stamp.
+        numbers: those of them that are 0 in a zero command; headers are not among them.
         stamped: whether it, or a message in it, has a header that takes the time.
     """
 
@@ -38,14 +38,14 @@ class CommandType:
     stamped: bool
 
     def is_one(self, field: str) -> bool:
-        """Tell whether zero sets a field to 1: four zeros would be no rotation at all."""
+        """Return whether zero sets a field to 1: a quaternion of four zeros is not a rotation."""
         return self.type == QUATERNION and field == "w"
 
 
 def command_types(store: InterfaceStore, kind: InterfaceType) -> tuple[CommandType, ...]:
-    """Return a message type and those in it, the innermost first.
+    """Return a message type and the types nested in it, innermost first.
 
-    Types that have no number, and so nothing to look at or to change, are left out.
+    Types without numbers are left out.
     """
     found: dict[InterfaceType, CommandType] = {}
     _collect(store, kind, found)

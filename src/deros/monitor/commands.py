@@ -1,7 +1,7 @@
-"""Commands as plain data: which of them a gate takes, what limits make of one, what zero is.
+"""Commands as plain data: finite ones, limited ones and zeros.
 
 A message is a mapping from field names to values; a nested message is a mapping, an array a
-sequence. That is the form in which traces hold messages, too.
+sequence. Traces hold messages in the same form.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ QUATERNION = InterfaceType("geometry_msgs", "msg", "Quaternion")
 LAYOUT = InterfaceType("std_msgs", "msg", "MultiArrayLayout")
 
 NO_ROTATION = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
-"""A quaternion of four zeros is no rotation at all, and breaks who computes with it."""
+"""A quaternion of four zeros is not a rotation, and breaks computations with it."""
 
 
 def is_finite(value: Any) -> bool:
-    """Tell whether no number in a message is NaN or infinite."""
+    """Return whether no number in a message is NaN or infinite."""
     if isinstance(value, float):
         return math.isfinite(value)
     if isinstance(value, Mapping):
@@ -43,10 +43,10 @@ def is_finite(value: Any) -> bool:
 
 
 def is_zero(store: InterfaceStore, kind: InterfaceType, message: Message) -> bool:
-    """Return whether a command is to do nothing: all numbers that :func:`zero` changes are 0.
+    """Return whether a command is zero: all numbers that :func:`zero` changes are 0.
 
-    Booleans are false. Texts, the layout of arrays and headers say nothing about motion; nor does
-    the ``w`` of a quaternion that is no rotation.
+    Booleans are false. Texts, the layout of arrays and headers do not count; nor does the ``w`` of
+    a quaternion without rotation.
     """
     if kind == QUATERNION:
         return not (message["x"] or message["y"] or message["z"])
@@ -65,7 +65,7 @@ def _is_zero_field(store: InterfaceStore, kind: FieldType, value: Any) -> bool:
 
 
 def limited(message: Message, limits: Iterable[Limit]) -> Message:
-    """Return the message with every limit kept: itself, where it keeps them all already."""
+    """Return the message within all limits: itself, if it is within them already."""
     for limit in limits:
         value = value_at(message, limit.path)
         if value is not None and not limit.lower <= value <= limit.upper:
@@ -74,7 +74,7 @@ def limited(message: Message, limits: Iterable[Limit]) -> Message:
 
 
 def value_at(message: Message, path: Sequence[str | int]) -> Any:
-    """Return what stands at ``path``; ``None`` where an array is too short for it."""
+    """Return the value at ``path``; ``None`` if an array is too short for it."""
     value: Any = message
     for step in path:
         if isinstance(step, int) and step >= len(value):
@@ -84,7 +84,7 @@ def value_at(message: Message, path: Sequence[str | int]) -> Any:
 
 
 def put(value: Any, path: Sequence[str | int], new: int | float) -> Any:
-    """Return a copy of a message with another number at ``path``."""
+    """Return a copy of a message with a new number at ``path``."""
     if not path:
         return new
     step, *rest = path
@@ -94,11 +94,11 @@ def put(value: Any, path: Sequence[str | int], new: int | float) -> Any:
 
 
 def zero(store: InterfaceStore, kind: InterfaceType, last: Message | None, t_ns: int) -> Message:
-    """Return the command to do nothing, in the form of the ``last`` command if there is one.
+    """Return the zero command, in the form of the ``last`` command if there is one.
 
-    Numbers are 0 and booleans false; texts, and with them the frame, are those of the last command,
-    and arrays as long as in it, their layout too. Quaternions say no rotation, the stamps of
-    headers ``t_ns``.
+    Numbers are 0 and booleans false. Texts, such as the frame, and the lengths and the layout of
+    arrays are those of the last command. Quaternions are the identity; the stamps of headers are
+    ``t_ns``.
     """
     return _zero_message(store, kind, last or {}, t_ns)
 

@@ -161,6 +161,11 @@ Variable = ActionStates | LastSign | HeartbeatWasLost | Latches | Wait | Decisio
 
 
 @dataclass(frozen=True, slots=True)
+class NoteInput:
+    """Store when a good command arrived."""
+
+
+@dataclass(frozen=True, slots=True)
 class AssumeActive:
     """Count actions as active, because nothing is known of them."""
 
@@ -168,20 +173,15 @@ class AssumeActive:
 
 
 @dataclass(frozen=True, slots=True)
+class StoreCommand:
+    """Store the command as the last good one."""
+
+
+@dataclass(frozen=True, slots=True)
 class Forget:
     """Forget the last sign of life of ``source``."""
 
     source: Source
-
-
-@dataclass(frozen=True, slots=True)
-class NoteInput:
-    """Store when a good command arrived."""
-
-
-@dataclass(frozen=True, slots=True)
-class StoreCommand:
-    """Store the command as the last good one."""
 
 
 @dataclass(frozen=True, slots=True)

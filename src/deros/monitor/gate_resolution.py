@@ -1,4 +1,4 @@
-"""Gates of the rules, resolved: the fields that they limit, the actions and silences they heed."""
+"""Resolves the gates of rules: limited fields, units, actions and times."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from deros.monitor.scope import Scope
 from deros.monitor.terms import Terms
 
 SLOWEST_HZ, FASTEST_HZ = 1, 1000
-"""Between these lies the rate at which a gate publishes zeros."""
+"""The range of the rate at which a gate publishes zeros."""
 
 _INDIVISIBLE = {
     TIME: "a time stamp",
@@ -40,16 +40,16 @@ _INDIVISIBLE = {
 
 
 class GateResolver:
-    """Builds the gates of one program; faults go to the scope."""
+    """Builds the gates of one program; errors are reported to the scope."""
 
     def __init__(self, scope: Scope, terms: Terms, actions: Actions) -> None:
-        """Remember where names are looked up."""
+        """Look up names in ``scope``, constants with ``terms``, and actions in ``actions``."""
         self._scope = scope
         self._terms = terms
         self._actions = actions
 
     def build(self, written: tuple[rules.Gate, ...]) -> tuple[ir.Gate, ...]:
-        """Return the gates that have no fault, in the order written."""
+        """Return the gates without errors, in the order written."""
         targets = (Name(resolve_name(each.target.text, "/"), each.target.span) for each in written)
         self._scope.check_duplicates(targets, "a gate to '{}'")
         built = (self._gate(index, each) for index, each in enumerate(written))
@@ -99,7 +99,7 @@ class GateResolver:
                 self._scope.fault(codes.TYPE_MISMATCH, message, gate.type_span, related=place)
 
     def _period_ns(self, rate: rules.Number) -> int | None:
-        """Return the time between two zeros; not longer than what the rate asks for."""
+        """Return the time between two zeros, rounded down: the rate is kept or exceeded."""
         if rate.unit is None:
             message = f"the rate '{rate.value}' has no unit"
             self._scope.fault(codes.GATE_RATE, message, rate.span, f"write '{rate.value} Hz'")
@@ -109,7 +109,7 @@ class GateResolver:
         if unit is None:
             return None
         if unit.exponents != (("s", Fraction(-1)),):
-            message = f"a rate is needed, '{rate.unit}' is a unit of {unit.dimension}"
+            message = f"a rate is needed, but '{rate.unit}' is a unit of {unit.dimension}"
             self._scope.fault(codes.INCOMPATIBLE_UNITS, message, place, "write '20 Hz'")
             return None
         hertz = Fraction(rate.value) * unit.factor
@@ -126,7 +126,7 @@ class GateResolver:
     ) -> ir.GateLine | None:
         limits = tuple(self._limits(line, gate, topics))
         if line.until_reset and line.limits:
-            message = "only a zero lasts until a reset, not a limit"
+            message = "a limit cannot last until a reset, only a zero can"
             hint = "write 'zero until reset', or leave 'until reset' out"
             self._scope.fault(codes.GATE_LIMIT_UNTIL_RESET, message, line.span, hint)
             return None
@@ -142,7 +142,7 @@ class GateResolver:
     def _lost_ns(self, duration: rules.Number) -> int | None:
         lost_ns = self._scope.duration_ns(duration)
         if lost_ns == 0:
-            message = "what may not be silent for any time is always lost"
+            message = "a time of 0 means always lost"
             self._scope.fault(codes.BAD_DURATION, message, duration.span)
             return None
         return lost_ns
@@ -167,7 +167,7 @@ class GateResolver:
                 yield ir.Limit(limit.path, field.type, *ends)
 
     def _field(self, limit: rules.GateLimit, gate: rules.Gate) -> ResolvedField | None:
-        """Resolve the field that is limited; report what is no number, or not one by itself."""
+        """Resolve the limited field; report one that is not a number, or not one by itself."""
         span = limit.path_span
         before = Span(span.source, span.start, span.start)
         found = self._scope.field(gate.type, limit.path, before, span, len(limit.path))
@@ -176,13 +176,15 @@ class GateResolver:
         if not found.type.is_number:
             kind = found.type
             text = str(kind).replace(str(kind.base), getattr(kind.base, "short", str(kind.base)))
-            message = f"a number is needed here, '{format_path(limit.path)}' is {_article(text)}"
+            message = (
+                f"a number is needed here, but '{format_path(limit.path)}' is {_article(text)}"
+            )
             hint = "name one of its elements, as in 'data[0]'" if kind.is_array else ""
             self._scope.fault(codes.FIELD_NOT_NUMERIC, message, span, hint)
             return None
         whole = _INDIVISIBLE.get(found.parent.type) if found.parent else None
         if whole is not None:
-            message = f"'{found.name}' of {whole} means nothing by itself, so it has no limits"
+            message = f"'{found.name}' of {whole} cannot be limited by itself"
             self._scope.fault(codes.GATE_LIMIT, message, span)
             return None
         return found
@@ -190,7 +192,7 @@ class GateResolver:
     def _unit(
         self, limit: rules.GateLimit, gate: rules.Gate, topics: tuple[str, str]
     ) -> Unit | None:
-        """Return the unit of the field: as node descriptions have it, else as REP 103 does."""
+        """Return the unit of the field: from node descriptions, else from REP 103."""
         for topic in topics:
             if self._scope.topics.get(topic) is not None:
                 unit = self._scope.unit_of(topic, gate.type, limit.path)
@@ -221,7 +223,7 @@ class GateResolver:
         return _held(least, field.type), _held(greatest, field.type)
 
     def _common_unit(self, limit: rules.GateLimit, text: str, wanted: Unit | None) -> Unit | None:
-        """Return the unit that follows the interval; report one that is not of the field's kind."""
+        """Return the unit after the interval; report one that is not of the field's dimension."""
         place = limit.unit_span or limit.span
         found = self._scope.unit(text, place)
         if found is None or wanted is None or self._scope.units.compatible(found, wanted):
@@ -236,7 +238,7 @@ class GateResolver:
     def _end(
         self, term: rules.Term, common: Unit | None, message: MessageDefinition | None
     ) -> Quantity | None:
-        """Return one end; a plain number is in the unit that follows the interval."""
+        """Return one end of an interval; a plain number is in the unit after the interval."""
         found = self._terms.resolve(term, message)
         if found is None:
             return None
@@ -245,7 +247,7 @@ class GateResolver:
             if math.isfinite(value) and not isinstance(value, bool):
                 found = Quantity(Fraction(value), None, None, isinstance(value, int))
         if not isinstance(found, Quantity):
-            message_text = f"the end of a limit is a constant number, '{term.span.text}' is none"
+            message_text = f"the end of a limit must be a constant number, not '{term.span.text}'"
             self._scope.fault(codes.WRONG_OPERAND, message_text, term.span)
             return None
         if found.unit is None and common is not None:
@@ -255,7 +257,7 @@ class GateResolver:
     def _is_limit(
         self, limit: rules.GateLimit, kind: FieldType, least: Fraction, greatest: Fraction
     ) -> bool:
-        """Tell whether a gate can keep the field between two ends; report why it cannot."""
+        """Return whether a gate can keep the field between two ends; report why it cannot."""
         code, hint = codes.GATE_LIMIT, ""
         shown = limit.interval_span.text
         if least > greatest:
@@ -263,13 +265,14 @@ class GateResolver:
             message = f"the interval {shown} runs backwards: no value lies in it"
             hint = "write the lesser end first"
         elif not (limit.lower_closed and limit.upper_closed):
-            message = f"the interval {shown} is open: there is no value to limit to at that end"
+            message = f"the interval {shown} is open: a limit needs a value at each end"
             hint = "write it with '[' and ']'"
         elif not least <= 0 <= greatest:
-            message = f"0 is not in {shown}: a robot that is to be slowed would be driven"
-            hint = "a limit holds a command back, so that standing still is always allowed"
+            message = f"the limits must include 0, {shown} does not"
+            hint = "a limit may slow the robot, but never make it move"
         elif kind.base in INTEGER_RANGES and (least.denominator, greatest.denominator) != (1, 1):
-            message = f"'{format_path(limit.path)}' is a {kind}, its limits are whole numbers"
+            number = _article(str(kind))
+            message = f"'{format_path(limit.path)}' is {number}: its limits must be whole numbers"
         else:
             return True
         self._scope.fault(code, message, limit.interval_span, hint)
@@ -277,7 +280,7 @@ class GateResolver:
 
 
 def _held(number: Fraction, kind: FieldType) -> int | float:
-    """Return an end as the field holds it: within its type's range, rounded as it is rounded."""
+    """Return an end as a value of the field: within its type's range, and rounded to it."""
     if kind.base in INTEGER_RANGES:
         least, greatest = type_bounds(kind)
         return int(min(max(number, least), greatest))
@@ -286,9 +289,9 @@ def _held(number: Fraction, kind: FieldType) -> int | float:
 
 
 def _values(store: InterfaceStore, kind: InterfaceType) -> Iterator[FieldType]:
-    """Yield the type of every value in a message that is a command, in arrays and messages too.
+    """Yield the type of every value of a command, in arrays and nested messages too.
 
-    Of a message type that is not known, nothing but itself can be told.
+    An unknown message type is yielded itself.
     """
     definition = store.message(kind)
     if definition is None:
@@ -302,4 +305,4 @@ def _values(store: InterfaceStore, kind: InterfaceType) -> Iterator[FieldType]:
 
 
 def _article(kind: str) -> str:
-    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+    return f"{'an' if kind[0] in 'aeio' else 'a'} {kind}"

@@ -1,4 +1,4 @@
-"""The gates of a program beside its monitor: what they would let through, and why."""
+"""Simulates the gates of a program next to its monitor: what they publish, and why."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ _REFUSED = "the command holds NaN or infinity"
 
 @dataclass(frozen=True, slots=True)
 class GateAnswer:
-    """Something that a gate does.
+    """One event of a gate.
 
     Attributes:
         t_ns: when.
-        event: what it makes of commands, or of a reset.
-        gate: the topic to which it leads.
+        event: the result of a command or of a reset.
+        gate: the topic that the gate publishes.
         why: the lines of the gate that apply, or that refuse the reset.
-        message: what it publishes, if it does.
+        message: the published message, if there is one.
     """
 
     t_ns: int
@@ -45,14 +45,14 @@ class GateAnswer:
 
 
 class GateSimulation:
-    """Runs the gates of a program, and what the safety node tells them.
+    """Runs the gates of a program, with the messages of the safety node.
 
     The safety node publishes the states of its bound actions at the start, whenever they change,
     and ``publish_freq`` times a second with its heartbeat, which begins as soon as it does not wait
-    for inputs any more. All of them count in one time, that of the trace.
+    for inputs any more. All of them use the time of the trace.
 
     Attributes:
-        heard: whether the gates hear the safety node.
+        heard: whether the messages of the safety node reach the gates.
     """
 
     def __init__(
@@ -62,19 +62,19 @@ class GateSimulation:
         grace_ns: int = 0,
         publish_hz: float = PUBLISH_HZ,
         *,
-        tell_all: bool = False,
+        report_all: bool = False,
     ) -> None:
         """Start at 0.
 
         Args:
-            program: whose gates run.
-            store: the definitions of their messages.
-            grace_ns: for how long after the start the heartbeat waits for inputs.
+            program: the rules with the gates.
+            store: the message definitions.
+            grace_ns: how long after the start the heartbeat waits for inputs.
             publish_hz: the ``publish_freq`` of the safety node.
-            tell_all: whether each command that is published is told of, also if nothing changes.
+            report_all: whether every published command is reported, even if nothing changes.
         """
         self.heard = True
-        self._gates = [_Gate(each, program.actions, store, tell_all) for each in program.gates]
+        self._gates = [_Gate(each, program.actions, store, report_all) for each in program.gates]
         self._states = _States(program, store)
         self._grace_ns = grace_ns
         self._period_ns = round(NS_PER_S / publish_hz)
@@ -85,7 +85,7 @@ class GateSimulation:
 
     @property
     def next_ns(self) -> int | None:
-        """When something happens by itself; ``None`` without gates."""
+        """The next instant at which something happens by itself; ``None`` without gates."""
         if not self._gates:
             return None
         deadlines = (each.engine.next_deadline for each in self._gates)
@@ -94,17 +94,17 @@ class GateSimulation:
     def settle(
         self, t_ns: int, events: Sequence[Event], waiting: bool, stepped: bool
     ) -> Iterator[GateAnswer]:
-        """Have all that happens at an instant happen, after the events of the monitor.
+        """Process an instant, after the events of the monitor.
 
         Args:
             t_ns: the instant.
-            events: those of the monitor.
+            events: the events of the monitor.
             waiting: whether the monitor waits for inputs.
             stepped: whether the clock has stepped back.
         """
         self._states.follow(events)
         for gate in self._gates:
-            yield from gate.told(gate.engine.advance(t_ns))
+            yield from gate.reports(gate.engine.advance(t_ns))
         if any(event.kind in ("trigger", "reset") for event in events):
             yield from self._publish_states(t_ns)
         if stepped or t_ns >= self._publish_ns:
@@ -113,13 +113,13 @@ class GateSimulation:
             self._publish_ns = t_ns + self._period_ns
 
     def command(self, t_ns: int, topic: str, message: Message) -> Iterator[GateAnswer]:
-        """Have the gates that read a topic take a command."""
+        """Pass a command to the gates that read a topic."""
         for gate in self._gates:
             if gate.gate.source == topic:
                 yield from gate.command(t_ns, message)
 
     def reset(self, t_ns: int, target: str) -> Iterator[GateAnswer]:
-        """Reset the gate that leads to a topic."""
+        """Reset the gate that publishes a topic."""
         for gate in self._gates:
             if gate.gate.target == target:
                 yield from gate.reset(t_ns)
@@ -129,7 +129,7 @@ class GateSimulation:
             return
         for topic, message in self._states.messages():
             for gate in self._gates:
-                yield from gate.told(gate.engine.state(t_ns, topic, message))
+                yield from gate.reports(gate.engine.state(t_ns, topic, message))
 
     def _beat(self, t_ns: int, waiting: bool) -> Iterator[GateAnswer]:
         if not self._has_begun:  # the states go out at the start, the first beat a period later
@@ -141,25 +141,25 @@ class GateSimulation:
         self._beats += 1
         if self.heard:
             for gate in self._gates:
-                yield from gate.told(gate.engine.heartbeat(t_ns, self._beats))
+                yield from gate.reports(gate.engine.heartbeat(t_ns, self._beats))
 
 
 class _Gate:
-    """One gate, which tells of what it does when that changes."""
+    """One gate, which reports what it does when that changes."""
 
     def __init__(
-        self, gate: Gate, actions: Sequence[Action], store: InterfaceStore, tell_all: bool
+        self, gate: Gate, actions: Sequence[Action], store: InterfaceStore, report_all: bool
     ) -> None:
         self.gate = gate
         self.engine = GateEngine(gate, actions, store)
-        self._tell_all = tell_all
+        self._report_all = report_all
         self._before: tuple[AnswerKind, tuple[str, ...]] | None = None
 
     def command(self, t_ns: int, message: Message) -> Iterator[GateAnswer]:
         """Take a command."""
         if not is_finite(message):
             yield GateAnswer(t_ns, "command_refused", self.gate.target, (_REFUSED,))
-        yield from self.told(self.engine.command(t_ns, message))
+        yield from self.reports(self.engine.command(t_ns, message))
 
     def reset(self, t_ns: int) -> Iterator[GateAnswer]:
         """Take a reset."""
@@ -167,20 +167,20 @@ class _Gate:
         why = tuple(map(_shown, against))
         event: AnswerKind = "gate_reset_refused" if against else "gate_reset"
         yield GateAnswer(t_ns, event, self.gate.target, why)
-        self._before = None  # what it is worth is told again
-        yield from self.told(self.engine.advance(t_ns))
+        self._before = None  # the result is reported again
+        yield from self.reports(self.engine.advance(t_ns))
 
-    def told(self, outputs: Iterable[Output]) -> Iterator[GateAnswer]:
-        """Yield what is published, once for as long as neither that nor its reasons change."""
+    def reports(self, outputs: Iterable[Output]) -> Iterator[GateAnswer]:
+        """Yield published commands, once while neither their kind nor the reasons change."""
         for output in outputs:
-            told = (_KINDS[output.kind], self._why())
-            if self._tell_all or told != self._before:
-                self._before = told
-                event, why = told
+            report = (_KINDS[output.kind], self._why())
+            if self._report_all or report != self._before:
+                self._before = report
+                event, why = report
                 yield GateAnswer(output.t_ns, event, self.gate.target, why, output.message)
 
     def _why(self) -> tuple[str, ...]:
-        """Return what holds commands back, as the diagnostics of a gate say it."""
+        """Return the conditions that hold commands back, as the diagnostics of a gate show them."""
         lines = [(_shown(line), line.until_reset) for line in self.gate.lines]
         texts = applying_texts(lines, self.gate.resume_on_zero)
         applying = zip(texts, self.engine.applying, strict=True)
@@ -192,7 +192,7 @@ def _shown(line: GateLine) -> str:
 
 
 class _States:
-    """What the safety node publishes of its bound actions."""
+    """The messages of the safety node about its bound actions."""
 
     def __init__(self, program: Program, store: InterfaceStore) -> None:
         self._active: set[str] = set()
@@ -207,7 +207,7 @@ class _States:
                 states.append((action, binding, default))
 
     def follow(self, events: Iterable[Event]) -> None:
-        """Note which actions are active."""
+        """Update which actions are active."""
         for event in events:
             if event.kind == "trigger":
                 self._active.add(event.action)

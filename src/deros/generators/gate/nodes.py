@@ -1,6 +1,6 @@
-"""A gate as a node type: it hears commands, actions and the heartbeat, and commands the robot.
+"""The node types of gates.
 
-What it is made of is said in :mod:`deros.metamodels.safety_nodes`; here it follows from a program.
+:mod:`deros.metamodels.safety_nodes` defines them; here they are built from a program.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ def gate_nodes(program: Program, topics: SystemTopics, safety_node: NodeType) ->
 
     Args:
         program: the rules.
-        topics: what the used systems tell of the topics, for the QoS of the commands.
-        safety_node: the node whose states and heartbeat the gates heed.
+        topics: the topics of the used systems, for the QoS of the commands.
+        safety_node: the node whose states and heartbeat the gates follow.
 
     Raises:
-        GenerationError: if two gates would get one name.
+        GenerationError: if two gates would get the same name.
     """
     outline = program_outline(program, safety_node.span)
     nodes = gate_node_types(outline, topics.offers, safety_node)

@@ -1,4 +1,4 @@
-"""Node descriptions as text: what is printed here, the loader reads back as the same model."""
+"""Node descriptions as text, which the loader reads back as the same model."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _parameter(parameter: Parameter) -> str:
 
 
 def _parameter_name(name: str) -> str:
-    """Return a parameter's name, in quotes where it would not be read as one without."""
+    """Return a parameter's name, in quotes if it would not be read as a name without them."""
     return name if _PLAIN.fullmatch(name) and "//" not in name else _text(name, always=True)
 
 
@@ -125,7 +125,7 @@ def _scalar(value: Scalar) -> str:
 
 
 def _text(text: str, always: bool = False) -> str:
-    """Return a quoted text; an empty one only where it is ``always`` needed."""
+    """Return a quoted text, and nothing for an empty one unless it is ``always`` needed."""
     return f'"{text.translate(_ESCAPES)}"' if text or always else ""
 
 

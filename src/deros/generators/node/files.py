@@ -1,4 +1,4 @@
-"""The files of a node that are the same whatever the language it is written in."""
+"""The files of a node that do not depend on its language."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What other parts of the generators use of node descriptions, whatever the language."""
+"""The interface of node descriptions for other generators."""
 
 from deros.generators.node.description import node_description
 

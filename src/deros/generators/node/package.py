@@ -1,4 +1,4 @@
-"""What the packages made from node descriptions share, whatever the language of the nodes."""
+"""The parts of packages of nodes that do not depend on the language."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MAINTAINER = re.compile(r"\s*([^<>]*?)\s*<([^<>\s]+@[^<>\s]+)>\s*")
 
 
 def refuse_legacy(model: NodeType) -> None:
-    """Refuse a node that runs a program which is there already.
+    """Refuse a node that runs an existing program.
 
     Raises:
         GenerationError: at the node's name.
@@ -69,7 +69,7 @@ def nodes_beside(model: NodeType, context: Context) -> list[NodeType]:
 
 
 def _belongs(loaded: LoadedFile, package: str) -> bool:
-    """Tell whether a file describes a node of ``package``, as far as it can be told."""
+    """Return whether a file seems to describe a node of ``package``."""
     if isinstance(loaded.model, NodeType):
         return loaded.model.package == package
     text = loaded.source.text if loaded.source else ""
@@ -77,7 +77,7 @@ def _belongs(loaded: LoadedFile, package: str) -> bool:
 
 
 def unsupported(model: NodeType) -> list[Diagnostic]:
-    """Return what no client library can do with a node, each at its place."""
+    """Return a diagnostic for each construct that no client library supports."""
     found = []
     for parameter in model.parameters:
         if parameter.name in ("use_sim_time", "start_type_description_service"):

@@ -1,4 +1,4 @@
-"""The parameter file of a node: each parameter at its default, whatever the node's language."""
+"""The parameter file of a node: each parameter with its default."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _entry(parameter: Parameter, key: str, fixed: bool) -> FileParameter:
 
 
 def _note(parameter: Parameter) -> str:
-    """Say why the parameter file has no value; empty when it has one."""
+    """Return why the parameter file has no value; empty if it has one."""
     if parameter.keys:
         by_default = "" if parameter.default is None else f", {_value(parameter)} by default"
         return f"for each entry of {parameter.keys[0]}{by_default}"
@@ -70,7 +70,7 @@ def _value(parameter: Parameter) -> str:
 
 
 def _key(name: str) -> str:
-    """Return a name as a key, in quotes where YAML could read it as something else."""
+    """Return a name as a key, in quotes if YAML could read it as something else."""
     return name if is_plain_key(name) else f'"{name}"'
 
 

@@ -25,23 +25,23 @@ class ParameterMap:
 
     @property
     def name(self) -> str:
-        """What the map is called after: its prefix, or its list where it has none."""
+        """The name of the map: its prefix, or that of its list if it has none."""
         return self.prefix.strip("._/-") or f"{self.key}_map"
 
     @property
     def struct(self) -> str | None:
-        """The name of the type of a value; ``None`` where a value is that of a parameter."""
+        """The name of the type of a value; ``None`` if the value is a single parameter."""
         if not self.member(self.parameters[0]) and len(self.parameters) == 1:
             return None
         return f"{camel_case(self.prefix)}Of{camel_case(self.key)}".lstrip("_")
 
     @property
     def shown(self) -> str:
-        """What the map is for, as a reader sees it: ``gains.<joints>``."""
+        """The map as readers see it: ``gains.<joints>``."""
         return f"{self.prefix}<{self.key}>"
 
     def member(self, parameter: Parameter) -> str:
-        """Return what of a parameter's name stands behind the entry; nothing if nothing does."""
+        """Return the part of a parameter's name after the entry, which may be empty."""
         return parameter.name.partition(">")[2].strip("._/-")
 
 

@@ -1,4 +1,4 @@
-"""What a parameter's constraints ask of its value, in words, whatever the language of the node."""
+"""The requirements of a parameter's constraints, in words."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Check(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """One check, and what it asks for: ``must have 3 elements``.
+    """One check, and its requirement: ``must have 3 elements``.
 
     Attributes:
         stated: whether the parameter's descriptor has to say so in words. Ranges it states itself,
@@ -41,7 +41,7 @@ class Requirement:
 
 
 def requirements(parameter: Parameter) -> tuple[Requirement, ...]:
-    """Return what a node has to check of a parameter beside its type, in order."""
+    """Return the checks of a parameter besides its type, in order."""
     return tuple(_requirements(parameter))
 
 
@@ -81,7 +81,7 @@ def _range(interval: Interval, kind: ParameterType) -> Requirement:
 
 
 def spelled(value: Scalar, kind: ParameterType) -> str:
-    """Return a value as texts for people show it."""
+    """Return a value as text for people."""
     if kind in _DOUBLES and not isinstance(value, str):
         return repr(float(value))
     if kind is ParameterType.BYTE_ARRAY and isinstance(value, int):
@@ -90,17 +90,17 @@ def spelled(value: Scalar, kind: ParameterType) -> str:
 
 
 def interval_clause(interval: Interval, kind: ParameterType) -> str:
-    """Return an interval as descriptions state it, of integers without needless fractions."""
+    """Return an interval as text; the ends of an interval of integers have no fraction."""
     return interval.clause(lambda value: bound(value, kind))
 
 
 def bound(value: float, kind: ParameterType) -> str:
-    """Return a bound of an interval, of integers without a fraction where it has none."""
+    """Return an end of an interval; that of an interval of integers has no fraction if possible."""
     return str(int(value)) if kind in _INTEGERS and float(value).is_integer() else repr(value)
 
 
 def integer_bounds(interval: Interval) -> tuple[int, int]:
-    """Return the least and greatest integer of an interval, which closes its open ends exactly."""
+    """Return the least and the greatest integer of an interval, which may be open."""
     low = math.ceil(max(interval.lower, _INT64[0]))
     high = math.floor(min(interval.upper, _INT64[1]))
     low += low == interval.lower and not interval.lower_closed

@@ -1,4 +1,4 @@
-"""What every target says of a node's parameters, in comments and in descriptors."""
+"""Comments and descriptors of a node's parameters."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def describe(parameter: Parameter) -> str:
 
 
 def comment(parameter: Parameter, read_only: bool) -> str:
-    """Return what a comment says of a parameter: description, unit and constraints."""
+    """Return the comment of a parameter: description, unit and constraints."""
     parts = [describe(parameter).removesuffix(".")]
     if parameter.interval is not None:
         parts.append(interval_clause(parameter.interval, parameter.type))
@@ -61,5 +61,5 @@ def _size_comments(parameter: Parameter) -> Iterator[str]:
 
 
 def custom_texts(parameter: Parameter) -> tuple[str, ...]:
-    """Return what the descriptor says of the user's own checks."""
+    """Return the description of the user's checks for the descriptor."""
     return tuple(f"must pass {function.text}" for function in parameter.custom)

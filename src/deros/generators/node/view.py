@@ -1,4 +1,4 @@
-"""What the templates of a node see in every language: its names, its notes and what it has."""
+"""The view of a node for the templates of every language."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class NodeBase(Generic[PortT, TimerT]):
 
     @property
     def gated(self) -> bool:
-        """Whether there are callbacks that rest while a managed node is not active."""
+        """Whether callbacks are ignored while a managed node is not active."""
         return self.lifecycle and bool(self.subscriptions or self.timers)
 
 
@@ -120,7 +120,7 @@ def check_names(
     identifier: Callable[[str], str],
     hooks: Iterable[str] = (),
 ) -> None:
-    """Refuse a node whose class would have two methods, or two fields of parameters, of one name.
+    """Reject a node whose class would have two methods, or two parameter fields, of the same name.
 
     Args:
         model: the node.
@@ -150,7 +150,7 @@ def check_names(
 def _methods(
     model: NodeType, identifier: Callable[[str], str], hooks: Iterable[str]
 ) -> Iterator[Emitted]:
-    """Yield every method that the base class gets, the hooks first."""
+    """Yield every method of the base class, the hooks first."""
     for hook in (*NODE_HOOKS, *hooks, *(LIFECYCLE_HOOKS if model.lifecycle else ())):
         yield Emitted(hook, f"the hook {hook!r}", model.name_span)
     for port in model.ports:
@@ -166,7 +166,7 @@ def _methods(
 
 
 def handle(port: Port, model: NodeType, identifier: Callable[[str], str]) -> str:
-    """Return the name of the attribute with the client of a service, or of an action.
+    """Return the name of the attribute that holds the client of a service or action.
 
     Both are ``client_<name>``; the client of an action is ``action_client_<name>`` where the node
     has a client of a service whose name becomes the same.
@@ -181,12 +181,12 @@ def handle(port: Port, model: NodeType, identifier: Callable[[str], str]) -> str
 
 
 def topic_parameter(port: Port, model: NodeType) -> Parameter | None:
-    """Return the parameter that names a port's topic at start; ``None`` if no parameter does."""
+    """Return the parameter that sets a port's topic at start, if there is one."""
     return None if port.via is None else model.parameter(port.via)
 
 
 def port_notes(port: Port, model: NodeType) -> tuple[str, ...]:
-    """Return what is to be said of a port: its description, units and where its name comes from."""
+    """Return the notes on a port: its description, units and the source of its name."""
     notes = [sentence(port.description)]
     if port.units:
         listed = ", ".join(f"{unit.path} [{unit.unit}]" for unit in port.units)
@@ -197,7 +197,7 @@ def port_notes(port: Port, model: NodeType) -> tuple[str, ...]:
 
 
 def timer_notes(timer: Timer) -> tuple[str, ...]:
-    """Return what is to be said of a timer: its description, if there is one."""
+    """Return the notes on a timer: its description, if there is one."""
     return tuple(filter(None, [sentence(timer.description)]))
 
 

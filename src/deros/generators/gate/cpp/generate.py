@@ -1,4 +1,4 @@
-"""Gates in C++: their sources, and what the package of their safety node has to know of them."""
+"""Gates in C++: their sources, and what the package of the safety node needs to build them."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _SHARED = (
     *("clock_choice", "digest", "event_loop", "instance", "ports", "process", "publishers"),
     *("realtime", "regular_file", "simulated_time", "start_order", "text", "worker"),
 )
-"""The sources that gates have in common with the safety node."""
+"""The runtime sources that gates share with the safety node."""
 
 _OWN = ("gate_report", "gate_runner", "safety_source", "target_publishers")
-"""Those that are the same for all gates."""
+"""The runtime sources of gates alone."""
 
 _NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils", "rosgraph_msgs")
 
@@ -47,8 +47,9 @@ class Gates:
     """The gates of one package.
 
     Attributes:
-        nodes: what is handed to ``package_files`` of them, and ``provided`` likewise.
-        files: their own, beside those of ``package_files`` and the runtime of the safety node.
+        nodes: the nodes for ``package_files``.
+        provided: the argument ``provided`` of ``package_files``.
+        files: their files, besides those of ``package_files`` and the runtime of the safety node.
     """
 
     nodes: list[NodeType] = field(default_factory=list)
@@ -69,7 +70,7 @@ def gate_files(
     Args:
         program: the rules.
         nodes: the nodes of its gates, in order, as :func:`gate_nodes` returns them.
-        safety_node: the node whose states and heartbeat they heed, as the Python target has it.
+        safety_node: the node whose states and heartbeat they follow, as in the Python target.
         store: the message definitions.
         runtime: the runtime of the package.
         copyright_line: years and holder for the headers, or nothing.
@@ -154,9 +155,9 @@ def render(template: str, view: GateView, runtime: CppRuntime | None = None) -> 
     return mark_long_lines(text)
 
 
-# What is the same for all gates -------------------------------------------------------------------
+# Paths --------------------------------------------------------------------------------------------
 
 
 def include_folder(package: str) -> str:
-    """Return where the headers of a package are."""
+    """Return the folder of a package's headers."""
     return f"{package}/include/{package}"

@@ -1,4 +1,4 @@
-"""What a safety package in C++ needs of the gates."""
+"""The interface of gates in C++ for safety packages."""
 
 from deros.generators.gate.cpp.generate import Gates, gate_files
 from deros.generators.gate.cpp.node import gate_nodes

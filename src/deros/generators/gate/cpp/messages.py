@@ -1,4 +1,4 @@
-"""What a gate does to the fields of a command, in C++: looks for NaN, makes zeros, limits."""
+"""The functions for the fields of commands in C++: finite, zero, limited."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from deros.monitor.commands import HEADER
 
 @dataclass(frozen=True, slots=True)
 class TypeView(TypeBase):
-    """The functions for one type; overloading tells them apart."""
+    """The functions for one type, which are overloaded."""
 
     @property
     def name(self) -> str:
-        """Its struct."""
+        """The struct of its messages."""
         return cpp_type(self.type)
 
     @property
     def header(self) -> str:
-        """What declares it."""
+        """The header that declares it."""
         return cpp_header(self.type)
 
 
 @dataclass(frozen=True, slots=True)
 class LimitedField:
-    """A field that a limit of the gate speaks of.
+    """A field with limits.
 
     Attributes:
-        name: an identifier that tells it from the other ones.
+        name: its identifier.
         path: its spelling in the rules.
         base: its primitive type, and ``type`` the same in C++.
         access: what follows the message to name it: ``.linear.x``.
@@ -51,7 +51,7 @@ class LimitedField:
     guards: tuple[str, ...]
 
     def guarded(self, message: str) -> tuple[str, ...]:
-        """Return the operands of the condition that a message has the field; none if each has."""
+        """Return the conditions that a message has the field; none if every message has it."""
         return tuple(f"{message}{guard}" for guard in self.guards)
 
 
@@ -59,7 +59,7 @@ class LimitedField:
 
 
 def type_views(store: InterfaceStore, kind: InterfaceType) -> tuple[TypeView, ...]:
-    """Return the views of a message type and of those in it that hold numbers, innermost first."""
+    """Return the views of a message type and of the nested types with numbers, innermost first."""
     views: dict[InterfaceType, TypeView] = {}
     for each in command_types(store, kind):
         finite = tuple(_is_finite(name, field) for name, field in each.finite)
@@ -119,7 +119,7 @@ def _zero(base: str) -> str:
 def limited_field(
     store: InterfaceStore, kind: InterfaceType, path: FieldPath, name: str
 ) -> LimitedField:
-    """Return the view of the field at ``path``, by a name of its own."""
+    """Return the view of the field at ``path``, by the identifier ``name``."""
     guards = tuple(
         f".{format_path(array)}.size() > {index}"
         for array, index in unsized_arrays(store, kind, path)

@@ -1,4 +1,4 @@
-"""A gate as a node type: the C++ twin of the Python target's."""
+"""The node types of gates in C++."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ def gate_nodes(program: Program, topics: SystemTopics, safety_node: NodeType) ->
 
     Args:
         program: the rules.
-        topics: what the used systems tell of the topics, for the QoS of the commands.
-        safety_node: the safety node as the Python target has it: its twin in C++ runs by the same
-            name, and so gates in either language heed the one as the other.
+        topics: the topics of the used systems, for the QoS of the commands.
+        safety_node: the safety node of the Python target. The one in C++ has the same name at run
+            time, so gates in either language follow either of them.
 
     Raises:
-        GenerationError: if two gates, or two ports of one, would get one name.
+        GenerationError: if two gates, or two ports of one, would get the same name.
     """
     nodes = gate_nodes_of.gate_nodes(program, topics, safety_node)
     for node in nodes:
@@ -38,9 +38,9 @@ def gate_nodes(program: Program, topics: SystemTopics, safety_node: NodeType) ->
 
 
 def base_node(node: NodeType) -> NodeType:
-    """Return what of a gate's node is like that of any node: its parameters and its diagnostics.
+    """Return the part of a gate's node for the node generator: its parameters and diagnostics.
 
-    The other ports hand over messages as bytes; the gate opens them itself.
+    The other ports pass messages as bytes; the gate opens them itself.
     """
     ports = tuple(port for port in node.ports if port.name == DIAGNOSTICS)
     return dataclasses.replace(node, ports=ports)

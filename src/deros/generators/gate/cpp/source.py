@@ -1,4 +1,4 @@
-"""Small pieces of the emitted C++ that only gates need: names, conditions, comments."""
+"""Names, conditions and comments of the C++ that is emitted for gates."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ NEVER PERIOD REFUSING"""
 
 
 class CppNames(UniqueNames):
-    """Hands out identifiers of C++ that differ from each other and from the templates' own."""
+    """Unique C++ identifiers, which also differ from those in the templates."""
 
     def __init__(self) -> None:
-        """Start with the names that the templates use."""
+        """Reserve the names that the templates use."""
         super().__init__(frozenset(_OURS.split()))
 
     def new(self, *parts: str | int, endings: Sequence[str] = ()) -> str:

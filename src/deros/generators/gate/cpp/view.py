@@ -57,7 +57,7 @@ class StateView:
 
     @property
     def identifier(self) -> str:
-        """What stands for the topic in names."""
+        """The part of names that stands for the topic."""
         return self.port.identifier
 
     @property
@@ -73,11 +73,11 @@ class GateView(GateBase):
     Attributes:
         node: the gate's name when it runs; ``package`` is that of its package.
         name: the stem of its files and, in camel case, of its classes.
-        description: what it is for.
-        source: the topic that commands come in by, and ``target`` that which they go out by.
+        description: its purpose.
+        source: the topic of incoming commands, and ``target`` that of outgoing ones.
         command: the command's struct, and ``header`` what declares it.
-        source_port, target_port: where commands come in, and go out.
-        heartbeat_port: where the heartbeat is heard, if a line needs it.
+        source_port, target_port: the ports of incoming and outgoing commands.
+        heartbeat_port: the subscription of the heartbeat, if a line needs it.
     """
 
     node: str
@@ -102,11 +102,8 @@ class GateView(GateBase):
 
     @property
     def summary(self) -> str:
-        """What the gate is for."""
-        return (
-            f"What {self.node} lets through of the commands on {self.source} to {self.target},"
-            " and when."
-        )
+        """The purpose of the gate."""
+        return f"The logic of {self.node}: commands from {self.source} to {self.target}."
 
     @property
     def node_class(self) -> str:
@@ -121,18 +118,18 @@ class GateView(GateBase):
 
     @property
     def settled(self) -> str:
-        """The parameters of what settles, after the time, and their defaults."""
+        """The parameters of ``settle``, after the time, with their defaults."""
         return "bool is_new = false" + (", bool may_release = false" if self.waits else "")
 
     @property
     def headers(self) -> tuple[str, ...]:
-        """What the header of the logic includes of messages."""
+        """The message headers that the header of the logic includes."""
         stamp = ["builtin_interfaces/msg/time.hpp"] if self.stamped else []
         return tuple(sorted({self.header, *stamp, *(state.port.header for state in self.states)}))
 
     @property
     def type_headers(self) -> tuple[str, ...]:
-        """What its source includes beside that."""
+        """The message headers that its source includes besides those."""
         return tuple(sorted({view.header for view in self.types} - set(self.headers)))
 
 
@@ -185,7 +182,7 @@ def gate_view(
         node: its node.
         program: the rules that it is of.
         store: the message definitions.
-        safety_node: the node whose states and heartbeat it heeds, by the name of the Python one.
+        safety_node: the node whose states and heartbeat it follows, by the name of the Python one.
     """
     names = CppNames()
     name = node.name.removesuffix(CPP_SUFFIX)
@@ -223,7 +220,7 @@ def _states(
 
 
 def nanoseconds(count: int) -> str:
-    """Return a time as a literal; durations beyond the last of times, in 2116, are all the same."""
+    """Return a time as a literal; longer durations become the latest time, in 2116."""
     return f"{min(count, LATEST_NS):_}".replace("_", "'")
 
 

@@ -19,7 +19,7 @@ from deros.monitor.gate_program import Latches
 from deros.monitor.ir import Program
 
 MODULES = ("logic", "message")
-"""The modules of a gate besides that of its node, by the end of their names."""
+"""The suffixes of a gate's modules other than that of its node."""
 
 RUNTIME = (
     "clock_choice",
@@ -36,7 +36,7 @@ RUNTIME = (
     "target_publishers",
     "waker",
 )
-"""The modules that are the same for all gates, most of which the safety node has as well."""
+"""The runtime modules of gates; the safety node needs most of them, too."""
 
 
 def gate_files(
@@ -51,12 +51,12 @@ def gate_files(
     Args:
         program: the rules.
         nodes: the nodes of its gates, in order.
-        safety_node: the node whose states and heartbeat they heed.
+        safety_node: the node whose states and heartbeat they follow.
         store: the message definitions.
         runtime: the runtime of the package, with the notice for the headers.
 
     Raises:
-        GenerationError: if two ports of a gate would get one name.
+        GenerationError: if two ports of a gate would get the same name.
     """
     files: dict[str, File] = {}
     for gate, node in zip(program.gates, nodes, strict=True):

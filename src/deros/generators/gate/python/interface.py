@@ -1,4 +1,4 @@
-"""What a safety package in Python needs of the gates."""
+"""The interface of gates in Python for safety packages."""
 
 from deros.generators.gate.nodes import gate_nodes
 from deros.generators.gate.python.generate import gate_files

@@ -1,4 +1,4 @@
-"""What a gate does to the fields of a command: looks for NaN, makes zeros of them, limits them."""
+"""The functions for the fields of commands in Python: finite, zero, limited."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class TypeView(TypeBase):
 
 @dataclass(frozen=True, slots=True)
 class LimitedField:
-    """A field that a limit of the gate speaks of.
+    """A field with limits.
 
     Attributes:
-        name: an identifier that tells it from the other ones.
+        name: its identifier.
         path: its spelling in the rules.
         read: the expression of its value in the message ``msg``; ``None`` where the message's array
             is too short.
@@ -45,7 +45,7 @@ class LimitedField:
 
 
 def type_views(store: InterfaceStore, kind: InterfaceType) -> tuple[TypeView, ...]:
-    """Return the views of a message type and of those in it that hold numbers, innermost first."""
+    """Return the views of a message type and of the nested types with numbers, innermost first."""
     views: dict[InterfaceType, TypeView] = {}
     for each in command_types(store, kind):
         finite = tuple(_is_finite(name, field, views) for name, field in each.finite)
@@ -105,7 +105,7 @@ def _zero_of_primitive(place: str, field: FieldType) -> str:
 
 
 def is_held_by_numpy(field: FieldType) -> bool:
-    """Tell whether rclpy holds an array of fixed length of this type as a NumPy array."""
+    """Return whether rclpy holds an array of fixed length of this type as a NumPy array."""
     return field.base in FLOAT_TYPES or (field.base in INTEGER_RANGES and field.base != "byte")
 
 
@@ -115,7 +115,7 @@ def is_held_by_numpy(field: FieldType) -> bool:
 def limited_field(
     store: InterfaceStore, kind: InterfaceType, path: FieldPath, name: str
 ) -> LimitedField:
-    """Return the view of the field at ``path``, by a name of its own."""
+    """Return the view of the field at ``path``, by the identifier ``name``."""
     place = f"msg.{format_path(path)}"
     tests = [
         f"len(msg.{format_path(array)}) > {index}"

@@ -27,7 +27,7 @@ from deros.metamodels.safety_nodes import HEARTBEAT_TYPE, RESET, TRIGGER, heartb
 from deros.monitor import gate_program as form
 from deros.monitor.ir import Gate, Limit, Program
 
-# Names that the template of the logic uses itself.
+# Names that the template of the logic uses.
 _TAKEN = frozenset(
     (
         "Callable",
@@ -83,12 +83,12 @@ class StateView:
 
     @property
     def is_believed(self) -> str:
-        """The condition that the states are as a message says."""
+        """The condition that the stored states equal those of the message."""
         return " and ".join(f"self._{each.state} == {each.state}" for each in self.actions)
 
     @property
     def active(self) -> tuple[str, ...]:
-        """What a message ``msg``, which may be ``None``, says of each action."""
+        """For each action, the condition that a message ``msg``, or ``None``, makes it active."""
         return tuple(f"msg is None or {action.test}" for action in self.actions)
 
 

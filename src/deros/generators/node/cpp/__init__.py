@@ -1,1 +1,1 @@
-"""The target ``cpp`` of node descriptions: an ament_cmake package, by the generation gap."""
+"""The target ``cpp`` of node descriptions: an ament_cmake package."""

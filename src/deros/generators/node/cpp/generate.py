@@ -182,20 +182,20 @@ def _render(template: str, **names: object) -> str:
 
 
 def _pursue(action: str) -> str:
-    """Return what the function that executes the goals of an action has to do."""
+    """Return the description of the function that executes the goals of an action."""
     return (
         f"Execute a goal of {action}, in a thread of its own: succeed, abort or cancel it. Return "
         "soon when is_executing() is false: a cancel was accepted, or the node ends."
     )
 
 
-# What the target refuses --------------------------------------------------------------------------
+# Unsupported constructs ---------------------------------------------------------------------------
 
 
 def _check_supported(model: NodeType) -> None:
     found = unsupported(model)
     if is_reserved(model.package) or model.package in ("std", "posix"):
-        message = f"package name {model.package!r} is no C++ namespace"
+        message = f"package name {model.package!r} is not a C++ namespace"
         found.insert(0, report(codes.UNSUPPORTED_BY_TARGET, message, model.package_span))
     if found:
         raise GenerationError(found)

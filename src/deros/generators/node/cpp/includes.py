@@ -1,4 +1,4 @@
-"""Which headers the generated files include, each only where it is used."""
+"""The headers that generated files include: each only where it is used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the templates of the C++ package see: the node description in terms of rclcpp."""
+"""The view of a node and its package for the templates of the C++ target."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ _CHRONO = {"sec": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": "
 
 @dataclass(frozen=True, slots=True)
 class Provided:
-    """A node whose class comes from the caller of the generator, where else the user writes it.
+    """A node whose class the caller of the generator provides, instead of the user.
 
     The caller adds the files: ``include/<package>/<stem>.hpp`` that defines the class, the sources,
     one of which registers the component, and whatever these need. ``stem`` and class are named
@@ -126,9 +126,9 @@ class NodeView(NodeBase[PortView, TimerView]):
     """One node of the package.
 
     Attributes:
-        stem: what its files are named after.
+        stem: the stem of its file names.
         default_name: its name at run time.
-        provided: what the caller makes of it; ``None`` for a node of the user's.
+        provided: the parts from the caller; ``None`` if the user writes the class.
         runtime: the runtime of its package.
     """
 
@@ -173,7 +173,7 @@ class NodeView(NodeBase[PortView, TimerView]):
 
     @property
     def checks_maps(self) -> bool:
-        """Whether a parameter of a map has checks, which are found by what it is declared as."""
+        """Whether a parameter of a map has checks, which are looked up by its declared name."""
         return any(p.checks or p.custom for each in self.maps for p in each.members)
 
     @property
@@ -213,7 +213,7 @@ class NodeView(NodeBase[PortView, TimerView]):
 
 
 def custom_stem(scope: str) -> str:
-    """Return what the files with the user's functions of a namespace are named after."""
+    """Return the stem of the files with the user's functions of a namespace."""
     return scope.replace("::", "_")
 
 
@@ -244,7 +244,7 @@ class PackageView:
 
     @property
     def linters(self) -> tuple[str, ...]:
-        """The packages that hold this one against ament's settings."""
+        """The ament packages that lint this one."""
         checked = ("cppcheck", "cpplint", "flake8", "lint_cmake", "pep257", "uncrustify", "xmllint")
         names = sorted((*checked, "copyright")) if is_checked(self.copyright) else checked
         return tuple(f"ament_cmake_{name}" for name in names)
@@ -259,7 +259,7 @@ class PackageView:
         return f"<depend{version}>{library}</depend>"
 
     def targets(self, node: NodeView) -> tuple[str, ...]:
-        """Return what CMake links one node's library with."""
+        """Return the CMake targets that one node's library links."""
         return tuple(_TARGETS.get(name, f"${{{name}_TARGETS}}") for name in _needed(node))
 
 

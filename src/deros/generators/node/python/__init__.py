@@ -1,1 +1,1 @@
-"""The target ``python`` of node descriptions: an ament_python package, by the generation gap."""
+"""The target ``python`` of node descriptions: an ament_python package."""

@@ -32,7 +32,7 @@ _EXECUTION = (
     "It runs in a thread of its own. Return soon when goal_handle.is_active is false, because the "
     "node ends, or goal_handle.is_cancel_requested is true."
 )
-"""What holds for every function that executes goals."""
+"""The notes on every function that executes goals."""
 
 
 def generate(model: NodeType, context: Context, options: Options) -> Files:
@@ -142,13 +142,13 @@ def _render(template: str, **names: object) -> str:
     )
 
 
-# What the target refuses --------------------------------------------------------------------------
+# Unsupported constructs ---------------------------------------------------------------------------
 
 
 def _check_supported(model: NodeType) -> None:
     found = unsupported(model)
     if python_identifier(model.package) != model.package:
-        message = f"package name {model.package!r} is no Python module name"
+        message = f"package name {model.package!r} is not a Python module name"
         found.insert(0, report(codes.UNSUPPORTED_BY_TARGET, message, model.package_span))
     if found:
         raise GenerationError(found)

@@ -1,4 +1,4 @@
-"""Which modules the generated files import, each name only where it is used."""
+"""The imports of generated modules: each name only where it is used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What other parts of the generators use of packages in Python."""
+"""The interface of packages in Python for other generators."""
 
 from deros.generators.node.python.generate import package_files
 from deros.generators.node.python.view import NodeView, PortView, interface_imports, node_view

@@ -38,7 +38,7 @@ _PYTHON_TYPES = {
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """A check that the client library does not make: a condition on ``value``, what it asks for.
+    """A check that the client library does not make: a condition on ``value``, and its text.
 
     ``stated`` tells whether the descriptor says so in words.
     """
@@ -55,7 +55,7 @@ class Constraint:
 
 @dataclass(frozen=True, slots=True)
 class ParameterView:
-    """One parameter as the templates need it.
+    """One parameter for the templates.
 
     Attributes:
         field: its name in the typed structure.
@@ -80,7 +80,7 @@ class ParameterView:
 
 @dataclass(frozen=True, slots=True)
 class MapView:
-    """The parameters of a map as the templates need them.
+    """The parameters of a map for the templates.
 
     Attributes:
         field: its name in the typed structure.
@@ -178,7 +178,7 @@ def _view(parameter: Parameter, read_only: bool) -> ParameterView:
 
 
 def custom_function(function: Name) -> tuple[str, str]:
-    """Return the module and the name of a function of the user's, ``limits::is_even``."""
+    """Return the module and the name of a user's function, ``limits::is_even``."""
     *scopes, name = function.text.split("::")
     return python_identifier("_".join(scopes)), python_identifier(name)
 
@@ -257,7 +257,7 @@ def _constraints(parameter: Parameter) -> list[Constraint]:
 
 
 def _condition(check: Check, parameter: Parameter) -> str:
-    """Return the expression that is true of a ``value`` which passes a check."""
+    """Return the condition that a ``value`` passes a check."""
     least = max(parameter.min_size or 0, int(parameter.not_empty))
     sizes = {Check.SIZE: f"== {parameter.size}", Check.MIN_SIZE: f">= {least}"}
     sizes[Check.MAX_SIZE] = f"<= {parameter.max_size}"

@@ -1,4 +1,4 @@
-"""What the templates of the Python package see: the node description in terms of rclpy."""
+"""The view of a node and its package for the templates of the Python target."""
 
 from __future__ import annotations
 
@@ -38,20 +38,20 @@ from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 
 GOAL_THREADS = "goal_threads"
-"""The module that packages have whose nodes have actions."""
+"""The runtime module of packages with actions."""
 
 QOS_REPORT = "qos_report"
-"""The module that packages have whose nodes have topics."""
+"""The runtime module of packages with topics."""
 
 MANAGED_NODE = "managed_node"
-"""The module that packages have with managed nodes."""
+"""The runtime module of packages with managed nodes."""
 
-# Names of the base class's module besides classes; a module of the user's is not called so.
+# Names in the base class's module besides classes; no module of the user may have them.
 _MODULES_USED = ("abstractmethod", "combinations", "dataclass", "os", "rclpy", "signal")
 
 _RAW_HOOKS = ("on_named",)
 
-# Names that the templates use themselves; a message type called so is imported under another name.
+# Names in the templates; a message type with such a name is imported under another one.
 _TAKEN = frozenset(
     (
         "ABC",
@@ -154,7 +154,7 @@ class NodeView(NodeBase[PortView, TimerView]):
 
     @property
     def reports_qos(self) -> bool:
-        """Whether it logs whom its own ends do not match; what is raw has a report of its own."""
+        """Whether it logs incompatible QoS; raw nodes have their own report."""
         return not self.raw and bool(self.publishers or self.subscriptions)
 
     @property
@@ -169,17 +169,17 @@ class NodeView(NodeBase[PortView, TimerView]):
 
     @property
     def custom(self) -> tuple[ParameterView, ...]:
-        """The parameters that functions of the user's check."""
+        """The parameters that the user's functions check."""
         return tuple(p for p in self.declared if p.custom)
 
     @property
     def checked(self) -> bool:
-        """Whether there is anything to check that rclpy does not."""
+        """Whether parameters need checks that rclpy does not make."""
         return bool(self.constrained or self.custom)
 
     @property
     def checks_maps(self) -> bool:
-        """Whether a parameter of a map has checks, which are found by what it is declared as."""
+        """Whether a parameter of a map has checks, which are looked up by its declared name."""
         return any(p.constraints or p.custom for each in self.maps for p in each.members)
 
 
@@ -187,7 +187,7 @@ def node_view(model: NodeType, raw: bool = False) -> NodeView:
     """Return the view of one node, ``raw`` or not (see :class:`NodeView`).
 
     Raises:
-        GenerationError: if two ports, timers or parameters would get one name.
+        GenerationError: if two ports, timers or parameters would get the same name.
     """
     class_name = camel_case(model.name)
     hooks = _RAW_HOOKS if raw else ()
@@ -246,7 +246,7 @@ def _interface_names(model: NodeType, own: Collection[str]) -> dict[InterfaceTyp
 def interface_imports(
     interfaces: Mapping[InterfaceType, str], used: Iterable[InterfaceType]
 ) -> dict[str, set[str]]:
-    """Return what to import for some interface types, by module."""
+    """Return the imports of some interface types, by module."""
     imports: dict[str, set[str]] = {}
     for kind in used:
         alias = interfaces[kind]
@@ -284,7 +284,7 @@ def _paragraphs(texts: Iterable[str]) -> tuple[tuple[str, ...], ...]:
 
 @dataclass(frozen=True, slots=True)
 class CustomView:
-    """A module of the user's functions that check parameters.
+    """A module with the user's checks of parameters.
 
     Attributes:
         functions: for each, its name and what it checks, wrapped for a docstring.
@@ -295,7 +295,7 @@ class CustomView:
 
 
 def _custom_modules(models: Sequence[NodeType]) -> dict[str, Emitted]:
-    """Return the modules of the user's functions, each with where it is first needed.
+    """Return the modules of the user's functions, each with the place where it is first needed.
 
     Raises:
         GenerationError: if a module is called as another one that its user imports.
@@ -354,12 +354,12 @@ class PackageView:
 
     @property
     def checks_copyright(self) -> bool:
-        """Whether ament's test of copyright knows the headers."""
+        """Whether ament_copyright recognizes the headers."""
         return is_checked(self.copyright)
 
     @property
     def description_argument(self) -> Text:
-        """The description as setup.py hands it over."""
+        """The description as an argument in setup.py."""
         return Text("description=", self.description)
 
 

@@ -11,7 +11,7 @@
 namespace checks
 {
 
-/// Return why the value of a parameter is refused; an empty text accepts it.
+/// Return why the value of a parameter is rejected; an empty text accepts it.
 std::string small(const rclcpp::Parameter & /*parameter*/)
 {
   return "must pass checks::small, which is not written yet";

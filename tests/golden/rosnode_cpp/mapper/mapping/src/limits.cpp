@@ -11,7 +11,7 @@
 namespace limits
 {
 
-/// Return why the value of a parameter is refused; an empty text accepts it.
+/// Return why the value of a parameter is rejected; an empty text accepts it.
 std::string is_even(const rclcpp::Parameter & /*parameter*/)
 {
   return "must pass limits::is_even, which is not written yet";

@@ -1,7 +1,7 @@
 """
 Checks of parameters: yours to fill in. deros wrote this file once and leaves it alone.
 
-Each function returns why a value is refused; an empty text accepts it.
+Each function returns why a value is rejected; an empty text accepts it.
 """
 
 from rclpy.parameter import Parameter
@@ -9,7 +9,7 @@ from rclpy.parameter import Parameter
 
 def small(parameter: Parameter) -> str:
     """
-    Return why the value of a parameter is refused, or an empty text.
+    Return why the value of a parameter is rejected, or an empty text.
 
     It checks teeth of mapper.
     """

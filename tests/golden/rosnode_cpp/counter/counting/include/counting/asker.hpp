@@ -16,7 +16,7 @@ namespace counting
 class Asker : public AskerBase
 {
 public:
-  /// Start the node; to be ready before the first handler runs.
+  /// Start the node; everything must be ready before the first handler runs.
   explicit Asker(const rclcpp::NodeOptions & options);
 
 protected:

@@ -18,7 +18,7 @@ namespace counting
 class Counter : public CounterBase
 {
 public:
-  /// Start the node; to be ready before the first handler runs.
+  /// Start the node; everything must be ready before the first handler runs.
   explicit Counter(const rclcpp::NodeOptions & options);
 
 protected:

@@ -18,7 +18,7 @@ namespace docking
 class Dock : public DockBase
 {
 public:
-  /// Start the node; to be ready before the first handler runs.
+  /// Start the node; everything must be ready before the first handler runs.
   explicit Dock(const rclcpp::NodeOptions & options);
 
 protected:

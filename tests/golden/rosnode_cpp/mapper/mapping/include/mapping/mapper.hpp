@@ -19,7 +19,7 @@ namespace mapping
 class Mapper : public MapperBase
 {
 public:
-  /// Start the node; to be ready before the first handler runs.
+  /// Start the node; everything must be ready before the first handler runs.
   explicit Mapper(const rclcpp::NodeOptions & options);
 
 protected:

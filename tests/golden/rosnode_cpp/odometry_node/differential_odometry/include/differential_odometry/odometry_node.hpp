@@ -19,7 +19,7 @@ namespace differential_odometry
 class OdometryNode : public OdometryNodeBase
 {
 public:
-  /// Start the node; to be ready before the first handler runs.
+  /// Start the node; everything must be ready before the first handler runs.
   explicit OdometryNode(const rclcpp::NodeOptions & options);
 
 protected:

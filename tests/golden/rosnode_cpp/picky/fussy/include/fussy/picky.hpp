@@ -17,7 +17,7 @@ namespace fussy
 class Picky : public PickyBase
 {
 public:
-  /// Start the node; to be ready before the first handler runs.
+  /// Start the node; everything must be ready before the first handler runs.
   explicit Picky(const rclcpp::NodeOptions & options);
 
 protected:

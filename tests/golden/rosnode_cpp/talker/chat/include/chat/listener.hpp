@@ -16,7 +16,7 @@ namespace chat
 class Listener : public ListenerBase
 {
 public:
-  /// Start the node; to be ready before the first handler runs.
+  /// Start the node; everything must be ready before the first handler runs.
   explicit Listener(const rclcpp::NodeOptions & options);
 
 protected:

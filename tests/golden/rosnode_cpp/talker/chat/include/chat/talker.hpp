@@ -15,7 +15,7 @@ namespace chat
 class Talker : public TalkerBase
 {
 public:
-  /// Start the node; to be ready before the first handler runs.
+  /// Start the node; everything must be ready before the first handler runs.
   explicit Talker(const rclcpp::NodeOptions & options);
 };
 

@@ -16,7 +16,7 @@ namespace process
 class Valve : public ValveBase
 {
 public:
-  /// Start the node; to be ready before the first handler runs.
+  /// Start the node; everything must be ready before the first handler runs.
   explicit Valve(const rclcpp::NodeOptions & options);
 
 protected:
