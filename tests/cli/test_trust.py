@@ -59,7 +59,7 @@ def test_file_name_of_node_cannot_inject_code(name: str, target: str, tmp_path: 
     assert outcome.code == 0, outcome.err
     for script in (models / "CMakeLists.txt", models / "setup.py"):
         if script.exists():
-            assert not _evil_lines(script), script
+            assert not _injected_lines(script), script
 
 
 @pytest.mark.parametrize("name", HOSTILE_NAMES.values(), ids=HOSTILE_NAMES.keys())
@@ -100,11 +100,11 @@ def _assert_harmless(folder: Path, name: str) -> None:
     for path in written:
         text = path.read_text(encoding="utf-8")
         assert f"{name}\n" not in text, path
-        assert not _evil_lines(path), path
+        assert not _injected_lines(path), path
         if path.suffix == ".py":
             ast.parse(text)
 
 
-def _evil_lines(path: Path) -> list[str]:
+def _injected_lines(path: Path) -> list[str]:
     lines = path.read_text(encoding="utf-8").splitlines()
     return [line for line in lines if line.strip(" #/*\"'").startswith(_EVIL)]

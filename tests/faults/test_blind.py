@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.faults.conftest import RULES
-from tests.faults.test_gate import assert_zeros_only, stands
+from tests.faults.test_gate import assert_zeros_only, is_stopped
 from tests.support.cpp import needs_rclcpp
 from tests.support.faults import CppRobot, PythonRobot, Robot, Software
 from tests.support.played import imu, scan
@@ -37,10 +37,10 @@ def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     folder = tmp_path_factory.mktemp("watchful")
     models = shutil.copytree(RULES.parent, folder / "models")
     robot_class = PythonRobot if request.param == "python" else CppRobot
-    return robot_class(_watchful(models), folder / "package")
+    return robot_class(_failsafe_rules(models), folder / "package")
 
 
-def _watchful(models: Path) -> Path:
+def _failsafe_rules(models: Path) -> Path:
     """Rewrite the rules in a folder, and return their path."""
     rules = models / RULES.name
     text = rules.read_text(encoding="utf-8")
@@ -67,7 +67,7 @@ def test_lidar_covered_ahead_stops_the_robot(robot: Robot, ahead: float) -> None
         sensors.play("/scan", scan(CLEAR, ahead=ahead), rate=10.0)
         robot.until_stopped(limit=0.5 + 1.0)
         assert robot.event("trigger", "stop")[f"value {NEAREST}"] == "unknown"
-        robot.until(lambda: stands(robot))
+        robot.until(lambda: is_stopped(robot))
         stopped = len(robot.commands)
         success, why = robot.reset()
         assert not success
@@ -85,7 +85,7 @@ def test_lidar_covered_all_around_stops_the_robot(robot: Robot, ahead: float) ->
         _drive(robot, sensors)
         sensors.play("/scan", scan(ahead), rate=10.0)
         robot.until_stopped(limit=0.5 + 1.0)
-        robot.until(lambda: stands(robot))
+        robot.until(lambda: is_stopped(robot))
 
 
 def test_lidar_covered_from_the_start_keeps_the_robot_stopped(robot: Robot) -> None:
@@ -96,7 +96,7 @@ def test_lidar_covered_from_the_start_keeps_the_robot_stopped(robot: Robot) -> N
         robot.until_free()
         robot.until_stopped()
         assert not robot.reset()[0]
-        robot.until(lambda: stands(robot))
+        robot.until(lambda: is_stopped(robot))
 
 
 def test_attitude_of_zeros_stops_the_robot(robot: Robot) -> None:
@@ -107,6 +107,6 @@ def test_attitude_of_zeros_stops_the_robot(robot: Robot) -> None:
         nowhere.orientation.w = 0.0
         sensors.play("/imu", nowhere)
         robot.until_stopped("/halt", limit=0.5 + 1.0)
-        robot.until(lambda: stands(robot))
+        robot.until(lambda: is_stopped(robot))
         sensors.play("/imu", imu())
         robot.until_free()

@@ -44,12 +44,12 @@ def assert_zeros_only(robot: Robot, first: int) -> None:
     assert not any(each.value for each in robot.commands[first:])
 
 
-def stands(robot: Robot) -> bool:
+def is_stopped(robot: Robot) -> bool:
     """Return whether the drive gets zeros permanently; a single one may be due to load."""
     return len(robot.commands) >= 5 and not any(each.value for each in robot.commands[-5:])
 
 
-def drives(robot: Robot) -> bool:
+def is_driving(robot: Robot) -> bool:
     """Return whether the drive has received nonzero commands for half a second."""
     return len(robot.commands) >= 10 and all(each.value for each in robot.commands[-10:])
 
@@ -62,9 +62,9 @@ def test_dead_or_hung_safety_node_stops_the_robot(
     lease = short_lease(tmp_path)  # after which the gate accepts the restarted node
     with robot.safety_node(**lease) as node, robot.gate(), robot.sensors() as sensors:
         sensors.drive()
-        robot.until(lambda: drives(robot))
+        robot.until(lambda: is_driving(robot))
         fault(node)
-        robot.until(lambda: stands(robot))
+        robot.until(lambda: is_stopped(robot))
         zero = max(n for n, each in enumerate(robot.commands) if each.value) + 1
         late = robot.commands[zero].sent - robot.beats[-1].sent - LOST_HEARTBEAT
         assert late < LATE + lateness(robot.commands[zero - 10 : zero], PERIOD)
@@ -124,7 +124,7 @@ def test_dead_or_hung_controller_is_followed_by_zeros(
         commander.drive()
         robot.until_driving()
         fault(commander)
-        robot.until(lambda: stands(robot), limit=LOST_INPUT + PROMPT)
+        robot.until(lambda: is_stopped(robot), limit=LOST_INPUT + PROMPT)
         assert_zeros_only(robot, len(robot.commands))
         assert not robot.is_active("/halt")
 

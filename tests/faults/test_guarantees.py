@@ -40,7 +40,7 @@ def rows(heading: str, page: str = PAGE) -> list[list[str]]:
     return [row for row in table if not set(row[0]) <= {"-"}]
 
 
-def unproved(heading: str, folder: str, page: str = PAGE) -> Iterator[str]:
+def cells_without_test(heading: str, folder: str, page: str = PAGE) -> Iterator[str]:
     """Yield the cells that name no test, or a test that does not exist there."""
     header, *body = rows(heading, page)
     for row in body:
@@ -60,7 +60,7 @@ def test_every_cell_names_an_existing_test(heading: str) -> None:
     """Each way to fail of each dependency of a node has a test."""
     assert rows(heading)[0][1:] == FAILURES
     assert len(rows(heading)) > 5
-    assert list(unproved(heading, TABLES[heading])) == []
+    assert list(cells_without_test(heading, TABLES[heading])) == []
 
 
 @pytest.mark.parametrize(
@@ -79,7 +79,7 @@ def test_cell_without_a_test_is_detected(cell: str, why: str) -> None:
     """An empty cell, one without a test name, and one whose test does not exist are detected."""
     held = "well: `test_killed_node_falls_silent`"
     page = f"\n## T\n\n| x | b | c |\n|---|---|---|\n| a | {held} | {cell} |\n"
-    assert list(unproved("## T", "tests/faults", page)) == [why]
+    assert list(cells_without_test("## T", "tests/faults", page)) == [why]
 
 
 def test_every_named_test_exists() -> None:

@@ -52,19 +52,19 @@ def test_node_survives_the_deletion_of_its_lock(robot: Robot, tmp_path: Path) ->
         assert list(locks(tmp_path).iterdir()) == [lock]
 
 
-def open_to_all(folder: Path) -> None:
+def make_writable_for_all(folder: Path) -> None:
     """Make the folder of the locks writable for others."""
     locks(folder).mkdir()
     locks(folder).chmod(0o777)
 
 
-def link(folder: Path) -> None:
+def put_link(folder: Path) -> None:
     """Replace the folder of the locks by a link."""
     (folder / "another").mkdir(mode=0o700)
     locks(folder).symlink_to(folder / "another")
 
 
-@pytest.mark.parametrize("put", [open_to_all, link])
+@pytest.mark.parametrize("put", [make_writable_for_all, put_link])
 def test_shared_lock_folder_is_not_used(
     robot: Robot, tmp_path: Path, put: Callable[[Path], None]
 ) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.faults.test_gate import assert_zeros_only, stands
+from tests.faults.test_gate import assert_zeros_only, is_stopped
 from tests.support.faults import NODE, Robot
 from tests.support.played import scan, speed
 from tests.support.ros import Peer, short_lease
@@ -28,7 +28,7 @@ def refused(robot: Robot, unknown: str) -> bool:
 
 def assert_refused(robot: Robot, unknown: str) -> None:
     """Assert that a reset is refused because of an unknown value, and that no command passes."""
-    robot.until(lambda: stands(robot))
+    robot.until(lambda: is_stopped(robot))
     stopped = len(robot.commands)
     robot.until(lambda: refused(robot, unknown))
     assert robot.is_active("/stop")

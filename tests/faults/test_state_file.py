@@ -16,7 +16,7 @@ from tests.support.preload import Disk
 pytestmark = pytest.mark.ros
 
 
-def cut(file: Path) -> None:
+def truncate(file: Path) -> None:
     """Keep only half of the file, as after a crash of the machine."""
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
 
@@ -33,18 +33,18 @@ def empty(file: Path) -> None:
     file.write_bytes(b"")
 
 
-def scribble(file: Path) -> None:
+def write_garbage(file: Path) -> None:
     """Write bytes that are not text."""
     file.write_bytes(bytes(range(256)) * 16)
 
 
-def block(file: Path) -> None:
+def put_unreadable(file: Path) -> None:
     """Replace the file by something unreadable."""
     file.unlink()
     file.mkdir()
 
 
-@pytest.mark.parametrize("damage", [cut, flip, empty, scribble, block])
+@pytest.mark.parametrize("damage", [truncate, flip, empty, write_garbage, put_unreadable])
 def test_damaged_state_file_means_stopped(
     robot: Robot, tmp_path: Path, damage: Callable[[Path], object]
 ) -> None:
@@ -58,33 +58,33 @@ def test_damaged_state_file_means_stopped(
         assert str(file) in node.output()
 
 
-def link(file: Path) -> None:
+def put_link(file: Path) -> None:
     """Replace the file by a link to one without active actions."""
     other = file.with_name("other")
     file.rename(other)
     file.symlink_to(other)
 
 
-def dangle(file: Path) -> None:
+def put_dangling_link(file: Path) -> None:
     """Replace the file by a dangling link."""
     file.unlink()
     file.symlink_to(file.with_name("nowhere"))
 
 
-def pipe(file: Path) -> None:
+def put_pipe(file: Path) -> None:
     """Replace the file by a pipe without a writer."""
     file.unlink()
     os.mkfifo(file)
 
 
-def bind(file: Path) -> None:
+def put_socket(file: Path) -> None:
     """Replace the file by a socket."""
     file.unlink()
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(str(file))
 
 
-def device(file: Path) -> None:
+def put_device(file: Path) -> None:
     """Replace the file by a device (root only): the null device under another name."""
     file.unlink()
     try:
@@ -102,7 +102,9 @@ def described(folder: Path) -> list[tuple[str, int, bytes]]:
     ]
 
 
-@pytest.mark.parametrize("put", [link, dangle, pipe, bind, device, block])
+@pytest.mark.parametrize(
+    "put", [put_link, put_dangling_link, put_pipe, put_socket, put_device, put_unreadable]
+)
 def test_irregular_state_file_means_stopped_and_is_kept(
     robot: Robot, tmp_path: Path, put: Callable[[Path], object]
 ) -> None:
@@ -154,7 +156,7 @@ def test_link_created_at_run_time_is_reported(robot: Robot, tmp_path: Path) -> N
     """From then on the node cannot store anything, and reports it."""
     file = tmp_path / "state"
     with robot.safety_node(f"state_file:={file}") as node:
-        link(file)
+        put_link(file)
         robot.until(lambda: "it is a symbolic link, not a regular file" in node.output())
         assert file.is_symlink()
 

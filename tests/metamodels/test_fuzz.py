@@ -13,7 +13,7 @@ from tests.support.mutations import PIECES, TEXTS, mutated
 from tests.support.profiles import scaled
 
 
-def _sound(loaded: LoadedFile) -> None:
+def _assert_valid(loaded: LoadedFile) -> None:
     """Check that a result has a model or a finding, and spans that lie in the text."""
     assert loaded.model is not None or loaded.diagnostics
     for finding in loaded.diagnostics:
@@ -30,7 +30,7 @@ def _sound(loaded: LoadedFile) -> None:
 def test_mutated_listings_do_not_raise(case: tuple[str, str]) -> None:
     """Truncated and mutated models load without an exception."""
     suffix, text = case
-    _sound(Repository().load_text(f"fuzz.{suffix}", text))
+    _assert_valid(Repository().load_text(f"fuzz.{suffix}", text))
 
 
 @given(st.sampled_from(sorted(TEXTS)), st.data())
@@ -42,16 +42,16 @@ def test_mutated_bytes_do_not_raise(suffix: str, data: st.DataObject) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"fuzz.{suffix}"
         path.write_bytes(content)
-        _sound(Repository().load(path))
+        _assert_valid(Repository().load(path))
 
 
 @given(st.sampled_from(sorted(TEXTS)), st.text(max_size=60))
 def test_arbitrary_text_does_not_raise(suffix: str, text: str) -> None:
     """Text that is not a model loads without an exception."""
-    _sound(Repository().load_text(f"fuzz.{suffix}", text))
+    _assert_valid(Repository().load_text(f"fuzz.{suffix}", text))
 
 
 @given(st.sampled_from(sorted(TEXTS)), st.lists(PIECES, max_size=40))
 def test_arbitrary_tokens_do_not_raise(suffix: str, pieces: list[str]) -> None:
     """Words and symbols of the languages in any order load without an exception."""
-    _sound(Repository().load_text(f"fuzz.{suffix}", " ".join(pieces)))
+    _assert_valid(Repository().load_text(f"fuzz.{suffix}", " ".join(pieces)))

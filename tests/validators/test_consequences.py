@@ -29,7 +29,7 @@ def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
     return [each for each in findings if each.severity is not Severity.INFO]
 
 
-def _garbled(text: str) -> list[tuple[int, str]]:
+def _with_errors(text: str) -> list[tuple[int, str]]:
     """Return copies of the text with an invalid character before every n-th token."""
     starts = [each.start() for each in _TOKEN.finditer(text) if each[0][:2] not in ("//", "/*")]
     return [(at, f"{text[:at]}? {text[at:]}") for at in starts[::_EVERY]]
@@ -38,7 +38,7 @@ def _garbled(text: str) -> list[tuple[int, str]]:
 @pytest.mark.parametrize("name", MODELS)
 def test_syntax_error_anywhere_gives_one_finding(name: str) -> None:
     """A syntax error anywhere in a sound project of seven files gives one finding, at its place."""
-    for at, text in _garbled(MODELS[name]):
+    for at, text in _with_errors(MODELS[name]):
         findings = _findings(EXAMPLE, name, text)
         places = [(each.code.name, each.span.file.rsplit("/", 1)[-1]) for each in findings]
         assert places == [("DRS003", name)], (text[max(0, at - 30) : at + 30], findings)

@@ -39,7 +39,7 @@ def twist(speed: float) -> Any:
     return message
 
 
-def stop_for_good(world: World) -> None:
+def stop_permanently(world: World) -> None:
     """Have the safety node stop the robot permanently, and wait for it."""
     world.stop(True)
     world.wish_until(0.3, lambda: world.last == STILL)
@@ -48,7 +48,7 @@ def stop_for_good(world: World) -> None:
 @pytest.mark.usefixtures("gate")
 def test_foreign_inactive_state_does_not_release(world: World, ros_env: dict[str, str]) -> None:
     """Latched or repeated, no command passes while the safety node publishes active."""
-    stop_for_good(world)
+    stop_permanently(world)
     with Stranger(ros_env) as stranger:
         publisher = stranger.stop(False)
         world.wish_until(0.3, publisher.get_subscription_count)
@@ -81,7 +81,7 @@ def test_short_lived_foreign_publisher_does_not_release(
     world: World, ros_env: dict[str, str]
 ) -> None:
     """However briefly it exists, its state does not count as the safety node's."""
-    stop_for_good(world)
+    stop_permanently(world)
     before = len(world.heard)
     for _ in range(5):
         with Stranger(ros_env) as stranger:
@@ -96,7 +96,7 @@ def test_foreign_publisher_that_ends_during_a_hang_does_not_release(
     gate: Popen[str], world: World, ros_env: dict[str, str]
 ) -> None:
     """Messages received meanwhile are handled in any order; none of them counts."""
-    stop_for_good(world)
+    stop_permanently(world)
     with Stranger(ros_env) as stranger:
         publisher = stranger.stop(True)
         world.wish_until(0.3, publisher.get_subscription_count)

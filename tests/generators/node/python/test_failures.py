@@ -69,7 +69,7 @@ class Client:
     def _receive(self, _: Any) -> None:
         self.echoes += 1
 
-    def poke(self) -> None:
+    def send_message(self) -> None:
         """Send a message once the node is discovered."""
         self.peer.until(self._poke.get_subscription_count)
         self._poke.publish(self._empty())
@@ -110,7 +110,7 @@ def test_failing_user_code_ends_the_program_with_the_reason(
     with start(place=given or "none", way=way) as process:
         result: Any = None
         if place == "topic":
-            client.poke()
+            client.send_message()
         elif place == "service":
             client.ask()
         elif place == "parameters":
@@ -179,7 +179,7 @@ def test_goals_delay_neither_messages_nor_cancel_requests(start: Start, client: 
         goals = [client.send_goal() for _ in range(4)]
         assert all(goal.accepted for goal in goals)
         began = time.monotonic()
-        client.poke()
+        client.send_message()
         peer.until(lambda: client.echoes)
         (changed,) = set_parameter(peer, "breaker", knob=1.0)
         assert changed.successful

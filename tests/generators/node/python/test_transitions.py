@@ -101,7 +101,7 @@ class Client:
         """Return the name of the node's state."""
         return str(self.peer.call(self._get, self._get_state.Request()).current_state.label)
 
-    def poke(self) -> None:
+    def send_message(self) -> None:
         """Send a message once the node is discovered."""
         self.peer.until(self._poke.get_subscription_count)
         self._poke.publish(self._empty())
@@ -177,7 +177,7 @@ def test_throwing_handler_ends_the_program(
     with start(place, "error") as process:
         client.lead_to("deactivate")
         if place == "topic":
-            client.poke()
+            client.send_message()
         output, _ = process.communicate(timeout=LIMIT)
     assert process.returncode == 1, output
     assert leaver.reasons["error"] in output
