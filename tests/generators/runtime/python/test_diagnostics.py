@@ -51,7 +51,7 @@ class Event(NamedTuple):
     unknown: tuple[str, ...] = ()
 
 
-class Shown:
+class PublishedDiagnostics:
     """Diagnostics of a node with some rules, and their messages."""
 
     def __init__(
@@ -67,11 +67,11 @@ class Shown:
         self.diagnostics = Diagnostics(
             self.node, Mock(), behaviours, actions, self.messages.append, 1.0, lambda: 0
         )
-        self.unready = ""
+        self.not_ready = ""
         explained = Explanation(rules, dict.fromkeys(holding, ("why",)))
-        self.diagnostics.begin(lambda: explained, lambda: 6_000_000_000, lambda: self.unready)
+        self.diagnostics.begin(lambda: explained, lambda: 6_000_000_000, lambda: self.not_ready)
 
-    def ring(self) -> dict[str, Any]:
+    def publish(self) -> dict[str, Any]:
         """Publish now, and return the statuses by the last part of their names."""
         self.diagnostics._timer.fire()
         return {each.name.rpartition(": ")[2]: each for each in self.messages[-1].status}
@@ -103,31 +103,33 @@ def test_level_of_a_rule_follows_its_effect(
     value: bool | None, holding: tuple[str, ...], level: int
 ) -> None:
     """Red for a rule that holds the robot, stale for an unknown one."""
-    shown = Shown(Rule("drive.fast", value), holding=holding, named=("drive.fast",)).ring()
+    shown = PublishedDiagnostics(
+        Rule("drive.fast", value), holding=holding, named=("drive.fast",)
+    ).publish()
     assert shown["drive.fast"].level[0] == level
 
 
 def test_only_true_rules_are_errors() -> None:
     """Of 'a or b', the false one does not hold the robot."""
     rules = (Rule("a.a", True), Rule("b.b", False))
-    shown = Shown(*rules, holding=("stopping",), named=("a.a", "b.b")).ring()
+    shown = PublishedDiagnostics(*rules, holding=("stopping",), named=("a.a", "b.b")).publish()
     assert [shown[name].level[0] for name in ("a.a", "b.b")] == [ERROR, OK]
 
 
 def test_negated_rule_is_an_error_if_false() -> None:
     """Of 'not ready', the false rule holds the robot."""
     rule = Rule("self.ready", False)
-    shown = Shown(rule, holding=("stopping",), named=("self.ready",)).ring()
+    shown = PublishedDiagnostics(rule, holding=("stopping",), named=("self.ready",)).publish()
     assert shown["self.ready"].level[0] == ERROR
 
 
 def test_action_shows_cause_and_start() -> None:
     """Another trigger does not change the start."""
-    shown = Shown()
+    shown = PublishedDiagnostics()
     why = Explanation((), {"stopping": ("a.a: speed 2.0 > 1", "b.b: lidar.missing()")})
     shown.diagnostics.update(Event("trigger", "stop"), why)
     shown.diagnostics.update(Event("trigger", "stop", "another", 5_500_000_000), why)
-    status = shown.ring()["action stop"]
+    status = shown.publish()["action stop"]
     values = {value.key: value.value for value in status.values}
     assert (status.level[0], status.message) == (WARN, "active")
     assert values == {
@@ -138,36 +140,39 @@ def test_action_shows_cause_and_start() -> None:
         "since_ns": "5000000000",
     }
     shown.diagnostics.update(Event("refused", "stop"), Explanation())
-    assert shown.ring()["action stop"].message == "active"
+    assert shown.publish()["action stop"].message == "active"
     shown.diagnostics.update(Event("reset", "stop"), Explanation())
-    assert shown.ring()["action stop"].message == "inactive"
+    assert shown.publish()["action stop"].message == "inactive"
 
 
 def test_true_rule_shows_its_true_parts() -> None:
     """They are listed next to all values that it reads."""
     rule = Rule("drive.fast", True, causes=("speed 2.0 > 1", "lidar.missing()"))
-    values = {value.key: value.value for value in Shown(rule).ring()["drive.fast"].values}
+    values = {
+        value.key: value.value
+        for value in PublishedDiagnostics(rule).publish()["drive.fast"].values
+    }
     assert values["speed"] == "2.0"
     assert values["cause"] == "speed 2.0 > 1 and lidar.missing()"
 
 
 def test_fault_is_an_error_until_it_ends() -> None:
     """It is in the node's own status; only changes are reported as such."""
-    shown = Shown()
+    shown = PublishedDiagnostics()
     assert shown.diagnostics.fault("/imu", "is not heard")
     assert not shown.diagnostics.fault("/imu", "is not heard")
-    status = shown.ring()["/safety"]
+    status = shown.publish()["/safety"]
     assert (status.level[0], status.message) == (ERROR, "is not heard")
     assert shown.diagnostics.fault("/imu", "")
     assert not shown.diagnostics.fault("/imu", "")
-    shown.unready = "starting"
-    assert shown.ring()["/safety"].level[0] == WARN
+    shown.not_ready = "starting"
+    assert shown.publish()["/safety"].level[0] == WARN
 
 
 def test_change_is_published_soon() -> None:
     """Changes are published within 50 ms, otherwise every second."""
-    shown = Shown()
-    shown.ring()
+    shown = PublishedDiagnostics()
+    shown.publish()
     assert 0.9 < shown.wait <= 1.0
     shown.diagnostics.changed()
     assert shown.wait <= 0.05
@@ -176,10 +181,10 @@ def test_change_is_published_soon() -> None:
 def test_many_rules_are_published_in_chunks() -> None:
     """A thousand statuses in one message would delay the rules by tens of ms."""
     rules = [Rule(f"e.r{number}", False) for number in range(3 * CHUNK)]
-    shown = Shown(*rules)
-    shown.ring()
+    shown = PublishedDiagnostics(*rules)
+    shown.publish()
     while shown.wait < 0.5:
-        shown.ring()
+        shown.publish()
     assert max(len(message.status) for message in shown.messages) == CHUNK
     names = {each.name for message in shown.messages for each in message.status}
     assert len(names) == 3 * CHUNK + 3

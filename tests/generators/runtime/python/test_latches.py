@@ -12,7 +12,7 @@ from deros.generators.runtime.python.deros_runtime.latches import Latches, Latch
 KNOWN = ("halt", "stop")
 
 
-class Told:
+class ReportCollector:
     """Collects reports about the file; the last text is the current problem."""
 
     def __init__(self) -> None:
@@ -30,10 +30,10 @@ def file_in(folder: Path, owner: str = "/robot_safety") -> LatchFile:
     return LatchFile(folder / "deros" / "robot.latches", owner)
 
 
-def latches_in(folder: Path) -> tuple[Latches, Told]:
+def latches_in(folder: Path) -> tuple[Latches, ReportCollector]:
     """Return the latches that a starting node reads from the file, and its reports."""
-    told = Told()
-    return Latches(file_in(folder), KNOWN, told), told
+    reports = ReportCollector()
+    return Latches(file_in(folder), KNOWN, reports), reports
 
 
 def without_space(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -47,9 +47,9 @@ def without_space(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_nothing_is_active_without_a_file(tmp_path: Path) -> None:
     """The first start of a node is not an error."""
-    latches, told = latches_in(tmp_path)
+    latches, reports = latches_in(tmp_path)
     assert latches.active == frozenset()
-    assert told.texts == []
+    assert reports.texts == []
 
 
 def test_pending_change_counts_as_active(tmp_path: Path) -> None:
@@ -73,9 +73,9 @@ def test_active_actions_survive_a_restart(tmp_path: Path) -> None:
     latches.record("stop", active=True)
     latches.record("beep", active=True)
     assert latches.persist() == ""
-    again, told = latches_in(tmp_path)
+    again, reports = latches_in(tmp_path)
     assert again.active == {"stop"}
-    assert told.texts == []
+    assert reports.texts == []
     again.record("stop", active=False)
     again.persist()
     assert latches_in(tmp_path)[0].active == frozenset()
@@ -86,9 +86,9 @@ def test_damaged_file_counts_as_active(tmp_path: Path, damage: bytes) -> None:
     """A file that cannot be trusted keeps the robot stopped."""
     file_in(tmp_path).save(frozenset())
     file_in(tmp_path).path.write_bytes(damage)
-    latches, told = latches_in(tmp_path)
+    latches, reports = latches_in(tmp_path)
     assert latches.active == set(KNOWN)
-    (text,) = told.texts
+    (text,) = reports.texts
     assert text.endswith("all latched actions are active")
 
 
@@ -125,9 +125,9 @@ def test_file_of_another_node_is_rejected(tmp_path: Path) -> None:
 def test_action_missing_from_the_rules_makes_all_active(tmp_path: Path) -> None:
     """It may have been renamed, and must still hold the robot."""
     file_in(tmp_path).save(frozenset({"freeze"}))
-    latches, told = latches_in(tmp_path)
+    latches, reports = latches_in(tmp_path)
     assert latches.active == set(KNOWN)
-    assert "freeze" in told.texts[0]
+    assert "freeze" in reports.texts[0]
 
 
 def test_unwritable_file_at_the_start_counts_as_active(
@@ -135,23 +135,23 @@ def test_unwritable_file_at_the_start_counts_as_active(
 ) -> None:
     """The node could not store a stop."""
     without_space(monkeypatch)
-    latches, told = latches_in(tmp_path)
+    latches, reports = latches_in(tmp_path)
     assert latches.active == set(KNOWN)
-    assert "No space left" in told.texts[0]
+    assert "No space left" in reports.texts[0]
 
 
 def test_full_disk_makes_all_active_after_a_restart(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The old file, without the trigger, must not remain valid."""
-    latches, told = latches_in(tmp_path)
+    latches, reports = latches_in(tmp_path)
     latches.record("stop", active=True)
     with monkeypatch.context() as full:
         without_space(full)
         assert "No space left" in latches.persist()
     assert file_in(tmp_path).load(KNOWN)[0] == set(KNOWN)
     assert latches.persist() == ""
-    assert told.texts[-1] == ""
+    assert reports.texts[-1] == ""
     assert file_in(tmp_path).load(KNOWN) == (frozenset({"stop"}), "")
 
 
@@ -200,9 +200,9 @@ def test_huge_file_is_not_read_completely(tmp_path: Path) -> None:
     file_in(tmp_path).save(frozenset())
     with file_in(tmp_path).path.open("r+b") as file:
         file.truncate(1 << 40)
-    latches, told = latches_in(tmp_path)
+    latches, reports = latches_in(tmp_path)
     assert latches.active == set(KNOWN)
-    assert "it is longer than" in told.texts[0]
+    assert "it is longer than" in reports.texts[0]
 
 
 def test_stored_state_is_not_written_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

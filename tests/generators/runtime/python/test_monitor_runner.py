@@ -222,7 +222,7 @@ class Counter:
 
 def test_late_events_have_the_explanations_of_their_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """A late call handles one deadline after the other, and publishes everything at once."""
-    told: list[tuple[str, int]] = []
+    explained: list[tuple[str, int]] = []
     owner = Owner()
     runner = owner.runner
     take: Any = runner._take
@@ -230,10 +230,10 @@ def test_late_events_have_the_explanations_of_their_time(monkeypatch: pytest.Mon
     monkeypatch.setattr(runner, "_show", lambda _event: True)
 
     def after(events: list[Event], _: list[int], states: list[int]) -> None:
-        told.extend((event.action, state) for event, state in zip(events, states, strict=True))
+        explained.extend((event.action, state) for event, state in zip(events, states, strict=True))
 
     monkeypatch.setattr(owner, "after", after)
     runner.catch_up(3)
-    assert told == []
+    assert explained == []
     runner.settle()
-    assert told == [("stop 1", 1), ("stop 2", 2), ("stop 3", 3)]
+    assert explained == [("stop 1", 1), ("stop 2", 2), ("stop 3", 3)]

@@ -20,13 +20,13 @@ from deros.generators.runtime.python.deros_runtime.report_queue import (
 from tests.support.clockwork import Clockwork
 
 
-class Telling(Clockwork):
+class QueueOnClock(Clockwork):
     """A queue on a simulated clock, and its reports."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Start at time zero without reports."""
         super().__init__()
-        self.told: list[int] = []
+        self.reported: list[int] = []
         self.pauses = 0
         monkeypatch.setattr(report_queue, "time", Mock(monotonic_ns=self.read))
         self.diagnostics = Mock()
@@ -36,7 +36,7 @@ class Telling(Clockwork):
     def note(self, event: Any, done: int, states: Any) -> None:
         """Record a report with its data."""
         assert (done, states) == (7, "states")
-        self.told.append(event.number)
+        self.reported.append(event.number)
 
     def pause(self) -> None:
         """Count the reported items."""
@@ -54,52 +54,52 @@ class Telling(Clockwork):
 
 
 @pytest.fixture
-def telling(monkeypatch: pytest.MonkeyPatch) -> Telling:
+def queue(monkeypatch: pytest.MonkeyPatch) -> QueueOnClock:
     """Return an empty queue."""
-    return Telling(monkeypatch)
+    return QueueOnClock(monkeypatch)
 
 
-def test_reports_wait_for_the_readers_of_states(telling: Telling) -> None:
+def test_reports_wait_for_the_readers_of_states(queue: QueueOnClock) -> None:
     """The delay is two milliseconds after the first of them."""
-    telling.add(1)
-    telling.now += SOON // 2
-    telling.add(2)
-    assert telling.told == []
-    telling.pass_time(SOON - SOON // 2)
-    assert telling.told == [1, 2]
+    queue.add(1)
+    queue.now += SOON // 2
+    queue.add(2)
+    assert queue.reported == []
+    queue.pass_time(SOON - SOON // 2)
+    assert queue.reported == [1, 2]
 
 
-def test_messages_are_handled_between_chunks(telling: Telling) -> None:
+def test_messages_are_handled_between_chunks(queue: QueueOnClock) -> None:
     """A backlog is reported in order, at most one chunk at a time."""
     everything = list(range(2 * CHUNK + 1))
-    telling.add(*everything)
-    telling.pass_time(SOON)
-    assert telling.told == everything[:CHUNK]
-    assert telling.timer.expires == telling.now + PAUSE
-    telling.pass_time(PAUSE)
-    assert telling.told == everything[: 2 * CHUNK]
-    telling.pass_time(PAUSE)
-    assert telling.told == everything
-    assert telling.pauses == 3
-    assert telling.diagnostics.changed.call_count == 3
-    assert telling.diagnostics.update.call_count == len(everything)
+    queue.add(*everything)
+    queue.pass_time(SOON)
+    assert queue.reported == everything[:CHUNK]
+    assert queue.timer.expires == queue.now + PAUSE
+    queue.pass_time(PAUSE)
+    assert queue.reported == everything[: 2 * CHUNK]
+    queue.pass_time(PAUSE)
+    assert queue.reported == everything
+    assert queue.pauses == 3
+    assert queue.diagnostics.changed.call_count == 3
+    assert queue.diagnostics.update.call_count == len(everything)
 
 
-def test_later_report_waits_again(telling: Telling) -> None:
+def test_later_report_waits_again(queue: QueueOnClock) -> None:
     """When the queue is empty, the next report waits as the first one did."""
-    telling.add(1)
-    telling.pass_time(SOON)
-    telling.add(2)
-    assert telling.told == [1]
-    assert telling.timer.expires == telling.now + SOON
-    telling.pass_time(SOON)
-    assert telling.told == [1, 2]
+    queue.add(1)
+    queue.pass_time(SOON)
+    queue.add(2)
+    assert queue.reported == [1]
+    assert queue.timer.expires == queue.now + SOON
+    queue.pass_time(SOON)
+    assert queue.reported == [1, 2]
 
 
-def test_backlog_is_bounded(telling: Telling) -> None:
+def test_backlog_is_bounded(queue: QueueOnClock) -> None:
     """If the timer never fires, each new report flushes an old one; none is lost."""
     everything = list(range(3 * ROOM))
-    telling.add(*everything)
-    assert telling.told == everything[:-ROOM]
-    telling.reports.flush()
-    assert telling.told == everything
+    queue.add(*everything)
+    assert queue.reported == everything[:-ROOM]
+    queue.reports.flush()
+    assert queue.reported == everything

@@ -21,7 +21,7 @@ class Published:
     def __init__(self, stamped: bool = False) -> None:
         """Start with both inactive."""
         self.messages: list[Any] = []
-        self.made = 0
+        self.created = 0
         self.topic = StateTopic(
             {"stop", "slow"}, self.message, self.messages.append, stamped=stamped
         )
@@ -29,7 +29,7 @@ class Published:
 
     def message(self, active: Set[str]) -> Any:
         """Create the message, and count the calls."""
-        self.made += 1
+        self.created += 1
         return std_msgs.String(data=" ".join(sorted(active)))
 
     @property
@@ -45,51 +45,51 @@ class Published:
 
 def test_each_change_is_published() -> None:
     """Activation, second activation, deactivation, and repetition on request."""
-    it = Published()
-    it.topic.show("stop", True)
-    it.topic.show("slow", True)
-    it.topic.show("stop", False)
-    it.topic.publish()
-    assert it.texts == ["stop", "slow stop", "slow", "slow"]
+    published = Published()
+    published.topic.show("stop", True)
+    published.topic.show("slow", True)
+    published.topic.show("stop", False)
+    published.topic.publish()
+    assert published.texts == ["stop", "slow stop", "slow", "slow"]
 
 
 def test_next_message_is_prepared_in_advance() -> None:
     """When an action becomes active, the bytes exist already."""
-    it = Published()
-    made = it.made
-    it.topic.show("stop", True)
-    assert it.made == made
-    it.topic.prepare()
-    made = it.made
-    it.topic.show("slow", True)
-    assert it.made == made
-    assert all(isinstance(message, bytes) for message in it.messages)
+    published = Published()
+    created = published.created
+    published.topic.show("stop", True)
+    assert published.created == created
+    published.topic.prepare()
+    created = published.created
+    published.topic.show("slow", True)
+    assert published.created == created
+    assert all(isinstance(message, bytes) for message in published.messages)
 
 
 def test_number_of_messages_is_bounded() -> None:
     """Repeated changes reuse the messages."""
-    it = Published()
+    published = Published()
     for _ in range(100):
         for action in ("stop", "slow"):
             for active in (True, False):
-                it.topic.show(action, active)
-                it.topic.prepare()
-    assert it.made <= 4
+                published.topic.show(action, active)
+                published.topic.prepare()
+    assert published.created <= 4
 
 
 def test_stamped_message_is_created_each_time() -> None:
     """Its stamp is the time of publication."""
-    it = Published(stamped=True)
-    it.topic.show("stop", True)
-    it.topic.prepare()
-    it.topic.publish()
-    assert it.made == 2
-    assert it.texts == ["stop", "stop"]
+    published = Published(stamped=True)
+    published.topic.show("stop", True)
+    published.topic.prepare()
+    published.topic.publish()
+    assert published.created == 2
+    assert published.texts == ["stop", "stop"]
 
 
 def test_latched_actions_are_published_at_the_start() -> None:
     """Only the actions of this topic count."""
-    it = Published()
-    it.topic.begin(frozenset({"stop", "another"}))
-    it.topic.publish()
-    assert it.texts == ["stop"]
+    published = Published()
+    published.topic.begin(frozenset({"stop", "another"}))
+    published.topic.publish()
+    assert published.texts == ["stop"]
