@@ -2,6 +2,8 @@
 
 PYTHON ?= python3
 JOBS ?= 2
+# Tests on the middleware wait more than they compute, so two processes a core.
+TESTERS ?= 4
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -27,16 +29,16 @@ demo: $(READY)  ## Generate the feeding robot, start it, play its fifteen test c
 
 .PHONY: test
 test: $(READY)  ## Run the tests, those on the real middleware included
-	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow"
+	@$(ALONE) $(BIN)/python -m pytest -n $(TESTERS) --dist worksteal -m "not slow"
 
 .PHONY: test-all
 test-all: $(READY)  ## Run the slow tests too, and 500 examples of each property instead of 100
-	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) --dist worksteal --hypothesis-profile ci
+	@$(ALONE) $(BIN)/python -m pytest -n $(TESTERS) --dist worksteal --hypothesis-profile ci
 
 .PHONY: property
 property: $(READY)  ## Compare monitors on 120,000 random pairs; 5,000 examples of each property (nightly)
 	@$(ALONE) $(BIN)/python tools/property.py --jobs $(JOBS)
-	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) -m hypothesis --hypothesis-profile nightly
+	@$(ALONE) $(BIN)/python -m pytest -n $(TESTERS) -m hypothesis --hypothesis-profile nightly
 
 .PHONY: repeat
 repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (nightly)
@@ -60,7 +62,8 @@ misra: $(READY)  ## Hold the emitted C against MISRA C:2012; needs cppcheck
 
 .PHONY: prove
 prove: $(READY)  ## Prove that the monitors in C of the examples do what the rules mean; needs Frama-C
-	@$(ALONE) $(BIN)/python tools/prove.py --jobs $(JOBS) $(RULES)
+	@$(ALONE) $(BIN)/python tools/prove.py --jobs $(JOBS) $(RULES) \
+	  $(if $(SHARE),--share $(SHARE) --draw $$(git rev-parse HEAD))
 
 .PHONY: slips
 slips: $(READY)  ## Put every single slip into the C that is proved, and see the proof find each; takes hours
@@ -90,6 +93,10 @@ bench: $(BENCH_READY)  ## Measure; prints ratios against a floor measured in the
 golden: $(READY)  ## Refresh the expectations in tests/golden and tests/cases, to be reviewed as a diff
 	$(BIN)/python tests/cases/refresh.py
 	$(BIN)/python -m pytest -q tests/generators -k 'match_golden or matches_golden' --refresh-golden
+
+.PHONY: killing-pairs
+killing-pairs: $(READY)  ## Search again for the pairs that kill the slips planted in monitors; takes half an hour
+	$(BIN)/python -m pytest -q tests/generators/monitor -k mutation_is_detected -m "not slow" --refresh-killing-pairs
 
 .PHONY: clean
 clean:  ## Remove the environment and everything built

@@ -19,7 +19,7 @@ from tests.support import profiles  # noqa: E402  (after the root is on the path
 
 profiles.register()
 
-pytest_plugins = ("tests.support.golden", "tests.support.ros")
+pytest_plugins = ("tests.support.golden", "tests.support.killing_pairs", "tests.support.ros")
 
 collect_ignore = ["golden"]
 """Generated packages have their own tests, which run where they are built."""

@@ -57,6 +57,7 @@ def test_processor_time_covers_all_threads() -> None:
         processor_time_ns(child.pid)
 
 
+@pytest.mark.slow
 @pytest.mark.ros
 def test_short_run_measures_every_node_and_load(tmp_path: Path) -> None:
     """The safety node still stops under every load."""

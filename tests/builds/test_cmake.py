@@ -11,6 +11,7 @@ import pytest
 import deros
 from deros.generators.monitor.c.names import prefix_of
 from tests.support.builds import (
+    EACH_GENERATOR,
     GENERATORS,
     PROGRAM,
     Project,
@@ -34,7 +35,7 @@ SCRIPT = PLAIN + 'deros_generate(started MODEL "my models/robot.system" GENERATO
 CMAKE = Path(deros.__file__).parent / "cmake"
 
 
-@pytest.fixture(params=GENERATORS)
+@pytest.fixture(params=EACH_GENERATOR)
 def tool(request: pytest.FixtureRequest) -> str:
     """Return each of CMake's generators in turn."""
     return str(request.param)

@@ -8,6 +8,8 @@ import pytest
 
 from tests.support.wheel import Environment, build_wheel
 
+pytestmark = pytest.mark.slow
+
 CASES = Path(__file__).resolve().parents[1] / "cases"
 LANGUAGES = {"node": ".rnd", "system": ".system", "rules": ".deros"}
 

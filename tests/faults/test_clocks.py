@@ -11,6 +11,7 @@ import pytest
 from tests.support.faults import PROMPT, Robot
 from tests.support.played import TOPICS, imu, load, speed, ticks
 from tests.support.preload import WallClock
+from tests.support.profiles import slow
 
 pytestmark = pytest.mark.ros
 
@@ -18,7 +19,7 @@ TILTED = math.radians(20.0)
 DAY = 86400
 
 
-@pytest.mark.parametrize("seconds", [400 * DAY, -3600])
+@pytest.mark.parametrize("seconds", [slow(400 * DAY), -3600])
 def test_wall_clock_step_has_no_effect(robot: Robot, tmp_path: Path, seconds: int) -> None:
     """Setting the system clock neither stops the robot nor prevents a stop."""
     wall_clock = WallClock(tmp_path)

@@ -66,6 +66,7 @@ def toggler(robot: Robot, times: int) -> subprocess.Popen[str]:
     )
 
 
+@pytest.mark.slow
 def test_ten_thousand_triggers_are_all_executed(robot: Robot) -> None:
     """Each of 10,000 violations triggers the action, and each end resets it.
 
@@ -114,6 +115,7 @@ def test_unread_output_blocks_nothing(robot: Robot) -> None:
             node.kill()
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow(robot: Robot) -> None:
     """Fifty thousand messages at full speed, with triggers among them, leave nothing behind.
 

@@ -13,6 +13,7 @@ import pytest
 from tests.support.faults import GATE, PROMPT, Heard, Robot
 from tests.support.played import COMMANDER, SENSES, TOPICS, command, load
 from tests.support.preload import WallClock
+from tests.support.profiles import slow
 from tests.support.ros import short_lease
 from tests.support.victims import Process, Sensors
 
@@ -54,7 +55,7 @@ def is_driving(robot: Robot) -> bool:
     return len(robot.commands) >= 10 and all(each.value for each in robot.commands[-10:])
 
 
-@pytest.mark.parametrize("fault", [Process.kill, Process.freeze])
+@pytest.mark.parametrize("fault", [slow(Process.kill), Process.freeze])
 def test_dead_or_hung_safety_node_stops_the_robot(
     robot: Robot, tmp_path: Path, fault: Callable[[Process], None]
 ) -> None:
@@ -109,7 +110,7 @@ def test_gate_without_a_safety_node_commands_zero(robot: Robot) -> None:
         gate.end()
 
 
-@pytest.mark.parametrize("fault", [Sensors.kill, Sensors.freeze])
+@pytest.mark.parametrize("fault", [Sensors.kill, slow(Sensors.freeze)])
 def test_dead_or_hung_controller_is_followed_by_zeros(
     robot: Robot, fault: Callable[[Sensors], None]
 ) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from tests.support.faults import PROMPT, Robot
 from tests.support.played import imu, speed
+from tests.support.profiles import scaled
 
 pytestmark = pytest.mark.ros
 
@@ -102,7 +103,7 @@ def test_node_restarts_after_a_kill_at_any_moment(robot: Robot) -> None:
     """Wherever it is killed, it can be started again, and monitors."""
     with robot.safety_node() as node, robot.sensors() as sensors:
         sensors.drive()
-        for moment in range(3):
+        for moment in range(scaled(3, least=1)):
             robot.violate()
             time.sleep(moment * 0.001)  # the moment is the variable here
             node.kill()

@@ -15,6 +15,7 @@ import pytest
 
 from tests.support.faults import PROMPT, WHEELS_GATE, Robot
 from tests.support.played import COMMAND, COMMANDER, SENSES, command, imu
+from tests.support.profiles import slow
 from tests.support.ros import Peer, short_lease
 from tests.support.victims import Process, Sensors
 
@@ -83,7 +84,7 @@ def moving(robot: Robot, topics: dict[str, str] | None = None) -> Iterator[Senso
         yield sensors
 
 
-@pytest.mark.parametrize("fault", [Process.kill, Process.freeze])
+@pytest.mark.parametrize("fault", [Process.kill, slow(Process.freeze)])
 def test_recovered_safety_node_starts_no_motion(
     robot: Robot, tmp_path: Path, fault: Callable[[Process], None]
 ) -> None:
@@ -130,7 +131,7 @@ def test_hung_gate_starts_no_motion(robot: Robot) -> None:
         release(robot, sensors)
 
 
-@pytest.mark.parametrize("fault", [Sensors.kill, Sensors.freeze])
+@pytest.mark.parametrize("fault", [slow(Sensors.kill), Sensors.freeze])
 def test_recovered_controller_starts_no_motion(
     robot: Robot, fault: Callable[[Sensors], None]
 ) -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from tests.support.faults import NODE, Robot
 from tests.support.preload import Disk
+from tests.support.profiles import slow
 
 pytestmark = pytest.mark.ros
 
@@ -44,7 +45,9 @@ def put_unreadable(file: Path) -> None:
     file.mkdir()
 
 
-@pytest.mark.parametrize("damage", [truncate, flip, empty, write_garbage, put_unreadable])
+@pytest.mark.parametrize(
+    "damage", [flip, empty, *map(slow, (truncate, write_garbage, put_unreadable))]
+)
 def test_damaged_state_file_means_stopped(
     robot: Robot, tmp_path: Path, damage: Callable[[Path], object]
 ) -> None:
@@ -103,7 +106,11 @@ def described(folder: Path) -> list[tuple[str, int, bytes]]:
 
 
 @pytest.mark.parametrize(
-    "put", [put_link, put_dangling_link, put_pipe, put_socket, put_device, put_unreadable]
+    "put",
+    [
+        *(put_link, put_pipe),
+        *map(slow, (put_dangling_link, put_socket, put_device, put_unreadable)),
+    ],
 )
 def test_irregular_state_file_means_stopped_and_is_kept(
     robot: Robot, tmp_path: Path, put: Callable[[Path], object]

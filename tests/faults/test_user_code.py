@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.faults import NODE, PROMPT, Robot
+from tests.support.profiles import slow
 from tests.support.ros import LIMIT
 from tests.support.victims import Process
 
@@ -26,7 +27,9 @@ FAILURES = {
 """Modes of failure, and a part of the reason that the node prints."""
 
 
-@pytest.mark.parametrize("how", FAILURES)
+@pytest.mark.parametrize(
+    "how", ["throw", "exit", *map(slow, sorted(FAILURES.keys() - {"throw", "exit"}))]
+)
 def test_user_code_that_ends_the_node_loses_neither_stop_nor_latch(robot: Robot, how: str) -> None:
     """The stop after the code is published, the node exits with 1, and the latch is stored."""
     with robot.safety_node() as node:
@@ -52,7 +55,7 @@ def test_failed_node_leaves_the_graph_at_once(robot: Robot) -> None:
         robot.restart()
 
 
-@pytest.mark.parametrize("how", ["exit at once", "kill"])
+@pytest.mark.parametrize("how", [slow("exit at once"), "kill"])
 def test_user_code_that_ends_the_process_loses_neither_stop_nor_latch(
     robot: Robot, how: str
 ) -> None:
@@ -82,7 +85,7 @@ def test_slow_user_code_does_not_delay_a_stop(robot: Robot) -> None:
         robot.until_alive()
 
 
-@pytest.mark.parametrize("how", ["wait", "exit"])
+@pytest.mark.parametrize("how", ["wait", slow("exit")])
 def test_user_code_repeated_at_the_start_runs_after_the_states(
     robot: Robot, tmp_path: Path, how: str
 ) -> None:

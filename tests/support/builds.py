@@ -24,6 +24,9 @@ PROGRAM = Path(sys.executable).with_name("deros")
 GENERATORS = ("Ninja", "Unix Makefiles")
 """CMake's generators that a build must work with."""
 
+EACH_GENERATOR = (GENERATORS[0], pytest.param(GENERATORS[1], marks=pytest.mark.slow))
+"""The generators as parameters of a test."""
+
 needs_cmake = pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake")
 
 _LIMIT = 300.0

@@ -52,7 +52,7 @@ def pairs(program: ir.Program) -> st.SearchStrategy[Pair]:
 
 def write(pair: Pair, folder: Path = FOLDER) -> Path:
     """Write a pair into a file named after its content; return its path."""
-    text = json.dumps(_encoded(pair), indent=1) + "\n"
+    text = json.dumps(encoded(pair), indent=1) + "\n"
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{hashlib.sha256(text.encode()).hexdigest()[:12]}.json"
     path.write_text(text, encoding="utf-8")
@@ -61,9 +61,19 @@ def write(pair: Pair, folder: Path = FOLDER) -> Path:
 
 def read(path: Path) -> Pair:
     """Read a pair from its file."""
-    pair = _decoded(json.loads(path.read_text(encoding="utf-8")))
+    return decoded(json.loads(path.read_text(encoding="utf-8")))
+
+
+def decoded(value: Any) -> Pair:
+    """Return the pair that :func:`encoded` has made JSON of."""
+    pair = _decoded(value)
     assert isinstance(pair, Pair)
     return pair
+
+
+def encoded(pair: Pair) -> Any:
+    """Return a pair as JSON values."""
+    return _encoded(pair)
 
 
 def _encoded(value: Any) -> Any:

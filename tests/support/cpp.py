@@ -20,6 +20,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.object_cache import compile_objects
+
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
 """What generated C++ compiles with, and nothing comes of it."""
 
@@ -252,6 +254,7 @@ def compile_cpp(
     sources: Iterable[Path],
     output: Path,
     *flags: str,
+    includes: Sequence[str] = (),
     standard: str = "c++17",
     libraries: Iterable[str] = (),
 ) -> Path:
@@ -262,8 +265,9 @@ def compile_cpp(
     Raises:
         AssertionError: with what the compiler printed, if it does not compile.
     """
-    files = [str(path) for path in sources]
     output.parent.mkdir(parents=True, exist_ok=True)
-    command = ["c++", f"-std={standard}", *WARNINGS, *flags, *files, "-o", str(output), *libraries]
+    options = (f"-std={standard}", *WARNINGS, *flags)
+    objects = compile_objects("c++", options, includes, sources)
+    command = ["c++", *options, *map(str, objects), "-o", str(output), *libraries]
     _run(command, output.parent)
     return output

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import struct
 import subprocess
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
@@ -27,6 +25,7 @@ from deros.monitor.topics import SystemTopics
 from tests.support import wire
 from tests.support.cpp import WARNINGS, message_flags
 from tests.support.gates import ACTIONS, SOURCE, STORE, Happening
+from tests.support.object_cache import compile_objects
 
 STRICT = (*WARNINGS, "-Wshadow", "-Wsign-conversion", "-Wold-style-cast")
 """What the pure part of gates compiles with, beyond what all of C++ does."""
@@ -295,18 +294,12 @@ def compiled(gates: Sequence[Gate], folder: Path, compiler: str, *flags: str) ->
 
 
 def build(sources: Sequence[Path], folder: Path, compiler: str, *flags: str) -> Path:
-    """Compile each source on its own, as many at once as there are cores, and link them."""
-    options = ("-std=c++17", *STRICT, *flags, "-I", str(folder), *message_flags())
-
-    def compile_one(source: Path) -> str:
-        output = source.with_suffix(".o")
-        _run([compiler, *options, "-c", str(source), "-o", str(output)])
-        return str(output)
-
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        objects = list(pool.map(compile_one, sources))
+    """Compile each source to an object, and link them."""
+    options = ("-std=c++17", *STRICT, *flags)
+    includes = ("-I", str(folder), *message_flags())
+    objects = compile_objects(compiler, options, includes, sources)
     program = folder / "program"
-    _run([compiler, *flags, *objects, "-o", str(program)])
+    _run([compiler, *flags, *map(str, objects), "-o", str(program)])
     return program
 
 

@@ -1,4 +1,4 @@
-"""Hypothesis profiles: how many examples each property draws, and whether they are new ones.
+"""How much a run tests: profiles of Hypothesis, and parameters with which a test is slow.
 
 ======== ======== ======================== =====================================
 profile  examples drawn                    used by
@@ -14,6 +14,9 @@ scale their number with :func:`scaled`.
 
 from __future__ import annotations
 
+from typing import Any
+
+import pytest
 from hypothesis import settings
 
 EXAMPLES = {"local": 100, "ci": 500, "nightly": 5000}
@@ -36,11 +39,21 @@ def register() -> None:
     settings.load_profile("local")
 
 
-def scaled(in_ci: int) -> int:
+def scaled(in_ci: int, least: int = LEAST) -> int:
     """Return the number of examples for a property that draws ``in_ci`` of them in CI."""
-    return max(LEAST, in_ci * settings().max_examples // EXAMPLES["ci"])
+    return max(least, in_ci * settings().max_examples // EXAMPLES["ci"])
+
+
+def thinned(in_ci: int) -> int:
+    """Return N where one of N cases is tested, and one of ``in_ci`` in CI."""
+    return max(1, in_ci * EXAMPLES["ci"] // settings().max_examples)
 
 
 def draws_new_examples() -> bool:
     """Return whether the loaded profile draws other examples in every run."""
     return not settings().derandomize
+
+
+def slow(value: Any) -> Any:
+    """Return a parameter of a test with which the test is slow, and another one is not."""
+    return pytest.param(value, marks=pytest.mark.slow)

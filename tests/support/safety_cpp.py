@@ -39,9 +39,11 @@ def compiled(source: Path, folder: Path, files: Files | None = None) -> Path:
         sources = [*_copied(folder, next(iter(files)).partition("/")[0]), *_written(folder, files)]
         include = folder
     libraries = ros_prefix() / "lib"
-    flags = ("-O1", "-pthread", f"-I{include}", *message_flags())
+    flags = ("-O1", "-pthread")
+    includes = (f"-I{include}", *message_flags())
     linked = (f"-L{libraries}", f"-Wl,-rpath,{libraries}", "-lrcutils")
-    return compile_cpp([source, *sources], folder / "program", *flags, libraries=linked)
+    program = folder / "program"
+    return compile_cpp([source, *sources], program, *flags, includes=includes, libraries=linked)
 
 
 def _copied(folder: Path, package: str) -> list[Path]:

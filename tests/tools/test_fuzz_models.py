@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -33,6 +35,7 @@ def test_finding_sets_the_exit_code() -> None:
     assert re.search(r"kept in \.tmp/fuzz-models/\w+", run.stdout)
 
 
+@pytest.mark.slow
 def test_run_ends_at_its_time_limit() -> None:
     """It accepts seconds instead of a number."""
     run = fuzz("--seconds", "1")

@@ -11,6 +11,7 @@ import pytest
 REPEAT = Path(__file__).resolve().parents[2] / "tools" / "repeat.py"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "code", "told"),
     [

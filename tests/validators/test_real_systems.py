@@ -16,13 +16,14 @@ import pytest
 
 from deros.diagnostics import Diagnostic
 from tests.support import planted, real_systems
+from tests.support.profiles import thinned
 
 SYSTEMS = real_systems.names()
 LISTED: list[dict[str, Any]] = json.loads(
     (real_systems.FOLDER / "findings.json").read_text(encoding="utf-8")
 )
 
-EVERY = 1 if os.environ.get("DEROS_ALL_FAULTS") else 4
+EVERY = 1 if os.environ.get("DEROS_ALL_FAULTS") else thinned(4)
 """One of so many faults of each kind is planted in each system."""
 
 

@@ -29,11 +29,12 @@ from tests.support.gate_nodes import (
 )
 from tests.support.gate_runners import LANGUAGES, RunGate
 from tests.support.processes import freeze, thaw
+from tests.support.profiles import scaled
 from tests.support.ros import DEFAULT_LEASE_S, Peer, running
 
 pytestmark = pytest.mark.ros
 
-REPEATS = int(os.environ.get("DEROS_REPEATS", "5"))
+REPEATS = int(os.environ.get("DEROS_REPEATS", scaled(5, least=2)))
 """Number of repetitions; a proof takes a hundred."""
 
 LIMIT_S = 0.3 + 0.05
@@ -103,6 +104,7 @@ def test_gate_stops_after_safety_node_is_killed(drive: Drive, start_safety: Star
     report("killed", delays)
 
 
+@pytest.mark.slow
 def test_gate_stops_with_the_default_lease(drive: Drive, start_safety: StartSafety) -> None:
     """Zero in time, and until the killed node's lease ends; then the new one counts."""
     with start_safety(DEFAULT_LEASE_S) as safety:

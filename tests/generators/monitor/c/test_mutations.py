@@ -8,14 +8,18 @@ import itertools
 import multiprocessing
 import os
 import re
-from collections.abc import Iterator, Sequence
+import resource
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from tests.support import c_pairs
+from tests.support import c_monitors, c_pairs
+from tests.support.c_harness import Unit, unit
 from tests.support.c_library import Loaded, needs_c
+from tests.support.counterexamples import Pair
+from tests.support.killing_pairs import KillingPairs
 
 SLIPS = {
     "for is exclusive": (r"(now - \*since\)) >= duration", r"\1 > duration"),
@@ -72,8 +76,8 @@ SLIPS = {
 PROGRAMS = 40
 """Number of programs drawn for each choice of inputs."""
 
-LIMIT_S = 60.0
-"""Time for a batch; without a mutation it takes a second, so a longer run is an endless loop."""
+CPU_S = 1
+"""Processor seconds for a pair, which takes milliseconds without an endless loop."""
 
 BATCH = 8
 """Number of mutated programs compiled at once."""
@@ -90,43 +94,89 @@ def drawn() -> tuple[c_pairs.Case, ...]:
     return tuple(case for row in mixed for case in row if case is not None)
 
 
-def mutants(slip: str) -> Iterator[c_pairs.Case]:
-    """Yield mutated programs, if their text contains the pattern."""
-    pattern, replacement = SLIPS[slip]
-    for case in drawn():
-        name = f"{case.unit.prefix}_monitor.c"
-        text = case.unit.texts[name]
-        changed = re.sub(pattern, replacement, text, flags=re.MULTILINE)
-        if changed != text:
-            unit = replace(case.unit, texts={**case.unit.texts, name: changed})
-            yield replace(case, unit=unit)
+def mutated(slip: str, rendered: Unit) -> Unit | None:
+    """Return a mutated monitor, or ``None`` if its text does not contain the pattern."""
+    name = f"{rendered.prefix}_monitor.c"
+    text = rendered.texts[name]
+    changed = re.sub(*SLIPS[slip], text, flags=re.MULTILINE)
+    if changed == text:
+        return None
+    return replace(rendered, texts={**rendered.texts, name: changed})
 
 
 @needs_c
 @pytest.mark.parametrize("slip", SLIPS)
-def test_mutation_is_detected(slip: str, tmp_path: Path) -> None:
+def test_mutation_is_detected(slip: str, killing_pairs: KillingPairs, tmp_path: Path) -> None:
+    """A stored program and trace distinguish the mutated monitor from the reference."""
+    killing_pairs.check(
+        slip,
+        lambda pair: _kills(slip, pair, tmp_path),
+        lambda small: _search(slip, _by_size() if small else drawn(), tmp_path),
+    )
+
+
+@needs_c
+@pytest.mark.slow
+@pytest.mark.parametrize("slip", SLIPS)
+def test_random_pairs_detect_mutation(slip: str, tmp_path: Path) -> None:
     """Some random program and trace distinguishes the mutated monitor from the reference."""
-    found = mutants(slip)
-    while cases := list(itertools.islice(found, BATCH)):
-        units = [case.unit for case in cases]
-        library = Loaded(units, tmp_path / units[0].prefix, "-O0", "-Wno-error")
-        if _differs(library, cases):
-            return
-    pytest.fail("no program detects the mutation")
+    assert _search(slip, drawn(), tmp_path) is not None
 
 
-def _differs(library: Loaded, cases: Sequence[c_pairs.Case]) -> bool:
-    """Compare in a separate process: a mutation may cause an endless loop."""
+def _kills(slip: str, pair: Pair, folder: Path) -> bool:
+    """Return whether the mutated monitor differs from the reference, and the sound one does not."""
+    sound = unit(pair.program, "sound")
+    wrong = mutated(slip, unit(pair.program, "wrong"))
+    if wrong is None:
+        return False
+    library = Loaded([sound, wrong], folder / "replayed", "-O0", "-Wno-error")
+    c_monitors.compare(library, 0, pair.steps, pair.start)
+    return _differs(library, 1, pair)
+
+
+def _search(slip: str, cases: Iterable[c_pairs.Case], folder: Path) -> Pair | None:
+    """Return the first pair that detects a mutation, without the steps that it does not need."""
+    wrong = ((mutated(slip, case.unit), case) for case in cases)
+    found = ((made, case) for made, case in wrong if made is not None)
+    while batch := list(itertools.islice(found, BATCH)):
+        units = [made for made, _ in batch]
+        library = Loaded(units, folder / units[0].prefix, "-O0", "-Wno-error")
+        for number, (_, case) in enumerate(batch):
+            for pair in case.pairs:
+                if _differs(library, number, pair):
+                    return _shortened(library, number, pair)
+    return None
+
+
+def _by_size() -> list[c_pairs.Case]:
+    """Return the drawn programs, the smallest first."""
+    return sorted(drawn(), key=lambda case: len(case.unit.source))
+
+
+def _shortened(library: Loaded, number: int, pair: Pair) -> Pair:
+    place = 0
+    while place < len(pair.steps):
+        less = replace(pair, steps=pair.steps[:place] + pair.steps[place + 1 :])
+        if _differs(library, number, less):
+            pair = less
+        else:
+            place += 1
+    return pair
+
+
+def _differs(library: Loaded, number: int, pair: Pair) -> bool:
+    """Compare in a separate process: a mutation may cause a crash or an endless loop."""
 
     def compare() -> None:
-        faulthandler.disable()  # a mutation may also cause a crash, which is expected
-        os._exit(next(c_pairs.differences(library, cases), None) is not None)
+        faulthandler.disable()
+        resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S))
+        try:
+            c_monitors.compare(library, number, pair.steps, pair.start)
+        except AssertionError:
+            os._exit(1)
+        os._exit(0)
 
     child = multiprocessing.get_context("fork").Process(target=compare)
     child.start()
-    child.join(LIMIT_S)
-    if child.is_alive():
-        child.kill()
-        child.join()
-        return True
+    child.join()
     return child.exitcode != 0

@@ -29,6 +29,7 @@ def slipped(made: Unit, right: str, wrong: str) -> Unit:
     return Unit(made.program, made.view, {**made.texts, name: made.source.replace(right, wrong)})
 
 
+@pytest.mark.slow
 @needs_sanitizers
 def test_sanitizers_find_nothing(tmp_path: Path) -> None:
     """Random monitors have no out-of-bounds access and no undefined behaviour."""
@@ -37,6 +38,7 @@ def test_sanitizers_find_nothing(tmp_path: Path) -> None:
         assert list(c_pairs.differences(library, cases)) == []
 
 
+@pytest.mark.slow
 @needs_sanitizers
 def test_sanitizers_detect_an_overrun(tmp_path: Path) -> None:
     """Reading one element too far ends the program with a report."""
@@ -92,7 +94,13 @@ SLIPS = {
 """Mutations by name, and the violated invariants."""
 
 
-@pytest.mark.parametrize("slip", SLIPS)
+@pytest.mark.parametrize(
+    "slip",
+    [
+        pytest.param(each, marks=pytest.mark.slow) if each == "a loop does not end" else each
+        for each in SLIPS
+    ],
+)
 def test_fuzzer_detects_a_mutation(slip: str, example: Unit, tmp_path: Path) -> None:
     """A mutation violates an invariant after some call."""
     done = fuzz(slipped(example, *SLIPS[slip]), tmp_path)

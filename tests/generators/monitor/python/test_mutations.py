@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import re
 
 import pytest
@@ -9,6 +11,9 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from deros.generators.monitor.python.interface import render_monitor
+from deros.monitor.ir import Program
+from tests.support.counterexamples import Pair
+from tests.support.killing_pairs import KillingPairs
 from tests.support.monitors import compare
 from tests.support.strategies import programs, starts, traces
 
@@ -55,31 +60,65 @@ SLIPS = {
 
 
 @pytest.mark.parametrize("slip", SLIPS)
-def test_mutation_is_detected(slip: str) -> None:
+def test_mutation_is_detected(slip: str, killing_pairs: KillingPairs) -> None:
+    """A stored program and trace distinguish the mutated monitor from the reference."""
+    killing_pairs.check(
+        slip, functools.partial(_kills, slip), lambda shrink: _search(slip, shrink=shrink)
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("slip", SLIPS)
+def test_random_pairs_detect_mutation(slip: str) -> None:
     """Some random program and trace distinguishes the mutated monitor from the reference."""
-    pattern, replacement = SLIPS[slip]
+    assert _search(slip, shrink=False) is not None
+
+
+def _mutant(slip: str, program: Program) -> str | None:
+    """Return the mutated monitor, or ``None`` if the text does not contain the pattern."""
+    text = render_monitor(program)
+    mutant = re.sub(*SLIPS[slip], text, flags=re.MULTILINE)
+    return mutant if mutant != text else None
+
+
+def _differs(pair: Pair, text: str) -> bool:
+    try:
+        compare(pair.program, pair.steps, text, pair.start)
+    except (AssertionError, ArithmeticError, LookupError, TypeError):
+        return True
+    return False
+
+
+def _kills(slip: str, pair: Pair) -> bool:
+    """Return whether the mutated monitor differs from the reference, and the sound one does not."""
+    pair.compare()
+    mutant = _mutant(slip, pair.program)
+    return mutant is not None and _differs(pair, mutant)
+
+
+def _search(slip: str, *, shrink: bool) -> Pair | None:
+    """Draw pairs until one detects a mutation; return the smallest one if it is to ``shrink``."""
+    found: list[Pair] = []
 
     @settings(
         max_examples=3000,
-        deadline=None,
         database=None,
         derandomize=True,
-        phases=[Phase.generate],
+        phases=[Phase.generate, Phase.shrink] if shrink else [Phase.generate],
         suppress_health_check=list(HealthCheck),
         report_multiple_bugs=False,
     )
     @given(st.data())
-    def search(data: st.DataObject) -> None:
+    def draw(data: st.DataObject) -> None:
         program = data.draw(programs())
-        text = render_monitor(program)
-        mutant = re.sub(pattern, replacement, text, flags=re.MULTILINE)
-        if mutant == text:
+        mutant = _mutant(slip, program)
+        if mutant is None:
             return
-        trace, start = data.draw(traces(program)), data.draw(starts(program))
-        try:
-            compare(program, trace, mutant, start)
-        except (ArithmeticError, LookupError, TypeError) as error:
-            raise AssertionError("the mutant raises an exception") from error
+        pair = Pair(program, data.draw(starts(program)), tuple(data.draw(traces(program))))
+        if _differs(pair, mutant):
+            found.append(pair)  # the smallest comes last
+            raise AssertionError
 
-    with pytest.raises(AssertionError):
-        search()
+    with contextlib.suppress(AssertionError):
+        draw()
+    return found[-1] if found else None

@@ -14,12 +14,13 @@ from tests.support.c_library import needs_c
 from tests.support.c_monitors import CMonitor
 from tests.support.cpp import needs_compiler
 from tests.support.monitors import START_NS
+from tests.support.profiles import scaled
 from tests.support.rules import program
 from tests.support.strategies import ALL_KINDS
 
 pytestmark = [needs_c, needs_compiler]
 
-PROGRAMS = 60
+PROGRAMS = scaled(60)
 """Number of programs drawn per property; five traces are compared for each."""
 
 # The C monitor stores no text that its rules do not contain, and so reports none.
