@@ -11,8 +11,8 @@ from typing import cast
 
 from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.cpp.rule_metadata import table
-from deros.generators.safety_node.cpp.rule_state import explained_rules
-from deros.generators.safety_node.cpp.whys import why_behaviour, why_rule, whys
+from deros.generators.safety_node.cpp.rule_state import rule_states
+from deros.generators.safety_node.cpp.whys import cause_functions, why_behaviour, why_rule
 from deros.generators.text.cpp import call, expression
 from deros.generators.text.templates import environment
 from deros.monitor.engine import Engine
@@ -29,10 +29,10 @@ _ROOM = 1 << 20
 _TOLD = """
 extern "C" std::size_t tell_{prefix}(const {prefix}_monitor * m, char * out, std::size_t room)
 {{
-  const auto state = told_{prefix}::explained(*m);
+  const auto state = told_{prefix}::monitor_snapshot(*m);
   std::string text;
   for (const auto & rule : state.rules) {{
-    text += rule.name + (rule.value ? deros_runtime_cpp::shown(*rule.value) : "unknown");
+    text += rule.name + deros_runtime_cpp::to_text(rule.verdict);
     for (const auto & cause : rule.causes) {{
       text += '\\t' + cause;
     }}
@@ -126,7 +126,7 @@ def _source(units: Sequence[Unit]) -> str:
 def _told_in_cpp(unit: Unit) -> str:
     """Return what the node has in its ``_rule_metadata.cpp``, without the tables."""
     layout, program = unit.view.layout, unit.program
-    rules = zip(program.rules, explained_rules(program, layout), strict=True)
+    rules = zip(program.rules, rule_states(program, layout), strict=True)
     view = SimpleNamespace(
         package="told",
         stem="told",
@@ -135,8 +135,8 @@ def _told_in_cpp(unit: Unit) -> str:
         prefix=unit.prefix,
         macro=layout.macro,
         rule_metadata=["0"],
-        whys=list(whys(program, layout)),
-        explained=[
+        cause_functions=list(cause_functions(program, layout)),
+        rule_states=[
             (state, layout.verdicts[rule.index], why_rule(layout, rule.index))
             for rule, state in rules
         ],
@@ -154,4 +154,4 @@ def _told_in_cpp(unit: Unit) -> str:
         table=table,
         expression=expression,
     )
-    return text[text.index("/// Tell why") : text.index("}  // namespace told")]
+    return text[text.index("/// Return why") : text.index("}  // namespace told")]

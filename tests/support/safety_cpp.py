@@ -19,7 +19,7 @@ PURE = (
     *("regular_file", "report_types", "start_order", "text", "worker"),
 )
 """The parts of the runtime that need only the system and rcutils."""
-WITH_MESSAGES = ("diagnostics", "events")
+WITH_MESSAGES = ("diagnostics", "event_reporter")
 """The parts of the runtime that need the headers of messages, too."""
 
 

@@ -48,7 +48,7 @@ std::string number(const std::string & bits)
   const std::uint64_t integer = std::stoull(bits, nullptr, 16);
   double value = 0.0;
   std::memcpy(&value, &integer, sizeof(value));
-  return deros_runtime_cpp::shown(value);
+  return deros_runtime_cpp::to_text(value);
 }
 
 std::string claimed(const std::string & folder, const std::string & domain, const std::string & name)

@@ -29,10 +29,9 @@ sensor_msgs::msg::JointState joints(double last, int count)
 
 void tell(const every_thing_monitor & monitor)
 {
-  const told::runtime::MonitorSnapshot state = told::explained(monitor);
+  const told::runtime::MonitorSnapshot state = told::monitor_snapshot(monitor);
   for (const auto & rule : state.rules) {
-    const std::string value =
-      rule.value ? told::runtime::shown(*rule.value) : std::string("unknown");
+    const std::string value = told::runtime::to_text(rule.verdict);
     std::cout << rule.name << '\t' << rule.line << '\t' << rule.text << '\t' << value << '\t' <<
       rule.since;
     for (const auto & read : rule.reads) {

@@ -75,7 +75,7 @@ public:
     every_thing_advance(&monitor_, now);
   }
 
-  runtime::Time due() const override
+  runtime::Time next_deadline() const override
   {
     return monitor_.due;
   }
@@ -93,7 +93,7 @@ public:
     ++acted_;
   }
 
-  void remember(std::size_t /*count*/) override {}
+  void save_snapshot(std::size_t /*count*/) override {}
 
   void after(
     const std::vector<runtime::Event> & /*events*/,
@@ -101,9 +101,9 @@ public:
   {
   }
 
-  void tell() override {}
-  void tell_failure(const runtime::Event & /*event*/, const char * /*why*/) override {}
-  void stepped() override {}
+  void flush_reports() override {}
+  void report_failure(const runtime::Event & /*event*/, const char * /*why*/) override {}
+  void clock_stepped() override {}
 
   void take(const runtime::Event & event)
   {
@@ -133,7 +133,7 @@ private:
     counts = taken_ > 100;
     if (taken_ == 2000) {
       counts = false;
-      event_loop_.end();
+      event_loop_.stop();
       return;
     }
     event_loop_.notify(speeds_);

@@ -1,4 +1,4 @@
-"""The files of the safety node in C++, beside those that any node has."""
+"""The files of the safety node in C++, in addition to those of every node."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from deros.generators.text.templates import environment
 
 RUNTIME = (
     *("clock_choice", "descriptor", "diagnostics", "digest", "duplicate_instance", "event_loop"),
-    *("events", "instance", "latches", "monitor_runner", "ports", "process", "publishers"),
-    *("realtime", "refusal", "regular_file", "report_types", "safety_node_core"),
+    *("event_reporter", "instance", "latches", "monitor_runner", "ports", "process"),
+    *("publishers", "realtime", "refusal", "regular_file", "report_types", "safety_node_core"),
     *("simulated_time", "start_order", "text", "worker"),
 )
 """The parts of the runtime that every safety node has."""
@@ -41,7 +41,7 @@ _NEEDS = (
 
 
 def provided(view: SafetyView, runtime: CppRuntime) -> Provided:
-    """Return what the package has to know of the node, whose class is made here."""
+    """Return the sources and dependencies of the node, whose class is generated here."""
     own = [f"src/{view.stem}{part}.cpp" for part in ("", "_messages", "_rule_metadata")]
     own += [f"src/{view.prefix}_monitor.c", *runtime.sources(RUNTIME)]
     if view.actions:
@@ -50,7 +50,7 @@ def provided(view: SafetyView, runtime: CppRuntime) -> Provided:
 
 
 def node_files(view: SafetyView, holder: str, runtime: CppRuntime) -> dict[str, File]:
-    """Return the node's class, its messages and metadata, and the classes of the user's actions.
+    """Return the node's class, its messages and metadata, and the classes of the actions.
 
     Args:
         view: the safety node.

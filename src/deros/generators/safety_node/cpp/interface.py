@@ -1,4 +1,4 @@
-"""What a safety package in C++ needs of the safety node."""
+"""The interface of the safety node in C++ for the safety package."""
 
 from deros.generators.safety_node.cpp.generate import RUNTIME, node_files, provided
 from deros.generators.safety_node.cpp.node import twin_options

@@ -1,4 +1,4 @@
-"""Messages in and out: what the monitor is handed of a topic's message, and the fields it shows."""
+"""Message fields: the arguments that the monitor takes, and the literals of published states."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from deros.monitor.ir import Scalar
 
 
 def arguments(store: InterfaceStore, kind: InterfaceType, parameter: Parameter) -> Iterator[str]:
-    """Yield what is handed to the monitor for one of its parameters, out of ``msg``."""
+    """Yield the arguments for a parameter of the monitor, read from ``msg``."""
     place = f"msg.{format_path(parameter.path)}"
     there = " && ".join(
         f"msg.{format_path(array)}.size() > {index}"

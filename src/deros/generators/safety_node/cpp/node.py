@@ -1,4 +1,4 @@
-"""The C++ twins of the nodes that the Python target makes: other type names, all else the same."""
+"""The C++ twins of the nodes of the Python target, which differ only in their type names."""
 
 from __future__ import annotations
 

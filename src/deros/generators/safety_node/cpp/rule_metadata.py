@@ -1,4 +1,4 @@
-"""Where behaviours and actions come from, as the tables that the reports are made of."""
+"""The tables of behaviours, actions and sites that reports refer to."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Item = str | Text | list["Item"]
 def rule_metadata_view(
     model: Rules, program: Program, monitor: MonitorView, actions_file: str
 ) -> list[Item]:
-    """Return the initialiser of the table of all that the reports name."""
+    """Return the initialiser of the table of rule metadata."""
     return [
         cpp_string(origin_file(model)),
         str(len(program.rules)),

@@ -1,4 +1,4 @@
-"""What the monitor in C is worth, for people: its verdicts and terms out of its struct."""
+"""C++ expressions of the state of each rule: verdict and terms, read from the monitor in C."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from deros.monitor.reads import Term, strip_comments, term_name, terms
 from deros.monitor.wordings import quoted
 
 
-def explained_rules(program: Program, layout: Layout) -> Iterator[Expression]:
+def rule_states(program: Program, layout: Layout) -> Iterator[Expression]:
     """Yield the expression of the state of each rule; the monitor's struct is ``m``."""
     for rule in program.rules:
-        yield Call("runtime::explained", tuple(_arguments(program, layout, rule)))
+        yield Call("runtime::rule_state", tuple(_arguments(program, layout, rule)))
 
 
 def _arguments(program: Program, layout: Layout, rule: Rule) -> Iterator[Expression]:
@@ -35,14 +35,14 @@ def reading(program: Program, layout: Layout, term: Term) -> Expression:
 
 
 def shown_text(layout: Layout, term: Term) -> str:
-    """Return the expression of the text that causes tell the value of a term by."""
+    """Return the expression of the text of a term in a cause."""
     if isinstance(term, Age):
         fields = layout.inputs[term.input]
-        return f"runtime::shown(runtime::seconds(m.now - m.{fields.base}))"
+        return f"runtime::to_text(runtime::seconds(m.now - m.{fields.base}))"
     field, scale = _field(layout, term)
     if field.texts:
         return _chosen(f"m.{field.name}", map(quoted, field.texts))
-    return f"runtime::shown({_unscaled(field, scale)})"
+    return f"runtime::to_text({_unscaled(field, scale)})"
 
 
 def _value(layout: Layout, term: Term) -> str:
@@ -61,7 +61,7 @@ def _value(layout: Layout, term: Term) -> str:
 
 
 def _field(layout: Layout, term: Term) -> tuple[Field, Scale | None]:
-    """Return the field that holds a term, and in which unit if not in its own."""
+    """Return the field of a term, and the scale of its unit if that is not the term's own."""
     if term in layout.terms:
         return layout.terms[term], None
     return next(
@@ -79,7 +79,7 @@ def _known(field: Field, scale: Scale | None) -> str:
 
 
 def _chosen(place: str, texts: Iterable[str]) -> str:
-    return f"runtime::text_of({place}, {{{', '.join(map(cpp_string, texts))}}})"
+    return f"runtime::known_text({place}, {{{', '.join(map(cpp_string, texts))}}})"
 
 
 def _unscaled(field: Field, scale: Scale | None) -> str:

@@ -1,4 +1,4 @@
-"""What the templates of the safety node in C++ see: the program in terms of rclcpp."""
+"""The view of the templates of the safety node in C++: the program in terms of rclcpp."""
 
 from __future__ import annotations
 
@@ -11,8 +11,13 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.interface import MonitorView, monitor_view
 from deros.generators.safety_node.cpp.messages import arguments, literal
 from deros.generators.safety_node.cpp.rule_metadata import Item, rule_metadata_view
-from deros.generators.safety_node.cpp.rule_state import explained_rules
-from deros.generators.safety_node.cpp.whys import Why, why_behaviour, why_rule, whys
+from deros.generators.safety_node.cpp.rule_state import rule_states
+from deros.generators.safety_node.cpp.whys import (
+    CauseFunction,
+    cause_functions,
+    why_behaviour,
+    why_rule,
+)
 from deros.generators.safety_node.messages import is_stamped
 from deros.generators.safety_node.node import bound_actions
 from deros.generators.safety_node.view import (
@@ -55,7 +60,7 @@ _PARAMETER_TYPES = {
 
 @dataclass(frozen=True, slots=True)
 class HandlerView:
-    """What is done with the messages of one topic: ``call`` hands them to the monitor."""
+    """The messages of one topic; ``call`` passes one to the monitor."""
 
     identifier: str
     type: str
@@ -65,7 +70,7 @@ class HandlerView:
 
     @property
     def is_read(self) -> bool:
-        """Whether the monitor is handed anything of the message."""
+        """Whether the monitor reads any field of the message."""
         return len(self.call.arguments) > 2
 
 
@@ -73,7 +78,7 @@ class HandlerView:
 class ActionView:
     """An action whose code the user writes; ``calls`` are the sites with the call of each.
 
-    One that is ``optional`` may well do nothing.
+    An ``optional`` action may do nothing.
     """
 
     name: str
@@ -86,27 +91,27 @@ class ActionView:
 
     @property
     def unnamed(self) -> list[str]:
-        """The parameters of a body that does not use them."""
+        """The parameters of a function that does not use them."""
         words = (each.rpartition(" ") for each in self.parameters)
         return [f"{kind} /*{name}*/" for kind, _, name in words]
 
 
 @dataclass(frozen=True, slots=True)
 class SafetyView:
-    """All that the templates print.
+    """The data of all templates.
 
     Attributes:
         package: also the namespace.
         stem: of the node's files; ``class_name`` of its classes.
         node_name: of the node at run time.
         rules: the file name of the rules.
-        headers: of the messages and services that the node's class speaks of;
-            ``message_headers`` without the services.
+        headers: those of the messages and services of the node's class;
+            ``message_headers`` are without the services.
         monitor: the view of the monitor in C.
         shared: the watched topics that may have several publishers.
-        explained: the expressions of the rules' states, each with the monitor's field of the
-            verdict, and the function that tells why the rule is true.
-        whys: these functions, and those of behaviours and of what behaviours negate.
+        rule_states: the expressions of the states of the rules, each with the monitor's field of
+            the verdict, and the function that returns why the rule is true.
+        cause_functions: these functions, and those of behaviours and negated rules.
         rule_metadata: the tables of behaviours, actions and sites.
         latched: name and enumerator of each latched action.
         optional: enumerator of each behaviour that can be disabled, the function that does it, and
@@ -127,8 +132,8 @@ class SafetyView:
     shared: frozenset[str]
     channels: tuple[ChannelView, ...]
     actions: tuple[ActionView, ...]
-    explained: tuple[tuple[Expression, str, str], ...]
-    whys: tuple[Why, ...]
+    rule_states: tuple[tuple[Expression, str, str], ...]
+    cause_functions: tuple[CauseFunction, ...]
     rule_metadata: list[Item]
     latched: tuple[tuple[str, str], ...]
     optional: tuple[tuple[str, str, str], ...]
@@ -137,12 +142,12 @@ class SafetyView:
 
     @property
     def prefix(self) -> str:
-        """What the names of the monitor's functions begin with."""
+        """The prefix of the names of the monitor's functions."""
         return self.monitor.prefix
 
     @property
     def macro(self) -> str:
-        """The same of its constants."""
+        """The prefix of its constants."""
         return self.monitor.macro
 
     @property
@@ -152,22 +157,22 @@ class SafetyView:
 
     @property
     def required_actions(self) -> tuple[ActionView, ...]:
-        """The actions without which something is left undone."""
+        """The actions that have to be implemented."""
         return tuple(action for action in self.actions if not action.optional)
 
     @property
     def actions_class(self) -> str:
-        """Class of the user's action bodies."""
+        """The class of the user's actions."""
         return f"{self.class_name}Actions"
 
     @property
     def actions_stem(self) -> str:
-        """Of its files."""
+        """The stem of the files of that class."""
         return f"{self.stem}_actions"
 
     @property
     def conditions(self) -> list[tuple[str, str, str]]:
-        """The enumerator of each behaviour, the monitor's field of its condition, and its why."""
+        """The enumerator of each behaviour, its condition's field, and its cause function."""
         layout = self.monitor.layout
         return [
             (name, layout.conditions[i], why_behaviour(layout, i))
@@ -176,7 +181,7 @@ class SafetyView:
 
     @property
     def bound(self) -> list[tuple[str, str]]:
-        """The enumerator of each bound action, with the channel that shows it."""
+        """The enumerator of each bound action, with the channel of its state."""
         return [(action, each.identifier) for each in self.channels for action in each.actions]
 
 
@@ -193,13 +198,13 @@ def safety_view(
     Args:
         model: the rules as written.
         program: the same with all names resolved.
-        python: the Python twin, by whose name the node goes at run time.
+        python: the Python twin, whose name the node has at run time.
         node: the node type in C++.
         store: for the fields of the messages.
         shared: the watched topics that may have several publishers.
 
     Raises:
-        GenerationError: if the rules cannot be told in C++.
+        GenerationError: if C++ cannot express the rules.
     """
     monitor = monitor_view(program)
     described = {action.name.text: action.description for action in model.actions}
@@ -225,13 +230,11 @@ def safety_view(
         shared=shared,
         channels=tuple(_channels(program, node, monitor, store)),
         actions=actions,
-        explained=tuple(
+        rule_states=tuple(
             (state, monitor.layout.verdicts[rule.index], why_rule(monitor.layout, rule.index))
-            for rule, state in zip(
-                program.rules, explained_rules(program, monitor.layout), strict=True
-            )
+            for rule, state in zip(program.rules, rule_states(program, monitor.layout), strict=True)
         ),
-        whys=tuple(whys(program, monitor.layout)),
+        cause_functions=tuple(cause_functions(program, monitor.layout)),
         rule_metadata=rule_metadata_view(model, program, monitor, f"{stem}_actions.cpp"),
         latched=tuple((a.name, a.enumerator) for a in monitor.actions if a.latched),
         optional=tuple(_optional(monitor)),

@@ -1,4 +1,4 @@
-"""The functions that tell why a rule is true, or false, and why a behaviour holds, in C++."""
+"""C++ functions that return why a rule is true or false, and why a behaviour holds."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ from deros.monitor.ir import (
 
 
 @dataclass(frozen=True, slots=True)
-class Why:
-    """A function that tells why something is as it is.
+class CauseFunction:
+    """A function that returns the causes of a verdict.
 
     Attributes:
         function: its name.
-        subject: what it tells the causes of.
-        lines: of its body.
+        subject: the verdict, as a clause.
+        lines: the lines of its body.
     """
 
     function: str
@@ -71,16 +71,16 @@ _MONITOR = re.compile(r"\bm\b")
 
 
 def why_rule(layout: Layout, rule: int, holds: bool = True) -> str:
-    """Return the function that tells why a rule is true, or false."""
+    """Return the name of the function that returns why a rule is true or false."""
     return f"why_{str(holds).lower()}_{layout.verdicts[rule]}"
 
 
 def why_behaviour(layout: Layout, behaviour: int) -> str:
-    """Return the function that tells why a behaviour holds."""
+    """Return the name of the function that returns why a behaviour holds."""
     return f"why_holds_{layout.conditions[behaviour]}"
 
 
-def whys(program: Program, layout: Layout) -> Iterator[Why]:
+def cause_functions(program: Program, layout: Layout) -> Iterator[CauseFunction]:
     """Yield the functions of all rules, then of all behaviours; the monitor's struct is ``m``."""
     emitter = _Emitter(program, layout)
     negated = negated_rules(program)
@@ -88,11 +88,11 @@ def whys(program: Program, layout: Layout) -> Iterator[Why]:
         for holds in (True, False) if rule.index in negated else (True,):
             plan = plan_of(program, rule.condition, holds)
             subject = f"{rule.full_name} is {str(holds).lower()}"
-            yield Why(why_rule(layout, rule.index, holds), subject, emitter.body(plan))
+            yield CauseFunction(why_rule(layout, rule.index, holds), subject, emitter.body(plan))
     for behaviour in walk.behaviours(program):
         plan = plan_of_behaviour(program, behaviour)
         name = why_behaviour(layout, behaviour.index)
-        yield Why(name, f"{behaviour.name} holds", emitter.body(plan))
+        yield CauseFunction(name, f"{behaviour.name} holds", emitter.body(plan))
 
 
 class _Emitter:
@@ -102,18 +102,18 @@ class _Emitter:
         self._conditions = Conditions(program, layout)
 
     def body(self, plan: Plan) -> tuple[str, ...]:
-        """Return the statements that tell the causes of what is known to be so."""
+        """Return the statements that return the causes of a plan that is known to hold."""
         lines = self._block(2, plan, known=True)
-        return ("  runtime::Causes found;", *lines, "  return found;")
+        return ("  runtime::Causes causes;", *lines, "  return causes;")
 
-    # Statements, which append to what was found ---------------------------------------------------
+    # Statements, which append to the causes ---------------------------------------------------
 
     def _block(self, indent: int, plan: Plan, known: bool) -> Iterator[str]:
-        """Yield the statements of a plan; ``known``: of what is known to be so."""
+        """Yield the statements of a plan; ``known``: the plan is known to hold."""
         blank = " " * indent
         match plan:
             case Say() | SayRule() if known:
-                yield from _called("found.push_back", (self._cause(plan),), indent)
+                yield from _called("causes.push_back", (self._cause(plan),), indent)
             case Say() | SayRule() | During() if not known:
                 yield from _if(self._test(plan), indent)
                 yield from self._block(indent + 2, plan, True)
@@ -121,29 +121,31 @@ class _Emitter:
             case During():
                 yield from self._block(indent, plan.part, True)
             case AllOf() if not known:
-                yield from _called("runtime::add", ("found", self._expression(plan, False)), indent)
+                yield from _called(
+                    "runtime::append", ("causes", self._expression(plan, False)), indent
+                )
             case AllOf() | AnyOf():
                 for each in plan.parts:
                     yield from self._block(indent, each, isinstance(plan, AllOf))
             case OrUnknown():
                 yield from self._block(indent, plan.part, False)
-                yield f"{blank}if (found.empty()) {{"
+                yield f"{blank}if (causes.empty()) {{"
                 reads = (reading(self._program, self._layout, each) for each in plan.terms)
-                unknown = Call("runtime::unknown_of", tuple(reads))
-                yield from _called("found.push_back", (unknown,), indent + 2)
+                unknown = Call("runtime::unknown_terms", tuple(reads))
+                yield from _called("causes.push_back", (unknown,), indent + 2)
                 yield f"{blank}}}"
 
-    # Expressions, of which there is none where one part has none ----------------------------------
+    # Expressions ----------------------------------
 
     def _expression(self, plan: Plan, known: bool) -> Expression:
         match plan:
             case Say() | SayRule():
                 test = "true" if known else _text(self._test(plan))
-                return Call("runtime::given", (test, self._cause(plan)))
+                return Call("runtime::cause_if", (test, self._cause(plan)))
             case During():
                 part = self._expression(plan.part, True)
                 test = _text(self._test(plan))
-                return part if known else Call("runtime::during", (test, part))
+                return part if known else Call("runtime::causes_if", (test, part))
             case AllOf() | AnyOf():
                 sure = known and isinstance(plan, AllOf)
                 head = "runtime::all_causes" if isinstance(plan, AllOf) else "runtime::any_causes"
@@ -168,14 +170,14 @@ class _Emitter:
     def _cause(self, part: Say | SayRule) -> Expression:
         if isinstance(part, SayRule):
             why = why_rule(self._layout, part.rule, part.holds)
-            return Call("runtime::because", (cpp_string(part.head), f"{why}(m)"))
+            return Call("runtime::rule_cause", (cpp_string(part.head), f"{why}(m)"))
         pieces = (
             cpp_string(each) if isinstance(each, str) else shown_text(self._layout, each)
             for each in part.pieces
         )
         return Chain("", tuple(pieces), " + ")
 
-    # Conditions, as questions whether they are true, or false -------------------------------------
+    # Conditions, as tests whether they are true or false -------------------------------------
 
     def _is(self, condition: Condition, holds: bool) -> Logic:
         match condition:
@@ -216,7 +218,7 @@ def _called(function: str, arguments: tuple[Expression, ...], indent: int) -> It
 
 
 def _if(asked: Logic, indent: int) -> list[str]:
-    """Return the line or lines that open a block where something holds."""
+    """Return the lines that open a block with a condition."""
     if isinstance(asked, logic.AllOf | logic.AnyOf):
         return lay_out_if(_joint(asked), [_inner(each) for each in asked.operands], indent)
     return lay_out_if("", [_text(asked)], indent)

@@ -19,8 +19,8 @@ namespace deros_runtime_cpp
 namespace
 {
 
-constexpr Time SOON = 50'000'000;  // ns after a change, within which others are waited for
-constexpr std::size_t CHUNK = 8;  // statuses in one message: more would keep the monitor waiting
+constexpr Time CHANGE_DELAY = 50'000'000;  // ns from a change to its message, to include others
+constexpr std::size_t CHUNK = 8;  // statuses in one message: more would delay the monitor
 constexpr Time PAUSE = 1'000'000;  // ns between the messages of one state
 
 void add_since(Values & values, Time since, Time now)
@@ -35,30 +35,31 @@ void add_since(Values & values, Time since, Time now)
 }  // namespace
 
 Diagnostics::Diagnostics(
-  EventLoop & event_loop, const RuleMetadata & metadata, double frequency, Outside outside)
+  EventLoop & event_loop, const RuleMetadata & metadata, double frequency,
+  Environment environment)
 : metadata_(metadata),
-  outside_(std::move(outside)),
+  environment_(std::move(environment)),
   period_(std::llrint(1e9 / frequency)),
   actions_(metadata.actions.size()),
-  timer_(event_loop, Clock(), [this] {ring();}, outside_.defer)
+  timer_(event_loop, Clock(), [this] {fire();}, environment_.defer)
 {
 }
 
-void Diagnostics::begin()
+void Diagnostics::start()
 {
   timer_.schedule(0);
 }
 
 void Diagnostics::changed()
 {
-  const Time soon = steady_now() + SOON;
+  const Time soon = steady_now() + CHANGE_DELAY;
   if (!timer_.is_scheduled() || timer_.due() > soon) {
     timer_.schedule(soon);
   }
-  again_ = true;
+  has_changed_ = true;
 }
 
-void Diagnostics::ordered(const Event & event, const MonitorSnapshot & after)
+void Diagnostics::update(const Event & event, const MonitorSnapshot & after)
 {
   const Site & site = metadata_.sites[event.site];
   if (!site.action || (event.kind != EventKind::Trigger && event.kind != EventKind::Reset)) {
@@ -70,9 +71,9 @@ void Diagnostics::ordered(const Event & event, const MonitorSnapshot & after)
   if (state.active && active) {
     return;
   }
-  state.active = active && metadata_.actions[*site.action].lasts;
-  state.cause = site.behaviour ? metadata_.behaviours[*site.behaviour].name : "";
-  state.because = site.behaviour ? cause_of(*site.behaviour, after) : "";
+  state.active = active && metadata_.actions[*site.action].has_state;
+  state.behaviour = site.behaviour ? metadata_.behaviours[*site.behaviour].name : "";
+  state.causes = site.behaviour ? cause_of(*site.behaviour, after) : "";
   state.since = event.t;
 }
 
@@ -98,10 +99,10 @@ bool Diagnostics::fault(const std::string & subject, const std::string & text)
   return true;
 }
 
-void Diagnostics::ring()
+void Diagnostics::fire()
 {
   if (published_ == statuses_.size()) {
-    again_ = false;
+    has_changed_ = false;
     make_statuses();
     published_ = 0;
   }
@@ -110,15 +111,15 @@ void Diagnostics::ring()
   Message message;
   message.status.assign(first, first + static_cast<std::ptrdiff_t>(count));
   published_ += count;
-  const bool is_rest = published_ < statuses_.size();
-  timer_.schedule(steady_now() + (is_rest ? PAUSE : again_ ? SOON : period_));
-  outside_.publish(message);
+  const bool is_incomplete = published_ < statuses_.size();
+  timer_.schedule(steady_now() + (is_incomplete ? PAUSE : has_changed_ ? CHANGE_DELAY : period_));
+  environment_.publish(message);
 }
 
 void Diagnostics::make_statuses()
 {
-  const Time now = outside_.now();
-  const MonitorSnapshot state = outside_.explain();
+  const Time now = environment_.now();
+  const MonitorSnapshot state = environment_.snapshot();
   statuses_.clear();
   statuses_.push_back(node_status(state.rules.size()));
   for (std::size_t i = 0; i < actions_.size(); ++i) {
@@ -126,16 +127,16 @@ void Diagnostics::make_statuses()
       statuses_.push_back(action_status(i, now));
     }
   }
-  const std::vector<bool> guilty = blamed(state);
+  const std::vector<bool> is_blamed = blamed(state);
   for (std::size_t i = 0; i < state.rules.size(); ++i) {
-    statuses_.push_back(rule_status(state.rules[i], guilty[i], now));
+    statuses_.push_back(rule_status(state.rules[i], is_blamed[i], now));
   }
 }
 
-/// Tell of each rule whether a behaviour holds because of it: it is true, or none it names is.
+/// Return for each rule whether a behaviour holds because of it: it is true, or no other rule is.
 std::vector<bool> Diagnostics::blamed(const MonitorSnapshot & state) const
 {
-  std::vector<bool> found(state.rules.size());
+  std::vector<bool> blamed(state.rules.size());
   for (const std::size_t behaviour : state.holding) {
     const auto & names = metadata_.behaviours[behaviour].rules;
     std::vector<std::size_t> named;
@@ -143,33 +144,33 @@ std::vector<bool> Diagnostics::blamed(const MonitorSnapshot & state) const
     for (std::size_t i = 0; i < state.rules.size(); ++i) {
       if (std::find(names.begin(), names.end(), state.rules[i].name) != names.end()) {
         named.push_back(i);
-        if (state.rules[i].value.value_or(false)) {
+        if (state.rules[i].verdict == Verdict::True) {
           true_ones.push_back(i);
         }
       }
     }
     for (const std::size_t i : true_ones.empty() ? named : true_ones) {
-      found[i] = true;
+      blamed[i] = true;
     }
   }
-  return found;
+  return blamed;
 }
 
 Diagnostics::Status Diagnostics::node_status(std::size_t rule_count) const
 {
-  const std::string unready = outside_.summary();
+  const std::string reason = environment_.not_ready_reason();
   std::vector<std::string> texts;
-  Values values = {{"state", unready.empty() ? "watching" : unready}};
+  Values values = {{"state", reason.empty() ? "watching" : reason}};
   for (const auto & fault : faults_) {
     texts.push_back(fault.second);
     values.push_back(fault);
   }
   std::string message = joined(texts, "; ");
   if (message.empty()) {
-    message = unready.empty() ? "watching " + std::to_string(rule_count) + " rules" : unready;
+    message = reason.empty() ? "watching " + std::to_string(rule_count) + " rules" : reason;
   }
-  const Level level = !faults_.empty() ? ERROR : unready.empty() ? OK : WARN;
-  return status(level, outside_.name, message, values);
+  const Level level = !faults_.empty() ? ERROR : reason.empty() ? OK : WARN;
+  return status(level, environment_.name, message, values);
 }
 
 Diagnostics::Status Diagnostics::action_status(std::size_t action, Time now) const
@@ -178,41 +179,40 @@ Diagnostics::Status Diagnostics::action_status(std::size_t action, Time now) con
   const ActionState & state = actions_[action];
   const std::string runs = std::to_string(state.runs);
   std::string message = state.active ? "active" : "inactive";
-  if (!known.lasts) {
+  if (!known.has_state) {
     message = "run " + runs + " times";
   }
   Values values = {{"runs", runs}};
-  if (!state.cause.empty()) {
-    values.emplace_back("cause", state.cause);
+  if (!state.behaviour.empty()) {
+    values.emplace_back("cause", state.behaviour);
   }
-  if (!state.because.empty()) {
-    values.emplace_back("because", state.because);
+  if (!state.causes.empty()) {
+    values.emplace_back("because", state.causes);
   }
   if (state.since) {
     add_since(values, *state.since, now);
   }
-  const std::string name = outside_.name + ": action " + known.name;
+  const std::string name = environment_.name + ": action " + known.name;
   return status(state.active ? WARN : OK, name, message, values);
 }
 
-Diagnostics::Status Diagnostics::rule_status(const RuleState & rule, bool blamed, Time now) const
+Diagnostics::Status Diagnostics::rule_status(const RuleState & rule, bool is_blamed, Time now) const
 {
   Level level = STALE;
-  if (rule.value) {
-    level = blamed ? ERROR : *rule.value ? WARN : OK;
+  if (rule.verdict != Verdict::Unknown) {
+    level = is_blamed ? ERROR : rule.verdict == Verdict::True ? WARN : OK;
   }
   Values values;
-  for (const Reading & each : rule.reads) {
-    values.emplace_back(each.term, each.value.value_or("unknown"));
+  for (const Reading & reading : rule.reads) {
+    values.emplace_back(reading.term, reading.value.value_or("unknown"));
   }
   if (!rule.causes.empty()) {
     values.emplace_back("cause", joined(rule.causes, " and "));
   }
   add_since(values, rule.since, now);
   values.emplace_back("line", std::to_string(rule.line));
-  const std::string verdict = rule.value ? shown(*rule.value) : "unknown";
-  return status(
-    level, outside_.name + ": " + rule.name, verdict + ": " + rule.text, values);
+  const std::string message = to_text(rule.verdict) + ": " + rule.text;
+  return status(level, environment_.name + ": " + rule.name, message, values);
 }
 
 }  // namespace deros_runtime_cpp

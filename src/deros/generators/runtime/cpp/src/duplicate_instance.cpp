@@ -23,22 +23,22 @@ DuplicateInstanceDetector::DuplicateInstanceDetector(
 {
 }
 
-void DuplicateInstanceDetector::look()
+void DuplicateInstanceDetector::check()
 {
-  look_at_heartbeat();
-  look_at_readers();
+  check_heartbeat();
+  check_subscriptions();
   if (states_.empty()) {
     return;
   }
   const std::string & topic = states_[next_];
   next_ = (next_ + 1) % states_.size();
-  const std::string found = others(topic);
+  const std::string names = others(topic);
   report_(
-    topic, found.empty() ? "" :
-    "published by " + found + ", too: whoever obeys it cannot tell them apart");
+    topic, names.empty() ? "" :
+    "published by " + names + ", too: whoever obeys it cannot tell them apart");
 }
 
-void DuplicateInstanceDetector::look_at_heartbeat()
+void DuplicateInstanceDetector::check_heartbeat()
 {
   const bool has_double = node_.count_publishers(heartbeat_) > 1;
   const std::string text =
@@ -49,15 +49,15 @@ void DuplicateInstanceDetector::look_at_heartbeat()
   report_(heartbeat_, has_double ? text : "");
 }
 
-/// Look whether whoever subscribes to the next of the topics is served.
-void DuplicateInstanceDetector::look_at_readers()
+/// Check the subscriptions of the next topic.
+void DuplicateInstanceDetector::check_subscriptions()
 {
-  const std::string & topic = next_read_ == 0 ? heartbeat_ : states_[next_read_ - 1];
-  next_read_ = (next_read_ + 1) % (states_.size() + 1);
-  report_("readers of " + topic, unserved_readers(node_, topic));
+  const std::string & topic = next_checked_ == 0 ? heartbeat_ : states_[next_checked_ - 1];
+  next_checked_ = (next_checked_ + 1) % (states_.size() + 1);
+  report_("readers of " + topic, unmatched_subscriptions(node_, topic));
 }
 
-/// Return the names of the nodes that publish on a topic besides this one.
+/// Return the names of the other nodes that publish a topic.
 std::string DuplicateInstanceDetector::others(const std::string & topic) const
 {
   if (node_.count_publishers(topic) <= 1) {

@@ -18,7 +18,7 @@ namespace deros_runtime_cpp
 namespace
 {
 
-constexpr Time PATIENCE = 50'000'000;  // ns that an timer may be put off in all
+constexpr Time MAX_DEFERRAL = 50'000'000;  // ns for which a timer may be deferred in all
 constexpr Time NEVER = std::numeric_limits<Time>::max();
 
 }  // namespace
@@ -49,28 +49,28 @@ void EventLoop::notify(std::size_t source, std::size_t count)
       ++count_;
     }
   }
-  came_.notify_one();
+  wake_up_.notify_one();
 }
 
-void EventLoop::end()
+void EventLoop::stop()
 {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    ends_ = true;
+    is_stopping_ = true;
   }
-  came_.notify_one();
+  wake_up_.notify_one();
 }
 
 void EventLoop::run()
 {
   while (true) {
     const std::size_t source = next_source();
-    if (source != NOTHING) {
+    if (source != NO_SOURCE) {
       sources_[source].take();
     }
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (ends_) {
+      if (is_stopping_) {
         return;
       }
     }
@@ -78,25 +78,25 @@ void EventLoop::run()
   }
 }
 
-/// Wait until there is something to do; return the source whose turn it is, if it is one's.
+/// Wait for an item, a timer or stop(); return the source of the item, if there is one.
 std::size_t EventLoop::next_source()
 {
   const Times next = next_times();
   std::unique_lock<std::mutex> lock(mutex_);
-  const auto is_awaited = [this] {return count_ > 0 || ends_;};
+  const auto has_work = [this] {return count_ > 0 || is_stopping_;};
   if (next.wake == NEVER) {
-    came_.wait(lock, is_awaited);
+    wake_up_.wait(lock, has_work);
   } else {
     using Instant = std::chrono::steady_clock::time_point;
-    came_.wait_until(lock, Instant(std::chrono::nanoseconds(next.wake)), is_awaited);
+    wake_up_.wait_until(lock, Instant(std::chrono::nanoseconds(next.wake)), has_work);
     lock.unlock();
-    while (!is_awaited() && steady_now() < next.ring) {
-      // A thread that sleeps wakes up late: the last moments are spent awake.
+    while (!has_work() && steady_now() < next.fire) {
+      // A sleeping thread wakes up late, so it spins for the last moments.
     }
     lock.lock();
   }
-  if (count_ == 0 || ends_) {
-    return NOTHING;
+  if (count_ == 0 || is_stopping_) {
+    return NO_SOURCE;
   }
   const std::size_t source = queue_[first_];
   first_ = (first_ + 1) % queue_.size();
@@ -105,13 +105,13 @@ std::size_t EventLoop::next_source()
   return source;
 }
 
-/// Return when the next timer rings that waits for steady time, and when to wake up for it.
+/// Return when the next timer on the steady clock expires, and when to wake up for it.
 EventLoop::Times EventLoop::next_times() const
 {
   Times next{NEVER, NEVER};
   for (const OneShotTimer * timer : timers_) {
     if (timer->is_scheduled_ && timer->clock_.is_steady) {
-      next.ring = std::min(next.ring, timer->wait_until_);
+      next.fire = std::min(next.fire, timer->wait_until_);
       next.wake = std::min(next.wake, timer->wait_until_ - timer->lead_);
     }
   }
@@ -157,10 +157,10 @@ void OneShotTimer::fire_if_due()
   if (now < wait_until_) {
     return;
   }
-  if (defer_ && now - due_ < PATIENCE) {
-    const Time pause = defer_();
-    if (pause > 0) {
-      wait_until_ = now + pause;
+  if (defer_ && now - due_ < MAX_DEFERRAL) {
+    const Time deferral = defer_();
+    if (deferral > 0) {
+      wait_until_ = now + deferral;
       return;
     }
   }

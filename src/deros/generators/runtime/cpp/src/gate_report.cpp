@@ -22,11 +22,11 @@ namespace
 using Status = diagnostic_msgs::msg::DiagnosticStatus;
 
 constexpr Time PERIOD = 1'000'000'000;  // ns
-constexpr Time SOON = 50'000'000;  // ns after a change, within which others are waited for
+constexpr Time CHANGE_DELAY = 50'000'000;  // ns from a change to its message, to include others
 constexpr const char * FINE = "commands pass";
-constexpr const char * LOST_HEARTBEAT = "lost heartbeat";  // how a line about that begins
+constexpr const char * LOST_HEARTBEAT = "lost heartbeat";  // the beginning of a line about it
 
-/// Return a time as people read it.
+/// Return a time as text.
 std::string ago(Time time)
 {
   std::array<char, 64> text{};
@@ -52,20 +52,20 @@ GateReport::GateReport(
   target_(
     event_loop, node, target,
     [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
-  timer_(event_loop, Clock(), [this] {ring();})
+  timer_(event_loop, Clock(), [this] {fire();})
 {
 }
 
-void GateReport::begin()
+void GateReport::start()
 {
   timer_.schedule(0);
-  target_.begin();
+  target_.start();
 }
 
-void GateReport::look()
+void GateReport::check()
 {
-  if (!std::equal(told_.begin(), told_.end(), gate_.applying())) {
-    hurry();
+  if (!std::equal(reported_.begin(), reported_.end(), gate_.applying())) {
+    report_soon();
   }
 }
 
@@ -73,7 +73,7 @@ void GateReport::refuse(const std::string & cause)
 {
   ++refused_;
   cause_ = cause;
-  hurry();
+  report_soon();
 }
 
 std::string GateReport::answer(const std::vector<std::string> & against) const
@@ -105,36 +105,36 @@ void GateReport::fault(const std::string & subject, const std::string & text)
     faults_.emplace_back(subject, text);
     RCLCPP_ERROR(node_.get_logger(), "%s: %s", subject.c_str(), text.c_str());
   }
-  hurry();
+  report_soon();
 }
 
-void GateReport::watch_over(SubscribedTopic topic)
+void GateReport::check_publishers_of(SubscribedTopic topic)
 {
   publishers_.add(std::move(topic));
 }
 
-void GateReport::hurry()
+void GateReport::report_soon()
 {
-  const Time soon = steady_now() + SOON;
+  const Time soon = steady_now() + CHANGE_DELAY;
   if (!timer_.is_scheduled() || timer_.due() > soon) {
     timer_.schedule(soon);
   }
 }
 
-void GateReport::ring()
+void GateReport::fire()
 {
   timer_.schedule(steady_now() + PERIOD);
   const std::vector<bool> applying(gate_.applying(), gate_.applying() + lines_.size());
-  if (applying != told_) {
+  if (applying != reported_) {
     log();
-    told_ = applying;
+    reported_ = applying;
   }
   Message message;
   message.header.stamp = node_.now();
   message.status.push_back(status());
   publish_(message);
-  publishers_.look();
-  target_.look();
+  publishers_.check();
+  target_.check();
 }
 
 void GateReport::log() const
@@ -147,7 +147,7 @@ void GateReport::log() const
   }
 }
 
-/// Return the lines that apply.
+/// Return the texts of the lines that apply.
 std::string GateReport::applying() const
 {
   std::vector<std::string> found;

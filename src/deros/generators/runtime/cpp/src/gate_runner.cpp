@@ -28,7 +28,7 @@ GateRunner::GateRunner(
   const std::string & target, Settings settings)
 : node_(node),
   gate_(gate),
-  refused_(prepare(settings.realtime_priority, settings.lock_memory)),
+  not_permitted_(configure_process(settings.realtime_priority, settings.lock_memory)),
   clock_choice_(refuse_clock_change(node)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
   simulated_(
@@ -50,13 +50,13 @@ GateRunner::GateRunner(
     })
 {
   if (node.get_parameter("use_sim_time").as_bool()) {
-    report_.watch_over({"/clock", "rosgraph_msgs/msg/Clock", rclcpp::ClockQoS()});
+    report_.check_publishers_of({"/clock", "rosgraph_msgs/msg/Clock", rclcpp::ClockQoS()});
   }
   const std::size_t domain = node.get_node_base_interface()->get_context()->get_domain_id();
   try {
     lock_ = claim(node.get_fully_qualified_name(), domain);
   } catch (const std::system_error & error) {
-    refused_.push_back(
+    not_permitted_.push_back(
       std::string("a second instance on this machine would not be seen: ") + error.what());
   }
 }
@@ -71,10 +71,10 @@ GateRunner::~GateRunner()
 
 void GateRunner::start()
 {
-  for (const std::string & refusal : refused_) {
-    report_.fault("process", refusal);
+  for (const std::string & text : not_permitted_) {
+    report_.fault("process", text);
   }
-  report_.begin();
+  report_.start();
   check_.schedule(0);
   advance();
   worker_.start();
@@ -86,7 +86,7 @@ void GateRunner::settle()
   if (due != NEVER && !(deadline_.is_scheduled() && deadline_.due() <= due)) {
     deadline_.schedule(due);
   }
-  report_.look();
+  report_.check();
 }
 
 void GateRunner::stop()
@@ -104,7 +104,7 @@ std::exception_ptr GateRunner::failure() const
   return worker_.failure();
 }
 
-/// Have the thread take each message, into the same memory again and again.
+/// Take each message in the thread of the gate, always into the same memory.
 void GateRunner::serve(
   const rclcpp::SubscriptionBase::SharedPtr & subscription, const std::string & type)
 {
@@ -119,17 +119,18 @@ void GateRunner::serve(
   subscription->set_on_new_message_callback(
     [this, source](std::size_t count) {event_loop_.notify(source, count);});
   subscriptions_.push_back(subscription);
-  report_.watch_over({subscription->get_topic_name(), type, subscription->get_actual_qos()});
+  report_.check_publishers_of(
+    {subscription->get_topic_name(), type, subscription->get_actual_qos()});
 }
 
-/// Look once a second who publishes what.
+/// Check the publishers once a second.
 void GateRunner::check_publishers()
 {
   check_.schedule(steady_now() + CHECK_PERIOD);
   gate_.check_publishers();
 }
 
-/// Do what is due.
+/// Advance the gate to the present.
 void GateRunner::advance()
 {
   gate_.advance(now());

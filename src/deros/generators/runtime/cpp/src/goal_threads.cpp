@@ -22,18 +22,18 @@ namespace deros_runtime_cpp
 namespace
 {
 
-// How long a shutdown waits for goals: as long as they can publish, and then again.
-constexpr std::chrono::milliseconds PATIENCE{500};
+// How long a shutdown waits for goals: once while they can still publish, and once afterwards.
+constexpr std::chrono::milliseconds SHUTDOWN_TIMEOUT{500};
 
-// How often it is checked, while there are goals, whether the node has an owner beside them. There
-// is no event to wait for: rclcpp calls nothing when a node is unloaded or taken from its executor,
-// a std::shared_ptr calls nothing when one of several owners lets go, and the destructor, which the
-// last one calls, is too late: the goals would use a node that is being destroyed.
+// How often it is checked, while there are goals, whether the node has other owners. There is no
+// event to wait for: rclcpp calls nothing when a node is unloaded or removed from its executor, a
+// std::shared_ptr calls nothing when one of several owners releases it, and the destructor, which
+// the last owner calls, is too late: the goals would use a node that is being destroyed.
 constexpr std::chrono::milliseconds PERIOD{50};
 
 }  // namespace
 
-/// What the threads and the node share; it outlives both.
+/// The state that the threads and the node share; it outlives both.
 struct GoalThreads::Shared
 {
   struct Entry
@@ -167,7 +167,7 @@ void GoalThreads::launch(std::shared_ptr<void> node, Goal goal)
   shared_->abort(goal);
 }
 
-// What the thread of a goal does
+// In the thread of a goal
 
 void GoalThreads::Shared::run(Entry & entry, std::shared_ptr<void> node)
 {
@@ -199,7 +199,8 @@ void GoalThreads::Shared::execute(const Goal & goal)
       RCLCPP_ERROR(logger, "%s: %s: %s", goal.handler, error.what(), problem);
     }
   } catch (...) {
-    RCLCPP_ERROR(logger, "%s threw what is not a std::exception: %s", goal.handler, problem);
+    const char * const thrown = "something that is not a std::exception";
+    RCLCPP_ERROR(logger, "%s threw %s: %s", goal.handler, thrown, problem);
   }
   abort(goal);
 }
@@ -210,13 +211,13 @@ bool GoalThreads::Shared::abort(const Goal & goal)
   try {
     return goal.abort();
   } catch (const std::exception &) {
-    return false;  // it was closed at the same moment, or nobody can be told any more
+    return false;  // it was closed at the same time, or its client is gone
   }
 }
 
-// What others do
+// In other threads
 
-/// Abort all goals, and accept no more.
+/// Abort all goals, and reject further ones.
 void GoalThreads::Shared::end()
 {
   std::vector<Goal> open;
@@ -235,14 +236,14 @@ void GoalThreads::Shared::end()
   }
 }
 
-/// Wait for a while until all goals have returned; return whether they have.
+/// Wait until all goals have returned, or the timeout expires; return whether they have.
 bool GoalThreads::Shared::wait()
 {
   std::unique_lock<std::mutex> lock(mutex);
-  return changed.wait_for(lock, PATIENCE, [this] {return running() == 0;});
+  return changed.wait_for(lock, SHUTDOWN_TIMEOUT, [this] {return running() == 0;});
 }
 
-/// Abort the goals of a node that nobody but them owns: nobody could cancel them any more.
+/// Abort the goals of a node that only they own, as no client could cancel them any more.
 void GoalThreads::Shared::watch(const std::weak_ptr<void> & node)
 {
   std::unique_lock<std::mutex> lock(mutex);
@@ -265,7 +266,7 @@ bool GoalThreads::Shared::is_ending()
   return ends;
 }
 
-/// Return how many goals, beside one of this thread, are in execution.
+/// Return how many goals, except that of this thread, are in execution.
 std::size_t GoalThreads::Shared::running() const
 {
   std::size_t count = 0;

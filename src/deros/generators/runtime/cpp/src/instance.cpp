@@ -51,7 +51,7 @@ std::string holder_of(int lock)
   return text.empty() ? "unknown" : text;
 }
 
-/// Check that a folder is the user's own, so that nobody else can hold its locks.
+/// Check that a folder belongs to the user alone, so that no other user can hold its locks.
 void check_own(const std::filesystem::path & folder)
 {
   struct stat found{};
@@ -103,7 +103,7 @@ Descriptor claim(
   check_own(folder);
   const std::filesystem::path path = folder / (file_stem(name, domain) + ".lock");
   Descriptor lock;
-  do {  // again, if it was removed in between, and another process may hold a new one
+  do {  // again if the file was removed meanwhile: another process may hold a new one
     lock = open_regular(path, O_RDWR | O_CREAT);
     if (!lock) {
       throw failure(path);

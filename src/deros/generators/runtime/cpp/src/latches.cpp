@@ -30,9 +30,9 @@ namespace
 {
 
 constexpr const char * HEAD = "deros latches 1";
-constexpr std::size_t LONGEST = 1 << 20;  // bytes; what is longer is no state file
+constexpr std::size_t LONGEST = 1 << 20;  // bytes; a longer file is not a latch file
 constexpr int UNIQUE = 2;  // random words in the name of a new file
-constexpr std::size_t FRAME = 2;  // lines before the names; digest and end of text after them
+constexpr std::size_t FRAME = 2;  // lines before the names; and after them, digest and end
 
 std::system_error failure()
 {
@@ -52,7 +52,7 @@ std::vector<std::string> lines_of(const std::string & text)
   return lines;
 }
 
-/// Return all of a file. \throw std::system_error
+/// Return the contents of a file. \throw std::system_error
 std::string read(const Descriptor & file)
 {
   std::string text;
@@ -70,7 +70,7 @@ std::string read(const Descriptor & file)
   return text;
 }
 
-/// Write all of a text. \throw std::system_error
+/// Write a text to a file. \throw std::system_error
 void write(const Descriptor & file, const std::string & text)
 {
   std::size_t done = 0;
@@ -90,7 +90,7 @@ void sync(const Descriptor & file)
   }
 }
 
-/// Make a folder that is the user's own, if it is missing. \throw std::system_error
+/// Create a folder for the user alone, if it is missing. \throw std::system_error
 void make_folder(const std::filesystem::path & folder)
 {
   std::error_code error;
@@ -151,21 +151,21 @@ LatchFile::Loaded LatchFile::load(const Names & known) const
     return {known, path_.string() + " is damaged, or not of " + owner_};
   }
   const Names active(names.begin(), names.end());
-  std::vector<std::string> strangers;
+  std::vector<std::string> unknown_names;
   for (const std::string & name : active) {
     if (known.count(name) == 0) {
-      strangers.push_back(name);
+      unknown_names.push_back(name);
     }
   }
-  if (!strangers.empty()) {
-    return {known, path_.string() + " names " + joined(strangers, ", ") + ", unknown by now"};
+  if (!unknown_names.empty()) {
+    return {known, path_.string() + " names " + joined(unknown_names, ", ") + ", unknown by now"};
   }
   return {active, ""};
 }
 
 void LatchFile::save(const Names & active)
 {
-  if (says(active)) {
+  if (contains(active)) {
     return;
   }
   saved_.reset();
@@ -199,7 +199,7 @@ void LatchFile::remove_leftovers() const
   }
 }
 
-/// Return a name that nobody else can have prepared.
+/// Return the path of a temporary file, which nobody can predict.
 std::filesystem::path LatchFile::new_path() const
 {
   std::random_device random;
@@ -236,7 +236,7 @@ void LatchFile::mark_dirty() noexcept
 {
   saved_.reset();
   if (opened_) {
-    // Where not even that is possible, the save that follows tells of it.
+    // If this fails, the save that follows reports why.
     [[maybe_unused]] const ssize_t count = ::pwrite(opened_.get(), "?", 1, 0);
   }
 }
@@ -259,8 +259,11 @@ std::string LatchFile::text_of(const std::vector<std::string> & names) const
   return body + sha256(body) + '\n';
 }
 
-Latches::Latches(LatchFile file, std::vector<std::string> known, Tell tell)
-: file_(std::move(file)), known_(std::move(known)), active_(known_.size()), tell_(std::move(tell))
+Latches::Latches(LatchFile file, std::vector<std::string> known, Report report)
+: file_(std::move(file)),
+  known_(std::move(known)),
+  active_(known_.size()),
+  report_(std::move(report))
 {
   file_.remove_leftovers();
   auto [active, problem] = file_.load({known_.begin(), known_.end()});
@@ -274,7 +277,7 @@ Latches::Latches(LatchFile file, std::vector<std::string> known, Tell tell)
     active_[i] = active.count(known_[i]) != 0;
   }
   if (!problem.empty()) {
-    tell_("latches", problem + "; all latched actions are active");
+    report_("latches", problem + "; all latched actions are active");
   }
 }
 
@@ -292,11 +295,11 @@ LatchFile::Names Latches::active() const
 std::string Latches::persist()
 {
   const LatchFile::Names now = active();
-  if (file_.says(now)) {
+  if (file_.contains(now)) {
     if (file_.is_in_place()) {
       return "";
     }
-    file_.forget();  // somebody has removed it, or put something else there
+    file_.invalidate();  // it was removed or replaced
   }
   try {
     file_.save(now);
@@ -308,10 +311,10 @@ std::string Latches::persist()
     } catch (const std::system_error & second) {
       text += std::string("; nor emptied: ") + second.what();
     }
-    tell_("latches", text);
+    report_("latches", text);
     return text;
   }
-  tell_("latches", "");
+  report_("latches", "");
   return "";
 }
 
@@ -324,7 +327,7 @@ std::string Latches::allow_reset(const LatchFile::Names & remaining)
     return "nothing is reset, because " + file_.path().string() + " cannot be written: " +
            error.what();
   }
-  tell_("latches", "");
+  report_("latches", "");
   return "";
 }
 

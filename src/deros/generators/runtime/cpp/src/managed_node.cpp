@@ -14,17 +14,17 @@ namespace
 
 using rclcpp_lifecycle::LifecycleNode;
 using rclcpp_lifecycle::State;
-using Hooks = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface;
-using Result = Hooks::CallbackReturn;
-using Hook = std::function<Result (const State &)>;
+using Callbacks = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface;
+using Result = Callbacks::CallbackReturn;
+using Callback = std::function<Result (const State &)>;
 
-/// Return a hook that deactivates what the node manages, unless its result is one of some.
-Hook resting(
-  LifecycleNode & node, Result (Hooks::* hook)(const State &), std::vector<Result> unless)
+/// Return a callback that deactivates the managed entities, unless it returns one of some results.
+Callback deactivating(
+  LifecycleNode & node, Result (Callbacks::* callback)(const State &), std::vector<Result> unless)
 {
-  return [&node, hook, unless](const State & previous) {
+  return [&node, callback, unless](const State & previous) {
            try {
-             const Result result = (node.*hook)(previous);
+             const Result result = (node.*callback)(previous);
              if (std::find(unless.begin(), unless.end(), result) == unless.end()) {
                node.LifecycleNode::on_deactivate(previous);
              }
@@ -38,13 +38,13 @@ Hook resting(
 
 }  // namespace
 
-void rest_unless_active(LifecycleNode & node)
+void deactivate_unless_active(LifecycleNode & node)
 {
-  node.register_on_activate(resting(node, &Hooks::on_activate, {Result::SUCCESS}));
-  // The hook itself deactivates if it succeeds; if it fails, the node stays active.
+  node.register_on_activate(deactivating(node, &Callbacks::on_activate, {Result::SUCCESS}));
+  // The callback itself deactivates them on success; on failure, the node stays active.
   node.register_on_deactivate(
-    resting(node, &Hooks::on_deactivate, {Result::SUCCESS, Result::FAILURE}));
-  node.register_on_shutdown(resting(node, &Hooks::on_shutdown, {}));
+    deactivating(node, &Callbacks::on_deactivate, {Result::SUCCESS, Result::FAILURE}));
+  node.register_on_shutdown(deactivating(node, &Callbacks::on_shutdown, {}));
 }
 
 }  // namespace deros_runtime_cpp

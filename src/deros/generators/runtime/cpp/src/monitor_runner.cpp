@@ -14,16 +14,16 @@ namespace
 {
 
 constexpr Time NEVER = std::numeric_limits<Time>::max();
-constexpr Time NEAR = 2'000'000;  // ns before a deadline in which nothing is begun that can wait
-constexpr Time AFTER = 1'000'000;  // ns after it in which what it orders is done
-constexpr Time LEAD = 200'000;  // ns before it in which its thread is awake: few wake up later
-constexpr std::size_t EVENTS = 1024;  // of one evaluation, for which there is room from the start
+constexpr Time NEAR = 2'000'000;  // ns before a deadline in which no deferrable work begins
+constexpr Time AFTER = 1'000'000;  // ns after it for the execution of what it orders
+constexpr Time LEAD = 200'000;  // ns before it in which the thread spins: few wake-ups are later
+constexpr std::size_t EVENTS = 1024;  // of one evaluation, for which memory is reserved
 
 }  // namespace
 
-MonitorRunner::MonitorRunner(EventLoop & event_loop, Clock clock, MonitorHost & watched)
+MonitorRunner::MonitorRunner(EventLoop & event_loop, Clock clock, MonitorHost & host)
 : clock_(std::move(clock)),
-  host_(watched),
+  host_(host),
   deadline_(event_loop, clock_, [this] {advance();}, {}, LEAD)
 {
   events_.reserve(EVENTS);
@@ -35,32 +35,32 @@ MonitorRunner::MonitorRunner(EventLoop & event_loop, Clock clock, MonitorHost & 
 void MonitorRunner::start()
 {
   has_started_ = true;
-  began_at_ = now();
-  host_.begin(began_at_);
+  started_at_ = now();
+  host_.begin(started_at_);
   deadline_.cancel();
-  arm();
+  schedule_deadline();
 }
 
 Time MonitorRunner::catch_up()
 {
   const Time t = now();
-  for (Time due = host_.due(); due <= t; due = host_.due()) {
+  for (Time due = host_.next_deadline(); due <= t; due = host_.next_deadline()) {
     host_.advance(due);
-    remember();
+    save_snapshot();
   }
   return t;
 }
 
 void MonitorRunner::take(const Event & event) noexcept
 {
-  Indices * left = nullptr;
+  Indices * pending = nullptr;
   try {
-    left = host_.show(event) ? nullptr : &code_;
+    pending = host_.show(event) ? nullptr : &code_;
   } catch (...) {
-    left = &unpublished_;  // it is tried again, and reported, when the monitor is through
+    pending = &unpublished_;  // tried again, and reported, when the monitor has evaluated
   }
-  if (left != nullptr) {
-    left->push_back(events_.size());
+  if (pending != nullptr) {
+    pending->push_back(events_.size());
   }
   done_.push_back(now());
   events_.push_back(event);
@@ -69,10 +69,10 @@ void MonitorRunner::take(const Event & event) noexcept
 void MonitorRunner::settle()
 {
   if (!events_.empty()) {
-    remember();
-    carry_out();
+    save_snapshot();
+    execute();
   }
-  arm();
+  schedule_deadline();
 }
 
 void MonitorRunner::run_again(const std::vector<Event> & events)
@@ -80,7 +80,7 @@ void MonitorRunner::run_again(const std::vector<Event> & events)
   for (const Event & event : events) {
     attempt([this](const Event & each) {host_.run_code(each);}, event);
   }
-  fail_if_something_failed();
+  rethrow_failure();
 }
 
 Time MonitorRunner::advance()
@@ -93,7 +93,7 @@ Time MonitorRunner::advance()
 
 Time MonitorRunner::defer() const
 {
-  const Time due = host_.due();
+  const Time due = host_.next_deadline();
   if (due == NEVER || !clock_.is_steady) {
     return 0;
   }
@@ -103,18 +103,18 @@ Time MonitorRunner::defer() const
 
 void MonitorRunner::clock_changed(bool back)
 {
-  const bool begins = has_started_ && began_at_ == 0;
+  const bool begins = has_started_ && started_at_ == 0;
   if (begins) {
     start();
   }
   if (begins || back) {
-    host_.stepped();
+    host_.clock_stepped();
     advance();
   }
 }
 
-/// Do all that is left of what was ordered, and only then fail if something failed.
-void MonitorRunner::carry_out()
+/// Execute all that is left, and only then rethrow the first failure.
+void MonitorRunner::execute()
 {
   for (const std::size_t i : unpublished_) {
     attempt([this](const Event & event) {host_.show(event);}, events_[i]);
@@ -129,46 +129,46 @@ void MonitorRunner::carry_out()
   host_.after(events_, done_);
   events_.clear();
   done_.clear();
-  remembered_ = 0;
-  fail_if_something_failed();
+  explained_ = 0;
+  rethrow_failure();
 }
 
-/// Remember what explains the events of the last instant, if there are any.
-void MonitorRunner::remember()
+/// Save a snapshot for the events of the last instant, if there are any.
+void MonitorRunner::save_snapshot()
 {
-  if (events_.size() > remembered_) {
-    host_.remember(events_.size());
-    remembered_ = events_.size();
+  if (events_.size() > explained_) {
+    host_.save_snapshot(events_.size());
+    explained_ = events_.size();
   }
 }
 
-/// Do something; tell and note what it throws.
+/// Call a function; report and store what it throws.
 void MonitorRunner::attempt(const Act & act, const Event & event)
 {
   try {
     act(event);
   } catch (const std::exception & error) {
     failure_ = failure_ ? failure_ : std::current_exception();
-    host_.tell_failure(event, error.what());
+    host_.report_failure(event, error.what());
   } catch (...) {
     failure_ = failure_ ? failure_ : std::current_exception();
-    host_.tell_failure(event, "what it threw says nothing of itself");
+    host_.report_failure(event, "it threw something that is not a std::exception");
   }
 }
 
-/// End the node, and its heartbeat with it, if something was thrown.
-void MonitorRunner::fail_if_something_failed()
+/// Rethrow the stored failure, if there is one: it ends the node and its heartbeat.
+void MonitorRunner::rethrow_failure()
 {
   if (failure_) {
-    host_.tell();
+    host_.flush_reports();
     std::rethrow_exception(failure_);
   }
 }
 
-/// Set the timer to the monitor's next deadline; one that rings earlier may stay.
-void MonitorRunner::arm()
+/// Schedule the next deadline of the monitor, unless the timer expires earlier.
+void MonitorRunner::schedule_deadline()
 {
-  const Time due = host_.due();
+  const Time due = host_.next_deadline();
   if (due != NEVER && !(deadline_.is_scheduled() && deadline_.due() <= due)) {
     deadline_.schedule(due);
   }

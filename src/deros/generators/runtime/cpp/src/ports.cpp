@@ -13,7 +13,7 @@ namespace deros_runtime_cpp
 namespace
 {
 
-constexpr std::size_t UNLIMITED = 1000;  // how many may wait where all are kept
+constexpr std::size_t UNLIMITED = 1000;  // how many can wait with the history KEEP_ALL
 
 std::size_t depth_of(const rclcpp::QoS & qos)
 {
@@ -23,8 +23,8 @@ std::size_t depth_of(const rclcpp::QoS & qos)
 
 }  // namespace
 
-Ports::Ports(EventLoop & event_loop, Refuse refuse)
-: event_loop_(event_loop), refuse_(std::move(refuse))
+Ports::Ports(EventLoop & event_loop, ReportUndecodable report_undecodable)
+: event_loop_(event_loop), report_undecodable_(std::move(report_undecodable))
 {
 }
 
@@ -33,7 +33,7 @@ Ports::~Ports()
   for (const auto & subscription : subscriptions_) {
     subscription->clear_on_new_message_callback();
   }
-  for (const auto & waitable : shared_) {
+  for (const auto & waitable : intra_process_) {
     waitable->clear_on_ready_callback();
   }
   for (const auto & service : services_) {
@@ -46,7 +46,7 @@ void Ports::serve(const rclcpp::CallbackGroup & group)
   group.collect_all_ptrs(
     [this](const rclcpp::SubscriptionBase::SharedPtr & each) {
       serve_messages(each);
-      serve_shared(each);
+      serve_intra_process(each);
     },
     [this](const rclcpp::ServiceBase::SharedPtr & each) {serve(each);},
     [](const rclcpp::ClientBase::SharedPtr &) {},
@@ -69,7 +69,7 @@ void Ports::serve_messages(const rclcpp::SubscriptionBase::SharedPtr & subscript
           from->handle_message(taken->message, taken->info);
         }
       } catch (const rclcpp::exceptions::RCLErrorBase & error) {
-        refuse_(from->get_topic_name(), error.message);
+        report_undecodable_(from->get_topic_name(), error.message);
       }
     };
   const std::size_t source = event_loop_.add_source(take, depth_of(subscription->get_actual_qos()));
@@ -78,8 +78,8 @@ void Ports::serve_messages(const rclcpp::SubscriptionBase::SharedPtr & subscript
   subscriptions_.push_back(subscription);
 }
 
-/// Serve the messages that come from publishers in this process.
-void Ports::serve_shared(const rclcpp::SubscriptionBase::SharedPtr & subscription)
+/// Serve the messages of publishers in this process.
+void Ports::serve_intra_process(const rclcpp::SubscriptionBase::SharedPtr & subscription)
 {
   const rclcpp::Waitable::SharedPtr waitable = subscription->get_intra_process_waitable();
   if (!waitable) {
@@ -94,7 +94,7 @@ void Ports::serve_shared(const rclcpp::SubscriptionBase::SharedPtr & subscriptio
   const std::size_t source = event_loop_.add_source(take, depth_of(subscription->get_actual_qos()));
   waitable->set_on_ready_callback(
     [this, source](std::size_t count, int) {event_loop_.notify(source, count);});
-  shared_.push_back(waitable);
+  intra_process_.push_back(waitable);
 }
 
 void Ports::serve(const rclcpp::ServiceBase::SharedPtr & service)

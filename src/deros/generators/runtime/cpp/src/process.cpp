@@ -27,14 +27,14 @@ namespace deros_runtime_cpp
 namespace
 {
 
-// How often a request to end is repeated: one before the executor spins is not heard.
-constexpr std::chrono::milliseconds AGAIN{20};
+// How often a request to stop is repeated: one before the executor spins has no effect.
+constexpr std::chrono::milliseconds REPETITION_PERIOD{20};
 
-sem_t asked_to_end;  // posted by the handler, which may do little else
-std::atomic<bool> has_been_told{false};  // by a signal
+sem_t stop_requests;  // posted by the signal handler, which may do little else
+std::atomic<bool> has_received_signal{false};
 std::atomic<bool> is_running{false};
 
-/// Let no code within a node end the process as if it had been told to end.
+/// Make exit() within a node a failure, not a requested end.
 void fail_at_exit()
 {
   if (is_running) {
@@ -44,8 +44,8 @@ void fail_at_exit()
   }
 }
 
-/// Have exit() call it before all that has been registered up to now.
-void watch_over_exit()
+/// Have exit() call fail_at_exit() before all functions registered up to now.
+void register_exit_check()
 {
   std::atexit(fail_at_exit);
   std::at_quick_exit(fail_at_exit);
@@ -53,19 +53,19 @@ void watch_over_exit()
 
 void take_signal([[maybe_unused]] int number)
 {
-  const int kept = errno;
-  has_been_told = true;
-  sem_post(&asked_to_end);
-  errno = kept;
+  const int previous = errno;
+  has_received_signal = true;
+  sem_post(&stop_requests);
+  errno = previous;
 }
 
-/// SIGINT and SIGTERM as a request, which interrupts no thread in what it is at.
+/// SIGINT and SIGTERM as requests to stop, which interrupt no thread.
 class StopSignals
 {
 public:
   StopSignals()
   {
-    sem_init(&asked_to_end, 0, 0);
+    sem_init(&stop_requests, 0, 0);
     struct sigaction action{};
     action.sa_handler = take_signal;
     action.sa_flags = SA_RESTART;
@@ -77,17 +77,17 @@ public:
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);  // for all threads that are started from now on
   }
 
-  /// Ask as a signal does.
-  void ask() const
+  /// Request a stop, as a signal does.
+  void request() const
   {
-    sem_post(&asked_to_end);
+    sem_post(&stop_requests);
   }
 
-  /// Wait until it is asked for, in a thread of its own.
+  /// Wait for a request, in a separate thread.
   void wait() const
   {
     pthread_sigmask(SIG_UNBLOCK, &set_, nullptr);
-    while (sem_wait(&asked_to_end) != 0) {  // interrupted by the signal itself
+    while (sem_wait(&stop_requests) != 0) {  // interrupted by the signal itself
     }
   }
 
@@ -95,61 +95,61 @@ private:
   sigset_t set_;
 };
 
-/// Spin until a signal comes, or the node ends.
-void spin(const Living & living, const StopSignals & signals)
+/// Spin until a signal is received, or the node ends.
+void spin(const RunnableNode & running, const StopSignals & signals)
 {
   rclcpp::executors::SingleThreadedExecutor executor;
-  executor.add_node(living.node);
+  executor.add_node(running.node);
   std::promise<void> spun;
   std::thread listener([&signals, &executor, &spun] {
       signals.wait();
       const std::future<void> over = spun.get_future();
       do {
         executor.cancel();
-      } while (over.wait_for(AGAIN) != std::future_status::ready);
+      } while (over.wait_for(REPETITION_PERIOD) != std::future_status::ready);
     });
-  living.when_ended([&signals] {signals.ask();});
+  running.when_ended([&signals] {signals.request();});
   std::exception_ptr failure;
   try {
     executor.spin();
   } catch (...) {
     failure = std::current_exception();
   }
-  signals.ask();  // whatever has ended it, the listener is to end, too
+  signals.request();  // the listener has to end, too
   spun.set_value();
-  living.stop();
+  running.stop();
   listener.join();
   if (failure) {
     std::rethrow_exception(failure);
   }
-  if (const std::exception_ptr thrown = living.failure()) {
+  if (const std::exception_ptr thrown = running.failure()) {
     std::rethrow_exception(thrown);
   }
-  if (!has_been_told) {
+  if (!has_received_signal) {
     throw Refusal("the context of ROS 2 was shut down within the node, which ends now");
   }
 }
 
 }  // namespace
 
-int run(int argc, char ** argv, const std::function<Living()> & make)
+int run(int argc, char ** argv, const std::function<RunnableNode()> & make)
 {
-  never_wait_for_readers();
-  sharpen_timers();  // before any thread of the middleware starts, so that it inherits them
+  make_output_nonblocking();
+  minimize_timer_slack();  // before any thread of the middleware starts, so that it inherits them
   const StopSignals signals;
   int code = 1;
   is_running = true;
-  watch_over_exit();
+  register_exit_check();
   try {
     rclcpp::init(argc, argv, rclcpp::InitOptions(), rclcpp::SignalHandlerOptions::None);
-    const Living living = make();
-    watch_over_exit();  // before what libraries have registered meanwhile
-    spin(living, signals);
+    const RunnableNode running = make();
+    register_exit_check();  // before the functions that libraries have registered in the meantime
+    spin(running, signals);
     code = 0;
   } catch (const std::exception & error) {
     std::fprintf(stderr, "%s\n", error.what());
   } catch (...) {
-    std::fprintf(stderr, "what was thrown in the node says nothing of itself\n");
+    std::fprintf(stderr, "the node threw something that is not a std::exception\n");
   }
   rclcpp::shutdown();
   is_running = false;

@@ -17,7 +17,7 @@ namespace deros_runtime_cpp
 namespace
 {
 
-/// Return why the middleware does not connect a publisher with a subscription; empty if it does.
+/// Return why the QoS of a publisher and a subscription are incompatible; empty if they are not.
 std::string incompatible(const rclcpp::QoS & offered, const rclcpp::QoS & requested)
 {
   const auto fit = rclcpp::qos_check_compatible(offered, requested);
@@ -35,8 +35,8 @@ std::string incompatible(const rclcpp::QoS & offered, const rclcpp::QoS & reques
   return joined(reasons, "; ");
 }
 
-/// Return why a subscription does not hear a publisher; empty if it does.
-std::string unheard(const rclcpp::TopicEndpointInfo & info, const SubscribedTopic & topic)
+/// Return why a publisher does not match a subscription of this node; empty if it does.
+std::string mismatch(const rclcpp::TopicEndpointInfo & info, const SubscribedTopic & topic)
 {
   if (info.topic_type() != topic.type) {
     return "publishes " + info.topic_type() + " on it, which is not heard";
@@ -45,14 +45,14 @@ std::string unheard(const rclcpp::TopicEndpointInfo & info, const SubscribedTopi
   return reason.empty() ? "" : "offers a QoS on it that is not heard: " + reason;
 }
 
-/// Return why a publisher does not reach a subscription; empty if it does.
-std::string unserved(
-  const rclcpp::TopicEndpointInfo & offer, const rclcpp::TopicEndpointInfo & reader)
+/// Return why a subscription does not match the publisher of this node; empty if it does.
+std::string mismatch(
+  const rclcpp::TopicEndpointInfo & offer, const rclcpp::TopicEndpointInfo & subscription)
 {
-  if (reader.topic_type() != offer.topic_type()) {
-    return "subscribes to " + reader.topic_type() + " on it, which is not published";
+  if (subscription.topic_type() != offer.topic_type()) {
+    return "subscribes to " + subscription.topic_type() + " on it, which is not published";
   }
-  const std::string reason = incompatible(offer.qos_profile(), reader.qos_profile());
+  const std::string reason = incompatible(offer.qos_profile(), subscription.qos_profile());
   return reason.empty() ? "" : "asks for a QoS on it that is not offered: " + reason;
 }
 
@@ -60,7 +60,7 @@ std::string unserved(
 
 std::string node_of(const rclcpp::TopicEndpointInfo & info)
 {
-  // What the middleware calls a node of which it knows no more yet.
+  // The name that the middleware gives to a node whose name it does not know yet.
   if (info.node_name().empty() || info.node_name() == "_NODE_NAME_UNKNOWN_") {
     return "";
   }
@@ -68,19 +68,19 @@ std::string node_of(const rclcpp::TopicEndpointInfo & info)
   return (space == "/" ? "" : space) + '/' + info.node_name();
 }
 
-std::vector<rclcpp::TopicEndpointInfo> heard_publishers(
+std::vector<rclcpp::TopicEndpointInfo> matched_publishers(
   const rclcpp::Node & node, const SubscribedTopic & topic)
 {
   std::vector<rclcpp::TopicEndpointInfo> infos = node.get_publishers_info_by_topic(topic.name);
   infos.erase(
     std::remove_if(
       infos.begin(), infos.end(),
-      [&topic](const auto & each) {return !unheard(each, topic).empty();}),
+      [&topic](const auto & each) {return !mismatch(each, topic).empty();}),
     infos.end());
   return infos;
 }
 
-std::string unserved_readers(const rclcpp::Node & node, const std::string & topic)
+std::string unmatched_subscriptions(const rclcpp::Node & node, const std::string & topic)
 {
   const std::vector<rclcpp::TopicEndpointInfo> offers = node.get_publishers_info_by_topic(topic);
   const auto offer = std::find_if(
@@ -89,32 +89,32 @@ std::string unserved_readers(const rclcpp::Node & node, const std::string & topi
   if (offer == offers.end()) {
     return "";
   }
-  std::vector<std::string> found;
+  std::vector<std::string> faults;
   for (const rclcpp::TopicEndpointInfo & info : node.get_subscriptions_info_by_topic(topic)) {
-    const std::string reason = unserved(*offer, info);
+    const std::string reason = mismatch(*offer, info);
     if (reason.empty()) {
       continue;
     }
     const std::string name = node_of(info);
     const std::string fault = (name.empty() ? info.node_name() : name) + ' ' + reason;
-    if (std::find(found.begin(), found.end(), fault) == found.end()) {
-      found.push_back(fault);
+    if (std::find(faults.begin(), faults.end(), fault) == faults.end()) {
+      faults.push_back(fault);
     }
   }
-  return joined(found, "; ");
+  return joined(faults, "; ");
 }
 
-Publishers::Publishers(rclcpp::Node & node, Report report)
+PublisherCheck::PublisherCheck(rclcpp::Node & node, Report report)
 : node_(node), report_(std::move(report))
 {
 }
 
-void Publishers::add(SubscribedTopic topic, bool is_shared)
+void PublisherCheck::add(SubscribedTopic topic, bool is_shared)
 {
   topics_.push_back({std::move(topic), is_shared});
 }
 
-void Publishers::look()
+void PublisherCheck::check()
 {
   if (topics_.empty()) {
     return;
@@ -124,29 +124,29 @@ void Publishers::look()
   report_(topic.subscribed.name, faults(topic));
 }
 
-std::string Publishers::faults(const Topic & topic) const
+std::string PublisherCheck::faults(const Topic & topic) const
 {
-  std::vector<std::string> found;
-  std::vector<std::string> heard;
+  std::vector<std::string> faults;
+  std::vector<std::string> matched;
   const std::string & on = topic.subscribed.name;
   for (const rclcpp::TopicEndpointInfo & info : node_.get_publishers_info_by_topic(on)) {
     const std::string name = node_of(info);
-    const std::string reason = unheard(info, topic.subscribed);
+    const std::string reason = mismatch(info, topic.subscribed);
     if (reason.empty()) {
-      heard.push_back(name.empty() ? "a node that is not known yet" : name);
+      matched.push_back(name.empty() ? "a node that is not known yet" : name);
       continue;
     }
     const std::string fault = (name.empty() ? info.node_name() : name) + ' ' + reason;
-    if (std::find(found.begin(), found.end(), fault) == found.end()) {
-      found.push_back(fault);
+    if (std::find(faults.begin(), faults.end(), fault) == faults.end()) {
+      faults.push_back(fault);
     }
   }
-  if (heard.size() > 1 && !topic.is_shared) {
-    std::sort(heard.begin(), heard.end());
-    found.push_back(
-      std::to_string(heard.size()) + " publishers where one is expected: " + joined(heard, ", "));
+  if (matched.size() > 1 && !topic.is_shared) {
+    std::sort(matched.begin(), matched.end());
+    const std::string count = std::to_string(matched.size());
+    faults.push_back(count + " publishers where one is expected: " + joined(matched, ", "));
   }
-  return joined(found, "; ");
+  return joined(faults, "; ");
 }
 
 }  // namespace deros_runtime_cpp

@@ -19,7 +19,7 @@ using rclcpp::TopicEndpointInfo;
 using rclcpp::node_interfaces::NodeBaseInterface;
 using rclcpp::node_interfaces::NodeGraphInterface;
 
-/// Return why the middleware does not connect a publisher with a subscription; empty if it does.
+/// Return why the QoS of a publisher and a subscription are incompatible; empty if they are not.
 std::string incompatible(const TopicEndpointInfo & offer, const TopicEndpointInfo & request)
 {
   const auto fit = rclcpp::qos_check_compatible(offer.qos_profile(), request.qos_profile());
@@ -37,7 +37,7 @@ std::string incompatible(const TopicEndpointInfo & offer, const TopicEndpointInf
   return reasons;
 }
 
-/// Return the name of a node, which the middleware may learn later than that of its topics.
+/// Return the name of a node; the middleware may know its topics earlier.
 std::string node_of(const TopicEndpointInfo & info)
 {
   if (info.node_name().empty() || info.node_name() == "_NODE_NAME_UNKNOWN_") {
@@ -47,11 +47,11 @@ std::string node_of(const TopicEndpointInfo & info)
   return (space == "/" ? "" : space) + '/' + info.node_name();
 }
 
-/// The report of one end of a node.
-class EndReport
+/// The report of one endpoint of a node.
+class EndpointReport
 {
 public:
-  EndReport(
+  EndpointReport(
     NodeBaseInterface::SharedPtr base, NodeGraphInterface::SharedPtr graph, rclcpp::Logger logger,
     std::string topic)
   : base_(std::move(base)),
@@ -61,32 +61,32 @@ public:
   {
   }
 
-  /// Log whom the node's publisher does not reach, or whom its subscription does not hear.
-  void tell(bool is_publisher, rmw_qos_policy_kind_t policy)
+  /// Log the endpoints that are incompatible with the publisher or subscription of the node.
+  void report(bool is_publisher, rmw_qos_policy_kind_t policy)
   {
-    const std::set<std::string> found = ends(is_publisher);
-    bool is_told = false;
-    for (const std::string & each : found) {
-      if (known_.count(each) == 0) {
-        RCLCPP_ERROR(logger_, "%s %s", topic_.c_str(), each.c_str());
-        is_told = true;
+    const std::set<std::string> endpoints = incompatible_endpoints(is_publisher);
+    bool is_reported = false;
+    for (const std::string & endpoint : endpoints) {
+      if (known_.count(endpoint) == 0) {
+        RCLCPP_ERROR(logger_, "%s %s", topic_.c_str(), endpoint.c_str());
+        is_reported = true;
       }
     }
-    if (!is_told) {
+    if (!is_reported) {
       RCLCPP_ERROR(
         logger_, "%s: an end of another node does not match in the QoS policy %s", topic_.c_str(),
         rclcpp::qos_policy_name_from_kind(policy).c_str());
     }
-    known_ = found;
+    known_ = endpoints;
   }
 
 private:
-  std::set<std::string> ends(bool is_publisher) const
+  std::set<std::string> incompatible_endpoints(bool is_publisher) const
   {
     const std::string own = base_->get_fully_qualified_name();
     const std::vector<TopicEndpointInfo> offers = graph_->get_publishers_info_by_topic(topic_);
     const std::vector<TopicEndpointInfo> requests = graph_->get_subscriptions_info_by_topic(topic_);
-    std::set<std::string> found;
+    std::set<std::string> endpoints;
     for (const TopicEndpointInfo & offer : offers) {
       for (const TopicEndpointInfo & request : requests) {
         if (node_of(is_publisher ? offer : request) != own) {
@@ -94,13 +94,13 @@ private:
         }
         const std::string reason = incompatible(offer, request);
         if (!reason.empty()) {
-          found.insert(
+          endpoints.insert(
             (is_publisher ? "does not reach " : "is not heard from ") +
             node_of(is_publisher ? request : offer) + ": " + reason);
         }
       }
     }
-    return found;
+    return endpoints;
   }
 
   NodeBaseInterface::SharedPtr base_;
@@ -116,9 +116,9 @@ rclcpp::PublisherOptions QosReport::publisher(const std::string & topic) const
 {
   rclcpp::PublisherOptions options;
   options.event_callbacks.incompatible_qos_callback =
-    [report = EndReport(base_, graph_, logger_, topics_->resolve_topic_name(topic))](
+    [report = EndpointReport(base_, graph_, logger_, topics_->resolve_topic_name(topic))](
     rclcpp::QOSOfferedIncompatibleQoSInfo & event) mutable {
-      report.tell(true, event.last_policy_kind);
+      report.report(true, event.last_policy_kind);
     };
   return options;
 }
@@ -127,9 +127,9 @@ rclcpp::SubscriptionOptions QosReport::subscription(const std::string & topic) c
 {
   rclcpp::SubscriptionOptions options;
   options.event_callbacks.incompatible_qos_callback =
-    [report = EndReport(base_, graph_, logger_, topics_->resolve_topic_name(topic))](
+    [report = EndpointReport(base_, graph_, logger_, topics_->resolve_topic_name(topic))](
     rclcpp::QOSRequestedIncompatibleQoSInfo & event) mutable {
-      report.tell(false, event.last_policy_kind);
+      report.report(false, event.last_policy_kind);
     };
   return options;
 }

@@ -27,7 +27,7 @@ namespace deros_runtime_cpp
 namespace
 {
 
-/// Change all threads there are; those started later inherit it. Return the error, or 0.
+/// Set the priority of all threads; later ones inherit it. Return the error number, or 0.
 int raise_priority(int priority)
 {
   sched_param settings{};
@@ -38,14 +38,14 @@ int raise_priority(int priority)
   {
     const pid_t thread = std::stoi(task->path().filename().string());
     if (::sched_setscheduler(thread, SCHED_FIFO, &settings) != 0 && errno != ESRCH) {
-      return errno;  // a thread that has ended meanwhile needs no priority
+      return errno;  // a thread that has ended in the meantime is not an error
     }
   }
   return error.value();
 }
 
-/// Tell whether locked memory can grow: a limit would fail later what is asked for then.
-bool may_lock_all()
+/// Return whether locked memory can grow: with a limit, later allocations would fail.
+bool can_lock_memory()
 {
   rlimit limit{};
   return ::geteuid() == 0 ||
@@ -54,12 +54,12 @@ bool may_lock_all()
 
 }  // namespace
 
-void sharpen_timers()
+void minimize_timer_slack()
 {
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
 }
 
-void never_wait_for_readers()
+void make_output_nonblocking()
 {
   ::signal(SIGPIPE, SIG_IGN);
   for (const int number : {STDOUT_FILENO, STDERR_FILENO}) {
@@ -69,13 +69,13 @@ void never_wait_for_readers()
     }
     const std::string path = "/proc/self/fd/" + std::to_string(number);
     const Descriptor opened(::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
-    if (opened) {  // else it is of another user, and stays as it is
+    if (opened) {  // otherwise it belongs to another user, and is not changed
       ::dup2(opened.get(), number);
     }
   }
 }
 
-std::vector<std::string> prepare(std::int64_t priority, bool lock_memory)
+std::vector<std::string> configure_process(std::int64_t priority, bool lock_memory)
 {
   std::vector<std::string> refusals;
   if (priority > 0) {
@@ -87,7 +87,7 @@ std::vector<std::string> prepare(std::int64_t priority, bool lock_memory)
     }
   }
   if (lock_memory) {
-    if (!may_lock_all()) {
+    if (!can_lock_memory()) {
       refusals.push_back("lock_memory is not permitted: it needs an unlimited RLIMIT_MEMLOCK");
     } else if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
       refusals.push_back("lock_memory is not permitted: " + error_text(errno));

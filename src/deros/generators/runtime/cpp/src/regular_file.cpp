@@ -58,7 +58,7 @@ Descriptor open_regular(const std::filesystem::path & path, int flags)
   if (!file || ::fstat(file.get(), &found) != 0) {
     throw std::system_error(errno, std::generic_category());
   }
-  check(found);  // what was opened may have come after the first look
+  check(found);  // it may have been replaced after the first check
   return file;
 }
 

@@ -13,14 +13,19 @@
 namespace deros_runtime_cpp
 {
 
-RuleState explained(
+std::string to_text(Verdict verdict)
+{
+  return verdict == Verdict::Unknown ? "unknown" : to_text(verdict == Verdict::True);
+}
+
+RuleState rule_state(
   const char * name, unsigned line, const char * text, bool is_true, Time since,
   std::vector<Reading> reads)
 {
-  const bool is_known = is_true || std::all_of(
-    reads.begin(), reads.end(), [](const Reading & each) {return each.value.has_value();});
-  const std::optional<bool> value = is_known ? std::optional<bool>(is_true) : std::nullopt;
-  return {name, line, text, value, since, std::move(reads), {}};
+  const bool is_known = std::all_of(
+    reads.begin(), reads.end(), [](const Reading & reading) {return reading.value.has_value();});
+  const Verdict verdict = is_true ? Verdict::True : is_known ? Verdict::False : Verdict::Unknown;
+  return {name, line, text, verdict, since, std::move(reads), {}};
 }
 
 std::optional<std::string> value_of(bool is_known, const std::string & value)
@@ -28,47 +33,47 @@ std::optional<std::string> value_of(bool is_known, const std::string & value)
   return is_known ? std::optional<std::string>(value) : std::nullopt;
 }
 
-std::string text_of(std::uint32_t place, const std::vector<std::string> & known)
+std::string known_text(std::uint32_t number, const std::vector<std::string> & texts)
 {
-  return place == 0 ? "another text" : known[place - 1];
+  return number == 0 ? "another text" : texts[number - 1];
 }
 
-std::string because(const std::string & head, const Causes & causes)
+std::string rule_cause(const std::string & head, const Causes & causes)
 {
   return head + joined(causes, " and ");
 }
 
-std::string unknown_among(const std::vector<Reading> & reads)
+std::string unknown_terms_among(const std::vector<Reading> & reads)
 {
   std::vector<std::string> names;
-  for (const Reading & each : reads) {
-    if (!each.value) {
-      names.push_back(each.term);
+  for (const Reading & reading : reads) {
+    if (!reading.value) {
+      names.push_back(reading.term);
     }
   }
   return "unknown: " + joined(names, ", ");
 }
 
-Causes given(bool condition, const std::string & cause)
+Causes cause_if(bool condition, const std::string & cause)
 {
   return condition ? Causes{cause} : Causes();
 }
 
-Causes during(bool condition, const Causes & causes)
+Causes causes_if(bool condition, const Causes & causes)
 {
   return condition ? causes : Causes();
 }
 
-void add(Causes & all, const Causes & further)
+void append(Causes & causes, const Causes & further)
 {
-  all.insert(all.end(), further.begin(), further.end());
+  causes.insert(causes.end(), further.begin(), further.end());
 }
 
-std::string cause_of(std::size_t behaviour, const MonitorSnapshot & state)
+std::string cause_of(std::size_t behaviour, const MonitorSnapshot & snapshot)
 {
-  const auto found = std::find(state.holding.begin(), state.holding.end(), behaviour);
-  return found == state.holding.end() ? "" :
-         state.causes[static_cast<std::size_t>(found - state.holding.begin())];
+  const auto found = std::find(snapshot.holding.begin(), snapshot.holding.end(), behaviour);
+  return found == snapshot.holding.end() ? "" :
+         snapshot.causes[static_cast<std::size_t>(found - snapshot.holding.begin())];
 }
 
 }  // namespace deros_runtime_cpp

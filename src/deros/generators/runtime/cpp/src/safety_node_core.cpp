@@ -23,8 +23,8 @@ namespace deros_runtime_cpp
 namespace
 {
 
-constexpr Time SOON = 2'000'000;  // ns after an action, when it is told of
-constexpr Time HOUSEKEEPING = 100'000'000;  // ns from one look at what is not urgent to the next
+constexpr Time REPORT_DELAY = 2'000'000;  // ns from an action to its report
+constexpr Time HOUSEKEEPING_PERIOD = 100'000'000;  // ns
 
 std::size_t domain_of(rclcpp::Node & node)
 {
@@ -47,28 +47,28 @@ SafetyNodeCore::SafetyNodeCore(
   name_(node.get_fully_qualified_name()),
   grace_(std::llrint(settings_.startup_grace * 1e9)),
   period_(std::llrint(1e9 / settings_.publish_freq)),
-  refused_(prepare(settings_.realtime_priority, settings_.lock_memory)),
+  not_permitted_(configure_process(settings_.realtime_priority, settings_.lock_memory)),
   clock_choice_(refuse_clock_change(node)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
   simulated_(simulated_time(node, event_loop_, [this](bool back) {runner_.clock_changed(back);})),
   runner_(event_loop_, clock_of(simulated_), *this),
-  events_(metadata, outside_of_events()),
-  diagnostics_(event_loop_, metadata, settings_.diagnostics_freq, outside_of_diagnostics()),
+  reporter_(metadata, reporter_environment()),
+  diagnostics_(event_loop_, metadata, settings_.diagnostics_freq, diagnostics_environment()),
   duplicates_(
     node, heartbeat_of(node),
-    [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);}),
+    [this](const std::string & subject, const std::string & text) {report_fault(subject, text);}),
   publishers_(
     node,
-    [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);}),
+    [this](const std::string & subject, const std::string & text) {report_fault(subject, text);}),
   active_(metadata.actions.size()),
   enabled_(metadata.behaviours.size(), true),
-  publishing_(event_loop_, clock_of(simulated_), [this] {publish();}),
-  telling_(event_loop_, Clock(), [this] {tell();}, [this] {return runner_.defer();}),
-  housekeeping_(event_loop_, Clock(), [this] {do_housekeeping();}),
-  switching_(event_loop_.add_source([this] {switch_behaviours();}, 1)),
+  publish_timer_(event_loop_, clock_of(simulated_), [this] {publish();}),
+  report_timer_(event_loop_, Clock(), [this] {flush_reports();}, [this] {return runner_.defer();}),
+  housekeeping_timer_(event_loop_, Clock(), [this] {do_housekeeping();}),
+  parameter_changes_(event_loop_.add_source([this] {switch_behaviours();}, 1)),
   ports_(
     event_loop_,
-    [this](const std::string & topic, const std::string & why) {refuse(topic, why);}),
+    [this](const std::string & topic, const std::string & why) {report_undecodable(topic, why);}),
   worker_(
     event_loop_,
     [this](const char * why) {
@@ -77,12 +77,12 @@ SafetyNodeCore::SafetyNodeCore(
       }
     })
 {
-  untold_.reserve(2 * SLOTS);
+  pending_reports_.reserve(2 * SLOTS);
   slots_.reserve(2 * SLOTS);
   try {
     lock_ = claim(name_, domain_of(node));
   } catch (const std::system_error & error) {
-    refused_.push_back(
+    not_permitted_.push_back(
       std::string("a second instance on this machine would not be seen: ") + error.what());
   }
 }
@@ -97,7 +97,7 @@ SafetyNodeCore::~SafetyNodeCore()
 void SafetyNodeCore::start(
   const std::vector<Topic> & topics, const std::vector<std::string> & states)
 {
-  tell_start();
+  report_start();
   open_latches();
   for (const std::string & topic : states) {
     duplicates_.add(node_.get_node_topics_interface()->resolve_topic_name(topic));
@@ -108,18 +108,18 @@ void SafetyNodeCore::start(
   for (const Topic & topic : topics) {
     const std::string name = node_.get_node_topics_interface()->resolve_topic_name(topic.name);
     group_->find_subscription_ptrs_if(
-      [&](const rclcpp::SubscriptionBase::SharedPtr & each) {
-        const bool found = each->get_topic_name() == name;
-        if (found) {
-          publishers_.add(*each, topic.type, topic.is_shared);
+      [&](const rclcpp::SubscriptionBase::SharedPtr & subscription) {
+        const bool is_found = subscription->get_topic_name() == name;
+        if (is_found) {
+          publishers_.add(*subscription, topic.type, topic.is_shared);
         }
-        return found;
+        return is_found;
       });
   }
   runner_.start();
   run_latched();
-  housekeeping_.schedule(0);
-  diagnostics_.begin();
+  housekeeping_timer_.schedule(0);
+  diagnostics_.start();
   ports_.serve(*group_);
   worker_.start();
 }
@@ -137,28 +137,28 @@ void SafetyNodeCore::begin(Time start)
   }
   for (std::size_t i = 0; i < metadata_.behaviours.size(); ++i) {
     if (metadata_.behaviours[i].is_optional) {
-      enabled_[i] = hooks_.is_chosen(i);
+      enabled_[i] = hooks_.is_enabled(i);
       hooks_.enable(start, i, enabled_[i]);
     }
   }
   is_starting_ = true;
   hooks_.show_states(active_);
-  publishing_.schedule(start + period_);
+  publish_timer_.schedule(start + period_);
 }
 
-void SafetyNodeCore::tell_start()
+void SafetyNodeCore::report_start()
 {
   const std::string count = std::to_string(metadata_.rule_count);
-  events_.tell("start", OK, "watching " + count + " rules of " + metadata_.rules);
-  for (const std::string & text : refused_) {
-    events_.tell("not_permitted", WARN, text);
+  reporter_.report(ReportKind::Start, OK, "watching " + count + " rules of " + metadata_.rules);
+  for (const std::string & text : not_permitted_) {
+    reporter_.report(ReportKind::NotPermitted, WARN, text);
   }
   for (std::size_t i = 0; i < metadata_.actions.size(); ++i) {
     const Action & action = metadata_.actions[i];
-    if (action.is_code && !hooks_.is_filled_in(i)) {
+    if (action.is_code && !hooks_.is_implemented(i)) {
       const std::string text =
         "action " + action.name + " does nothing: write its code in " + metadata_.actions_file;
-      events_.tell("unfilled", ERROR, text, {{"action", action.name}});
+      reporter_.report(ReportKind::Unfilled, ERROR, text, {{"action", action.name}});
     }
   }
 }
@@ -180,12 +180,12 @@ void SafetyNodeCore::open_latches()
   }
   latches_ = std::make_unique<Latches>(
     LatchFile(path, name_), known,
-    [this](const std::string & subject, const std::string & text) {tell_fault(subject, text);});
-  latch_again();
+    [this](const std::string & subject, const std::string & text) {report_fault(subject, text);});
+  report_latched();
 }
 
-/// Show what was active when the last process of this node ended.
-void SafetyNodeCore::latch_again()
+/// Report the actions that were active when the last process of this node ended.
+void SafetyNodeCore::report_latched()
 {
   for (std::size_t i = 0; i < metadata_.actions.size(); ++i) {
     const Action & action = metadata_.actions[i];
@@ -193,12 +193,12 @@ void SafetyNodeCore::latch_again()
       continue;
     }
     const std::string text = action.name + " is active, as it was before the start";
-    events_.tell("latched", WARN, text, {{"action", action.name}});
+    reporter_.report(ReportKind::Latched, WARN, text, {{"action", action.name}});
     diagnostics_.latched(i);
   }
 }
 
-/// Run the robot code of what was active then; the states are out.
+/// Run the robot code of these actions; their states have been published.
 void SafetyNodeCore::run_latched()
 {
   std::vector<Event> calls;
@@ -210,14 +210,14 @@ void SafetyNodeCore::run_latched()
   runner_.run_again(calls);
 }
 
-// What the monitor orders
+// Orders of the monitor
 
 void SafetyNodeCore::advance(Time now)
 {
   hooks_.advance_monitor(now);
 }
 
-Time SafetyNodeCore::due() const
+Time SafetyNodeCore::next_deadline() const
 {
   return hooks_.next_deadline();
 }
@@ -248,7 +248,7 @@ bool SafetyNodeCore::show(const Event & event)
 void SafetyNodeCore::run_code(const Event & event)
 {
   const std::size_t number = *action_of(event);
-  if (hooks_.is_filled_in(number)) {
+  if (hooks_.is_implemented(number)) {
     hooks_.run(event.site);
   } else {
     const std::string call =
@@ -259,12 +259,12 @@ void SafetyNodeCore::run_code(const Event & event)
   }
 }
 
-/// Remember what explains some events; the last slot is shared if there are not enough of them.
-void SafetyNodeCore::remember(std::size_t count)
+/// Save a snapshot for some events; when no slot is free, the last one is used again.
+void SafetyNodeCore::save_snapshot(std::size_t count)
 {
-  slot_ = std::min(slot_ + 1, SLOTS);
-  hooks_.remember(slot_ - 1);
-  slots_.resize(count, slot_ - 1);
+  slot_count_ = std::min(slot_count_ + 1, SLOTS);
+  hooks_.save_snapshot(slot_count_ - 1);
+  slots_.resize(count, slot_count_ - 1);
 }
 
 void SafetyNodeCore::after(const std::vector<Event> & events, const std::vector<Time> & done)
@@ -273,96 +273,96 @@ void SafetyNodeCore::after(const std::vector<Event> & events, const std::vector<
     for (const Event & event : events) {
       const std::optional<std::size_t> number = action_of(event);
       if (number && metadata_.actions[*number].latch) {
-        latches_->follow(*metadata_.actions[*number].latch, event.kind != EventKind::Reset);
+        latches_->record(*metadata_.actions[*number].latch, event.kind != EventKind::Reset);
       }
     }
     latches_->persist();
   }
   for (std::size_t i = 0; i < events.size(); ++i) {
-    untold_.push_back({events[i], done[i], slots_[i]});
+    pending_reports_.push_back({events[i], done[i], slots_[i]});
   }
   slots_.clear();
-  if (slot_ == SLOTS) {
-    tell();
-  } else if (!telling_.is_scheduled()) {  // later, so that those who have to act find a processor
-    telling_.schedule(steady_now() + SOON);
+  if (slot_count_ == SLOTS) {
+    flush_reports();
+  } else if (!report_timer_.is_scheduled()) {  // later: first, other nodes react to the states
+    report_timer_.schedule(steady_now() + REPORT_DELAY);
   }
 }
 
-void SafetyNodeCore::tell()
+void SafetyNodeCore::flush_reports()
 {
   std::optional<std::size_t> slot;
   MonitorSnapshot after;
-  for (const Untold & each : untold_) {
-    if (slot != each.slot) {
-      slot = each.slot;
-      after = hooks_.explain(slot);
+  for (const PendingReport & report : pending_reports_) {
+    if (slot != report.slot) {
+      slot = report.slot;
+      after = hooks_.snapshot(slot);
     }
-    events_.ordered(each.event, each.done, after);
-    diagnostics_.ordered(each.event, after);
+    reporter_.report_monitor_event(report.event, report.done, after);
+    diagnostics_.update(report.event, after);
   }
-  untold_.clear();
-  slot_ = 0;
+  pending_reports_.clear();
+  slot_count_ = 0;
   diagnostics_.changed();
 }
 
-void SafetyNodeCore::tell_failure(const Event & event, const char * why)
+void SafetyNodeCore::report_failure(const Event & event, const char * why)
 {
   const std::optional<std::size_t> number = action_of(event);
   const std::string name = number ? metadata_.actions[*number].name : "";
   RCLCPP_FATAL(node_.get_logger(), "action %s failed: %s", name.c_str(), why);
 }
 
-void SafetyNodeCore::tell_fault(const std::string & subject, const std::string & text)
+void SafetyNodeCore::report_fault(const std::string & subject, const std::string & text)
 {
   if (diagnostics_.fault(subject, text) && !text.empty()) {
-    events_.tell("fault", ERROR, subject + ": " + text, {{"subject", subject}});
+    reporter_.report(ReportKind::Fault, ERROR, subject + ": " + text, {{"subject", subject}});
   }
 }
 
-/// Tell, once per topic, of a message that cannot be read; it counts for nothing.
-void SafetyNodeCore::refuse(const std::string & topic, const std::string & why)
+/// Report a message that cannot be deserialized, once per topic; it is ignored.
+void SafetyNodeCore::report_undecodable(const std::string & topic, const std::string & why)
 {
   const std::string text = topic + " has carried data that cannot be read";
   if (diagnostics_.fault("data of " + topic, text)) {
-    events_.tell("undecodable", ERROR, text + ": " + why, {{"topic", topic}});
+    reporter_.report(ReportKind::Undecodable, ERROR, text + ": " + why, {{"topic", topic}});
   }
 }
 
 // States and heartbeat
 
-void SafetyNodeCore::stepped()
+void SafetyNodeCore::clock_stepped()
 {
   publish();
 }
 
-/// Repeat the states, and beat.
+/// Publish all states, and the heartbeat if the node is ready.
 void SafetyNodeCore::publish()
 {
-  publishing_.repeat(period_);
+  publish_timer_.repeat(period_);
   hooks_.show_states(active_);
   if (is_ready()) {
-    ++beats_;
-    hooks_.beat(beats_);
+    ++heartbeats_;
+    hooks_.send_heartbeat(heartbeats_);
   }
 }
 
-/// Look after what is not urgent.
+/// Run the periodic checks.
 void SafetyNodeCore::do_housekeeping()
 {
-  housekeeping_.repeat(HOUSEKEEPING);
-  duplicates_.look();
-  publishers_.look();
+  housekeeping_timer_.repeat(HOUSEKEEPING_PERIOD);
+  duplicates_.check();
+  publishers_.check();
   if (latches_) {
     latches_->persist();
   }
 }
 
-/// Tell whether the start is over: within the grace, inputs are waited for.
+/// Return whether the start is over: during the startup grace, the node waits for its inputs.
 bool SafetyNodeCore::is_ready()
 {
   if (is_starting_) {
-    if (hooks_.is_waiting() && runner_.now() < runner_.began_at() + grace_) {
+    if (hooks_.is_waiting() && runner_.now() < runner_.started_at() + grace_) {
       return false;
     }
     is_starting_ = false;
@@ -371,7 +371,7 @@ bool SafetyNodeCore::is_ready()
   return true;
 }
 
-/// Return in words what the node does not do; nothing if it watches all rules.
+/// Return why the node does not watch all rules; an empty text if it does.
 std::string SafetyNodeCore::not_ready_reason() const
 {
   if (is_starting_) {
@@ -392,13 +392,13 @@ std::string SafetyNodeCore::reset(bool & success)
 {
   success = false;
   const Time now = runner_.advance();
-  const MonitorSnapshot present = hooks_.explain(std::nullopt);
-  std::vector<std::pair<std::string, std::string>> active;  // and why it stays so
+  const MonitorSnapshot present = hooks_.snapshot(std::nullopt);
+  std::vector<std::pair<std::string, std::string>> active;  // and why each stays active
   LatchFile::Names remaining;
   for (std::size_t i = 0; i < metadata_.actions.size(); ++i) {
     const Action & action = metadata_.actions[i];
     if (action.latch && latches_->is_active(*action.latch)) {
-      active.emplace_back(action.name, events_.refusal(i, present));
+      active.emplace_back(action.name, reporter_.refusal(i, present));
       if (!active.back().second.empty()) {
         remaining.insert(action.name);
       }
@@ -411,16 +411,16 @@ std::string SafetyNodeCore::reset(bool & success)
   success = hooks_.reset_monitor(now);
   runner_.settle();
   std::sort(active.begin(), active.end());
-  std::vector<std::string> told;
+  std::vector<std::string> results;
   for (const auto & [name, why] : active) {
-    told.push_back(why.empty() ? name + " is reset" : name + " stays active, " + why);
+    results.push_back(why.empty() ? name + " is reset" : name + " stays active, " + why);
   }
-  return told.empty() ? "no latched action was active" : joined(told, "; ");
+  return results.empty() ? "no latched action was active" : joined(results, "; ");
 }
 
 void SafetyNodeCore::parameters_changed()
 {
-  event_loop_.notify(switching_);
+  event_loop_.notify(parameter_changes_);
 }
 
 /// Enable or disable the behaviours whose parameter has changed.
@@ -428,27 +428,27 @@ void SafetyNodeCore::switch_behaviours()
 {
   for (std::size_t i = 0; i < metadata_.behaviours.size(); ++i) {
     const Behaviour & behaviour = metadata_.behaviours[i];
-    if (!behaviour.is_optional || hooks_.is_chosen(i) == enabled_[i]) {
+    if (!behaviour.is_optional || hooks_.is_enabled(i) == enabled_[i]) {
       continue;
     }
     const bool enabled = !enabled_[i];
     enabled_[i] = enabled;
     hooks_.enable(runner_.catch_up(), i, enabled);
     runner_.settle();
-    const char * kind = enabled ? "enabled" : "disabled";
-    events_.tell(
-      kind, enabled ? OK : WARN, behaviour.name + " is " + kind, {{"behaviour", behaviour.name}});
+    const ReportKind kind = enabled ? ReportKind::Enabled : ReportKind::Disabled;
+    const std::string text = behaviour.name + (enabled ? " is enabled" : " is disabled");
+    reporter_.report(kind, enabled ? OK : WARN, text, {{"behaviour", behaviour.name}});
     diagnostics_.changed();
   }
 }
 
-// Life
+// Lifetime
 
 void SafetyNodeCore::stop()
 {
   worker_.stop();
-  if (!untold_.empty()) {
-    tell();
+  if (!pending_reports_.empty()) {
+    flush_reports();
   }
 }
 
@@ -462,7 +462,7 @@ std::exception_ptr SafetyNodeCore::failure() const
   return worker_.failure();
 }
 
-// The world outside
+// Environment
 
 void SafetyNodeCore::log(Level level, const std::string & text) const
 {
@@ -475,21 +475,21 @@ void SafetyNodeCore::log(Level level, const std::string & text) const
   }
 }
 
-Events::Outside SafetyNodeCore::outside_of_events()
+EventReporter::Environment SafetyNodeCore::reporter_environment()
 {
   return {
     name_,
     [this] {return node_.now().nanoseconds();},
     [this](Level level, const std::string & text) {log(level, text);},
-    [this](const Events::Status & event) {hooks_.report_event(event);},
+    [this](const EventReporter::Status & event) {hooks_.report_event(event);},
   };
 }
 
-Diagnostics::Outside SafetyNodeCore::outside_of_diagnostics()
+Diagnostics::Environment SafetyNodeCore::diagnostics_environment()
 {
   return {
     name_,
-    [this] {return hooks_.explain(std::nullopt);},
+    [this] {return hooks_.snapshot(std::nullopt);},
     [this] {return runner_.now();},
     [this] {return not_ready_reason();},
     [this](Diagnostics::Message & message) {

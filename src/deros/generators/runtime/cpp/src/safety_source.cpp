@@ -16,9 +16,9 @@ namespace deros_runtime_cpp
 namespace
 {
 
-constexpr std::size_t MOST = 64;  // strangers on one topic; from here on nobody is trusted on it
+constexpr std::size_t MAX_UNKNOWN = 64;  // publishers on one topic; with more, none is trusted
 
-/// Return what has an identifier, or the end.
+/// Return the item with an identifier, or the end.
 template<typename Items, typename Gid>
 auto find(Items & items, const Gid & gid)
 {
@@ -67,26 +67,26 @@ SafetySource::Sender SafetySource::sender_of(const rclcpp::MessageInfo & info)
   const Gid gid = gid_of(info);
   const Time now = steady_now();
   if (safety_node_ && safety_node_->gid == gid) {
-    safety_node_->heard = now;
+    safety_node_->last_message = now;
     return Sender::SAFETY_NODE;
   }
   return adopt(gid, now);
 }
 
-/// Take a publisher of the heartbeat for the safety node, unless somebody else can be it.
+/// Accept a publisher of the heartbeat as the safety node, unless another node can be it.
 SafetySource::Sender SafetySource::adopt(const Gid & gid, Time now)
 {
   if (safety_node_) {
     seen_.push_back(*safety_node_);
     safety_node_.reset();
   }
-  note_publishers(gid, now);
+  update_publishers(gid, now);
   const auto found = find(seen_, gid);
   if (found == seen_.end() || found->node.empty()) {
-    return Sender::NOBODY;  // the graph does not know it yet, or not any more
+    return Sender::NOBODY;  // the graph does not know it yet, or no longer
   }
   for (const Publisher & each : seen_) {
-    const bool is_past = each.node == found->node && now - each.heard >= silence_;
+    const bool is_past = each.node == found->node && now - each.last_message >= silence_;
     if (each.gid != gid && !is_past) {
       return Sender::NOBODY;
     }
@@ -100,28 +100,28 @@ SafetySource::Sender SafetySource::adopt(const Gid & gid, Time now)
   return Sender::NEW_SAFETY_NODE;
 }
 
-/// Find out anew whose states are the safety node's; those of the one before are not.
+/// Identify the publishers of the states again; those of the previous node are not trusted.
 void SafetySource::forget_states()
 {
   for (Topic & topic : topics_) {
-    for (Stranger & stranger : topic.strangers) {
-      stranger.is_known = false;
+    for (UnknownPublisher & publisher : topic.unknown) {
+      publisher.is_other = false;
     }
     if (topic.trusted) {
-      topic.strangers.push_back({*topic.trusted, false, true});
+      topic.unknown.push_back({*topic.trusted, false, true});
       topic.trusted.reset();
     }
   }
 }
 
-/// Note who publishes the heartbeat, and when each of them was heard.
-void SafetySource::note_publishers(const Gid & heard, Time now)
+/// Update the publishers of the heartbeat, and when each sent its last message.
+void SafetySource::update_publishers(const Gid & sender, Time now)
 {
   std::vector<Publisher> found;
-  for (const rclcpp::TopicEndpointInfo & info : heard_publishers(node_, *heartbeat_)) {
+  for (const rclcpp::TopicEndpointInfo & info : matched_publishers(node_, *heartbeat_)) {
     const auto known = find(seen_, info.endpoint_gid());
-    const bool is_new = known == seen_.end() || info.endpoint_gid() == heard;
-    found.push_back({info.endpoint_gid(), node_of(info), is_new ? now : known->heard});
+    const bool is_new = known == seen_.end() || info.endpoint_gid() == sender;
+    found.push_back({info.endpoint_gid(), node_of(info), is_new ? now : known->last_message});
   }
   seen_ = std::move(found);
 }
@@ -134,53 +134,53 @@ bool SafetySource::is_trusted(
   Topic & from = topics_[topic];
   const Gid gid = gid_of(info);
   if (from.trusted != gid) {
-    auto stranger = find(from.strangers, gid);
-    if (stranger == from.strangers.end()) {
-      if (from.strangers.size() == MOST) {
+    auto publisher = find(from.unknown, gid);
+    if (publisher == from.unknown.end()) {
+      if (from.unknown.size() == MAX_UNKNOWN) {
         return false;
       }
-      stranger = from.strangers.insert(stranger, {gid, is_active, false});
+      publisher = from.unknown.insert(publisher, {gid, is_active, false});
     }
-    stranger->is_active = is_active;
-    if (!is_of_safety_node(from, *stranger)) {
+    publisher->is_active = is_active;
+    if (!is_of_safety_node(from, *publisher)) {
       return false;
     }
     from.trusted = gid;
-    from.strangers.erase(stranger);
+    from.unknown.erase(publisher);
   }
-  return (!heartbeat_ || safety_node_) && from.strangers.size() < MOST && std::none_of(
-    from.strangers.begin(), from.strangers.end(),
-    [](const Stranger & each) {return each.is_active;});
+  return (!heartbeat_ || safety_node_) && from.unknown.size() < MAX_UNKNOWN && std::none_of(
+    from.unknown.begin(), from.unknown.end(),
+    [](const UnknownPublisher & each) {return each.is_active;});
 }
 
-/// Tell whether somebody who publishes states is the safety node; the graph is asked once.
-bool SafetySource::is_of_safety_node(const Topic & topic, Stranger & stranger) const
+/// Return whether a publisher of states is the safety node; the graph is queried once.
+bool SafetySource::is_of_safety_node(const Topic & topic, UnknownPublisher & publisher) const
 {
-  if (stranger.is_known || (heartbeat_ && !safety_node_)) {
+  if (publisher.is_other || (heartbeat_ && !safety_node_)) {
     return false;
   }
-  const auto infos = heard_publishers(node_, topic.subscribed);
-  const auto info = find_info(infos, stranger.gid);
+  const auto infos = matched_publishers(node_, topic.subscribed);
+  const auto info = find_info(infos, publisher.gid);
   if (info == infos.end() || node_of(*info).empty()) {
     return false;
   }
   if (!heartbeat_) {
     return infos.size() == 1 && node_of(*info) == only_state_node();
   }
-  const auto beating = heard_publishers(node_, *heartbeat_);
+  const auto beating = matched_publishers(node_, *heartbeat_);
   if (find_info(beating, safety_node_->gid) == beating.end()) {
-    return false;  // that one is gone; this may be the next, of which no heartbeat has come yet
+    return false;  // it is gone; this may be the next one, whose heartbeat has not been received
   }
-  stranger.is_known = topic.trusted.has_value() || node_of(*info) != safety_node_->node;
-  return !stranger.is_known;
+  publisher.is_other = topic.trusted.has_value() || node_of(*info) != safety_node_->node;
+  return !publisher.is_other;
 }
 
-/// Return the node of all states, each topic of which has one publisher; empty if there is none.
+/// Return the only node that publishes states, one publisher per topic; empty if there is none.
 std::string SafetySource::only_state_node() const
 {
   std::string found;
   for (const Topic & topic : topics_) {
-    for (const rclcpp::TopicEndpointInfo & info : heard_publishers(node_, topic.subscribed)) {
+    for (const rclcpp::TopicEndpointInfo & info : matched_publishers(node_, topic.subscribed)) {
       const std::string name = node_of(info);
       if (name.empty() || (!found.empty() && found != name)) {
         return "";
@@ -193,17 +193,17 @@ std::string SafetySource::only_state_node() const
 
 // Once a second
 
-bool SafetySource::look()
+bool SafetySource::check()
 {
   bool is_alone = true;
   for (Topic & topic : topics_) {
-    look_at(topic);
-    is_alone = is_alone && (heartbeat_ || topic.strangers.empty());
+    check_topic(topic);
+    is_alone = is_alone && (heartbeat_ || topic.unknown.empty());
   }
   if (!safety_node_) {
     return is_alone;
   }
-  for (const rclcpp::TopicEndpointInfo & info : heard_publishers(node_, *heartbeat_)) {
+  for (const rclcpp::TopicEndpointInfo & info : matched_publishers(node_, *heartbeat_)) {
     is_alone = is_alone && node_of(info) == safety_node_->node;
   }
   if (!is_alone) {
@@ -213,27 +213,27 @@ bool SafetySource::look()
   return is_alone;
 }
 
-/// Forget who is gone, and report who is there and is not the safety node.
-void SafetySource::look_at(Topic & topic)
+/// Remove publishers that are gone, and report those of other nodes.
+void SafetySource::check_topic(Topic & topic)
 {
-  const auto infos = heard_publishers(node_, topic.subscribed);
+  const auto infos = matched_publishers(node_, topic.subscribed);
   const auto is_gone = [&infos](const Gid & gid) {return find_info(infos, gid) == infos.end();};
-  topic.strangers.erase(
+  topic.unknown.erase(
     std::remove_if(
-      topic.strangers.begin(), topic.strangers.end(),
-      [&is_gone](const Stranger & each) {return is_gone(each.gid);}),
-    topic.strangers.end());
+      topic.unknown.begin(), topic.unknown.end(),
+      [&is_gone](const UnknownPublisher & each) {return is_gone(each.gid);}),
+    topic.unknown.end());
   if (topic.trusted && (is_gone(*topic.trusted) || (!heartbeat_ && infos.size() > 1))) {
     topic.trusted.reset();
   }
   const std::string safety_node = safety_node_ ? safety_node_->node : "";
   std::vector<std::string> names;
-  for (Stranger & each : topic.strangers) {
+  for (UnknownPublisher & each : topic.unknown) {
     const std::string name = node_of(*find_info(infos, each.gid));
     if (!topic.trusted && name == safety_node) {
-      each.is_known = false;  // beside the one that is gone now, it was not believed
+      each.is_other = false;  // it was not trusted beside the publisher that is gone now
     }
-    if (each.is_known) {
+    if (each.is_other) {
       names.push_back(name);
     }
   }

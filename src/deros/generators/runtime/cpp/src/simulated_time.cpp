@@ -12,7 +12,7 @@ namespace deros_runtime_cpp
 namespace
 {
 
-constexpr std::size_t TICKS = 100;  // that may wait: each is due at its place among the messages
+constexpr std::size_t TICKS = 100;  // that can wait: each keeps its place among the messages
 
 }  // namespace
 
@@ -37,7 +37,7 @@ SimulatedTime::~SimulatedTime()
   subscription_->clear_on_new_message_callback();
 }
 
-/// Take a tick from the middleware, which has those of this process, too.
+/// Take a tick from the middleware, which also delivers those of this process.
 void SimulatedTime::take()
 {
   rclcpp::MessageInfo info;

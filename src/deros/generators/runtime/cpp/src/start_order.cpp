@@ -8,8 +8,8 @@ namespace deros_runtime_cpp
 namespace
 {
 
-// In ns; for so long the other one has to be there: it may be just ending.
-constexpr Time PATIENCE = 200'000'000;
+// In ns; the other one has to be present for this long, as it may be ending.
+constexpr Time MIN_PRESENCE = 200'000'000;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ bool StartOrder::gives_way(bool has_double, Time now)
     met_ = now;
   }
   const Time age = *met_ - started_;
-  return age < YOUNG && now - *met_ >= PATIENCE + age;
+  return age < YOUNG && now - *met_ >= MIN_PRESENCE + age;
 }
 
 }  // namespace deros_runtime_cpp

@@ -17,31 +17,31 @@ namespace deros_runtime_cpp
 namespace
 {
 
-// In ns from look to look, while a second gate might be met.
+// In ns, as long as a second gate may have started at the same time.
 constexpr Time PERIOD = 100'000'000;
 
-// In ns after its start; a gate that met a second one while young has given way by then.
+// In ns after the start; a gate that finds a second one while it is young has ended by then.
 constexpr Time EARLY = 2 * StartOrder::YOUNG;
 
 }  // namespace
 
-TargetPublishers::TargetPublishers(
+TargetPublisherCheck::TargetPublisherCheck(
   EventLoop & event_loop, rclcpp::Node & node, const std::string & target, Report report)
 : node_(node),
   target_(node.get_node_topics_interface()->resolve_topic_name(target)),
   report_(std::move(report)),
   order_(steady_now()),
   early_until_(steady_now() + EARLY),
-  early_(event_loop, Clock(), [this] {look_early();})
+  early_(event_loop, Clock(), [this] {check_early();})
 {
 }
 
-void TargetPublishers::begin()
+void TargetPublisherCheck::start()
 {
   early_.schedule(0);
 }
 
-void TargetPublishers::look_early()
+void TargetPublisherCheck::check_early()
 {
   if (early_.due() < early_until_) {
     early_.repeat(PERIOD);
@@ -49,7 +49,7 @@ void TargetPublishers::look_early()
   find();
 }
 
-void TargetPublishers::look()
+void TargetPublisherCheck::check()
 {
   auto [others, second] = find();
   std::vector<std::string> faults;
@@ -61,11 +61,11 @@ void TargetPublishers::look()
     faults.push_back("published past the gate: " + joined(others, ", "));
   }
   report_(target_, joined(faults, "; "));
-  report_("readers of " + target_, unserved_readers(node_, target_));
+  report_("readers of " + target_, unmatched_subscriptions(node_, target_));
 }
 
-/// Return the nodes that publish past the gate, and what is to be said of a second gate.
-std::pair<std::vector<std::string>, std::string> TargetPublishers::find()
+/// Return the nodes that publish past the gate, and the fault that a second gate is.
+std::pair<std::vector<std::string>, std::string> TargetPublisherCheck::find()
 {
   const std::string own = node_.get_fully_qualified_name();
   int gates = 0;

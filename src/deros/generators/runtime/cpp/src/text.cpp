@@ -17,10 +17,10 @@ namespace deros_runtime_cpp
 namespace
 {
 
-constexpr int LEAST_PLAIN = -4;  // decimal exponents between which a number has no 'e'
-constexpr int GREATEST_PLAIN = 16;
+constexpr int MIN_PLAIN = -4;  // decimal exponents of numbers that are written without one
+constexpr int MAX_PLAIN = 16;
 
-/// Return 'd.ddd' of digits, whose first one counts 10 to the power of exponent.
+/// Return digits in positional notation; the first one counts 10 to the power of exponent.
 std::string plain(const std::string & digits, int exponent)
 {
   if (exponent < 0) {
@@ -45,7 +45,7 @@ std::string scientific(const std::string & digits, int exponent)
 
 }  // namespace
 
-std::string shown(double value)
+std::string to_text(double value)
 {
   if (std::isnan(value)) {
     return "nan";
@@ -61,24 +61,24 @@ std::string shown(double value)
   const std::size_t mark = text.find('e');
   std::string digits = text.substr(0, mark);
   if (digits.size() > 1) {
-    digits.erase(1, 1);  // the point
+    digits.erase(1, 1);  // the decimal point
   }
   const int exponent = std::stoi(text.substr(mark + 1));
-  const bool is_plain = LEAST_PLAIN <= exponent && exponent < GREATEST_PLAIN;
+  const bool is_plain = MIN_PLAIN <= exponent && exponent < MAX_PLAIN;
   return sign + (is_plain ? plain(digits, exponent) : scientific(digits, exponent));
 }
 
-std::string shown(std::int64_t value)
+std::string to_text(std::int64_t value)
 {
   return std::to_string(value);
 }
 
-std::string shown(std::uint64_t value)
+std::string to_text(std::uint64_t value)
 {
   return std::to_string(value);
 }
 
-std::string shown(bool value)
+std::string to_text(bool value)
 {
   return value ? "true" : "false";
 }

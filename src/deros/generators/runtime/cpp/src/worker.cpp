@@ -30,7 +30,7 @@ void Worker::start()
 
 void Worker::stop()
 {
-  event_loop_.end();
+  event_loop_.stop();
   if (thread_.joinable()) {
     thread_.join();
   }
@@ -56,9 +56,9 @@ std::exception_ptr Worker::failure() const
 
 void Worker::run()
 {
-  sharpen_timers();
+  minimize_timer_slack();
   std::exception_ptr failure;
-  std::string why = "what was thrown says nothing of itself";
+  std::string why = "something was thrown that is not a std::exception";
   try {
     event_loop_.run();
   } catch (const std::exception & error) {

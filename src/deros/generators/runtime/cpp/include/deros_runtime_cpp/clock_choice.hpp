@@ -8,13 +8,11 @@
 namespace deros_runtime_cpp
 {
 
-/// What keeps a refusal in force; it ends with the last copy of it.
+/// A handle; changes are rejected until its last copy is destroyed.
 using ClockChoice = rclcpp::node_interfaces::OnSetParametersCallbackHandle::SharedPtr;
 
-/// Refuse, with a reason, to change use_sim_time as long as the result is kept.
-/**
- * Timers and deadlines of a running node belong to the clock that it started with.
- */
+/// Reject changes of use_sim_time, with a reason.
+/** Timers and deadlines of a running node belong to the clock that it was started with. */
 ClockChoice refuse_clock_change(rclcpp::Node & node);
 
 }  // namespace deros_runtime_cpp

@@ -10,7 +10,7 @@
 namespace deros_runtime_cpp
 {
 
-/// An open file of the system, closed when this ends.
+/// A file descriptor, which is closed by the destructor.
 class Descriptor
 {
 public:
@@ -38,13 +38,13 @@ public:
     return *this;
   }
 
-  /// Return its number; negative if nothing is open.
+  /// Return its number; negative if it is not open.
   int get() const
   {
     return number_;
   }
 
-  /// Tell whether it is open.
+  /// Return whether it is open.
   explicit operator bool() const
   {
     return number_ >= 0;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "deros_runtime_cpp/event_loop.hpp"
-#include "deros_runtime_cpp/events.hpp"
+#include "deros_runtime_cpp/event_reporter.hpp"
 #include "deros_runtime_cpp/report_types.hpp"
 #include "diagnostic_msgs/msg/diagnostic_array.hpp"
 #include "diagnostic_msgs/msg/diagnostic_status.hpp"
@@ -18,10 +18,10 @@
 namespace deros_runtime_cpp
 {
 
-/// The present state of a safety node on /diagnostics, for the tools that operators know.
+/// Publishes the present state of a safety node on /diagnostics, for the usual tools of operators.
 /**
- * One status for the node, one for each action and one for each rule. All of it is published
- * regularly, and soon after a change.
+ * There is one status for the node, one for each action and one for each rule. All of them are
+ * published periodically, and soon after a change.
  */
 class Diagnostics
 {
@@ -29,61 +29,62 @@ public:
   using Message = diagnostic_msgs::msg::DiagnosticArray;
   using Status = diagnostic_msgs::msg::DiagnosticStatus;
 
-  /// What tells of the node and of the world outside.
-  struct Outside
+  /// The node as the diagnostics use it.
+  struct Environment
   {
-    std::string name;  // of the node, in full
-    std::function<MonitorSnapshot()> explain;
-    std::function<Time()> now;  // the time in which the monitor is told
-    std::function<std::string()> summary;  // what the node is not ready for; empty if it watches
-    std::function<void(Message &)> publish;  // stamps it, too
-    std::function<Time()> defer;  // what goes before
+    std::string name;  // fully qualified
+    std::function<MonitorSnapshot()> snapshot;
+    std::function<Time()> now;  // the time of the monitor
+    std::function<std::string()> not_ready_reason;  // empty if the node watches all rules
+    std::function<void(Message &)> publish;  // stamps the message, too
+    std::function<Time()> defer;  // for how long publishing has to wait
   };
 
   Diagnostics(
-    EventLoop & event_loop, const RuleMetadata & metadata, double frequency, Outside outside);
+    EventLoop & event_loop, const RuleMetadata & metadata, double frequency,
+    Environment environment);
 
   /// Publish for the first time, at once.
-  void begin();
+  void start();
 
   /// Publish soon.
   void changed();
 
-  /// Follow an event of the monitor; after is what the monitor was worth after it.
-  void ordered(const Event & event, const MonitorSnapshot & after);
+  /// Update the state of an action after an event of the monitor.
+  void update(const Event & event, const MonitorSnapshot & after);
 
-  /// Show an action as active that was so before the start.
+  /// Mark an action as active since before the start.
   void latched(std::size_t action);
 
-  /// Note or, with an empty text, forget a fault; tell whether this is another one now.
+  /// Set a fault or, with an empty text, clear it; return whether that changed the fault.
   bool fault(const std::string & subject, const std::string & text);
 
 private:
-  /// An action: whether it is active, or that it ran, by which behaviour and why, since when.
+  /// The state of an action: whether and since when it is active or has run, and why.
   struct ActionState
   {
     bool active = false;
-    std::string cause;
-    std::string because;
+    std::string behaviour;
+    std::string causes;
     std::optional<Time> since;
     std::size_t runs = 0;
   };
 
-  void ring();
+  void fire();
   void make_statuses();
   Status node_status(std::size_t rule_count) const;
   Status action_status(std::size_t action, Time now) const;
-  Status rule_status(const RuleState & rule, bool blamed, Time now) const;
+  Status rule_status(const RuleState & rule, bool is_blamed, Time now) const;
   std::vector<bool> blamed(const MonitorSnapshot & state) const;
 
   const RuleMetadata & metadata_;
-  Outside outside_;
+  Environment environment_;
   Time period_;
   Values faults_;
   std::vector<ActionState> actions_;
   std::vector<Status> statuses_;  // of one state, published in parts
   std::size_t published_ = 0;
-  bool again_ = false;
+  bool has_changed_ = false;  // since the state that is being published
   OneShotTimer timer_;
 };
 

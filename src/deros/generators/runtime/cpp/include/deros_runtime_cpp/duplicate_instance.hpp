@@ -15,39 +15,39 @@
 namespace deros_runtime_cpp
 {
 
-/// Looks whether somebody else publishes the heartbeat of a node, or the states of its actions.
+/// Checks that no other node publishes the heartbeat of a node, or the states of its actions.
 /**
- * The first is a second node of its name, on another machine or without a common folder for
- * temporary files; the second contradicts it. It also looks whether whoever subscribes to one of
- * these topics is served.
+ * Another publisher of the heartbeat is a second node of the same name, on another machine or
+ * without a common folder for temporary files; another publisher of states contradicts the node.
+ * It also checks that every subscription of these topics is compatible with the node's publisher.
  */
 class DuplicateInstanceDetector
 {
 public:
-  /// Takes the topic and what is wrong with it, empty if nothing is.
+  /// Takes a topic and its fault; an empty text if there is none.
   using Report = std::function<void (const std::string &, const std::string &)>;
 
   DuplicateInstanceDetector(rclcpp::Node & node, std::string heartbeat, Report report);
 
-  /// MonitorRunner over a topic with states.
+  /// Add a topic with states.
   void add(std::string topic)
   {
     states_.push_back(std::move(topic));
   }
 
-  /// Look now. \throw Refusal if there is a second node and this one started last
-  void look();
+  /// Check now. \throw Refusal if there is a second node and this one started last
+  void check();
 
 private:
-  void look_at_heartbeat();
-  void look_at_readers();
+  void check_heartbeat();
+  void check_subscriptions();
   std::string others(const std::string & topic) const;
 
   rclcpp::Node & node_;
   std::string heartbeat_;
   std::vector<std::string> states_;
   std::size_t next_ = 0;
-  std::size_t next_read_ = 0;
+  std::size_t next_checked_ = 0;
   Report report_;
   StartOrder order_;
 };

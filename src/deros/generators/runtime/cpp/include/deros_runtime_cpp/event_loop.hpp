@@ -14,13 +14,13 @@
 namespace deros_runtime_cpp
 {
 
-/// An instant, or a time between two, in nanoseconds.
+/// A point in time or a duration, in nanoseconds.
 using Time = std::int64_t;
 
-/// Return what the clock shows that nobody can set.
+/// Return the time of the steady clock, which nobody can set.
 Time steady_now();
 
-/// A clock: what it shows, and whether it is the steady one.
+/// A clock: the function that reads it, and whether it is the steady clock.
 struct Clock
 {
   std::function<Time()> now = steady_now;
@@ -29,11 +29,12 @@ struct Clock
 
 class OneShotTimer;
 
-/// All that a thread has to do: what comes from outside, in order, and timers.
+/// Runs the work of one thread: items from sources, in order of arrival, and timers.
 /**
- * The thread that calls run() does it all. It waits on one condition, with the next timer as the
- * limit, so that what comes wakes it directly. Nothing is allocated while it runs. Alarms of other
- * clocks than the steady one are looked at whenever it wakes, so their clock should be a source.
+ * The thread that calls run() does all the work. It waits on one condition variable until an item
+ * arrives or the next timer expires, so that an item wakes it directly. Nothing is allocated while
+ * it runs. Timers of clocks other than the steady clock are checked whenever the thread wakes up,
+ * so such a clock should be a source.
  */
 class EventLoop
 {
@@ -42,21 +43,21 @@ public:
   EventLoop(const EventLoop &) = delete;
   EventLoop & operator=(const EventLoop &) = delete;
 
-  /// Add a source of things to do; take() does one of them. To be called before run().
+  /// Add a source of items, one of which take() processes. To be called before run().
   /**
-   * \param capacity how many of them can wait; what comes then is forgotten
+   * \param capacity how many items of this source can wait; further ones are dropped
    * \return the number of the source
    */
   std::size_t add_source(std::function<void()> take, std::size_t capacity);
 
-  /// Note that a source has so many more things to do; from any thread.
+  /// Announce items of a source; from any thread.
   void notify(std::size_t source, std::size_t count = 1);
 
-  /// Do what there is to do until end(); what is thrown in the course of it ends it, too.
+  /// Process items and timers until stop() is called or one of them throws.
   void run();
 
-  /// End soon, without doing what is left; from any thread.
-  void end();
+  /// Stop soon, without processing what waits; from any thread.
+  void stop();
 
 private:
   friend class OneShotTimer;
@@ -68,12 +69,12 @@ private:
     std::size_t waiting;
   };
 
-  static constexpr std::size_t NOTHING = static_cast<std::size_t>(-1);
+  static constexpr std::size_t NO_SOURCE = static_cast<std::size_t>(-1);
 
   struct Times
   {
     Time wake;
-    Time ring;
+    Time fire;
   };
 
   std::size_t next_source();
@@ -84,20 +85,20 @@ private:
   std::vector<OneShotTimer *> timers_;
 
   std::mutex mutex_;
-  std::condition_variable came_;
-  std::vector<std::size_t> queue_;  // a ring of numbers of sources
+  std::condition_variable wake_up_;
+  std::vector<std::size_t> queue_;  // a ring buffer of the numbers of sources
   std::size_t first_ = 0;
-  std::atomic<std::size_t> count_{0};  // changed under the mutex, as is the next
-  std::atomic<bool> ends_{false};
+  std::atomic<std::size_t> count_{0};  // changed under the mutex, like the next one
+  std::atomic<bool> is_stopping_{false};
 };
 
-/// Rings at an instant of a clock, once; belongs to the thread of its event loop.
+/// Calls a function once, at a point in time, in the thread of its event loop.
 class OneShotTimer
 {
 public:
   /**
-   * \param defer tells of an timer that is not urgent for how long something else goes before it
-   * \param lead for how long before it rings the thread stays awake, so that it rings on the dot
+   * \param defer returns for how long a timer that is not urgent has to wait for something else
+   * \param lead for how long before it expires the thread spins instead of sleeping, to be on time
    */
   OneShotTimer(
     EventLoop & event_loop, Clock clock, std::function<void()> callback,
@@ -105,23 +106,25 @@ public:
   OneShotTimer(const OneShotTimer &) = delete;
   OneShotTimer & operator=(const OneShotTimer &) = delete;
 
-  /// Tell whether it is going to ring, and return for when it is set, or was last.
+  /// Return whether the timer is scheduled.
   bool is_scheduled() const
   {
     return is_scheduled_;
   }
+
+  /// Return the time that the timer is scheduled for, or was last.
   Time due() const
   {
     return due_;
   }
 
-  /// Ring at an instant, or at once if it is past; what was set before is forgotten.
+  /// Expire at a time, or at once if it is past; this replaces an earlier schedule.
   void schedule(Time due);
 
-  /// Ring again a period after the last time, or after now if either was long ago.
+  /// Expire a period after the last time, or after now if either was long ago.
   void repeat(Time period);
 
-  /// Do not ring.
+  /// Do not expire.
   void cancel()
   {
     is_scheduled_ = false;

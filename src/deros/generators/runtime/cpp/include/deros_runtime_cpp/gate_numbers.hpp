@@ -12,7 +12,7 @@
 #include <limits>
 
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ == 1
-#error "a gate has to tell NaN from numbers: compile it without -ffast-math"
+#error "a gate has to distinguish NaN from numbers: compile it without -ffast-math"
 #endif
 
 namespace deros_runtime_cpp
@@ -24,30 +24,30 @@ constexpr std::int64_t NEVER = std::numeric_limits<std::int64_t>::max();
 /// The latest time there is, in 2116; the sum of it and a duration is still less than NEVER.
 constexpr std::int64_t LATEST = (std::int64_t{1} << 62) - 1;
 
-/// When what has not come yet came: whatever may be silent for some time has been for longer.
+/// The time of a message that has not been received: every timeout for it has expired.
 constexpr std::int64_t LONG_AGO = -LATEST;
 
-/// Return a time within the bounds between which nothing overflows.
+/// Return a time clamped to the range in which no sum overflows.
 constexpr std::int64_t bounded(std::int64_t t)
 {
   return std::clamp(t, std::int64_t{0}, LATEST);
 }
 
-/// Tell whether all elements of an array pass a test.
+/// Return whether all elements of an array pass a test.
 template<typename Array, typename Test>
 bool are_all(const Array & array, Test test)
 {
   return std::all_of(array.begin(), array.end(), test);
 }
 
-/// Tell whether no float of an array is NaN or infinite.
+/// Return whether all floats of an array are finite.
 template<typename Array>
 bool all_finite(const Array & array)
 {
   return are_all(array, [](const auto & each) {return std::isfinite(each);});
 }
 
-/// Tell whether all numbers or booleans of an array are zero.
+/// Return whether all numbers or booleans of an array are zero.
 template<typename Array>
 bool all_zero(const Array & array)
 {
@@ -61,7 +61,7 @@ void fill_with_zeros(Array & array)
   std::fill(array.begin(), array.end(), typename Array::value_type{});
 }
 
-/// Where a limit keeps a number, ends included; or no limit.
+/// The closed interval that a limit allows; or no limit.
 template<typename Number>
 struct Interval
 {
@@ -69,7 +69,7 @@ struct Interval
   Number lower{};
   Number upper{};
 
-  /// Bring a number within the limit; tell whether that changed it.
+  /// Clamp a number to the limit; return whether that changed it.
   bool keep(Number & number) const
   {
     if (!is_limit || (number >= lower && number <= upper)) {

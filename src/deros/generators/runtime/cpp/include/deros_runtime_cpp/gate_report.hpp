@@ -1,7 +1,7 @@
 // Copyright and licence: see package.xml.
 
 /// \file
-/// What a gate does and why, on /diagnostics and in the log.
+/// The reports of a gate on /diagnostics and in the log.
 
 #ifndef DEROS_RUNTIME_CPP__GATE_REPORT_HPP_
 #define DEROS_RUNTIME_CPP__GATE_REPORT_HPP_
@@ -22,29 +22,29 @@
 namespace deros_runtime_cpp
 {
 
-/// What is reported of the logic of a gate.
+/// The state of a gate that is reported.
 class GateStatus
 {
 public:
   virtual ~GateStatus() = default;
 
-  /// Tell of each line of the gate whether it applies.
+  /// Return for each line of the gate whether it applies.
   virtual const bool * applying() const = 0;
 
-  /// Tell since when the lines apply as they do.
+  /// Return since when the same lines have applied.
   virtual Time since() const = 0;
 };
 
-/// Publishes one status, regularly and soon after a change, which it also logs.
+/// Publishes one status, periodically and soon after a change, which it also logs.
 class GateReport
 {
 public:
   using Message = diagnostic_msgs::msg::DiagnosticArray;
 
   /**
-   * \param lines those of the gate, in order
-   * \param now the gate's time
-   * \param target the topic that the gate publishes commands on
+   * \param lines the lines of the gate, in order
+   * \param now the function that returns the time of the gate
+   * \param target the topic of the commands that the gate publishes
    */
   GateReport(
     EventLoop & event_loop, rclcpp::Node & node, const GateStatus & gate,
@@ -52,29 +52,29 @@ public:
     std::function<void(const Message &)> publish, const std::string & target);
 
   /// Publish for the first time, at once.
-  void begin();
+  void start();
 
-  /// Report soon if other lines apply than were reported; takes next to no time.
-  void look();
+  /// Report soon if other lines apply than were reported; this takes almost no time.
+  void check();
 
-  /// Count a command that was refused.
+  /// Count a rejected command.
   void refuse(const std::string & cause);
 
-  /// Log a reset, and return the answer to it.
+  /// Log a reset, and return the text of the response.
   /**
-   * \param against the lines of the gate that refuse it
+   * \param against the lines of the gate because of which it is refused
    */
   std::string answer(const std::vector<std::string> & against) const;
 
-  /// Note or, with an empty text, forget what is wrong with something.
+  /// Set the fault of a subject or, with an empty text, clear it.
   void fault(const std::string & subject, const std::string & text);
 
-  /// Report of publishers on a topic that cannot be heard, and of a second one.
-  void watch_over(SubscribedTopic topic);
+  /// Report publishers of a topic that do not match, and a second publisher.
+  void check_publishers_of(SubscribedTopic topic);
 
 private:
-  void hurry();
-  void ring();
+  void report_soon();
+  void fire();
   void log() const;
   std::string applying() const;
   diagnostic_msgs::msg::DiagnosticStatus status() const;
@@ -84,12 +84,12 @@ private:
   const std::vector<std::string> lines_;
   std::function<Time()> now_;
   std::function<void(const Message &)> publish_;
-  std::vector<bool> told_;  // of each line whether it applied when that was reported last
+  std::vector<bool> reported_;  // for each line, whether it applied in the last report
   std::size_t refused_{0};
   std::string cause_;
-  std::vector<std::pair<std::string, std::string>> faults_;  // each with what it is about
-  Publishers publishers_;
-  TargetPublishers target_;
+  std::vector<std::pair<std::string, std::string>> faults_;  // subjects and texts
+  PublisherCheck publishers_;
+  TargetPublisherCheck target_;
   OneShotTimer timer_;
 };
 

@@ -1,7 +1,7 @@
 // Copyright and licence: see package.xml.
 
 /// \file
-/// The part of a gate's node that is the same for all gates.
+/// The part of the node of a gate that is common to all gates.
 
 #ifndef DEROS_RUNTIME_CPP__GATE_RUNNER_HPP_
 #define DEROS_RUNTIME_CPP__GATE_RUNNER_HPP_
@@ -28,44 +28,45 @@
 namespace deros_runtime_cpp
 {
 
-/// The logic of a gate, and where it tells of itself.
+/// The logic of a gate, and the functions that publish its reports.
 class GateLogic : public GateStatus
 {
 public:
-  /// Do what is due up to and including now.
+  /// Advance the gate up to and including a time.
   virtual void advance(Time now) = 0;
 
   /// Return when to call advance() at the latest.
   virtual Time next_deadline() const = 0;
 
+  /// Publish a report.
   virtual void report(const GateReport::Message & message) = 0;
 
-  /// Look who publishes what the gate obeys; it is asked to once a second.
+  /// Check the publishers of the topics that the gate obeys; called once a second.
   virtual void check_publishers() = 0;
 };
 
-/// Read a message; return false if it is none of this type.
+/// Deserialize a message; return false if that fails.
 template<typename MessageT>
 bool read(const rclcpp::SerializedMessage & data, MessageT & message)
 {
   static const rclcpp::Serialization<MessageT> serialization;
   try {
     serialization.deserialize_message(&data, &message);
-  } catch (const std::exception &) {  // each type of message may find another kind of fault in it
+  } catch (const std::exception &) {  // which exception depends on the type of the message
     return false;
   }
   return true;
 }
 
-/// A gate in time: it is told what comes and what time it is, all in one thread of its own.
+/// Drives a gate from a clock, and passes messages to it, all in one thread.
 /**
- * It runs on steady time, which never steps, whatever the robot's time is; for tests, it can run
- * on /clock, if the node does.
+ * The clock is the steady clock, which never steps, whatever the time of the robot is. For tests,
+ * it can be that of /clock if the node uses it.
  */
 class GateRunner
 {
 public:
-  /// Takes a message as it came.
+  /// Takes a serialized message.
   using Take =
     std::function<void (const rclcpp::SerializedMessage &, const rclcpp::MessageInfo &)>;
 
@@ -77,8 +78,8 @@ public:
     bool losses_in_simulated_time;
   };
 
-  /// Refuse to be a second one of the node's name, and prepare the process.
-  /** \throw Refusal if there is one */
+  /// Configure the process and take the single-instance lock.
+  /** \throw Refusal if a node of the same name runs already */
   GateRunner(
     rclcpp::Node & node, GateLogic & gate, std::vector<std::string> lines,
     const std::string & target, Settings settings);
@@ -86,7 +87,7 @@ public:
   GateRunner(const GateRunner &) = delete;
   GateRunner & operator=(const GateRunner &) = delete;
 
-  /// Hear a topic, whose messages are handed over as they came; to be called before start().
+  /// Subscribe to a topic, whose messages stay serialized; to be called before start().
   template<typename MessageT>
   SubscribedTopic subscribe(
     const std::string & topic, const rclcpp::QoS & qos, Take take)
@@ -102,7 +103,7 @@ public:
 
   /// Serve a service that resets the gate; to be called before start().
   /**
-   * \param reset returns the lines of the gate that refuse it; none: it is done
+   * \param reset resets the gate, or returns the lines because of which it is refused
    */
   template<typename ServiceT>
   void serve_reset(const std::string & name, std::function<std::vector<std::string>()> reset)
@@ -121,35 +122,35 @@ public:
         rclcpp::ServicesQoS(), group_));
   }
 
-  /// Start the gate: with the zeros that are due, and then with what comes.
+  /// Start the gate: publish the zeros that are due, then process messages.
   void start();
 
-  // What the thread of the node does
+  // Called in the thread of the node
 
-  /// Return the time that the gate is told.
+  /// Return the time of the gate.
   Time now() const
   {
     return clock_.now();
   }
 
-  /// Wake up for the gate's next deadline; to be called after each message.
+  /// Schedule the next deadline of the gate; to be called after each message.
   void settle();
 
-  /// Count a command that was refused.
+  /// Count a rejected command.
   void refuse(const std::string & cause)
   {
     report_.refuse(cause);
   }
 
-  /// Note or, with an empty text, forget what is wrong with something.
+  /// Set the fault of a subject or, with an empty text, clear it.
   void fault(const std::string & subject, const std::string & text)
   {
     report_.fault(subject, text);
   }
 
-  // What others do
+  // Called in other threads
 
-  /// End the thread; see Worker.
+  /// Stop the thread, and wait for it; see Worker.
   void stop();
   void when_ended(std::function<void()> ended);
   std::exception_ptr failure() const;
@@ -161,10 +162,10 @@ private:
 
   rclcpp::Node & node_;
   GateLogic & gate_;
-  std::vector<std::string> refused_;  // by the machine
+  std::vector<std::string> not_permitted_;  // by the operating system
   Descriptor lock_;
   const ClockChoice clock_choice_;
-  rclcpp::CallbackGroup::SharedPtr group_;  // that no executor spins
+  rclcpp::CallbackGroup::SharedPtr group_;  // which no executor spins
   EventLoop event_loop_;
   std::unique_ptr<SimulatedTime> simulated_;
   const Clock clock_;

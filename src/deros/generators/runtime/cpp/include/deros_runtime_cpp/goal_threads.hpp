@@ -1,7 +1,7 @@
 // Copyright and licence: see package.xml.
 
 /// \file
-/// The threads in which a node executes the goals of its actions.
+/// The threads that execute the goals of the actions of a node.
 
 #ifndef DEROS_RUNTIME_CPP__GOAL_THREADS_HPP_
 #define DEROS_RUNTIME_CPP__GOAL_THREADS_HPP_
@@ -18,11 +18,11 @@
 namespace deros_runtime_cpp
 {
 
-/// Executes each goal in a thread of its own: no goal delays messages, cancels or parameters.
+/// Executes each goal in a separate thread: no goal delays messages, cancels or parameters.
 /**
  * Each thread shares the ownership of the node, which is therefore destroyed after its goals have
- * returned, whoever unloads it. When ROS 2 shuts down, or when nobody but its goals owns the node
- * any more, the goals are aborted: their code sees that they are no longer executing, and returns.
+ * returned, even if it is unloaded before. When ROS 2 shuts down, or when only its goals still own
+ * the node, the goals are aborted: their code sees that they are no longer executing, and returns.
  */
 class GoalThreads
 {
@@ -32,14 +32,14 @@ public:
   GoalThreads(const GoalThreads &) = delete;
   GoalThreads & operator=(const GoalThreads &) = delete;
 
-  /// Return whether a goal may be accepted; log why not.
+  /// Return whether a goal can be accepted; log why it cannot.
   /**
    * \param action the name of the goal's action
-   * \param limit how many goals may be in execution at the same time
+   * \param limit the maximum number of goals in execution at the same time
    */
   bool accepts(const std::string & action, std::size_t limit);
 
-  /// Start to execute a goal.
+  /// Start the execution of a goal.
   /**
    * \param node the node, which lives at least until the goal has returned
    * \param handler the name of the function that executes goals
@@ -56,7 +56,7 @@ public:
           return false;
         }
         if (!goal_handle->is_executing() && !goal_handle->is_canceling()) {
-          goal_handle->execute();  // it was deferred, and can be aborted only after this
+          goal_handle->execute();  // it was deferred; only an executing goal can be aborted
         }
         goal_handle->abort(std::make_shared<typename ActionT::Result>());
         return true;
@@ -72,7 +72,7 @@ private:
   {
     const char * handler{""};
     std::function<void()> execute{};
-    std::function<bool()> abort{};  // returns false if the goal is in a final state already
+    std::function<bool()> abort{};  // returns false if the goal is already in a terminal state
   };
   struct Shared;
 

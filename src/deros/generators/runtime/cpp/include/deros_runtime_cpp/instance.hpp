@@ -12,21 +12,21 @@
 namespace deros_runtime_cpp
 {
 
-/// Return the folder of the locks of this user's nodes.
+/// Return the folder of the locks of the nodes of this user.
 std::filesystem::path lock_folder();
 
-/// Hold the lock of a node, by its fully qualified name, for as long as what is returned lives.
+/// Take the single-instance lock of a node, by its fully qualified name; the result holds it.
 /**
- * It ends with the process, however that ends. The locks in a folder are a user's own: those of
- * other users, and of other machines, are not known here. Nodes in Python and in C++ share them.
- * \throw Refusal if somebody else holds the lock
- * \throw std::system_error if there can be no lock
+ * The lock ends with the process, however that ends. Nodes in Python and in C++ share it; other
+ * users and other machines do not.
+ * \throw Refusal if another process holds the lock
+ * \throw std::system_error if the lock cannot be taken
  */
 Descriptor claim(
   const std::string & name, std::size_t domain,
   const std::filesystem::path & folder = lock_folder());
 
-/// Return what tells the files of a node from those of all others.
+/// Return the stem of the names of a node's files, which is unique to the node.
 std::string file_stem(const std::string & name, std::size_t domain);
 
 }  // namespace deros_runtime_cpp

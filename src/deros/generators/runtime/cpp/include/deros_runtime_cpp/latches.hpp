@@ -16,29 +16,29 @@
 namespace deros_runtime_cpp
 {
 
-/// Return where the file of a node is unless a parameter says otherwise.
+/// Return the default path of the latch file of a node.
 std::filesystem::path default_path(const std::string & stem);
 
-/// A file with the names of the active actions, and a digest over them.
+/// A file with the names of the active actions, and a digest of them.
 /**
- * It is replaced as a whole, so it is never half written. Whatever cannot be read counts as 'all
- * active': only a file that says so, or no file at all, lets an action begin inactive. What stands
- * in its place but is not a regular file (a link, a device, a pipe) counts as a file that cannot be
- * read, and is left as it is. Nodes in Python and in C++ read each other's files.
+ * It is replaced as a whole, so it is never half written. A file that cannot be read means that all
+ * actions are active: an action starts inactive only if a valid file, or no file at all, says so.
+ * Anything but a regular file (a link, a device, a pipe) counts as a file that cannot be read, and
+ * is not touched. Nodes in Python and in C++ read each other's files.
  */
 class LatchFile
 {
 public:
   using Names = std::set<std::string>;
 
-  /// What a file says, and why it is all if it should not be.
+  /// The contents of a file, and why all actions are active if it cannot be used.
   struct Loaded
   {
     Names active;
     std::string problem;
   };
 
-  /// Prepare; owner tells the node from others that are given the same file by mistake.
+  /// The owner is the name of the node, in case other nodes are given the same file by mistake.
   LatchFile(std::filesystem::path path, std::string owner);
 
   const std::filesystem::path & path() const
@@ -46,44 +46,40 @@ public:
     return path_;
   }
 
-  /// Tell whether the file says that these are active, as far as is known.
-  bool says(const Names & active) const
+  /// Return whether the file is known to contain exactly these actions.
+  bool contains(const Names & active) const
   {
     return saved_ == active;
   }
 
-  /// Return which of the known actions are active.
+  /// Return the active actions, among those that are known.
   Loaded load(const Names & known) const;
 
-  /// Have the file say which actions are active, now and after a loss of power.
-  /**
-   * \throw std::system_error if that is impossible; what the file says then is not known
-   */
+  /// Write the active actions to the file, and flush it to the disk.
+  /** \throw std::system_error on failure; the contents of the file are unknown then */
   void save(const Names & active);
 
-  /// Tell whether the name still stands for the file that was saved.
+  /// Return whether the path still leads to the file that was saved.
   bool is_in_place() const;
 
-  /// Take it that nothing is known of the file any more, so that it is saved again.
-  void forget()
+  /// Consider the contents of the file unknown, so that it is saved again.
+  void invalidate()
   {
     saved_.reset();
   }
 
-  /// Remove new files that processes have left that were killed while they saved.
+  /// Remove temporary files of processes that were killed while they saved.
   void remove_leftovers() const;
 
-  /// Have the file count as 'all active' until it is saved again.
+  /// Make the file unreadable, so that all actions count as active until it is saved again.
   /**
-   * This takes microseconds, because it does not wait for the disk: it outlives the process,
-   * however that ends, though not a loss of power.
+   * This takes microseconds, because it does not wait for the disk: it survives the end of the
+   * process, but not a loss of power.
    */
   void mark_dirty() noexcept;
 
-  /// Empty the file, which needs no space: it counts as 'all active' then.
-  /**
-   * \throw std::system_error if that is impossible, too
-   */
+  /// Empty the file, which needs no space on the disk: all actions count as active then.
+  /** \throw std::system_error on failure */
   void truncate();
 
 private:
@@ -93,21 +89,21 @@ private:
 
   std::filesystem::path path_;
   std::string owner_;
-  std::optional<Names> saved_;  // what the file says, if that is known
+  std::optional<Names> saved_;  // the contents of the file, if they are known
   Descriptor opened_;
 };
 
-/// The latched actions that are active, in this process and in the file; each has a number.
+/// The active latched actions, in this process and in the file; each action has a number.
 class Latches
 {
 public:
-  /// Takes a subject and what is wrong with it; an empty text takes it back.
-  using Tell = std::function<void (const std::string &, const std::string &)>;
+  /// Takes the subject and the text of a fault; an empty text clears it.
+  using Report = std::function<void (const std::string &, const std::string &)>;
 
-  /// Begin as the file says; if it cannot be read or written, with all known actions active.
-  Latches(LatchFile file, std::vector<std::string> known, Tell tell);
+  /// Read the file; if it cannot be read or written, all known actions are active.
+  Latches(LatchFile file, std::vector<std::string> known, Report report);
 
-  /// Tell whether an action is active.
+  /// Return whether an action is active.
   bool is_active(std::size_t action) const
   {
     return active_[action];
@@ -116,7 +112,7 @@ public:
   /// Return the names of the active actions, sorted.
   LatchFile::Names active() const;
 
-  /// Make sure, before an action is carried out, that no end of the process forgets it.
+  /// Make sure, before an action is executed, that it is active after any end of the process.
   void mark_pending(std::size_t action) noexcept
   {
     if (!active_[action]) {
@@ -124,23 +120,23 @@ public:
     }
   }
 
-  /// Follow an event of the monitor.
-  void follow(std::size_t action, bool active)
+  /// Record an event of the monitor.
+  void record(std::size_t action, bool active)
   {
     active_[action] = active;
   }
 
-  /// Have the file say what is active; return why it does not. To be tried again then.
+  /// Save the active actions; return why that failed, to be tried again, or an empty text.
   std::string persist();
 
-  /// Have the file say what a reset will leave active, in advance, or return why not.
+  /// Save the actions that a reset leaves active before it happens; return why that failed.
   std::string allow_reset(const LatchFile::Names & remaining);
 
 private:
   LatchFile file_;
   std::vector<std::string> known_;
   std::vector<bool> active_;
-  Tell tell_;
+  Report report_;
 };
 
 }  // namespace deros_runtime_cpp

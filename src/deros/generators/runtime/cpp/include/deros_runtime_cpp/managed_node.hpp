@@ -1,7 +1,7 @@
 // Copyright and licence: see package.xml.
 
 /// \file
-/// What a managed node needs beside what rclcpp_lifecycle has.
+/// Complements rclcpp_lifecycle for managed nodes.
 
 #ifndef DEROS_RUNTIME_CPP__MANAGED_NODE_HPP_
 #define DEROS_RUNTIME_CPP__MANAGED_NODE_HPP_
@@ -11,12 +11,12 @@
 namespace deros_runtime_cpp
 {
 
-/// Have publishers, handlers and timers of a node rest unless it is active, however it left.
+/// Deactivate the managed entities of a node whenever it leaves the active state.
 /**
- * rclcpp deactivates them in on_deactivate() alone: not when the node is shut down while it is
- * active, nor when a hook that activates or deactivates it throws or fails.
+ * rclcpp_lifecycle deactivates publishers, handlers and timers only in on_deactivate(): not when an
+ * active node is shut down, or when a callback that activates or deactivates it throws or fails.
  */
-void rest_unless_active(rclcpp_lifecycle::LifecycleNode & node);
+void deactivate_unless_active(rclcpp_lifecycle::LifecycleNode & node);
 
 }  // namespace deros_runtime_cpp
 

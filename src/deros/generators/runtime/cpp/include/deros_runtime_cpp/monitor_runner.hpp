@@ -14,112 +14,112 @@
 namespace deros_runtime_cpp
 {
 
-/// A monitor, and those who do what it orders.
+/// A monitor, and the functions that execute what it orders.
 class MonitorHost
 {
 public:
   virtual ~MonitorHost() = default;
 
-  /// Have the monitor start at an instant; again when simulated time begins.
+  /// Start the monitor at a time; called again when simulated time begins.
   virtual void begin(Time start) = 0;
 
-  /// Have the monitor settle all that is due up to and including an instant.
+  /// Advance the monitor up to and including a time.
   virtual void advance(Time now) = 0;
 
-  /// Return when advance() has to be called at the latest; greatest of all times for never.
-  virtual Time due() const = 0;
+  /// Return when advance() has to be called at the latest; the maximum for never.
+  virtual Time next_deadline() const = 0;
 
-  /// Publish and mark as pending what an event asks for, in the middle of an evaluation.
-  /** \return whether no robot code is left to be run */
+  /// Publish the state that an event changes, while the monitor still evaluates.
+  /** \return false if robot code has to run for the event */
   virtual bool show(const Event & event) = 0;
 
-  /// Run the robot code that an event asks for.
+  /// Run the robot code of an event.
   virtual void run_code(const Event & event) = 0;
 
-  /// Remember what the monitor is worth now, for the report of the events of this instant.
-  /** \param count how many there are since after(), with those of the instants before */
-  virtual void remember(std::size_t count) = 0;
+  /// Save a snapshot of the monitor, for the reports of the events of this instant.
+  /** \param count the number of events since after(), those of earlier instants included */
+  virtual void save_snapshot(std::size_t count) = 0;
 
-  /// Take the events that have been dealt with, and when each of them was done.
+  /// Take the events that have been executed, and the time when each of them was.
   virtual void after(const std::vector<Event> & events, const std::vector<Time> & done) = 0;
 
-  /// Tell of what was done, before the failure of an action ends the node.
-  virtual void tell() = 0;
+  /// Publish the queued reports, before the failure of an action ends the node.
+  virtual void flush_reports() = 0;
 
-  /// Tell that an action failed.
-  virtual void tell_failure(const Event & event, const char * why) = 0;
+  /// Report that an action failed.
+  virtual void report_failure(const Event & event, const char * why) = 0;
 
-  /// Act on a beginning of simulated time, or a step back of it.
-  virtual void stepped() = 0;
+  /// Called when simulated time begins, or steps back.
+  virtual void clock_stepped() = 0;
 };
 
-/// A monitor in time: it is told what time it is, and what it orders is done at once.
+/// Drives a monitor from a clock, and executes what it orders at once.
 /**
- * It runs on steady time, which never steps, or on ROS time under use_sim_time. The owner hands
- * messages to the monitor, with the time of catch_up(), and calls settle() then.
+ * The clock is the steady clock, which never steps, or ROS time with use_sim_time. The owner passes
+ * messages to the monitor with the time that catch_up() returns, and calls settle() afterwards.
  */
 class MonitorRunner
 {
 public:
-  MonitorRunner(EventLoop & event_loop, Clock clock, MonitorHost & watched);
+  MonitorRunner(EventLoop & event_loop, Clock clock, MonitorHost & host);
 
-  /// Return the time that the monitor is told.
+  /// Return the time of the monitor.
   Time now() const
   {
     return clock_.now();
   }
 
-  /// Return when the monitor began; 0 if simulated time has not begun yet.
-  Time began_at() const
+  /// Return when the monitor was started; 0 if simulated time has not begun yet.
+  Time started_at() const
   {
-    return began_at_;
+    return started_at_;
   }
 
   /// Start the monitor: its timeouts count from now.
   void start();
 
-  /// Settle what is due before anything else, and return the time that it is now.
-  /** Each instant is settled by itself: its events are explained by what was known then. */
+  /// Advance the monitor to every deadline up to now, and return the time.
+  /** One deadline at a time: its events are explained by what was known at that instant. */
   Time catch_up();
 
-  /// Take an event while the monitor evaluates: show at once what it asks for.
-  /** Robot code waits until all events are shown, whatever their order. */
+  /// Handle an event while the monitor evaluates: publish the state that it changes.
+  /** Robot code runs only after all states have been published, whatever the order of events. */
   void take(const Event & event) noexcept;
 
-  /// Do the rest of what the monitor ordered, and wake up for its next deadline.
+  /// Execute the rest of what the monitor ordered, and schedule its next deadline.
   void settle();
 
-  /// Run the robot code of actions that were active before the start, of each of them.
+  /// Run the robot code of actions that were active before the start.
   void run_again(const std::vector<Event> & events);
 
-  /// Settle all that is due, and return the time that it is now.
+  /// Advance the monitor to the current time, execute what it orders, and return the time.
   Time advance();
 
-  /// Return for how long what can wait has to, as a deadline is near.
+  /// Return for how long work that is not urgent has to wait, because a deadline is near.
   Time defer() const;
 
-  /// Start when simulated time begins, and settle a step back without waiting.
+  /// Start when simulated time begins, and handle a step back at once.
   void clock_changed(bool back);
 
 private:
   using Indices = std::vector<std::size_t>;
   using Act = std::function<void (const Event &)>;
 
-  void carry_out();
-  void remember();
+  void execute();
+  void save_snapshot();
   void attempt(const Act & act, const Event & event);
-  void fail_if_something_failed();
-  void arm();
+  void rethrow_failure();
+  void schedule_deadline();
 
   Clock clock_;
   MonitorHost & host_;
-  Time began_at_ = 0;
+  Time started_at_ = 0;
   bool has_started_ = false;
   std::vector<Event> events_;  // of this evaluation, in the monitor's order
-  std::vector<Time> done_;  // when each of these was done
-  Indices unpublished_;  // the indices of those that could not be shown
-  Indices code_;  // the indices of those whose code is still to be run
-  std::size_t remembered_ = 0;  // how many of them can be explained
+  std::vector<Time> done_;  // when each of them was executed
+  Indices unpublished_;  // indices of those whose state could not be published
+  Indices code_;  // indices of those whose code has not run yet
+  std::size_t explained_ = 0;  // how many of them have a snapshot
   std::exception_ptr failure_;  // the first one
   OneShotTimer deadline_;
 };

@@ -14,25 +14,25 @@
 namespace deros_runtime_cpp
 {
 
-/// The subscriptions and services of a callback group, served by the thread of an event loop.
+/// Serves the subscriptions and services of a callback group in the thread of an event loop.
 /**
- * The middleware notes what comes with the event loop; there each message is taken into the same
- * object again and again. Within a process that shares messages by pointer, they come as they are.
+ * The middleware notifies the event loop of messages and requests. All messages of a subscription
+ * are taken into the same object; with intra-process communication, they are shared by pointer.
  */
 class Ports
 {
 public:
-  /// Takes a topic, and why a message of it cannot be read.
-  using Refuse = std::function<void (const std::string &, const std::string &)>;
+  /// Takes a topic, and why a message on it cannot be deserialized.
+  using ReportUndecodable = std::function<void (const std::string &, const std::string &)>;
 
-  Ports(EventLoop & event_loop, Refuse refuse);
+  Ports(EventLoop & event_loop, ReportUndecodable report_undecodable);
 
-  /// From here on nothing is noted any more.
+  /// Stop notifying the event loop.
   ~Ports();
   Ports(const Ports &) = delete;
   Ports & operator=(const Ports &) = delete;
 
-  /// Serve all that a callback group has now; no executor may spin it.
+  /// Serve all subscriptions and services of a callback group; no executor may spin it.
   void serve(const rclcpp::CallbackGroup & group);
 
   /// Serve a service; no executor may spin its callback group.
@@ -46,12 +46,12 @@ public:
 
 private:
   void serve_messages(const rclcpp::SubscriptionBase::SharedPtr & subscription);
-  void serve_shared(const rclcpp::SubscriptionBase::SharedPtr & subscription);
+  void serve_intra_process(const rclcpp::SubscriptionBase::SharedPtr & subscription);
 
   EventLoop & event_loop_;
-  Refuse refuse_;
+  ReportUndecodable report_undecodable_;
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
-  std::vector<rclcpp::Waitable::SharedPtr> shared_;
+  std::vector<rclcpp::Waitable::SharedPtr> intra_process_;
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
 };
 

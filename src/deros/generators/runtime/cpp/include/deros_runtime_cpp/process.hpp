@@ -13,33 +13,33 @@
 namespace deros_runtime_cpp
 {
 
-/// A node with a thread of its own, as its program sees it.
-struct Living
+/// A node with its own thread, as its program uses it.
+struct RunnableNode
 {
   using WhenEnded = std::function<void (std::function<void()>)>;
 
   rclcpp::Node::SharedPtr node;
-  WhenEnded when_ended;  // has a function called at the end
-  std::function<void()> stop;  // ends the thread, and waits for that
-  std::function<std::exception_ptr()> failure;  // what ended the thread, if something was thrown
+  WhenEnded when_ended;  // registers a function that is called when the thread ends
+  std::function<void()> stop;  // stops the thread, and waits for it
+  std::function<std::exception_ptr()> failure;  // the exception that ended the thread, if one did
 };
 
 /// Run a node until SIGINT or SIGTERM, or until it ends by itself; return the exit code.
 /**
- * What is thrown ends the program with its text and exit code 1: a node that does not watch any
- * more must not go on saying that it does. So do exit() and a shutdown of the context within the
- * node, which would else look as if it had been told to end. No signal breaks what the node is at.
+ * An exception ends the program with its text and exit code 1: a node that has stopped watching
+ * must not keep sending heartbeats. So do exit() and a shutdown of the context within the node,
+ * which would otherwise look like a requested end. No signal interrupts what the node is doing.
  */
-int run(int argc, char ** argv, const std::function<Living()> & make);
+int run(int argc, char ** argv, const std::function<RunnableNode()> & make);
 
-/// Run a node of a class that has the functions of Living.
+/// Run a node of a class that has the functions of RunnableNode.
 template<typename NodeT>
 int run(int argc, char ** argv)
 {
   return run(
     argc, argv, [] {
       const auto node = std::make_shared<NodeT>(rclcpp::NodeOptions());
-      return Living{
+      return RunnableNode{
         node,
         [node](std::function<void()> ended) {node->when_ended(std::move(ended));},
         [node] {node->stop();},

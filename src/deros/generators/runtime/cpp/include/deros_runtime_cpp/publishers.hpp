@@ -16,7 +16,7 @@ namespace deros_runtime_cpp
 /// Return the fully qualified name of the node of a publisher; empty if it is not known yet.
 std::string node_of(const rclcpp::TopicEndpointInfo & info);
 
-/// What a subscription hears.
+/// A topic as a subscription of this node sees it.
 struct SubscribedTopic
 {
   std::string name;  // fully qualified
@@ -24,28 +24,28 @@ struct SubscribedTopic
   rclcpp::QoS qos;
 };
 
-/// Return the publishers whose messages a subscription gets, as far as the graph knows.
-std::vector<rclcpp::TopicEndpointInfo> heard_publishers(
+/// Return the publishers that match a subscription, as far as the graph knows.
+std::vector<rclcpp::TopicEndpointInfo> matched_publishers(
   const rclcpp::Node & node, const SubscribedTopic & topic);
 
-/// Return which subscriptions of a topic get nothing from this node, and why.
-std::string unserved_readers(const rclcpp::Node & node, const std::string & topic);
+/// Return which subscriptions of a topic do not match the publisher of this node, and why.
+std::string unmatched_subscriptions(const rclcpp::Node & node, const std::string & topic);
 
-/// Looks, one topic at a time, at the publishers on the topics that a node subscribes to.
+/// Checks the publishers of the topics that a node subscribes to, one topic at a time.
 /**
- * Those of another type or of an unfit quality of service cannot be heard: the middleware keeps
- * silent about the first, and does not say when the second ends. And where one publisher is
- * expected, a second one contradicts it, or hides that it has died.
+ * Publishers with another type or an incompatible QoS do not match: the middleware does not report
+ * the former, and not when the latter end. And where one publisher is expected, a second one
+ * contradicts it, or hides that it has died.
  */
-class Publishers
+class PublisherCheck
 {
 public:
-  /// Takes a topic and what is wrong with it, empty if nothing is.
+  /// Takes a topic and its fault; an empty text if there is none.
   using Report = std::function<void (const std::string &, const std::string &)>;
 
-  Publishers(rclcpp::Node & node, Report report);
+  PublisherCheck(rclcpp::Node & node, Report report);
 
-  /// MonitorRunner over a topic, on which there may be any number of publishers if it is shared.
+  /// Add a topic; it may have several publishers if it is shared.
   void add(SubscribedTopic topic, bool is_shared = false);
   void add(
     const rclcpp::SubscriptionBase & subscription, const std::string & type,
@@ -54,8 +54,8 @@ public:
     add({subscription.get_topic_name(), type, subscription.get_actual_qos()}, is_shared);
   }
 
-  /// Look at the next topic.
-  void look();
+  /// Check the next topic.
+  void check();
 
 private:
   struct Topic

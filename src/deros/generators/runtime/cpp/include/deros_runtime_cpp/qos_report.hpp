@@ -1,7 +1,7 @@
 // Copyright and licence: see package.xml.
 
 /// \file
-/// Errors in the log about ends of other nodes that are not connected with those of a node.
+/// Logs endpoints of other nodes whose QoS is incompatible with that of a node.
 
 #ifndef DEROS_RUNTIME_CPP__QOS_REPORT_HPP_
 #define DEROS_RUNTIME_CPP__QOS_REPORT_HPP_
@@ -13,15 +13,15 @@
 namespace deros_runtime_cpp
 {
 
-/// Logs an error when an end of another node appears whose QoS does not match.
+/// Logs an error when an endpoint with incompatible QoS appears.
 /**
- * No message ever passes between the two. The middleware tells of one policy; the graph tells who
- * it is, and of all policies.
+ * No message passes between incompatible endpoints. The middleware reports one policy; the graph
+ * provides the name of the other node and all policies.
  */
 class QosReport
 {
 public:
-  /// Take a node, managed or not.
+  /// Report for a node, managed or not.
   template<typename NodeT>
   explicit QosReport(NodeT & node)
   : base_(node.get_node_base_interface()),

@@ -10,22 +10,22 @@
 namespace deros_runtime_cpp
 {
 
-/// Have the kernel wake this thread, and those it starts, without the usual 50 us of slack.
-void sharpen_timers();
+/// Set the timer slack of this thread, and of those that it starts, from 50 us to the minimum.
+void minimize_timer_slack();
 
-/// Lose what is written to a full or broken pipe, rather than wait until somebody reads it.
+/// Discard output to a full or broken pipe instead of blocking.
 /**
- * A launcher that hangs would hang the node, too, and one that ends would end it. The pipes are
- * opened anew, because the flag would else hold for all who share them.
+ * Otherwise a launcher that hangs would block the node, and one that ends would end it. The pipes
+ * are opened again, because the flag would also apply to the processes that share them.
  */
-void never_wait_for_readers();
+void make_output_nonblocking();
 
-/// Set the process up as its parameters say; return what was not permitted, each in words.
+/// Set the scheduling and the memory of the process; return what was not permitted, in words.
 /**
- * A priority above 0 puts all threads there are, and those that they start, under the scheduling
- * policy SCHED_FIFO. Locked memory is never paged out.
+ * A priority above 0 puts all threads, and those that they start, under the scheduling policy
+ * SCHED_FIFO. Locked memory is never paged out.
  */
-std::vector<std::string> prepare(std::int64_t priority, bool lock_memory);
+std::vector<std::string> configure_process(std::int64_t priority, bool lock_memory);
 
 }  // namespace deros_runtime_cpp
 

@@ -8,7 +8,7 @@
 namespace deros_runtime_cpp
 {
 
-/// The node must not run; the text says why. It is no error of the program.
+/// The node must not run, for the reason in the text. It is not an error of the program.
 class Refusal : public std::runtime_error
 {
 public:

@@ -14,7 +14,7 @@
 namespace deros_runtime_cpp
 {
 
-/// What is wrong with a file, beyond what the system knows.
+/// A fault of a file for which the system has no error number.
 class FileError : public std::system_error
 {
 public:
@@ -32,17 +32,17 @@ private:
   std::string text_;
 };
 
-/// Open a regular file; this never waits, and nothing is returned if there is no such file.
+/// Open a regular file without blocking; the result is not open if the file does not exist.
 /**
- * Anything else is not even opened, for that alone can start what a device stands for.
- * \throw std::system_error if that is impossible
+ * Nothing else is even opened, because opening a device can have effects.
+ * \throw std::system_error on failure, or if it is not a regular file
  */
 Descriptor open_regular(const std::filesystem::path & path, int flags);
 
-/// Check that there is a regular file, or nothing. \throw std::system_error
+/// Check that a path leads to a regular file or to nothing. \throw std::system_error
 void check_replaceable(const std::filesystem::path & path);
 
-/// Tell whether the name still stands for an open file.
+/// Return whether a path leads to an open file.
 bool is_same(const std::filesystem::path & path, const Descriptor & file);
 
 }  // namespace deros_runtime_cpp

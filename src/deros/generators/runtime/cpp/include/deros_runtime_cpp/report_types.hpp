@@ -1,5 +1,8 @@
 // Copyright and licence: see package.xml.
 
+/// \file
+/// The types that the monitor, its runner and the reports have in common.
+
 #ifndef DEROS_RUNTIME_CPP__REPORT_TYPES_HPP_
 #define DEROS_RUNTIME_CPP__REPORT_TYPES_HPP_
 
@@ -16,10 +19,10 @@
 namespace deros_runtime_cpp
 {
 
-/// What a monitor did, or saw the clock do.
+/// What a monitor did, or what happened to its clock; the values are those of the monitor in C.
 enum class EventKind { Trigger, Reset, Refused, ClockStep };
 
-/// Something that happened to a monitor; site is the place in the rules that it comes from.
+/// An event of a monitor; the site is the number of the place in the rules that caused it.
 struct Event
 {
   Time t;
@@ -27,7 +30,7 @@ struct Event
   std::size_t site;
 };
 
-/// A behaviour, for those who run it and those who read of it.
+/// A behaviour of the rules.
 struct Behaviour
 {
   std::string name;
@@ -37,41 +40,41 @@ struct Behaviour
   bool is_optional;
 };
 
-/// An action, for those who run it and those who read of it.
+/// An action of the rules.
 struct Action
 {
   std::string name;
   bool is_bound;  // its state is published
-  bool is_code;  // it is robot code
-  bool lasts;  // it has a state, and is not just run
+  bool is_code;  // it is implemented by robot code
+  bool has_state;  // it becomes active and inactive, and is not just run
   bool is_shown;  // in the diagnostics
   std::optional<std::size_t> latch;  // its number among the latched actions
   std::optional<std::size_t> first_call;  // the site of its first call
-  std::vector<std::size_t> callers;  // the behaviours that call for it, if it can be reset
+  std::vector<std::size_t> callers;  // the behaviours that call it, if it can be reset
 };
 
-/// A place in the rules that makes events.
+/// A place in the rules that causes events.
 struct Site
 {
-  std::optional<std::size_t> action;  // not of a step of the clock
+  std::optional<std::size_t> action;  // none for a step of the clock
   std::optional<std::size_t> behaviour;  // only of a call
   std::string arguments;  // of the call
-  std::string text;  // what it says, if that is all it does
+  std::string text;  // to be logged, if that is all the call does
   unsigned line;  // in the rules; 0 for none
 };
 
-/// The rules as those know them who read the reports of a node.
+/// The names and places in the rules that reports refer to.
 struct RuleMetadata
 {
   std::string rules;  // the name of their file
   std::size_t rule_count;
-  std::string actions_file;  // where the user writes robot code
+  std::string actions_file;  // where the user implements actions
   std::vector<Behaviour> behaviours;
   std::vector<Action> actions;
   std::vector<Site> sites;  // the last one stands for steps of the clock
 };
 
-/// A term that a rule reads, and its value; none if that is unknown.
+/// A term that a rule reads, and its value; none if it is unknown.
 struct Reading
 {
   Reading(std::string name, std::optional<std::string> its_value)
@@ -83,79 +86,85 @@ struct Reading
   std::optional<std::string> value;
 };
 
-/// What makes something so: parts of conditions, each with its values.
+/// The verdict of a rule; unknown: it is not true, and a term that it reads has no value.
+enum class Verdict { False, True, Unknown };
+
+/// Return a verdict as text.
+std::string to_text(Verdict verdict);
+
+/// The parts of conditions that make something true, each with its values.
 using Causes = std::vector<std::string>;
 
-/// What a rule is worth since the last event, and the values that it reads.
+/// The verdict of a rule since the last event, and the values behind it.
 struct RuleState
 {
   std::string name;
   unsigned line;  // in the rules
   std::string text;
-  std::optional<bool> value;  // none: it is not true, and something that it reads is unknown
-  Time since;  // when it last became true or ceased to be; else the start or the last clock step
+  Verdict verdict;
+  Time since;  // when it last became true or stopped being true; else the start or a clock step
   std::vector<Reading> reads;
   Causes causes;  // while it is true
 };
 
-/// Return the state of a rule of which is known whether it is true.
-RuleState explained(
+/// Return the state of a rule, given whether it is true and the terms that it reads.
+RuleState rule_state(
   const char * name, unsigned line, const char * text, bool is_true, Time since,
   std::vector<Reading> reads);
 
-/// The same, with what it reads one by one.
+/// Return the state of a rule, with the terms as separate arguments.
 template<typename ... Readings>
-RuleState explained(
+RuleState rule_state(
   const char * name, unsigned line, const char * text, bool is_true, Time since,
   Readings && ... reads)
 {
-  return explained(
+  return rule_state(
     name, line, text, is_true, since, std::vector<Reading>{std::forward<Readings>(reads)...});
 }
 
-/// Return the value of a term, as text, if it is known.
+/// Return the value of a term as text, if it is known.
 template<typename Value>
 std::optional<std::string> value_of(bool is_known, Value value)
 {
-  return is_known ? std::optional<std::string>(shown(value)) : std::nullopt;
+  return is_known ? std::optional<std::string>(to_text(value)) : std::nullopt;
 }
 std::optional<std::string> value_of(bool is_known, const std::string & value);
 
-/// Return a text by its place, from 1, among those that the rules know.
-std::string text_of(std::uint32_t place, const std::vector<std::string> & known);
+/// Return the text with a number, from 1, among those that the rules compare with.
+std::string known_text(std::uint32_t number, const std::vector<std::string> & texts);
 
-/// Return the cause that is a rule, with its own causes.
-std::string because(const std::string & head, const Causes & causes);
+/// Return the cause that consists of a rule and its own causes.
+std::string rule_cause(const std::string & head, const Causes & causes);
 
-/// Return the cause that some of the terms that a rule reads have no value.
-std::string unknown_among(const std::vector<Reading> & reads);
+/// Return the cause that names the terms without a value among those that a rule reads.
+std::string unknown_terms_among(const std::vector<Reading> & reads);
 
-/// The same, with what it reads one by one.
+/// Return the same, with the terms as separate arguments.
 template<typename ... Readings>
-std::string unknown_of(Readings && ... reads)
+std::string unknown_terms(Readings && ... reads)
 {
-  return unknown_among(std::vector<Reading>{std::forward<Readings>(reads)...});
+  return unknown_terms_among(std::vector<Reading>{std::forward<Readings>(reads)...});
 }
 
-/// Return a cause where a condition holds, and none elsewhere.
-Causes given(bool condition, const std::string & cause);
+/// Return a cause if a condition is true, and none otherwise.
+Causes cause_if(bool condition, const std::string & cause);
 
-/// Return causes where a condition holds, and none elsewhere.
-Causes during(bool condition, const Causes & causes);
+/// Return causes if a condition is true, and none otherwise.
+Causes causes_if(bool condition, const Causes & causes);
 
-/// Add causes to others.
-void add(Causes & all, const Causes & further);
+/// Append causes to others.
+void append(Causes & causes, const Causes & further);
 
 /// Return the causes of all parts.
 template<typename ... Parts>
 Causes any_causes(const Parts & ... parts)
 {
-  Causes all;
-  (add(all, parts), ...);
-  return all;
+  Causes causes;
+  (append(causes, parts), ...);
+  return causes;
 }
 
-/// Return the causes of all parts, where each of them has some, and none elsewhere.
+/// Return the causes of all parts if each part has some, and none otherwise.
 template<typename ... Parts>
 Causes all_causes(const Parts & ... parts)
 {
@@ -168,21 +177,20 @@ inline double seconds(Time time)
   return static_cast<double>(time) / 1e9;
 }
 
-/// All that a monitor is worth since an event.
+/// The state of a monitor after an event.
 struct MonitorSnapshot
 {
   std::vector<RuleState> rules;
   std::vector<std::size_t> holding;  // the behaviours whose conditions hold
-  std::vector<std::string> causes;  // of each of these, what makes it hold
+  std::vector<std::string> causes;  // the causes of each of these
   std::vector<std::size_t> unknown;  // the behaviours whose conditions are unknown
 };
 
-/// Return what makes a behaviour hold; nothing if it does not hold any more.
+/// Return the causes of a behaviour; an empty text if its condition does not hold any more.
 /**
- * A message may show that the clock has stepped back, and change at once what the step brought
- * about.
+ * A message may reveal that the clock has stepped back, and change at once what the step caused.
  */
-std::string cause_of(std::size_t behaviour, const MonitorSnapshot & state);
+std::string cause_of(std::size_t behaviour, const MonitorSnapshot & snapshot);
 
 }  // namespace deros_runtime_cpp
 

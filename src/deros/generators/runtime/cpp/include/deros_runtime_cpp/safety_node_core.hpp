@@ -17,7 +17,7 @@
 #include "deros_runtime_cpp/diagnostics.hpp"
 #include "deros_runtime_cpp/duplicate_instance.hpp"
 #include "deros_runtime_cpp/event_loop.hpp"
-#include "deros_runtime_cpp/events.hpp"
+#include "deros_runtime_cpp/event_reporter.hpp"
 #include "deros_runtime_cpp/latches.hpp"
 #include "deros_runtime_cpp/monitor_runner.hpp"
 #include "deros_runtime_cpp/ports.hpp"
@@ -30,10 +30,10 @@
 namespace deros_runtime_cpp
 {
 
-/// Of each action whether it is active.
+/// The active flag of each action.
 using Active = std::vector<bool>;
 
-/// What the rules of one robot add to a safety node; actions and behaviours by their numbers.
+/// What the rules of one robot add to a safety node. Actions and behaviours have numbers.
 class SafetyNodeHooks
 {
 public:
@@ -42,49 +42,59 @@ public:
   /// Start the monitor; timeouts count from grace nanoseconds later.
   virtual void start_monitor(Time start, Time grace) = 0;
 
-  /// Have the monitor take a latched action as active, from its start.
+  /// Make a latched action active from the start of the monitor.
   virtual void latch(std::size_t action) = 0;
 
-  /// Enable or disable an optional behaviour; tell whether its parameter enables it.
+  /// Enable or disable an optional behaviour.
   virtual void enable(Time now, std::size_t behaviour, bool enabled) = 0;
-  virtual bool is_chosen(std::size_t behaviour) const = 0;
 
-  /// Settle what is due; return when to do so again at the latest.
+  /// Return whether the parameter of an optional behaviour enables it.
+  virtual bool is_enabled(std::size_t behaviour) const = 0;
+
+  /// Advance the monitor up to and including a time.
   virtual void advance_monitor(Time now) = 0;
+
+  /// Return when advance_monitor() has to be called at the latest.
   virtual Time next_deadline() const = 0;
 
-  /// Reset the latched actions that no behaviour calls for; tell whether none is left.
+  /// Reset the latched actions that no behaviour calls; return whether none remains active.
   virtual bool reset_monitor(Time now) = 0;
 
-  /// Tell whether an input has yet to come for the first time, and is not missing yet.
+  /// Return whether an input has not been received yet, and is not missing yet.
   virtual bool is_waiting() const = 0;
 
-  /// Remember what the monitor is worth now, for one of SLOTS later uses.
-  virtual void remember(std::size_t slot) = 0;
+  /// Save the state of the monitor in one of SLOTS slots.
+  virtual void save_snapshot(std::size_t slot) = 0;
 
-  /// Return what the monitor was worth then, or is now.
-  virtual MonitorSnapshot explain(std::optional<std::size_t> slot) const = 0;
+  /// Return the state saved in a slot, or the present state.
+  virtual MonitorSnapshot snapshot(std::optional<std::size_t> slot) const = 0;
 
-  /// Publish the topic that shows an action, or all of them.
+  /// Publish the topic that carries the state of an action.
   virtual void show_state(std::size_t action, const Active & active) = 0;
+
+  /// Publish all topics with states.
   virtual void show_states(const Active & active) = 0;
 
   /// Publish the heartbeat.
-  virtual void beat(std::uint64_t count) = 0;
+  virtual void send_heartbeat(std::uint64_t count) = 0;
 
-  /// Publish a report.
-  virtual void report_event(const Events::Status & event) = 0;
+  /// Publish the report of an event.
+  virtual void report_event(const EventReporter::Status & event) = 0;
+
+  /// Publish diagnostics.
   virtual void report_diagnostics(const Diagnostics::Message & message) = 0;
 
-  /// Tell whether the robot code of an action has been written, and run what a site calls.
-  virtual bool is_filled_in(std::size_t action) const = 0;
+  /// Return whether the robot code of an action has been implemented.
+  virtual bool is_implemented(std::size_t action) const = 0;
+
+  /// Run the robot code that a site calls.
   virtual void run(std::size_t site) = 0;
 };
 
-/// How many explanations can wait to be told.
+/// The number of snapshots that can wait for their reports.
 constexpr std::size_t SLOTS = 32;
 
-/// The part of a safety node that is the same for all rules; all of it runs in one thread.
+/// The part of a safety node that is common to all rules; all of it runs in one thread.
 class SafetyNodeCore : private MonitorHost
 {
 public:
@@ -99,7 +109,7 @@ public:
     bool lock_memory = false;
   };
 
-  /// A topic of the rules, its type, and whether it may have any number of publishers.
+  /// A topic of the rules, its type, and whether it may have several publishers.
   struct Topic
   {
     std::string name;
@@ -107,58 +117,62 @@ public:
     bool is_shared;
   };
 
-  /// Refuse to be a second one of the node's name, and prepare the process.
-  /** \throw Refusal if there is one */
+  /// Configure the process and take the single-instance lock.
+  /** \throw Refusal if a node of the same name runs already */
   SafetyNodeCore(
     rclcpp::Node & node, SafetyNodeHooks & hooks, const RuleMetadata & metadata,
     Settings settings);
   ~SafetyNodeCore() override;
 
-  /// Return the callback group of the ports that this thread serves.
+  /// Return the callback group of the ports that the thread of the node serves.
   const rclcpp::CallbackGroup::SharedPtr & group() const
   {
     return group_;
   }
 
-  /// Start watching, with the ports that the group has now; states are the topics with states.
+  /// Start the monitor and serve the ports that the group has now.
+  /**
+   * \param topics the topics that the node subscribes to
+   * \param states the topics that carry the states of actions
+   */
   void start(const std::vector<Topic> & topics, const std::vector<std::string> & states);
 
-  /// Note that parameters have changed; from any thread.
+  /// Announce a change of parameters; from any thread.
   void parameters_changed();
 
-  // What the thread of the node does
+  // Called in the thread of the node
 
-  /// Settle what is due before a message, and return the time that the monitor is told.
+  /// Advance the monitor to the present before a message, and return the time of the message.
   Time catch_up()
   {
     return runner_.catch_up();
   }
 
-  /// Do what the monitor ordered; to be called after each message.
+  /// Execute what the monitor ordered; to be called after each message.
   void settle()
   {
     runner_.settle();
   }
 
-  /// Take an event while the monitor evaluates.
+  /// Handle an event while the monitor evaluates.
   void take(const Event & event) noexcept
   {
     runner_.take(event);
   }
 
-  /// Reset the latched actions that no behaviour calls for any more; return what to answer.
+  /// Reset the latched actions that no behaviour calls any more; return the text of the response.
   std::string reset(bool & success);
 
-  // What others do
+  // Called in other threads
 
-  /// End the thread; see Worker.
+  /// Stop the thread, and wait for it; see Worker.
   void stop();
   void when_ended(std::function<void()> ended);
   std::exception_ptr failure() const;
 
 private:
-  /// An event that has been acted upon and is still to be told of.
-  struct Untold
+  /// An event that has been executed and not been reported yet.
+  struct PendingReport
   {
     Event event;
     Time done;
@@ -167,30 +181,30 @@ private:
 
   void begin(Time start) override;
   void advance(Time now) override;
-  Time due() const override;
+  Time next_deadline() const override;
   bool show(const Event & event) override;
   void run_code(const Event & event) override;
-  void remember(std::size_t count) override;
+  void save_snapshot(std::size_t count) override;
   void after(const std::vector<Event> & events, const std::vector<Time> & done) override;
-  void tell() override;
-  void tell_failure(const Event & event, const char * why) override;
-  void stepped() override;
+  void flush_reports() override;
+  void report_failure(const Event & event, const char * why) override;
+  void clock_stepped() override;
 
   std::optional<std::size_t> action_of(const Event & event) const;
   void open_latches();
-  void latch_again();
+  void report_latched();
   void run_latched();
-  void tell_start();
-  void tell_fault(const std::string & subject, const std::string & text);
-  void refuse(const std::string & topic, const std::string & why);
+  void report_start();
+  void report_fault(const std::string & subject, const std::string & text);
+  void report_undecodable(const std::string & topic, const std::string & why);
   void publish();
   void do_housekeeping();
   void switch_behaviours();
   bool is_ready();
   std::string not_ready_reason() const;
   void log(Level level, const std::string & text) const;
-  Events::Outside outside_of_events();
-  Diagnostics::Outside outside_of_diagnostics();
+  EventReporter::Environment reporter_environment();
+  Diagnostics::Environment diagnostics_environment();
 
   rclcpp::Node & node_;
   SafetyNodeHooks & hooks_;
@@ -199,29 +213,29 @@ private:
   const std::string name_;
   const Time grace_;
   const Time period_;
-  std::vector<std::string> refused_;  // by the machine
+  std::vector<std::string> not_permitted_;  // by the operating system
   Descriptor lock_;
   const ClockChoice clock_choice_;
   rclcpp::CallbackGroup::SharedPtr group_;
   EventLoop event_loop_;
   std::unique_ptr<SimulatedTime> simulated_;
   MonitorRunner runner_;
-  Events events_;
+  EventReporter reporter_;
   Diagnostics diagnostics_;
   DuplicateInstanceDetector duplicates_;
-  Publishers publishers_;
+  PublisherCheck publishers_;
   std::unique_ptr<Latches> latches_;
   Active active_;
   std::vector<bool> enabled_;
-  std::vector<Untold> untold_;
-  std::vector<std::size_t> slots_;  // of the events that after() is going to take
-  std::size_t slot_ = 0;  // how many are in use
-  std::uint64_t beats_ = 0;
+  std::vector<PendingReport> pending_reports_;
+  std::vector<std::size_t> slots_;  // of the events of the next call of after()
+  std::size_t slot_count_ = 0;  // in use
+  std::uint64_t heartbeats_ = 0;
   bool is_starting_ = true;
-  OneShotTimer publishing_;
-  OneShotTimer telling_;
-  OneShotTimer housekeeping_;
-  std::size_t switching_;  // the source of the event loop
+  OneShotTimer publish_timer_;
+  OneShotTimer report_timer_;
+  OneShotTimer housekeeping_timer_;
+  std::size_t parameter_changes_;  // a source of the event loop
   Ports ports_;
   Worker worker_;
 };

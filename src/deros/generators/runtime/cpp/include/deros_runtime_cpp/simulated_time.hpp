@@ -15,8 +15,8 @@ namespace deros_runtime_cpp
 
 /// Simulated time as the thread of an event loop sees it: in order with messages and requests.
 /**
- * rclcpp takes /clock in a thread of its own, whose time runs ahead of messages that wait to be
- * taken: an input would be found missing while its message is there.
+ * rclcpp reads /clock in a separate thread, whose time runs ahead of messages that wait to be
+ * taken: an input would be reported missing although its message has been received.
  */
 class SimulatedTime
 {
@@ -27,12 +27,12 @@ public:
    */
   SimulatedTime(rclcpp::Node & node, EventLoop & event_loop, std::function<void(bool)> changed);
 
-  /// From here on nothing is noted any more.
+  /// Stop notifying the event loop.
   ~SimulatedTime();
   SimulatedTime(const SimulatedTime &) = delete;
   SimulatedTime & operator=(const SimulatedTime &) = delete;
 
-  /// Return the clock that shows it; 0 before simulated time begins.
+  /// Return the clock of simulated time; it reads 0 before simulated time begins.
   Clock clock() const
   {
     return {[this] {return now_;}, false};
@@ -52,16 +52,16 @@ private:
   std::function<void(bool)> changed_;
   Time now_ = 0;
   Message message_;
-  rclcpp::CallbackGroup::SharedPtr group_;  // that no executor spins
+  rclcpp::CallbackGroup::SharedPtr group_;  // which no executor spins
   rclcpp::Subscription<Message>::SharedPtr subscription_;
 };
 
-/// Return the simulated time of a node under use_sim_time, and nothing for others.
+/// Return the simulated time of a node with use_sim_time; none for other nodes.
 std::unique_ptr<SimulatedTime> simulated_time(
   rclcpp::Node & node, EventLoop & event_loop, std::function<void(bool)> changed);
 
-/// Return the time at which a node starts: 0 under use_sim_time, as SimulatedTime has it.
-/** \param may_be_simulated whether use_sim_time decides on the time that is meant */
+/// Return the time at which a node starts: 0 with use_sim_time, like SimulatedTime.
+/** \param may_be_simulated whether use_sim_time applies */
 Time start_time(const rclcpp::Node & node, bool may_be_simulated);
 
 /// Return the clock of simulated time, or the steady one if there is none.

@@ -1,7 +1,7 @@
 // Copyright and licence: see package.xml.
 
 /// \file
-/// Which of two nodes of one name ends: the one that started last.
+/// Which of two nodes with the same name ends: the one that started last.
 
 #ifndef DEROS_RUNTIME_CPP__START_ORDER_HPP_
 #define DEROS_RUNTIME_CPP__START_ORDER_HPP_
@@ -13,21 +13,21 @@
 namespace deros_runtime_cpp
 {
 
-/// Decides whether a node gives way to another one of its name.
+/// Decides whether a node ends because another one has the same name.
 /**
- * The two find each other at about the same moment, and neither knows when the other one started.
- * So each waits for as long again as it has run until then: the one that started last ends first,
- * and the other one finds itself alone.
+ * The two discover each other at about the same time, and neither knows when the other started. So
+ * each waits for as long as it has been running: the one that started last ends first, and then the
+ * other one is alone.
  */
 class StartOrder
 {
 public:
-  /// In ns; a node that meets the other one later than this after its start stays.
+  /// In ns; a node that discovers another one later than this after its start stays.
   static constexpr Time YOUNG = 5'000'000'000;
 
   explicit StartOrder(Time now);
 
-  /// Return whether the node is to end, given whether there is another one now.
+  /// Return whether the node has to end, given whether there is another one now.
   bool gives_way(bool has_double, Time now);
 
 private:

@@ -1,7 +1,7 @@
 // Copyright and licence: see package.xml.
 
 /// \file
-/// The target of a gate: who else publishes on it, and whom the gate's commands do not reach.
+/// The publishers and subscriptions of the target of a gate.
 
 #ifndef DEROS_RUNTIME_CPP__TARGET_PUBLISHERS_HPP_
 #define DEROS_RUNTIME_CPP__TARGET_PUBLISHERS_HPP_
@@ -18,24 +18,24 @@
 namespace deros_runtime_cpp
 {
 
-/// Looks for publishers on the target of a gate beside its own, and for unserved readers.
-class TargetPublishers
+/// Checks the target of a gate for other publishers, and for subscriptions that do not match.
+class TargetPublisherCheck
 {
 public:
-  /// Takes the topic and what is wrong with it, empty if nothing is.
+  /// Takes a topic and its fault; an empty text if there is none.
   using Report = std::function<void (const std::string &, const std::string &)>;
 
-  TargetPublishers(
+  TargetPublisherCheck(
     EventLoop & event_loop, rclcpp::Node & node, const std::string & target, Report report);
 
-  /// Look often from now on, while a second gate might be met.
-  void begin();
+  /// Check often from now on, as long as a second gate may have started at the same time.
+  void start();
 
-  /// Look now. \throw Refusal if there is a second gate and this one started last
-  void look();
+  /// Check now. \throw Refusal if there is a second gate and this one started last
+  void check();
 
 private:
-  void look_early();
+  void check_early();
   std::pair<std::vector<std::string>, std::string> find();
 
   rclcpp::Node & node_;

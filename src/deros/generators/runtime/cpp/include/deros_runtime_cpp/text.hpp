@@ -10,21 +10,21 @@
 namespace deros_runtime_cpp
 {
 
-/// Return a number in the fewest digits that tell it from all others: 0.9, 1e-05, nan.
-std::string shown(double value);
+/// Return a number with as few digits as identify it, as Python prints it: 0.9, 1e-05, nan.
+std::string to_text(double value);
 
-/// Return a value as people read it.
-std::string shown(std::int64_t value);
-std::string shown(std::uint64_t value);
-std::string shown(bool value);
+/// Return a value as text.
+std::string to_text(std::int64_t value);
+std::string to_text(std::uint64_t value);
+std::string to_text(bool value);
 
-/// Return a wide text as UTF-8, with '?' for what is no character.
+/// Return a UTF-16 text as UTF-8, with '?' for each lone surrogate.
 std::string utf8(const std::u16string & text);
 
 /// Return texts with a separator between them.
 std::string joined(const std::vector<std::string> & texts, const std::string & separator);
 
-/// Return what an error number of the system means, in words.
+/// Return the description of an error number of the system.
 std::string error_text(int number);
 
 }  // namespace deros_runtime_cpp

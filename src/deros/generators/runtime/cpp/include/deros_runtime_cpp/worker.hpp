@@ -21,23 +21,23 @@ public:
   using Report = std::function<void (const char *)>;
 
   /**
-   * \param report takes what is thrown in the thread, if nobody waits for its end
+   * \param report takes the text of an exception in the thread, if nobody waits for its end
    */
   Worker(EventLoop & event_loop, Report report);
   ~Worker();
   Worker(const Worker &) = delete;
   Worker & operator=(const Worker &) = delete;
 
-  /// Start; prepared for waits that end on time.
+  /// Start the thread, with minimal timer slack.
   void start();
 
-  /// End the thread, when it has done what it is at, and wait for that.
+  /// Stop the thread after what it is doing now, and wait for it.
   void stop();
 
-  /// Have a function called when the thread ends, or at once if it has ended.
+  /// Call a function when the thread ends, or at once if it has ended.
   void when_ended(Ended ended);
 
-  /// Return what was thrown, if that ended the thread.
+  /// Return the exception that ended the thread, if one did.
   std::exception_ptr failure() const;
 
 private:

@@ -13,7 +13,7 @@
 namespace every_thing_safety_cpp
 {
 
-/// What this robot does when its safety rules say so.
+/// The actions of this robot that its safety rules call.
 class EveryThingSafetyNodeActions : public EveryThingSafetyNodeActionsBase
 {
 public:

@@ -11,7 +11,7 @@
 namespace two_rules_safety_cpp
 {
 
-/// What this robot does when its safety rules say so.
+/// The actions of this robot that its safety rules call.
 class TwoRulesSafetyNodeActions : public TwoRulesSafetyNodeActionsBase
 {
 public:

@@ -1,6 +1,6 @@
 // Copyright and licence: see package.xml.
 
-#include "deros_runtime_cpp/events.hpp"
+#include "deros_runtime_cpp/event_reporter.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -16,9 +16,53 @@ namespace deros_runtime_cpp
 namespace
 {
 
-constexpr const char * KINDS[] = {"trigger", "reset", "refused", "clock_step"};
+const char * name_of(ReportKind kind)
+{
+  switch (kind) {
+    case ReportKind::Trigger:
+      return "trigger";
+    case ReportKind::Reset:
+      return "reset";
+    case ReportKind::Refused:
+      return "refused";
+    case ReportKind::ClockStep:
+      return "clock_step";
+    case ReportKind::Start:
+      return "start";
+    case ReportKind::NotPermitted:
+      return "not_permitted";
+    case ReportKind::Unfilled:
+      return "unfilled";
+    case ReportKind::Latched:
+      return "latched";
+    case ReportKind::Fault:
+      return "fault";
+    case ReportKind::Undecodable:
+      return "undecodable";
+    case ReportKind::Enabled:
+      return "enabled";
+    case ReportKind::Disabled:
+      return "disabled";
+  }
+  return "";
+}
 
-/// Set a value, where its name stands already or at the end.
+ReportKind kind_of(EventKind kind)
+{
+  switch (kind) {
+    case EventKind::Trigger:
+      return ReportKind::Trigger;
+    case EventKind::Reset:
+      return ReportKind::Reset;
+    case EventKind::Refused:
+      return ReportKind::Refused;
+    case EventKind::ClockStep:
+      return ReportKind::ClockStep;
+  }
+  return ReportKind::ClockStep;
+}
+
+/// Set the value of a key, or append it.
 void set(Values & values, const std::string & name, std::string value)
 {
   const auto found = std::find_if(
@@ -30,12 +74,7 @@ void set(Values & values, const std::string & name, std::string value)
   }
 }
 
-std::string shown(const std::optional<bool> & value)
-{
-  return value ? deros_runtime_cpp::shown(*value) : "unknown";
-}
-
-/// Add what the rules are worth that a behaviour depends on, and what they read.
+/// Add the verdicts of the rules that a behaviour depends on, and the values that they read.
 void add_values(Values & values, const Behaviour & behaviour, const MonitorSnapshot & after)
 {
   for (const RuleState & rule : after.rules) {
@@ -43,9 +82,9 @@ void add_values(Values & values, const Behaviour & behaviour, const MonitorSnaps
     if (std::find(named.begin(), named.end(), rule.name) == named.end()) {
       continue;
     }
-    set(values, "rule " + rule.name, shown(rule.value));
-    for (const Reading & each : rule.reads) {
-      set(values, "value " + each.term, each.value.value_or("unknown"));
+    set(values, "rule " + rule.name, to_text(rule.verdict));
+    for (const Reading & reading : rule.reads) {
+      set(values, "value " + reading.term, reading.value.value_or("unknown"));
     }
   }
 }
@@ -55,24 +94,25 @@ void add_values(Values & values, const Behaviour & behaviour, const MonitorSnaps
 diagnostic_msgs::msg::DiagnosticStatus status(
   Level level, const std::string & name, const std::string & message, const Values & values)
 {
-  diagnostic_msgs::msg::DiagnosticStatus made;
-  made.level = level;
-  made.name = name;
-  made.message = message;
-  made.values.resize(values.size());
+  diagnostic_msgs::msg::DiagnosticStatus status;
+  status.level = level;
+  status.name = name;
+  status.message = message;
+  status.values.resize(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    made.values[i].key = values[i].first;
-    made.values[i].value = values[i].second;
+    status.values[i].key = values[i].first;
+    status.values[i].value = values[i].second;
   }
-  return made;
+  return status;
 }
 
-Events::Events(const RuleMetadata & metadata, Outside outside)
-: metadata_(metadata), outside_(std::move(outside))
+EventReporter::EventReporter(const RuleMetadata & metadata, Environment environment)
+: metadata_(metadata), environment_(std::move(environment))
 {
 }
 
-void Events::ordered(const Event & event, Time done, const MonitorSnapshot & after)
+void EventReporter::report_monitor_event(
+  const Event & event, Time done, const MonitorSnapshot & after)
 {
   const Site & site = metadata_.sites[event.site];
   const std::string line = std::to_string(site.line);
@@ -108,24 +148,24 @@ void Events::ordered(const Event & event, Time done, const MonitorSnapshot & aft
     }
   }
   const auto [message, level] = described(event, after);
-  tell(KINDS[static_cast<std::size_t>(event.kind)], level, message, std::move(values));
+  report(kind_of(event.kind), level, message, std::move(values));
 }
 
-void Events::tell(const char * kind, Level level, const std::string & message, Values values)
+void EventReporter::report(ReportKind kind, Level level, const std::string & message, Values values)
 {
-  outside_.log(level, message);
-  values.insert(values.begin(), {"kind", kind});
-  values.emplace_back("ros_time_ns", std::to_string(outside_.ros_now()));
-  outside_.publish(status(level, outside_.name, message, values));
+  environment_.log(level, message);
+  values.insert(values.begin(), {"kind", name_of(kind)});
+  values.emplace_back("ros_time_ns", std::to_string(environment_.ros_now()));
+  environment_.publish(status(level, environment_.name, message, values));
 }
 
-std::string Events::origin(std::size_t behaviour) const
+std::string EventReporter::origin(std::size_t behaviour) const
 {
-  const Behaviour & found = metadata_.behaviours[behaviour];
-  return found.name + " (" + found.origin + ": if " + found.condition + ')';
+  const Behaviour & named = metadata_.behaviours[behaviour];
+  return named.name + " (" + named.origin + ": if " + named.condition + ')';
 }
 
-std::string Events::refusal(std::size_t action, const MonitorSnapshot & present) const
+std::string EventReporter::refusal(std::size_t action, const MonitorSnapshot & present) const
 {
   std::vector<std::string> holding;
   for (const std::size_t caller : callers(action, present.holding)) {
@@ -145,26 +185,29 @@ std::string Events::refusal(std::size_t action, const MonitorSnapshot & present)
   return joined(reasons, "; ");
 }
 
-/// Return a behaviour with its place in the rules, and what makes it hold.
-std::string Events::origin_holding(std::size_t behaviour, const MonitorSnapshot & present) const
+/// Return a behaviour with its place in the rules, and its causes.
+std::string EventReporter::origin_holding(
+  std::size_t behaviour, const MonitorSnapshot & present) const
 {
-  const Behaviour & found = metadata_.behaviours[behaviour];
+  const Behaviour & named = metadata_.behaviours[behaviour];
   const std::string cause = cause_of(behaviour, present);
-  return cause.empty() ? origin(behaviour) : found.name + " (" + found.origin + "): " + cause;
+  return cause.empty() ? origin(behaviour) : named.name + " (" + named.origin + "): " + cause;
 }
 
-/// Return a behaviour as origin() does, with the terms without a value.
-std::string Events::origin_unknown(std::size_t behaviour, const MonitorSnapshot & present) const
+/// Return origin(), followed by the terms without a value.
+std::string EventReporter::origin_unknown(
+  std::size_t behaviour, const MonitorSnapshot & present) const
 {
   const std::vector<std::string> & rules = metadata_.behaviours[behaviour].rules;
   std::vector<std::string> terms;
   for (const RuleState & rule : present.rules) {
-    if (rule.value || std::find(rules.begin(), rules.end(), rule.name) == rules.end()) {
+    const bool is_used = std::find(rules.begin(), rules.end(), rule.name) != rules.end();
+    if (!is_used || rule.verdict != Verdict::Unknown) {
       continue;
     }
-    for (const Reading & each : rule.reads) {
-      if (!each.value && std::find(terms.begin(), terms.end(), each.term) == terms.end()) {
-        terms.push_back(each.term);
+    for (const Reading & reading : rule.reads) {
+      if (!reading.value && std::find(terms.begin(), terms.end(), reading.term) == terms.end()) {
+        terms.push_back(reading.term);
       }
     }
   }
@@ -172,29 +215,29 @@ std::string Events::origin_unknown(std::size_t behaviour, const MonitorSnapshot 
          origin(behaviour) + ", unknown: " + joined(terms, ", ");
 }
 
-/// Return the behaviours among some that call for an action.
-std::vector<std::size_t> Events::callers(
-  std::size_t action, const std::vector<std::size_t> & among) const
+/// Return the behaviours that call an action, among some.
+std::vector<std::size_t> EventReporter::callers(
+  std::size_t action, const std::vector<std::size_t> & behaviours) const
 {
-  std::vector<std::size_t> found;
+  std::vector<std::size_t> calling;
   for (const std::size_t caller : metadata_.actions[action].callers) {
-    if (std::find(among.begin(), among.end(), caller) != among.end()) {
-      found.push_back(caller);
+    if (std::find(behaviours.begin(), behaviours.end(), caller) != behaviours.end()) {
+      calling.push_back(caller);
     }
   }
-  return found;
+  return calling;
 }
 
-std::string Events::names(const std::vector<std::size_t> & behaviours) const
+std::string EventReporter::names(const std::vector<std::size_t> & behaviours) const
 {
-  std::vector<std::string> found;
+  std::vector<std::string> names;
   for (const std::size_t behaviour : behaviours) {
-    found.push_back(metadata_.behaviours[behaviour].name);
+    names.push_back(metadata_.behaviours[behaviour].name);
   }
-  return joined(found, ", ");
+  return joined(names, ", ");
 }
 
-std::pair<std::string, Level> Events::described(
+std::pair<std::string, Level> EventReporter::described(
   const Event & event, const MonitorSnapshot & after) const
 {
   if (event.kind == EventKind::ClockStep) {
