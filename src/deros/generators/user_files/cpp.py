@@ -1,7 +1,7 @@
-"""The classes of the user's C++ files: declared methods by clang, where it is, or by their names.
+"""The classes in the user's C++ files, read with clang if it is installed, else by patterns.
 
-clang reads a header without what it includes: it recovers from unknown types, and its syntax tree
-has every method with its place.
+clang parses a header without its includes: it recovers from unknown types, and its syntax tree has
+every method with its location.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _NOISE = re.compile(
     r"'(?:\\.|[^'\\\n])+'",
     re.DOTALL,
 )
-_PATIENCE_S = 20
+_TIMEOUT_S = 20
 _FATAL = "the class is abstract, and the package does not compile"
 
 
@@ -42,8 +42,8 @@ def cpp_classes(files: Files, present: Mapping[str, SourceFile]) -> Iterator[tup
     """Yield the generated base class and the user's class of each header of the user.
 
     Args:
-        files: what a generator returned.
-        present: the user's files as they are.
+        files: the files that a generator returned.
+        present: the user's files, as they are on the disk.
     """
     headers = {
         path: file.text
@@ -95,13 +95,13 @@ def _written(
         used += [Name(m[1], Span(each, *m.span(1))) for m in _USE.finditer(code)]
         parameters += [Name(m[1], Span(each, *m.span(1))) for m in _READ.finditer(code)]
     overridden = {m[1] for m in _OVERRIDE.finditer(text[start:end])}
-    # A method that overrides nothing is the user's own, which other code may call.
-    mine = [each for each in methods if each.text in overridden and each.text not in HOOKS]
+    # A method that overrides nothing is the user's own; other code may call it.
+    overriding = [each for each in methods if each.text in overridden and each.text not in HOOKS]
     name = Name(found[1], Span(source, *found.span(1)))
-    known = words - {each.text for each in mine}
+    known = words - {each.text for each in overriding}
     return Written(
         name,
-        tuple(mine),
+        tuple(overriding),
         known,
         tuple(used),
         tuple(parameters),
@@ -111,11 +111,11 @@ def _written(
 
 
 def _declared(name: str, source: SourceFile) -> list[Name] | None:
-    """Return the methods that clang sees in a class, or ``None`` where clang does not help."""
+    """Return the methods of a class that clang finds, or ``None`` without a result from clang."""
     clang = shutil.which("clang++")
     if clang is None:
         return None
-    # Included headers may be missing here, and what they hold does not matter.
+    # Included headers may be missing here, and their contents do not matter.
     text = re.sub(
         r"(?m)^[ \t]*#[ \t]*include\b[^\n]*", lambda m: " " * len(m[0].encode()), source.text
     )
@@ -124,7 +124,7 @@ def _declared(name: str, source: SourceFile) -> list[Name] | None:
     command += [f"-ast-dump-filter={name}", "-"]
     try:
         done = subprocess.run(
-            command, input=text.encode(), capture_output=True, timeout=_PATIENCE_S, check=False
+            command, input=text.encode(), capture_output=True, timeout=_TIMEOUT_S, check=False
         )
         found = list(_methods(done.stdout.decode(errors="replace"), name))
     except (OSError, subprocess.TimeoutExpired, ValueError, RecursionError):
@@ -139,7 +139,7 @@ def _declared(name: str, source: SourceFile) -> list[Name] | None:
 
 
 def _methods(dump: str, name: str) -> Iterator[tuple[str, int]]:
-    """Yield names and places, in bytes, of the methods in the dump of a class."""
+    """Yield the names and byte offsets of the methods in the dump of a class."""
     decoder = json.JSONDecoder()
     at = dump.find("{")
     while at >= 0:
@@ -162,12 +162,12 @@ def _offset_of(node: dict[str, Any]) -> int | None:
 
 
 def _code(text: str) -> str:
-    """Return a text with comments and literals blanked out, all else at its place."""
+    """Return a text with comments and literals replaced by blanks, so that offsets stay valid."""
     return _NOISE.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
 
 
 def _closing(text: str, start: int) -> int:
-    """Return where the class ends whose head ends at ``start``."""
+    """Return the end of the class whose head ends at ``start``."""
     depth = 0
     for found in re.compile(r"[{}]").finditer(text, start):
         depth += 1 if found[0] == "{" else -1
