@@ -132,13 +132,13 @@ def test_repeats_are_found() -> None:
 )
 def test_each_default_has_one_home(pattern: str, homes: set[str]) -> None:
     """One module reads and shows durations; the default rate and depth have one home each."""
-    found = {
+    occurrences = {
         str(path.relative_to(SOURCE))
         for path in sorted(SOURCE.rglob("*.py"))
         if re.search(pattern, path.read_text(encoding="utf-8"))
         and not any(folder in path.parents for folder in GENERATED)
     }
-    assert found == homes
+    assert occurrences == homes
 
 
 def test_templates_set_no_default_depth() -> None:
@@ -155,7 +155,7 @@ _CPP = re.compile(r"constexpr (?:const )?[\w:]+(?: \*)? ([A-Z][A-Z_]+) = ([\d']+
 
 def shared_constants() -> dict[str, tuple[set[str], set[str]]]:
     """Return the constants of each module that exists in both runtimes, in Python and in C++."""
-    found: dict[str, tuple[set[str], set[str]]] = {}
+    values: dict[str, tuple[set[str], set[str]]] = {}
     for path in sorted((RUNTIME / "python").rglob("*.py")):
         sources = [
             source
@@ -167,8 +167,8 @@ def shared_constants() -> dict[str, tuple[set[str], set[str]]]:
         in_cpp = dict(_CPP.findall(text))
         for name in in_python.keys() & in_cpp.keys():
             key = f"{path.stem}.{name}"
-            found[key] = ({plain(in_python[name])}, {plain(in_cpp[name])})
-    return found
+            values[key] = ({plain(in_python[name])}, {plain(in_cpp[name])})
+    return values
 
 
 def plain(literal: str) -> str:

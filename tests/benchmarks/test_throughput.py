@@ -27,15 +27,15 @@ def _run(folder: Path, **env: str) -> dict[str, Any]:
         env={**os.environ, **env},
     )
     assert result.returncode == 0, result.stderr
-    found: dict[str, Any] = json.loads(output.read_text(encoding="utf-8"))
-    return found
+    results: dict[str, Any] = json.loads(output.read_text(encoding="utf-8"))
+    return results
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
 def test_c_monitors_are_compared(tmp_path: Path) -> None:
     """Generated and hand-written have times above those of empty calls, a size, and a ratio."""
-    found = _run(tmp_path)
-    rows = {row["monitor"]: row for row in found["rows"] if row["rules"] == 14}
+    results = _run(tmp_path)
+    rows = {row["monitor"]: row for row in results["rows"] if row["rules"] == 14}
     ours, hand = rows["generated, in C"], rows["by hand, in C"]
     for row in (ours, hand):
         assert row["above_nothing_ns"] > 0.0
@@ -45,15 +45,15 @@ def test_c_monitors_are_compared(tmp_path: Path) -> None:
         assert row["memory_bytes"]["state"] > 100
         assert row["memory_bytes"]["sections"]["text"] > 1000
         assert row["memory_bytes"]["sections"]["bss"] == 0
-    (bar,) = [each for each in found["bars"] if each["what"] == "the time of by hand, in C"]
+    (bar,) = [each for each in results["bars"] if each["what"] == "the time of by hand, in C"]
     assert bar["found"] == pytest.approx(ours["above_nothing_ns"] / hand["above_nothing_ns"])
     assert bar["held"] is (bar["found"] <= 1.3)
 
 
 def test_missing_c_compiler_is_reported(tmp_path: Path) -> None:
     """The other monitors are still measured."""
-    found = _run(tmp_path, PATH=str(tmp_path), CC="")
-    rows = {row["monitor"]: row for row in found["rows"] if row["rules"] == 14}
+    results = _run(tmp_path, PATH=str(tmp_path), CC="")
+    rows = {row["monitor"]: row for row in results["rows"] if row["rules"] == 14}
     assert rows["generated, in C"]["why"] == rows["by hand, in C"]["why"] == "no C compiler"
     assert rows["generated"]["timing_ns"]["cost"] > 0.0
-    assert all("in C" not in bar["what"] for bar in found["bars"])
+    assert all("in C" not in bar["what"] for bar in results["bars"])

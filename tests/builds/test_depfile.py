@@ -34,9 +34,9 @@ def _generate(model: str, target: str, *more: str) -> Outcome:
 
 def _inputs() -> set[str]:
     """Return the inputs, relative to the current folder if they are below it."""
-    found = prerequisites(Path("depends.d").read_text())
+    inputs = prerequisites(Path("depends.d").read_text())
     return {
-        os.path.relpath(each) if Path(each).is_relative_to(Path.cwd()) else each for each in found
+        os.path.relpath(each) if Path(each).is_relative_to(Path.cwd()) else each for each in inputs
     }
 
 
@@ -117,12 +117,12 @@ def test_depfile_lists_everything_that_was_read(tmp_path: Path) -> None:
     text = "geometry_msgs/TwistWithCovariance twist\n"
     (definitions / "Odometry.msg").write_text(text)
     _generate("robot.deros", "c", "--interfaces", "msgs")
-    found = _inputs()
-    assert found >= {"robot.deros", "robot.system", "robot_robot.rnd"}
-    assert found >= {"msgs", "msgs/nav_msgs", "msgs/nav_msgs/msg/Odometry.msg"}
-    assert str(Path(deros.generators.__file__)) in found
-    assert any(each.endswith(".dist-info/METADATA") for each in found)
-    assert all(Path(each).exists() for each in found)
+    inputs = _inputs()
+    assert inputs >= {"robot.deros", "robot.system", "robot_robot.rnd"}
+    assert inputs >= {"msgs", "msgs/nav_msgs", "msgs/nav_msgs/msg/Odometry.msg"}
+    assert str(Path(deros.generators.__file__)) in inputs
+    assert any(each.endswith(".dist-info/METADATA") for each in inputs)
+    assert all(Path(each).exists() for each in inputs)
 
 
 def test_folders_of_import_globs_are_inputs(tmp_path: Path) -> None:

@@ -151,8 +151,8 @@ def test_current_links_and_copies_are_not_touched(source: Path, tmp_path: Path) 
     placed = _merge(CMAKE, source).placed
 
     def states() -> dict[str, tuple[int, int]]:
-        found = [(each.path, os.lstat(output / each.path)) for each in placed]
-        return {path: (state.st_ino, state.st_mtime_ns) for path, state in found}
+        stats = [(each.path, os.lstat(output / each.path)) for each in placed]
+        return {path: (state.st_ino, state.st_mtime_ns) for path, state in stats}
 
     place(placed, output)
     before = states()

@@ -137,8 +137,8 @@ def test_number_out_of_range_is_a_finding(tmp_path: Path, place: str, number: st
     text = NUMBERS[place].replace("@", number)
     repository = Repository()
     loaded = repository.load_text(tmp_path / "model.rnd", text)
-    found = check_loaded([loaded], repository, InterfaceStore((), ()))
-    errors = [each for each in found if each.is_error]
+    findings = check_loaded([loaded], repository, InterfaceStore((), ()))
+    errors = [each for each in findings if each.is_error]
     fits = place in ("lower end", "upper end") and number in ("1" * 300, "18446744073709551616")
     assert errors or fits, (place, number[:30])
 
@@ -164,9 +164,9 @@ def test_pipes_and_devices_are_rejected_without_blocking(tmp_path: Path) -> None
     (tmp_path / "model.rnd").write_text(
         f"{NODE}publishes topic a : own_msgs.Pipe topic b : own_msgs.Zero"
     )
-    found = check(tmp_path, "model.rnd", "--interfaces", ".").out
-    assert found.count("DRS112") == 2
-    assert found.count("not a regular file") == 2
+    output = check(tmp_path, "model.rnd", "--interfaces", ".").out
+    assert output.count("DRS112") == 2
+    assert output.count("not a regular file") == 2
 
 
 @pytest.mark.parametrize("place", ["demo/demo/n.py", "demo/package.xml", "demo/demo/__init__.py"])

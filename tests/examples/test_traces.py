@@ -134,10 +134,10 @@ ENGINE_STOP = [MOTOR_STOP, STOP]
 
 def actions_at(scene: Scene, until: float) -> dict[float, list[str]]:
     """Return the triggered actions by time."""
-    found: dict[float, list[str]] = {}
+    by_time: dict[float, list[str]] = {}
     for time, action in scene.triggers(until):
-        found.setdefault(time, []).append(action)
-    return found
+        by_time.setdefault(time, []).append(action)
+    return by_time
 
 
 def test_normal_operation_triggers_nothing() -> None:

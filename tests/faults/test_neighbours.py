@@ -90,8 +90,8 @@ def test_node_corrects_states_from_other_publishers(robot: Robot) -> None:
     """The node repeats the state of its rules after a foreign message on its topic."""
     with robot.safety_node() as node:
         for topic in ("/stop", "/halt", "/slow", HEARTBEAT):
-            found = robot.peer.node.get_publishers_info_by_topic(topic)
-            assert [each.node_name for each in found] == [NODE]
+            publishers = robot.peer.node.get_publishers_info_by_topic(topic)
+            assert [each.node_name for each in publishers] == [NODE]
         with Stranger(robot.env) as stranger:
             publisher = stranger.state("/halt", button(False))
             robot.until(publisher.get_subscription_count)

@@ -25,8 +25,8 @@ def test_node_does_not_read_its_own_topics(robot: Robot) -> None:
     }
     with robot.safety_node(), robot.sensors(reports) as readers:
         for topic in OWN:
-            found = robot.peer.node.get_subscriptions_info_by_topic(topic)
-            assert NODE not in [each.node_name for each in found]
+            subscriptions = robot.peer.node.get_subscriptions_info_by_topic(topic)
+            assert NODE not in [each.node_name for each in subscriptions]
         for topic in reports:
             readers.play(topic, b"\x00\x01\x00\x00garbage", rate=100.0)
         robot.until_beats()

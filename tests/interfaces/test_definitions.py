@@ -26,9 +26,9 @@ THING = InterfaceType("my_msgs", "msg", "Thing")
 
 def parse_message(text: str) -> MessageDefinition:
     """Parse ``text`` as the message Thing, which must succeed."""
-    found = parse_definition(THING, text)
-    assert not isinstance(found, DefinitionError), found
-    (message,) = found
+    definition = parse_definition(THING, text)
+    assert not isinstance(definition, DefinitionError), definition
+    (message,) = definition
     return message
 
 
@@ -116,10 +116,10 @@ def test_layout_and_comments_are_ignored() -> None:
 )
 def test_parse_error_has_its_line(text: str, line: int, fragment: str) -> None:
     """An error is a returned value with the line, not an exception."""
-    found = parse_definition(THING, text)
-    assert isinstance(found, DefinitionError)
-    assert found.line == line
-    assert fragment in found.message
+    error = parse_definition(THING, text)
+    assert isinstance(error, DefinitionError)
+    assert error.line == line
+    assert fragment in error.message
 
 
 def test_services_and_actions_have_all_parts() -> None:
@@ -158,9 +158,9 @@ def test_field_type_round_trips_as_text(kind: FieldType) -> None:
 @given(st.sampled_from(sorted(INTEGER_RANGES)), st.integers())
 def test_integer_default_must_be_in_range(base: str, value: int) -> None:
     """An integer default that its type cannot represent is an error."""
-    found = parse_definition(THING, f"{base} x {value}")
+    definition = parse_definition(THING, f"{base} x {value}")
     least, greatest = INTEGER_RANGES[base]
-    assert isinstance(found, tuple) == (least <= value <= greatest)
+    assert isinstance(definition, tuple) == (least <= value <= greatest)
 
 
 @given(st.text(alphabet="ab #\"'=[]<>\\-1,\t", max_size=30))

@@ -90,10 +90,10 @@ def test_leaves_are_primitive_fields_in_order(tmp_path: Path) -> None:
     folder.mkdir(parents=True)
     (folder / "Thing.msg").write_text("geometry_msgs/Point p\nfloat32[] r\nGone gone\n")
     store = InterfaceStore([tmp_path], prefixes=())
-    found = [
+    paths = [
         (format_path(path), str(kind)) for path, kind in leaves(store, message("my_msgs/Thing"))
     ]
-    assert found == [
+    assert paths == [
         ("p.x", "float64"),
         ("p.y", "float64"),
         ("p.z", "float64"),

@@ -50,6 +50,6 @@ def test_table_has_real_fields_and_known_units(kind: str) -> None:
     """Every row is a field of its message, and its unit can be parsed."""
     package, _, name = kind.partition("/")
     for field, unit in TABLE[kind].items():
-        found = resolve(STORE, InterfaceType(package, "msg", name), (field,))
-        assert isinstance(found, ResolvedField), f"{kind}.{field}"
+        resolved = resolve(STORE, InterfaceType(package, "msg", name), (field,))
+        assert isinstance(resolved, ResolvedField), f"{kind}.{field}"
         assert UnitRegistry().parse(unit.removesuffix(" wrapping")) is not None, unit

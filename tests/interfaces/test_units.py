@@ -44,9 +44,9 @@ decimals = st.decimals(
 
 def unit(text: str) -> Unit:
     """Parse a unit that must be known."""
-    found = REGISTRY.parse(text)
-    assert found is not None, text
-    return found
+    parsed = REGISTRY.parse(text)
+    assert parsed is not None, text
+    return parsed
 
 
 @pytest.mark.parametrize("word", WORDS)
@@ -110,8 +110,8 @@ def test_invalid_unit_is_none(text: str) -> None:
 @given(st.text(max_size=8))
 def test_arbitrary_text_does_not_raise(text: str) -> None:
     """Any text gives a unit with a positive factor or None."""
-    found = REGISTRY.parse(text)
-    assert found is None or found.factor > 0
+    parsed = REGISTRY.parse(text)
+    assert parsed is None or parsed.factor > 0
 
 
 def test_deep_nesting_is_rejected() -> None:

@@ -187,7 +187,7 @@ def test_system_used_twice_appears_twice(tmp_path: Path) -> None:
         'system Arm imports import "lidar.rnd" topics topic scans topic /clock '
         "subsystem tip { node eye : lidar wirings connect scan to scans }"
     )
-    found = flat(
+    system = flat(
         tmp_path,
         """
         import "arm.system"
@@ -195,21 +195,26 @@ def test_system_used_twice_appears_twice(tmp_path: Path) -> None:
         subsystem right : Arm namespace /r
         """,
     )
-    assert [node.full_name for node in found.nodes] == ["/left/eye", "/r/eye"]
-    assert [node.path for node in found.nodes] == [("left", "tip"), ("right", "tip")]
-    assert [node.remappings for node in found.nodes] == [
+    assert [node.full_name for node in system.nodes] == ["/left/eye", "/r/eye"]
+    assert [node.path for node in system.nodes] == [("left", "tip"), ("right", "tip")]
+    assert [node.remappings for node in system.nodes] == [
         (("scan", "/left/scans"),),
         (("scan", "/r/scans"),),
     ]
-    assert [topic.name for topic in found.topics] == ["/left/scans", "/clock", "/r/scans", "/clock"]
+    assert [topic.name for topic in system.topics] == [
+        "/left/scans",
+        "/clock",
+        "/r/scans",
+        "/clock",
+    ]
 
 
 def test_topics_are_found_by_their_full_names(tmp_path: Path) -> None:
     """A topic declared in a subsystem lies under its namespace."""
-    found = flat(tmp_path, "topics topic /a subsystem s namespace s { topics topic b }")
-    assert [topic.name for topic in found.topics] == ["/a", "/s/b"]
-    assert found.topic("/s/b") is found.topics[1]
-    assert found.topic("/b") is None
+    system = flat(tmp_path, "topics topic /a subsystem s namespace s { topics topic b }")
+    assert [topic.name for topic in system.topics] == ["/a", "/s/b"]
+    assert system.topic("/s/b") is system.topics[1]
+    assert system.topic("/b") is None
 
 
 def test_nodes_of_unknown_types_have_no_ports(tmp_path: Path) -> None:
@@ -226,7 +231,7 @@ def test_nodes_of_unknown_types_have_no_ports(tmp_path: Path) -> None:
 
 def test_nodes_keep_the_order_of_the_source(tmp_path: Path) -> None:
     """Nesting does not change the order of nodes."""
-    found = flat(
+    system = flat(
         tmp_path,
         """
         node z : lidar
@@ -234,4 +239,4 @@ def test_nodes_keep_the_order_of_the_source(tmp_path: Path) -> None:
         node a : lidar
         """,
     )
-    assert [node.instance.name for node in found.nodes] == ["z", "y", "x", "a"]
+    assert [node.instance.name for node in system.nodes] == ["z", "y", "x", "a"]

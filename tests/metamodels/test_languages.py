@@ -32,14 +32,14 @@ from tests.support import paper
 
 def _parser_rules(language: Language) -> list[Any]:
     """Return every expression of the language's parser."""
-    found: dict[int, Any] = {}
+    rules: dict[int, Any] = {}
     pending = [metamodel(language)._parser_blueprint.parser_model]
     while pending:
         rule = pending.pop()
-        if id(rule) not in found:
-            found[id(rule)] = rule
+        if id(rule) not in rules:
+            rules[id(rule)] = rule
             pending += rule.nodes
-    return list(found.values())
+    return list(rules.values())
 
 
 def test_language_follows_from_the_suffix() -> None:

@@ -118,9 +118,9 @@ def test_all_unknown_names_are_reported(tmp_path: Path) -> None:
 def test_unknown_system_in_use_is_reported(tmp_path: Path) -> None:
     """A ``use`` of a system that the file does not define is reported at the name."""
     _write(tmp_path, arm_system="system Arm", x_deros='use "arm.system" import Amr')
-    found = _only(Repository().load(tmp_path / "x.deros"))
-    assert (found.code, found.span.text) == (codes.UNKNOWN_USED_SYSTEM, "Amr")
-    assert "'Arm'" in found.hint
+    finding = _only(Repository().load(tmp_path / "x.deros"))
+    assert (finding.code, finding.span.text) == (codes.UNKNOWN_USED_SYSTEM, "Amr")
+    assert "'Arm'" in finding.hint
 
 
 def test_missing_import_suggests_a_similar_file(tmp_path: Path) -> None:
@@ -128,9 +128,9 @@ def test_missing_import_suggests_a_similar_file(tmp_path: Path) -> None:
     _write(
         tmp_path, camera_rnd=NODE, x_system='system X imports import "camra.rnd" node a : camera'
     )
-    found = _only(Repository().load(tmp_path / "x.system"))
-    assert (found.code, found.span.text) == (codes.UNKNOWN_IMPORT, '"camra.rnd"')
-    assert "'camera.rnd'" in found.hint
+    finding = _only(Repository().load(tmp_path / "x.system"))
+    assert (finding.code, finding.span.text) == (codes.UNKNOWN_IMPORT, '"camra.rnd"')
+    assert "'camera.rnd'" in finding.hint
 
 
 @pytest.mark.parametrize(
@@ -216,9 +216,9 @@ def test_node_type_defined_twice_is_ambiguous(tmp_path: Path) -> None:
         b_rnd="node camera : q",
         x_system='system X imports import "a.rnd" import "b.rnd" node n : camera',
     )
-    found = _only(Repository().load(tmp_path / "x.system"))
-    assert found.code is codes.AMBIGUOUS_NODE_TYPE
-    assert [Path(each.span.file).name for each in found.related] == ["a.rnd", "b.rnd"]
+    finding = _only(Repository().load(tmp_path / "x.system"))
+    assert finding.code is codes.AMBIGUOUS_NODE_TYPE
+    assert [Path(each.span.file).name for each in finding.related] == ["a.rnd", "b.rnd"]
 
 
 def test_importing_one_file_twice_is_not_ambiguous(tmp_path: Path) -> None:
@@ -302,8 +302,8 @@ def test_byte_order_mark_and_crlf_keep_positions(tmp_path: Path) -> None:
     """A BOM is not part of the text, and CRLF does not change lines and columns."""
     data = b"\xef\xbb\xbf// one\r\nnode a : p\r\nparameters\r\n  name x double\r\n"
     (tmp_path / "a.rnd").write_bytes(data)
-    found = _only(Repository().load(tmp_path / "a.rnd"))
-    assert (found.span.line, found.span.column, found.span.text) == (4, 10, "double")
+    finding = _only(Repository().load(tmp_path / "a.rnd"))
+    assert (finding.span.line, finding.span.column, finding.span.text) == (4, 10, "double")
 
 
 @pytest.mark.parametrize(

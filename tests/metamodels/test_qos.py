@@ -47,11 +47,11 @@ def test_compatibility_of_every_pair_agrees_with_rclpy() -> None:
     compared = 0
     for (offered, publisher), (requested, subscription) in itertools.product(every, every):
         verdict, reason = qos.qos_check_compatible(publisher, subscription)
-        found = shortfalls(offered, requested)
+        missing = shortfalls(offered, requested)
         expected = qos.QoSCompatibility.OK
-        if any(each.certain for each in found):
+        if any(each.certain for each in missing):
             expected = qos.QoSCompatibility.ERROR
-        elif found:
+        elif missing:
             expected = qos.QoSCompatibility.WARNING
         assert verdict == expected, (offered, requested, reason)
         compared += 1
@@ -127,13 +127,13 @@ def test_violations_of_pinned_qos_are_found(
     pin: QosProfile, profile: QosProfile | None, wrong: tuple[str, str]
 ) -> None:
     """A publisher must offer at least the pinned QoS, a subscription request exactly that."""
-    found = (publisher_violations(pin, profile), subscription_violations(pin, profile))
+    violations_of_ends = (publisher_violations(pin, profile), subscription_violations(pin, profile))
     assert wrong == tuple(
         "".join("more" if violation.excess else "less" for violation in violations)
-        for violations in found
+        for violations in violations_of_ends
     )
-    assert all(each.certain for each in (*found[0], *found[1]))
-    assert [each for each in found[1] if each.excess] == list(excess(pin, profile))
+    assert all(each.certain for each in (*violations_of_ends[0], *violations_of_ends[1]))
+    assert [each for each in violations_of_ends[1] if each.excess] == list(excess(pin, profile))
 
 
 def test_open_policy_is_not_a_certain_violation() -> None:
@@ -211,8 +211,8 @@ def test_met_by_default_agrees_with_every_middleware() -> None:
         policy for policy in _all_policies() if (policy.deadline, policy.lease) == (None, None)
     ]
     for offered, requested in itertools.product(every, every):
-        found = shortfalls(offered, requested)
-        reported = [each for each in found if not is_met_by_default(each)]
+        missing = shortfalls(offered, requested)
+        reported = [each for each in missing if not is_met_by_default(each)]
         apart = [
             bool(shortfalls(_as_in(name, offered, 0), _as_in(name, requested, 1)))
             for name in MIDDLEWARES

@@ -151,9 +151,9 @@ def test_clients_and_servers_must_match_in_both_directions(
             not shortfalls(served, service) and not shortfalls(service, served)
             for service in SERVICES
         ]
-        found = clients_of(ros_peer, other_peer, f"pair_{number}", served, sum(expected))
-        assert found == expected, served
-        compared += len(found)
+        connected = clients_of(ros_peer, other_peer, f"pair_{number}", served, sum(expected))
+        assert connected == expected, served
+        compared += len(connected)
     print(f"{compared} pairs of services compared with the middleware")
 
 

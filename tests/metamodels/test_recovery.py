@@ -100,9 +100,9 @@ def test_every_syntax_error_is_reported_once(name: str) -> None:
     """Ten errors in one file are ten findings, each on its own line."""
     text = FILES[name]
     wrong = [number for number, line in enumerate(text.splitlines(), 1) if "// here" in line]
-    found = sorted(error.span.line for error in _errors(_load(name, text)))
+    reported = sorted(error.span.line for error in _errors(_load(name, text)))
     assert len(wrong) >= 10
-    assert found == wrong
+    assert reported == wrong
 
 
 def test_sound_parts_of_a_broken_node_are_read() -> None:

@@ -48,9 +48,9 @@ def names(flat: FlatNode) -> dict[tuple[PortKind, str], str]:
 
 def refused(flat: FlatNode) -> list[str]:
     """Return the findings, all of which must be DRS120."""
-    found = list(wired_apart(flat))
-    assert {each.code for each in found} <= {codes.WIRED_APART}
-    return [each.message for each in found]
+    findings = list(wired_apart(flat))
+    assert {each.code for each in findings} <= {codes.WIRED_APART}
+    return [each.message for each in findings]
 
 
 def test_plain_name_applies_to_ports_of_all_kinds(tmp_path: Path) -> None:
@@ -117,9 +117,9 @@ def test_wirings_that_no_rule_can_separate_are_reported(
     tmp_path: Path, wirings: str, message: str
 ) -> None:
     """Two ends of one name, wired or not, cannot be on two topics."""
-    found = refused(node(tmp_path, wirings))
-    assert len(found) == 1
-    assert found[0].startswith(message)
+    messages = refused(node(tmp_path, wirings))
+    assert len(messages) == 1
+    assert messages[0].startswith(message)
 
 
 def test_names_are_compared_after_resolution(tmp_path: Path) -> None:

@@ -284,13 +284,13 @@ def test_nodes_of_the_statement_match_the_generated_ones(
     described = {path.stem: Repository().load(path).model for path in tmp_path.rglob("*.rnd")}
     assert len(described) == 2  # the safety node and its gate
     for node in nodes_of_rules(model, target):
-        found = described[node.name]
-        assert isinstance(found, NodeType)
-        assert {(p.kind, p.name): p for p in found.ports} == {
+        printed = described[node.name]
+        assert isinstance(printed, NodeType)
+        assert {(p.kind, p.name): p for p in printed.ports} == {
             (p.kind, p.name): p for p in node.ports
         }
-        assert found.parameters == node.parameters
-        assert (found.package, found.name) == (node.package, node.name)
+        assert printed.parameters == node.parameters
+        assert (printed.package, printed.name) == (node.package, node.name)
 
 
 def test_statement_attributes_may_have_any_order() -> None:

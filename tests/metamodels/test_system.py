@@ -165,8 +165,8 @@ def test_duplicates_and_undefined_names_are_findings(
     folder: Path, body: str, code: Code, text: str
 ) -> None:
     """Duplicate sections and undefined names are reported at their place."""
-    found = _load(folder, body).diagnostics[0]
-    assert (found.code, found.span.text) == (code, text)
+    finding = _load(folder, body).diagnostics[0]
+    assert (finding.code, finding.span.text) == (code, text)
 
 
 def test_imported_subsystem_cannot_have_a_body(tmp_path: Path) -> None:

@@ -36,9 +36,9 @@ def test_value_goes_into_the_first_matching_field(
     text: str, path: tuple[str, ...], value: ir.Scalar
 ) -> None:
     """The first primitive field of matching kind, range and unit gets it, in its own type."""
-    found = binding(text, "const slow = 0.5 m/s")
-    assert (found.path, found.value) == (path, value)
-    assert type(found.value) is type(value)
+    bound = binding(text, "const slow = 0.5 m/s")
+    assert (bound.path, bound.value) == (path, value)
+    assert type(bound.value) is type(value)
 
 
 def test_binding_has_topic_and_type() -> None:

@@ -26,8 +26,8 @@ from tests.support.rules import findings
 )
 def test_span_is_exactly_the_faulty_part(statements: str, code: str, place: str) -> None:
     """The finding does not mark the text around the fault."""
-    found = {name: text for name, text, _ in findings(statements)}
-    assert found[code] == place
+    reported = {name: text for name, text, _ in findings(statements)}
+    assert reported[code] == place
 
 
 def test_unknown_field_below_an_input_is_marked_in_the_rule() -> None:
@@ -36,8 +36,8 @@ def test_unknown_field_below_an_input_is_marked_in_the_rule() -> None:
         input imu = topic /imu timeout 1 sec
         entity e { r: imu.angular_velocity.w > 1; }
     """
-    found = {name: (place, message) for name, place, message in findings(statements)}
-    assert found["DRS302"] == ("w", "geometry_msgs.Vector3 has no field 'w'")
+    reported = {name: (place, message) for name, place, message in findings(statements)}
+    assert reported["DRS302"] == ("w", "geometry_msgs.Vector3 has no field 'w'")
 
 
 def test_fault_is_reported_once() -> None:

@@ -34,7 +34,7 @@ BEAMS = st.lists(st.floats(width=32), max_size=20)
 
 def _namespace() -> dict[str, Any]:
     """Execute all Python texts as in a generated module."""
-    found: dict[str, Any] = {
+    namespace: dict[str, Any] = {
         "functools": functools,
         "math": math,
         "np": np,
@@ -42,10 +42,10 @@ def _namespace() -> dict[str, Any]:
     }
     for row in FUNCTIONS.values():
         for text in printed_in_python(row):
-            exec(text, found)
+            exec(text, namespace)
         if row.guard is not None:
-            exec(row.guard.python, found)
-    return found
+            exec(row.guard.python, namespace)
+    return namespace
 
 
 NAMESPACE = _namespace()
@@ -64,14 +64,14 @@ def of_quaternion(lines: Sequence[str]) -> Callable[..., float | None]:
     """Return the function that a handler computes inline, with the same normalisation."""
     body = [*lines[:-1], f"return {lines[-1]}"]
     text = "\n    ".join(["def of_unit(ux: float, uy: float, uz: float, uw: float):", *body])
-    found: dict[str, Any] = {"math": math}
-    exec(text, found)
+    namespace: dict[str, Any] = {"math": math}
+    exec(text, namespace)
 
     def evaluate(x: float, y: float, z: float, w: float) -> float | None:
         length = math.sqrt(x * x + y * y + z * z + w * w)
         if not 0.0 < length < math.inf:
             return None
-        result: float = found["of_unit"](x / length, y / length, z / length, w / length)
+        result: float = namespace["of_unit"](x / length, y / length, z / length, w / length)
         return result
 
     return evaluate
@@ -240,8 +240,8 @@ def test_python_nearest_agrees_with_the_reference(arguments: tuple[Any, ...]) ->
     usable = values.scan_usable(ranges, limits[0])
     assert usable or nearest is None
     for given_as in (ranges, np.array(ranges, "<f4"), np.array(ranges, ">f4")):
-        found = text_of("nearest")(given_as, angle_min, increment, *limits, *rest[2:])
-        assert found == nearest
+        nearest_range = text_of("nearest")(given_as, angle_min, increment, *limits, *rest[2:])
+        assert nearest_range == nearest
         assert NAMESPACE["scan_usable"](given_as, limits[0]) is usable
 
 

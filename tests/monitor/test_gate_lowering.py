@@ -77,10 +77,10 @@ def test_latched_and_waiting_zeros_have_no_limits() -> None:
 def test_limits_of_actions_do_not_apply_during_a_loss() -> None:
     """Only losses with a line in the gate count."""
     program = lowered(line(0, SLOW), line(1), loss("input", 7))
-    found = {
+    conditions = {
         step.line: step.condition for step in program.settle if isinstance(step, form.FindLine)
     }
-    assert found == {
+    assert conditions == {
         0: form.AllOf((form.IsActive(0), form.Not(form.IsLost(("input",))))),
         1: form.IsActive(1),
         2: form.Silent("input", 7),

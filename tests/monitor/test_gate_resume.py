@@ -303,6 +303,8 @@ ARRAY = {"layout": {"dim": [{"label": "x", "size": 2, "stride": 2}], "data_offse
 def test_recognition_of_zero_commands(kind: str, command: Any, expected: bool) -> None:
     """All numbers are 0 and flags false; stamps, strings and layouts do not matter."""
     package, name = kind.split(".")
-    found = InterfaceType(package, "msg", name)
-    assert is_zero(embedded_store(), found, command) is expected
-    assert is_zero(embedded_store(), found, zero(embedded_store(), found, command, at(7)))
+    message_type = InterfaceType(package, "msg", name)
+    assert is_zero(embedded_store(), message_type, command) is expected
+    assert is_zero(
+        embedded_store(), message_type, zero(embedded_store(), message_type, command, at(7))
+    )

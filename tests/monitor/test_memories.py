@@ -50,8 +50,8 @@ def stamped(*messages: tuple[int, int, float], span_ms: int = 100) -> list[float
 
 def test_angle_continues_past_half_a_turn() -> None:
     """From 3.1 rad to -3.1 rad is a small step forward, not most of a turn back."""
-    found = unwrapped(3.1, -3.1, -3.0)
-    assert found == pytest.approx([3.1, TURN - 3.1, TURN - 3.0])
+    angles = unwrapped(3.1, -3.1, -3.0)
+    assert angles == pytest.approx([3.1, TURN - 3.1, TURN - 3.0])
     assert unwrapped(350.0, 10.0, 0.0, turn=360.0) == [350.0, 370.0, 360.0]
     assert unwrapped(350, 10, turn=360.0) == [350.0, 370.0]
 
@@ -94,33 +94,33 @@ def test_burst_does_not_distort_the_rate() -> None:
 
 def test_samples_are_an_eighth_of_the_span_apart() -> None:
     """Some fast messages are skipped: the span may be longer by an eighth and an interval."""
-    found = rates(*((n, float(n)) for n in range(301)))
-    assert all(each is None for each in found[:100])
-    assert found[100:] == pytest.approx([1000.0] * 201)
+    values = rates(*((n, float(n)) for n in range(301)))
+    assert all(each is None for each in values[:100])
+    assert values[100:] == pytest.approx([1000.0] * 201)
 
 
 def test_equal_times_give_no_rate() -> None:
     """The second message of one time is ignored afterwards."""
-    found = rates((0, 0.0), (100, 1.0), (100, 5.0), (200, 2.0))
-    assert found == [None, 10.0, None, 10.0]
+    values = rates((0, 0.0), (100, 1.0), (100, 5.0), (200, 2.0))
+    assert values == [None, 10.0, None, 10.0]
 
 
 def test_stamps_are_used_instead_of_receipt() -> None:
     """Messages that arrive late and together have the stamps of their measurement."""
-    found = stamped((0, 1000, 0.0), (500, 1100, 1.0), (500, 1200, 3.0))
-    assert found == [None, 10.0, 20.0]
+    values = stamped((0, 1000, 0.0), (500, 1100, 1.0), (500, 1200, 3.0))
+    assert values == [None, 10.0, 20.0]
 
 
 def test_backward_stamps_restart_the_rate() -> None:
     """The change is unknown until messages cover the span again."""
-    found = stamped((0, 1000, 0.0), (1, 1100, 1.0), (2, 900, 5.0), (3, 1000, 6.0))
-    assert found == [None, 10.0, None, 10.0]
+    values = stamped((0, 1000, 0.0), (1, 1100, 1.0), (2, 900, 5.0), (3, 1000, 6.0))
+    assert values == [None, 10.0, None, 10.0]
 
 
 def test_missing_and_equal_stamps_give_no_rate() -> None:
     """Such a message is ignored."""
-    found = stamped((0, 1000, 0.0), (1, 0, 7.0), (2, 1100, 1.0), (3, 1100, 9.0), (4, 1200, 2.0))
-    assert found == [None, None, 10.0, None, 10.0]
+    values = stamped((0, 1000, 0.0), (1, 0, 7.0), (2, 1100, 1.0), (3, 1100, 9.0), (4, 1200, 2.0))
+    assert values == [None, None, 10.0, None, 10.0]
     assert stamped((0, 0, 0.0), (200, 0, 1.0), (400, 0, 2.0)) == [None, None, None]
 
 
@@ -175,8 +175,8 @@ def test_leaves_of_an_angle_rate() -> None:
 
 def test_rate_without_a_header_uses_receipt() -> None:
     """A plain number has no stamp, so its message has one leaf."""
-    found = program("input v = topic /speed.data entity e { r: v.rate(0.1 sec) > 1; }")
-    assert [leaf.path for leaf in found.leaves] == [("data",)]
+    built = program("input v = topic /speed.data entity e { r: v.rate(0.1 sec) > 1; }")
+    assert [leaf.path for leaf in built.leaves] == [("data",)]
 
 
 @pytest.mark.parametrize(

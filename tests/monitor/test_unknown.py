@@ -169,8 +169,8 @@ def test_failsafe_is_a_valid_rule_name(rule: str, name: str, failsafe: bool) -> 
 )
 def test_unknown_and_failsafe_need_a_timeout(rule: str, place: str) -> None:
     """Without one, silence does not make the value unknown, and waiting never ends."""
-    found = findings(f"input v = topic /speed.data entity e {{ {rule}; }}")
-    assert ("DRS319", place) in [each[:2] for each in found]
+    reported = findings(f"input v = topic /speed.data entity e {{ {rule}; }}")
+    assert ("DRS319", place) in [each[:2] for each in reported]
 
 
 @pytest.mark.parametrize(
@@ -178,5 +178,5 @@ def test_unknown_and_failsafe_need_a_timeout(rule: str, place: str) -> None:
 )
 def test_unknown_applies_to_read_values_only(rule: str) -> None:
     """It does not apply to ages, conditions or constants."""
-    found = findings(f"const limit = 1\n{SCAN} entity e {{ r: {rule}; }}")
-    assert "DRS304" in [each[0] for each in found]
+    reported = findings(f"const limit = 1\n{SCAN} entity e {{ r: {rule}; }}")
+    assert "DRS304" in [each[0] for each in reported]

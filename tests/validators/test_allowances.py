@@ -110,9 +110,9 @@ def test_errors_cannot_be_allowed() -> None:
 def test_mistyped_code_gets_suggestions(written: str, hint: str) -> None:
     """A word that is nearly a code or a slug is reported with what it was meant to be."""
     _write("lone.system", f"// deros: allow {written} known")
-    found = json.loads(deros("check", "--format", "json", "lone.system").out)
-    hints = [each["hint"] for each in found if each["code"] == "DRS021"]
-    assert any(each.startswith(hint) for each in hints), found
+    listed = json.loads(deros("check", "--format", "json", "lone.system").out)
+    hints = [each["hint"] for each in listed if each["code"] == "DRS021"]
+    assert any(each.startswith(hint) for each in hints), listed
 
 
 def test_reason_may_begin_with_a_slug() -> None:
@@ -124,9 +124,9 @@ def test_reason_may_begin_with_a_slug() -> None:
 @pytest.mark.parametrize("code", ALL_CODES.values(), ids=str)
 def test_only_warnings_and_notes_about_models_are_allowable(code: Code) -> None:
     """Errors and findings about allowances cannot be allowed."""
-    found = allowable(code.name, Span(SourceFile("x.rnd", ""), 0, 0))
+    reason = allowable(code.name, Span(SourceFile("x.rnd", ""), 0, 0))
     expected = code.severity is not Severity.ERROR and code in codes.OF_MODELS
-    assert (found is code) == expected
+    assert (reason is code) == expected
 
 
 def test_unneeded_allowance_is_reported_for_named_files_only() -> None:

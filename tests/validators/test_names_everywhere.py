@@ -146,11 +146,11 @@ _ATTRIBUTE = re.compile(
 
 def test_table_covers_all_name_attributes() -> None:
     """Each grammar attribute that is a name is in one of the two tables."""
-    found: set[str] = set()
+    attributes: set[str] = set()
     for path in GRAMMARS.glob("*.tx"):
         for rule in re.finditer(r"^(\w+):(.*?);$", path.read_text(), re.DOTALL | re.MULTILINE):
-            found.update(f"{rule[1]}.{name}" for name in _ATTRIBUTE.findall(rule[2]))
-    assert found == (PLACES.keys() - {"Setting.value"}) | REFERENCES.keys()
+            attributes.update(f"{rule[1]}.{name}" for name in _ATTRIBUTE.findall(rule[2]))
+    assert attributes == (PLACES.keys() - {"Setting.value"}) | REFERENCES.keys()
 
 
 @pytest.mark.parametrize(

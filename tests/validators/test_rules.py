@@ -43,9 +43,9 @@ def test_input_without_timeout_is_reported_once() -> None:
         "failsafe fast: v > fast or v.rate(0.1 sec)", "fast: v > fast or v"
     )
     statements = statements.replace("3 m/s^2", "3 m/s")
-    found = findings(statements.replace("manual: m = 0", "manual: m = 0 and v < 1"))
-    assert [(code, place) for code, place, _ in found] == [("DRS317", "v")]
-    assert "'e.fast', 'e.manual' still use the last value" in found[0][2]
+    reported = findings(statements.replace("manual: m = 0", "manual: m = 0 and v < 1"))
+    assert [(code, place) for code, place, _ in reported] == [("DRS317", "v")]
+    assert "'e.fast', 'e.manual' still use the last value" in reported[0][2]
 
 
 def check_text(directory: Path, system: str, text: str) -> list[str]:

@@ -27,8 +27,8 @@ def decided(condition: str) -> list[tuple[str, str]]:
     used = " or ".join(f"{each}.missing()" for each in inputs)
     statements = f"""{DECLARED} entity e {{ failsafe r: {condition}; s: {used}; }}
         if e.r or e.s then {{ stop; }};"""
-    found = ((code, place) for code, place, _ in findings(statements))
-    return [each for each in found if each[0] != "DRS367"]  # the finding on rate() itself
+    results = ((code, place) for code, place, _ in findings(statements))
+    return [each for each in results if each[0] != "DRS367"]  # the finding on rate() itself
 
 
 @pytest.mark.parametrize(
@@ -119,8 +119,8 @@ def test_undecided_condition_is_not_reported(condition: str) -> None:
 )
 def test_decided_condition_is_reported_once(condition: str, code: str, place: str) -> None:
     """The finding names the smallest decided condition."""
-    found = [each for each in decided(condition) if each[0] != "DRS330"]
-    assert found == [(code, place)]
+    results = [each for each in decided(condition) if each[0] != "DRS330"]
+    assert results == [(code, place)]
 
 
 @settings(max_examples=scaled(40))
@@ -131,5 +131,5 @@ def test_decided_pairs_agree_with_enumeration(low: int, high: int, both: bool) -
     combine = all if both else any
     verdicts = {combine(pair) for pair in zip(*parts, strict=True)}
     word = "and" if both else "or"
-    found = decided(f"mode >= {low} {word} mode <= {high}")
-    assert bool(found) == any(len(set(each)) == 1 for each in [*parts, verdicts])
+    results = decided(f"mode >= {low} {word} mode <= {high}")
+    assert bool(results) == any(len(set(each)) == 1 for each in [*parts, verdicts])

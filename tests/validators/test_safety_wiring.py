@@ -58,12 +58,12 @@ def test_wiring_difference_is_an_error_with_both_places(name: str, file: str) ->
     old, new, code, words = DIFFERENCES[name]
     write_hand_wired()
     edit("robot.system", (old, new))
-    found = [finding for finding in findings(file) if finding.code.name == code]
-    assert len(found) == (2 if "swap" in name else 1), findings(file)
-    assert words in found[0].message
-    assert found[0].is_error
-    assert found[0].span.file == "robot.system"
-    assert found[0].related
+    reported = [finding for finding in findings(file) if finding.code.name == code]
+    assert len(reported) == (2 if "swap" in name else 1), findings(file)
+    assert words in reported[0].message
+    assert reported[0].is_error
+    assert reported[0].span.file == "robot.system"
+    assert reported[0].related
 
 
 def test_relative_name_in_a_namespace_is_another_topic() -> None:
@@ -113,11 +113,11 @@ def test_outdated_description_is_one_finding(old: str, new: str, words: str) -> 
     """One finding names each difference between the description and the rules."""
     write_hand_wired()
     edit("robot_safety_node.rnd", (old, new))
-    found = [each for each in findings() if each.code.name == "DRS353"]
+    reported = [each for each in findings() if each.code.name == "DRS353"]
     if "package" in words:  # the gate is then in another package
-        assert any("gate" in each.span.text for each in found)
+        assert any("gate" in each.span.text for each in reported)
         return
-    (finding,) = found
+    (finding,) = reported
     assert words in finding.message
     assert "generate it again" in finding.hint
 
@@ -224,8 +224,8 @@ def test_second_hand_wired_instance_is_an_error() -> None:
     """Two nodes of one generated type are an error in any namespace."""
     write_hand_wired()
     edit("robot.system", ("subsystem Safety {", "subsystem Safety {\n  node again : command_gate"))
-    found = [finding for finding in findings() if finding.code.name == "DRS238"]
-    assert [each.message for each in found] == ["'/gate' is a second gate of the rules 'robot'"]
+    reported = [finding for finding in findings() if finding.code.name == "DRS238"]
+    assert [each.message for each in reported] == ["'/gate' is a second gate of the rules 'robot'"]
 
 
 # ``safety`` statements ----------------------------------------------------------------------------
@@ -253,8 +253,8 @@ def test_statement_and_hand_wired_node_are_an_error() -> None:
     """The rules would run twice."""
     with_statement('safety "robot.deros"', "node again : robot_safety_node")
     edit("robot.system", ("topics\n", 'imports\n  import "robot_safety_node.rnd"\ntopics\n'))
-    found = {finding.code.name: finding for finding in findings()}
-    assert "a second safety node of the rules 'robot'" in found["DRS238"].message
+    by_code = {finding.code.name: finding for finding in findings()}
+    assert "a second safety node of the rules 'robot'" in by_code["DRS238"].message
 
 
 @pytest.mark.parametrize(
@@ -282,8 +282,10 @@ def test_faults_in_a_statement_are_reported_once() -> None:
         + "parameters param publish_freq = 0.0 param unheard_of = 1 param use_sim_time = 3\n"
         "wirings connect ~/heart to /beat\n"
     )
-    found = [(finding.code.name, finding.span.text) for finding in findings() if finding.is_error]
-    assert sorted(found) == [
+    reported = [
+        (finding.code.name, finding.span.text) for finding in findings() if finding.is_error
+    ]
+    assert sorted(reported) == [
         ("DRS204", "~/heart"),
         ("DRS206", "unheard_of"),
         ("DRS207", "3"),
@@ -321,8 +323,8 @@ def test_bypass_around_an_imported_system_is_reported() -> None:
         'system Fleet imports import "robot.system" import "joystick.rnd"\n'
         "subsystem one : Robot\nnode joystick : joystick wirings connect out to /command\n"
     )
-    found = {finding.code.name: finding for finding in findings("fleet.system")}
-    assert "/joystick (out) bypasses the gate '/command_gate'" in found["DRS339"].message
+    by_code = {finding.code.name: finding for finding in findings("fleet.system")}
+    assert "/joystick (out) bypasses the gate '/command_gate'" in by_code["DRS339"].message
 
 
 def test_rules_using_two_systems_run_in_only_one() -> None:

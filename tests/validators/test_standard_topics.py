@@ -62,8 +62,8 @@ def test_standard_topics_are_external(tmp_path: Path, name: str, kind: str, sect
     port = f"{section} topic {name} : {kind}"
     wired = f"node user : user wirings connect {name} to {name}"
     for system in ("", wired, f"topics topic {name}\n{wired}"):
-        found = {each.code.name for each in _check(tmp_path, port, system)}
-        assert found <= missing, system
+        codes = {each.code.name for each in _check(tmp_path, port, system)}
+        assert codes <= missing, system
 
 
 def test_topic_of_another_type_is_not_standard(tmp_path: Path) -> None:
@@ -78,11 +78,11 @@ def test_wrong_type_on_a_standard_topic_is_an_error(tmp_path: Path, name: str) -
     port = f"publishes topic {name} : std_msgs.String"
     wired = f"node user : user wirings connect {name} to {name}"
     for system in ("", wired, f"topics external topic {name}\n{wired}"):
-        found = [each.code.name for each in _check(tmp_path, port, system)]
-        assert [code for code in found if code != "DRS213"] == ["DRS232"], system
+        codes = [each.code.name for each in _check(tmp_path, port, system)]
+        assert [code for code in codes if code != "DRS213"] == ["DRS232"], system
     pinned = f"topics topic {name} : std_msgs.String\n{wired}"
-    found = [each.code.name for each in _check(tmp_path, port, pinned)]
-    assert found == ["DRS232", "DRS232"]
+    codes = [each.code.name for each in _check(tmp_path, port, pinned)]
+    assert codes == ["DRS232", "DRS232"]
 
 
 def test_declared_type_overrides_a_convention(tmp_path: Path) -> None:
@@ -124,6 +124,6 @@ def test_each_standard_topic_has_a_reason() -> None:
         assert len(entry["why"]) > 20
         assert all(kind.count("/") == 1 for kind in entry["types"])
         if "name" in entry and entry["types"]:
-            found = standard_topic(entry["name"], _type(entry["types"][0]))
-            assert found is not None
-            assert found.why == entry["why"]
+            standard = standard_topic(entry["name"], _type(entry["types"][0]))
+            assert standard is not None
+            assert standard.why == entry["why"]

@@ -76,8 +76,8 @@ def test_at_most_three_topics_are_suggested() -> None:
 def test_excluded_candidate_is_not_suggested() -> None:
     """An excluded candidate does not take the place of another."""
     names = ["/front/scan", "/scan_filtered"]
-    found = LikelyTopics(names).best("/scan", lambda name: None if name in names[:1] else 0.0)
-    assert found == names[1:]
+    suggested = LikelyTopics(names).best("/scan", lambda name: None if name in names[:1] else 0.0)
+    assert suggested == names[1:]
 
 
 def test_real_words_are_not_treated_as_typos() -> None:

@@ -189,27 +189,27 @@ def test_built_in_generators_are_found() -> None:
 def test_broken_plugin_does_not_affect_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """A plug-in that fails to load is listed with the reason; the others are available."""
     broken = FakeEntryPoint("bad", "bad-plugin", ImportError("no module named x"))
-    found = found_with(monkeypatch, broken, FakeEntryPoint("good", "good-plugin", twin()))
-    assert [g.target for g in found.generators] == ["text"]
-    (bad,) = found.broken
+    discovered = found_with(monkeypatch, broken, FakeEntryPoint("good", "good-plugin", twin()))
+    assert [g.target for g in discovered.generators] == ["text"]
+    (bad,) = discovered.broken
     assert (bad.distribution, bad.reason) == ("bad-plugin", "ImportError: no module named x")
 
 
 def test_plugin_cannot_replace_a_deros_target(monkeypatch: pytest.MonkeyPatch) -> None:
     """If two generators claim one target, deros has priority, and the other is listed."""
     own, other = twin(), twin()
-    found = found_with(
+    discovered = found_with(
         monkeypatch, FakeEntryPoint("a", "another", other), FakeEntryPoint("z", "deros", own)
     )
-    assert found.find("rosnode", "text") is own
-    assert [b.reason for b in found.broken] == ["rosnode -> text is taken by deros"]
+    assert discovered.find("rosnode", "text") is own
+    assert [b.reason for b in discovered.broken] == ["rosnode -> text is taken by deros"]
 
 
 def test_generators_of_other_languages_are_skipped(monkeypatch: pytest.MonkeyPatch) -> None:
     """A plain textX generator in the group is neither a deros generator nor an error."""
     plain = GeneratorDesc("entity", "java", generator=print)
-    found = found_with(monkeypatch, FakeEntryPoint("java", "entities", plain))
-    assert found == registry.Registry(())
+    discovered = found_with(monkeypatch, FakeEntryPoint("java", "entities", plain))
+    assert discovered == registry.Registry(())
 
 
 def test_listing_generators_does_not_load_them() -> None:

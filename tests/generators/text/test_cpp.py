@@ -85,8 +85,8 @@ def test_literals_keep_their_value(tmp_path: Path) -> None:
     printed = output.splitlines()
     count = len(texts) + len(broken)
     assert [bytes.fromhex(line).decode() for line in printed[:count]] == [*texts, *broken]
-    found = printed[count : count + len(doubles)]
-    assert [line if "inf" in line else float.fromhex(line) for line in found] == [
+    printed_doubles = printed[count : count + len(doubles)]
+    assert [line if "inf" in line else float.fromhex(line) for line in printed_doubles] == [
         str(value) if "inf" in str(value) else value for value in doubles
     ]
     assert [int(line) for line in printed[count + len(doubles) :]] == integers

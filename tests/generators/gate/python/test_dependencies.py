@@ -346,8 +346,8 @@ def test_readers_of_the_reports_have_no_influence(world: World, ros_env: dict[st
     """None is required, any number may join, and their messages have no effect."""
     from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
-    found = world.peer.node.get_subscriptions_info_by_topic("/diagnostics")
-    assert GATE not in [each.node_name for each in found]
+    subscriptions = world.peer.node.get_subscriptions_info_by_topic("/diagnostics")
+    assert GATE not in [each.node_name for each in subscriptions]
     strangers = [Stranger(ros_env, f"reader_{number}") for number in range(3)]
     heard: list[str] = []
     for stranger in strangers:

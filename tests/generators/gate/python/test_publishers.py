@@ -196,8 +196,8 @@ def test_second_command_publisher_is_a_fault(world: World, ros_env: dict[str, st
 @pytest.mark.usefixtures("gate")
 def test_publisher_that_bypasses_the_gate_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
     """The gate cannot block it, but reports it; it does not subscribe to its target."""
-    found = world.peer.node.get_subscriptions_info_by_topic("/cmd_vel")
-    assert [each.node_name for each in found] == ["test_peer"]
+    subscriptions = world.peer.node.get_subscriptions_info_by_topic("/cmd_vel")
+    assert [each.node_name for each in subscriptions] == ["test_peer"]
     with Stranger(ros_env) as stranger:
         stranger.say("/cmd_vel", twist(math.nan))
         world.until_fault("published past the gate: /stranger")

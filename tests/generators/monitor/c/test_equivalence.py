@@ -52,8 +52,8 @@ def test_difference_is_minimised(tmp_path: Path) -> None:
     for unit in units:  # every action runs while its behaviour holds
         name = f"{unit.prefix}_monitor.c"
         unit.texts[name] = unit.texts[name].replace("&& (!held)", "|| held")
-    found = [pair for pair, _ in c_pairs.differences(Loaded(units, tmp_path), cases)]
-    assert found
-    assert min(len(pair.steps) for pair in found) <= 3
-    kept = counterexamples.write(found[0], tmp_path / "kept")
-    assert counterexamples.read(kept).program == found[0].program
+    differing = [pair for pair, _ in c_pairs.differences(Loaded(units, tmp_path), cases)]
+    assert differing
+    assert min(len(pair.steps) for pair in differing) <= 3
+    kept = counterexamples.write(differing[0], tmp_path / "kept")
+    assert counterexamples.read(kept).program == differing[0].program

@@ -151,18 +151,18 @@ def test_rendering_is_deterministic() -> None:
 def test_code_follows_misra(tmp_path: Path) -> None:
     """The only violations of MISRA C:2012 are the advisory ones that the text lists."""
     texts = [render_monitor(each) for each in PROGRAMS.values()]
-    found = misra.violations(texts, tmp_path)
-    assert [str(each) for each in found if not each.is_allowed] == []
-    assert any(each.is_allowed for each in found)
+    violations = misra.violations(texts, tmp_path)
+    assert [str(each) for each in violations if not each.is_allowed] == []
+    assert any(each.is_allowed for each in violations)
 
 
 @pytest.mark.skipif(not misra.has_cppcheck(), reason=f"no {misra.CPPCHECK}")
 def test_misra_check_is_effective(tmp_path: Path) -> None:
     """A violated required rule is detected and distinguished from an advisory one."""
     text = "#define UNUSED 1\nint f(int a);\nint f(int a)\n{\n  return a + 017;\n}\n"
-    found = misra.violations([{"wrong.c": text}], tmp_path)
-    assert {"required", "advisory"} == {each.category for each in found}
-    assert not any(each.is_allowed for each in found)
+    violations = misra.violations([{"wrong.c": text}], tmp_path)
+    assert {"required", "advisory"} == {each.category for each in violations}
+    assert not any(each.is_allowed for each in violations)
 
 
 def test_deviations_are_listed_in_the_source() -> None:

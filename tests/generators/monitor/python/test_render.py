@@ -104,8 +104,8 @@ def test_monitors_pass_the_linters(tmp_path: Path) -> None:
 def test_linter_settings_are_in_force(tmp_path: Path) -> None:
     """An unused import and a long line are detected."""
     (tmp_path / "bad.py").write_text(f'import os\n\ntext = "{"x" * 100}"\n')
-    found = _lint(tmp_path)
-    assert all(code in found for code in ("F401", "E501", "Q000"))
+    messages = _lint(tmp_path)
+    assert all(code in messages for code in ("F401", "E501", "Q000"))
 
 
 def test_rendering_is_deterministic() -> None:

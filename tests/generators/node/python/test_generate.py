@@ -107,9 +107,9 @@ def test_defaults_have_the_declared_type(declaration: str, declared: str) -> Non
 def test_open_integer_bounds_are_exact(interval: str, bounds: tuple[int, int]) -> None:
     """The closed range of a descriptor contains exactly the integers of the interval."""
     text = base_for(f"parameters name x : int = 5 in {interval}")
-    found = re.search(r"IntegerRange\(\s*from_value=(\S+),\s*to_value=([-\d]+)", text)
-    assert found is not None
-    assert (int(found[1]), int(found[2])) == bounds
+    bounds_in_text = re.search(r"IntegerRange\(\s*from_value=(\S+),\s*to_value=([-\d]+)", text)
+    assert bounds_in_text is not None
+    assert (int(bounds_in_text[1]), int(bounds_in_text[2])) == bounds
     assert "_CONSTRAINTS" not in text
 
 

@@ -183,8 +183,8 @@ def test_descriptors_describe_the_parameters(start: Start, ros_peer: Peer) -> No
             DescribeParameters, "/odometry_node/describe_parameters"
         )
         names = ["wheel_base", "scale", "mode", "frames", "pid.lambda"]
-        found = ros_peer.call(client, DescribeParameters.Request(names=names)).descriptors
-    wheel_base, scale, mode, frames, bytes_ = found
+        descriptors = ros_peer.call(client, DescribeParameters.Request(names=names)).descriptors
+    wheel_base, scale, mode, frames, bytes_ = descriptors
     assert wheel_base.description == "Distance between the wheels [m]"
     assert wheel_base.read_only
     (bounds,) = wheel_base.floating_point_range

@@ -42,10 +42,10 @@ def test_build_script_and_manifest_have_the_same_dependencies() -> None:
     script = (RUNTIME / "CMakeLists.txt").read_text(encoding="utf-8")
     manifest = ET.parse(RUNTIME / "package.xml").getroot()
     depends = [each.text for each in manifest.findall("depend")]
-    found = re.findall(r"^find_package\((\w+) REQUIRED\)$", script, re.MULTILINE)
+    required = re.findall(r"^find_package\((\w+) REQUIRED\)$", script, re.MULTILINE)
     exported = re.search(r"ament_export_dependencies\(([^)]*)\)", script)
     assert exported is not None
-    assert found == ["ament_cmake", *depends]
+    assert required == ["ament_cmake", *depends]
     assert exported[1].split() == depends
 
 

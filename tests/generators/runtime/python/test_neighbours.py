@@ -35,9 +35,9 @@ def report(*publishers: Any, shared: tuple[str, ...] = ()) -> tuple[str, str]:
     subscription = SimpleNamespace(topic_name="/go", msg_type=Bool, qos_profile=RELIABLE)
     node = Mock(subscriptions=[subscription])
     node.get_publishers_info_by_topic.return_value = list(publishers)
-    found = Mock()
-    PublisherCheck(node, found, shared).check()
-    topic, text = found.call_args.args
+    report_fault = Mock()
+    PublisherCheck(node, report_fault, shared).check()
+    topic, text = report_fault.call_args.args
     return topic, text
 
 

@@ -147,6 +147,6 @@ def test_real_launch_reads_the_file() -> None:
     """``launch_ros``, if installed, creates the same nodes."""
     actual = pytest.importorskip("launch_ros.actions")
     system = load(EVERYTHING)
-    found = actions(system)
-    assert all(isinstance(action, actual.Node) for action in found)
-    assert len(found) == len(list(system_view(system).nodes))
+    launched = actions(system)
+    assert all(isinstance(action, actual.Node) for action in launched)
+    assert len(launched) == len(list(system_view(system).nodes))

@@ -55,15 +55,15 @@ def test_nodes_are_keyed_by_full_name() -> None:
 
 def test_names_with_dots_are_nested(tmp_path: Path) -> None:
     """``a.b.x`` and ``a.b.y`` are both under ``a`` and ``b``."""
-    found = settings(tmp_path, "a.b.x = 2", 'text = "t"', 'a.c = "c"', "a.b.y = 3")
-    assert found == {"a": {"b": {"x": 2, "y": 3.0}, "c": "c"}, "text": "t"}
+    parsed = settings(tmp_path, "a.b.x = 2", 'text = "t"', 'a.c = "c"', "a.b.y = 3")
+    assert parsed == {"a": {"b": {"x": 2, "y": 3.0}, "c": "c"}, "text": "t"}
 
 
 def test_doubles_stay_doubles(tmp_path: Path) -> None:
     """A whole number has a decimal point, and a power of ten the form of YAML 1.1."""
-    found = settings(tmp_path, "a.b.y = 3", "big = 1e22")
-    assert repr(found["a"]["b"]["y"]) == "3.0"
-    assert repr(found["big"]) == "1e+22"
+    parsed = settings(tmp_path, "a.b.y = 3", "big = 1e22")
+    assert repr(parsed["a"]["b"]["y"]) == "3.0"
+    assert repr(parsed["big"]) == "1e+22"
 
 
 @pytest.mark.parametrize(
