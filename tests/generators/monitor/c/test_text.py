@@ -214,6 +214,10 @@ def test_test_program_has_every_construct() -> None:
 
 
 def test_files_match_golden(golden: Golden) -> None:
-    """The text of a program with every construct matches the reviewed one."""
-    files = {name: File(text) for name, text in render_monitor(everything()).items()}
+    """The code of a program with every construct matches the reviewed one.
+
+    Its contracts are longer than anybody reads; ``test_contracts.py`` has those of small programs.
+    """
+    texts = render_monitor(everything())
+    files = {name: File(text) for name, text in texts.items() if "_contracts" not in name}
     golden.check("monitor_c", files)
