@@ -50,7 +50,7 @@ def test_call_that_fits_stays_on_one_line() -> None:
 
 
 @given(
-    st.lists(st.text("ab '\"\\", max_size=150), min_size=1, max_size=4),
+    st.lists(st.text("ab '\"\\\t\n", max_size=150), min_size=1, max_size=4),
     st.integers(min_value=0, max_value=5),
 )
 def test_broken_call_has_the_same_value(texts: list[str], depth: int) -> None:
@@ -63,6 +63,14 @@ def test_broken_call_has_the_same_value(texts: list[str], depth: int) -> None:
     words = [word for t in texts for word in t.split()]
     if all(len(repr(word)) < 40 for word in words):
         assert all(len(line) <= LINE_LENGTH for line in f"{' ' * indent}{text}".splitlines())
+
+
+def test_broken_text_keeps_tabs_and_line_breaks() -> None:
+    """A text is cut only; none of its white space is replaced."""
+    text = "word\tword\n  word " * 10
+    broken = call("str", [Text("", text)], 4)
+    assert broken.count("\n") > 2
+    assert eval(broken) == text  # the text is our own
 
 
 @given(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -25,7 +24,7 @@ from deros.generators.text.document import (
     render,
     render_lines,
 )
-from deros.generators.text.prose import printable_line, sentence, wrap
+from deros.generators.text.prose import pieces, printable_line, sentence, wrap
 from deros.interfaces.keywords import CPP_20
 from deros.interfaces.types import InterfaceType
 
@@ -228,7 +227,7 @@ def _document(value: Expression) -> Document:
         return value
     if isinstance(value, Text):
         text = value.text
-        return align(breakable(cpp_string(text), lambda indent: _pieces(text, indent)))
+        return align(breakable(cpp_string(text), lambda indent: _literals(text, indent)))
     if isinstance(value, Chain):
         joint = value.joint.rstrip()
         line = Line(value.joint.removeprefix(joint))
@@ -256,18 +255,10 @@ def _head(head: str) -> Document:
     return group(type_, LINE, name) if blank else head
 
 
-def _pieces(text: str, indent: int) -> Document:
+def _literals(text: str, indent: int) -> Document:
     """Return a long text as literals one below the other, which the compiler joins."""
-    pieces = textwrap.wrap(
-        _escaped(text),  # no escape has a blank, so none is broken
-        LINE_LENGTH - indent - 8,
-        break_long_words=False,
-        break_on_hyphens=False,
-        drop_whitespace=False,
-        expand_tabs=False,
-        replace_whitespace=False,
-    )
-    return join(HARDLINE, (f'"{piece}"' for piece in pieces))
+    escaped = _escaped(text)  # no escape has a blank, so none is broken
+    return join(HARDLINE, (f'"{piece}"' for piece in pieces(escaped, LINE_LENGTH - indent - 8)))
 
 
 # Comments -----------------------------------------------------------------------------------------

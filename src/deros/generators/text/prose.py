@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+
 from deros.generators.text.document import Document, fill, nest, render
 
 
@@ -46,3 +48,19 @@ def _cut(word: str, longest: int) -> list[str]:
 def wrap(text: str, width: int) -> list[str]:
     """Return ``text`` in lines of at most ``width`` characters; longer words stay whole."""
     return render(paragraph(text), width).split("\n") if text else []
+
+
+def pieces(text: str, width: int) -> list[str]:
+    """Return a text cut between words in pieces of at most ``width`` characters.
+
+    All of the text is in the pieces, its white space included; longer words stay whole.
+    """
+    return textwrap.wrap(
+        text,
+        width,
+        break_long_words=False,
+        break_on_hyphens=False,
+        drop_whitespace=False,
+        expand_tabs=False,
+        replace_whitespace=False,
+    )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import textwrap
 import tokenize
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,7 +22,7 @@ from deros.generators.text.document import (
     render,
     render_lines,
 )
-from deros.generators.text.prose import printable_line, wrap
+from deros.generators.text.prose import pieces, printable_line, wrap
 
 LINE_LENGTH = 99
 """The longest line that ament's flake8 settings allow."""
@@ -99,19 +98,12 @@ def _document(value: str | Text | Call) -> Document:
     if isinstance(value, Call):
         arguments = [_document(argument) for argument in value.arguments]
         return bracketed(value.head, "(", arguments, concat(")", value.tail))
-    return breakable(f"{value.head}{value.text!r}", lambda indent: _pieces(value, indent))
+    return breakable(f"{value.head}{value.text!r}", lambda indent: _literals(value, indent))
 
 
-def _pieces(text: Text, indent: int) -> Document:
+def _literals(text: Text, indent: int) -> Document:
     """Return a text as several literals, which Python joins."""
-    pieces = textwrap.wrap(
-        text.text,
-        LINE_LENGTH - indent - 8,
-        break_long_words=False,
-        break_on_hyphens=False,
-        drop_whitespace=False,
-    )
-    literals = join(HARDLINE, map(repr, pieces))
+    literals = join(HARDLINE, map(repr, pieces(text.text, LINE_LENGTH - indent - 8)))
     return concat(text.head, "(", nest(4, HARDLINE, literals), HARDLINE, ")")
 
 
