@@ -1,4 +1,4 @@
-"""The clock of a node, which it chooses once: when it starts."""
+"""The clock of a node, which is chosen once: at its start."""
 
 from __future__ import annotations
 

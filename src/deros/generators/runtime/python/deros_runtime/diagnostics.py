@@ -1,4 +1,4 @@
-"""The present state of a safety node on /diagnostics, for the tools that operators know."""
+"""Publishes the current state of a safety node on /diagnostics."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .report_types import Behaviour, Event, EventKind, Explanation, RuleState
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
-SOON = 50_000_000  # ns after a change, within which others are waited for
-CHUNK = 8  # statuses in one message: more of them would keep the monitor waiting for too long
+SOON = 50_000_000  # ns from a change to its message, in which further changes are collected
+CHUNK = 8  # statuses in one message: more would delay the monitor for too long
 PAUSE = 1_000_000  # ns between the messages of one state
 
 
 @dataclass(frozen=True)
 class ActionState:
-    """An action: whether it is active, or that it ran, by which behaviour and why, since when."""
+    """The state of an action, and what caused it."""
 
     lasts: bool  # whether it has a state, and is not just run
     active: bool = False
@@ -52,7 +52,7 @@ class Diagnostics:
         frequency: float,
         defer: Callable[[], int],
     ) -> None:
-        """Prepare; actions tells of each whether it has a state, defer what goes before."""
+        """Set up; actions says of each action whether it has a state, defer is that of a timer."""
         self.faults: dict[str, str] = {}  # by what they are about
         self.actions = {name: ActionState(lasts) for name, lasts in actions.items()}
         self._node = node
@@ -72,8 +72,8 @@ class Diagnostics:
         """
         Start publishing.
 
-        explain returns what the rules are worth and why behaviours hold, now the time in which
-        that is told, and summary what the node is not ready for; empty if it watches.
+        explain returns the verdicts of the rules and the causes of behaviours, now the time of the
+        same clock, and summary why the node does not watch all rules; empty if it does.
         """
         self._explain, self._now, self._summary = explain, now, summary
         self._timer.schedule(0)
@@ -86,7 +86,7 @@ class Diagnostics:
         self._again = True
 
     def update(self, event: Event, explained: Explanation) -> None:
-        """Follow an event of the monitor; explained is what it explains after it."""
+        """Update an action after an event of the monitor, which explained is about."""
         before = self.actions.get(event.action)
         if before is None or event.kind not in (EventKind.TRIGGER, EventKind.RESET):
             return
@@ -102,11 +102,11 @@ class Diagnostics:
         self.actions[event.action] = after
 
     def latched(self, action: str) -> None:
-        """Show an action as active that was so before the start."""
+        """Show an action that was active before the start."""
         self.actions[action] = ActionState(True, active=True, cause='active before the start')
 
     def fault(self, subject: str, text: str) -> bool:
-        """Note or, with an empty text, forget a fault; tell whether this is another one now."""
+        """Set or, with an empty text, clear a fault; return whether this is a change."""
         if self.faults.get(subject, '') == text:
             return False
         self.faults.pop(subject, None)
@@ -151,10 +151,10 @@ class Diagnostics:
         return [rule for rule in named if rule.value] or named
 
     def _node_status(self, name: str, rules: Sequence[RuleState]) -> DiagnosticStatus:
-        unready = self._summary()
-        level = ERROR if self.faults else WARN if unready else OK
-        message = '; '.join(self.faults.values()) or unready or f'watching {len(rules)} rules'
-        return _status(level, name, message, {'state': unready or 'watching', **self.faults})
+        reason = self._summary()
+        level = ERROR if self.faults else WARN if reason else OK
+        message = '; '.join(self.faults.values()) or reason or f'watching {len(rules)} rules'
+        return _status(level, name, message, {'state': reason or 'watching', **self.faults})
 
 
 def _action_status(name: str, state: ActionState, now: int) -> DiagnosticStatus:

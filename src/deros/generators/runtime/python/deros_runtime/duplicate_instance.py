@@ -1,4 +1,4 @@
-"""Other publishers of what only this node may publish."""
+"""Detects other publishers of topics that only this node may publish."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from .start_order import StartOrder
 
 class DuplicateInstanceDetector:
     """
-    Looks whether somebody else publishes the heartbeat of a node, or the states of its actions.
+    Detects other publishers of a node's heartbeat, and of the states of its actions.
 
-    The first is a second node of its name, on another machine or without a common folder for
-    temporary files; the second contradicts it. It also looks whether whoever subscribes to one of
-    these topics is served.
+    The former is a second node of its name, on another machine or without a common folder for
+    temporary files; the latter contradicts it. Subscriptions of these topics that do not match are
+    reported, too.
     """
 
     def __init__(
@@ -29,7 +29,7 @@ class DuplicateInstanceDetector:
         states: Iterable[str],
         report: Callable[[str, str], None],
     ) -> None:
-        """Prepare; report takes a topic and what is wrong with it, empty if nothing is."""
+        """Set up; report takes a topic and what is wrong with it, empty if nothing is."""
         self._node = node
         self._heartbeat = heartbeat
         own = list(states)
@@ -39,7 +39,7 @@ class DuplicateInstanceDetector:
         self._order = StartOrder(time.monotonic_ns())
 
     def check(self) -> None:
-        """Look now; raises Refusal if there is a second node and this one started last."""
+        """Check now; raises Refusal if there is a second node and this one started last."""
         self._check_heartbeat()
         topic = next(self._states, None)
         if topic is not None:

@@ -1,4 +1,4 @@
-"""One structured message for everything that happens to a safety node, and a line in its log."""
+"""Reports the events of a safety node, on a topic and in its log."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.E
 
 
 class EventReporter:
-    """Tells what happened, to the log and on a topic; always after it has been acted upon."""
+    """Publishes and logs events, always after they have been acted upon."""
 
     def __init__(
         self,
@@ -22,7 +22,7 @@ class EventReporter:
         behaviours: Mapping[str, Behaviour],
         publish: Callable[[DiagnosticStatus], None],
     ) -> None:
-        """Prepare; rules is the name of their file."""
+        """Set up; rules is the name of the rules' file."""
         self._node = node
         self._rules = rules
         self._behaviours = behaviours
@@ -30,9 +30,9 @@ class EventReporter:
 
     def report_monitor_event(self, event: Event, done: int, after: Explanation) -> None:
         """
-        Tell of an event of the monitor.
+        Report an event of the monitor.
 
-        done is when it was acted upon, in the monitor's time; after is what the monitor explains
+        done is when it was acted upon, in the monitor's time; after is the monitor's explanation
         after it.
         """
         message, level = self._described(event, after)
@@ -61,7 +61,7 @@ class EventReporter:
         self.report(event.kind, level, message, **told)
 
     def report(self, kind: str, level: bytes, message: str, **values: object) -> None:
-        """Tell of anything."""
+        """Report any other event."""
         self._log(level, message)
         told = {'kind': kind, **values, 'ros_time_ns': self._node.get_clock().now().nanoseconds}
         self._publish(
@@ -80,10 +80,10 @@ class EventReporter:
 
     def refusal(self, holding: Sequence[str], unknown: Sequence[str], present: Explanation) -> str:
         """
-        Return why a reset is refused; nothing if it is not.
+        Return why a reset is refused; empty if it is not.
 
-        holding and unknown are the behaviours whose conditions are so, of those that trigger the
-        action; present is what the monitor explains.
+        holding and unknown are the behaviours that trigger the action and whose conditions hold or
+        are unknown; present is the monitor's explanation.
         """
         reasons = []
         if holding:
@@ -116,7 +116,7 @@ class EventReporter:
         return f'{self.origin(behaviour)}, unknown: {", ".join(dict.fromkeys(terms))}'
 
     def _values(self, behaviour: str, after: Explanation) -> dict[str, str]:
-        """Return what the rules are worth that a behaviour depends on, and what they read."""
+        """Return the verdicts of the rules that a behaviour depends on, and the values behind."""
         told = {}
         for state in after.rules:
             if state.name in self._behaviours[behaviour].rules:
@@ -149,14 +149,14 @@ def cause(behaviour: str, explained: Explanation) -> str:
     """
     Return what makes a behaviour hold: rules, with the true parts of their conditions.
 
-    Nothing if it does not hold any more: a message may show that the clock has stepped back, and
-    change at once what the step brought about.
+    Empty if it no longer holds: a message may show that the clock has stepped back, and at once
+    change what the step caused.
     """
     return ' and '.join(explained.causes.get(behaviour, ()))
 
 
 def shown(value: object) -> str:
-    """Return a value as people read it."""
+    """Return a value as text."""
     if value is None:
         return 'unknown'
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,4 +1,4 @@
-"""What a gate does and why, on /diagnostics and in the log."""
+"""Reports what a gate does and why, on /diagnostics and in the log."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from .target_publishers import TargetPublisherCheck
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 PERIOD = 1_000_000_000  # ns
-SOON = 50_000_000  # ns after a change, within which others are waited for
+SOON = 50_000_000  # ns from a change to its message, in which further changes are collected
 
 
 def decoded(data: bytes, kind: type) -> Any:
-    """Return the message, or None if the data is none of this type."""
+    """Return the message, or None if the data is not of this type."""
     try:
         return deserialize_message(data, kind)
     except Exception:  # each type of message may find another kind of fault in it
@@ -30,7 +30,7 @@ def decoded(data: bytes, kind: type) -> Any:
 
 
 class GateStatus(Protocol):
-    """What is reported of the logic of a gate."""
+    """The status of a gate's logic, as it is reported."""
 
     applying: tuple[bool, ...]
     since: int
@@ -56,7 +56,7 @@ class GateReport:
         self._lines = lines
         self._now = now
         self._publish = publish
-        self._told: tuple[bool, ...] = ()
+        self._reported: tuple[bool, ...] = ()
         self._cause = ''
         self._publishers = PublisherCheck(node, self.fault)
         self._target = TargetPublisherCheck(node, target, self.fault)
@@ -66,8 +66,8 @@ class GateReport:
         self._timer.schedule(0)
 
     def check(self) -> None:
-        """Report soon if other lines apply than were reported; takes next to no time."""
-        if self._gate.applying is not self._told:
+        """Report soon if other lines apply than were reported; this takes next to no time."""
+        if self._gate.applying is not self._reported:
             self._hurry()
 
     def refuse(self, cause: str) -> None:
@@ -87,7 +87,7 @@ class GateReport:
         return text
 
     def fault(self, subject: str, text: str) -> None:
-        """Note or, with an empty text, forget what is wrong with something."""
+        """Set or, with an empty text, clear what is wrong with something."""
         if self.faults.get(subject, '') == text:
             return
         self.faults.pop(subject, None)
@@ -103,9 +103,9 @@ class GateReport:
 
     def _fire(self) -> None:
         self._timer.schedule(time.monotonic_ns() + PERIOD)
-        if self._gate.applying != self._told:
+        if self._gate.applying != self._reported:
             self._log()
-        self._told = self._gate.applying
+        self._reported = self._gate.applying
         message = DiagnosticArray(status=[self._status()])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publish(message)

@@ -1,4 +1,4 @@
-"""The logic of a gate in time: it is told what time it is, also when nothing comes."""
+"""Drives the logic of a gate from a clock, also when no message arrives."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from rclpy.node import Node
 from .clock_choice import refuse_clock_change, USE_SIM_TIME
 from .one_shot_timer import OneShotTimer
 
-NEVER = 1 << 62  # or later, in nanoseconds; timers cannot wait for that
+NEVER = 1 << 62  # or later, in nanoseconds; no timer can wait for so long
 
 
 class GateLogic(Protocol):
-    """What the logic of a gate does by itself."""
+    """The logic of a gate, as the runner calls it."""
 
     @property
     def next_deadline(self) -> int:
@@ -30,20 +30,20 @@ class GateLogic(Protocol):
 
 class GateRunner:
     """
-    Runs a gate on steady time, which never steps, whatever the robot's time is.
+    Runs the logic of a gate on steady time, which never steps, whatever the robot's time is.
 
-    The owner hands to the gate what comes, with the time of now(), and calls settle() then.
+    The owner passes each message to the gate, with the time of now(), and calls settle() then.
     """
 
     def __init__(self, node: Node, in_simulated_time: bool) -> None:
-        """Prepare; start() comes next. For tests, the gate can run on /clock, if the node does."""
+        """Set up; start() comes next. For tests, the gate can run on /clock, if the node does."""
         self._node = node
         refuse_clock_change(node)
         self.now, clock = self._choose_clock(in_simulated_time)
         self._deadline = OneShotTimer(node, clock, self.now, self.advance)
 
     def start(self, gate: GateLogic, settled: Callable[[], None]) -> None:
-        """Start with a gate; settled is called whenever something has happened to it."""
+        """Start a gate; settled is called after each call of it."""
         self._gate = gate
         self._settled = settled
         self.advance()
@@ -54,7 +54,7 @@ class GateRunner:
         self.settle()
 
     def settle(self) -> None:
-        """Wake up for the next deadline; an timer that rings earlier may stay."""
+        """Wake up for the next deadline, if the timer does not fire earlier anyway."""
         due = self._gate.next_deadline
         if due < NEVER and not (self._deadline.is_scheduled and self._deadline.due <= due):
             self._deadline.schedule(due)
@@ -63,8 +63,8 @@ class GateRunner:
     def _choose_clock(self, in_simulated_time: bool) -> tuple[Callable[[], int], Clock]:
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         if not (in_simulated_time and self._node.get_parameter(USE_SIM_TIME).value):
-            return time.monotonic_ns, steady  # what that clock shows, in a thirtieth of the time
-        # The callback of a jump may not do much, so it leaves the rest to an timer due at once.
+            return time.monotonic_ns, steady  # the same time as that clock's, in a thirtieth of it
+        # The callback of a jump may not do much, so it leaves the rest to a timer due at once.
         self._step = OneShotTimer(self._node, steady, time.monotonic_ns, self.advance)
         jumps = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
         clock = self._node.get_clock()

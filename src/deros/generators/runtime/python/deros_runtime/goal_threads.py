@@ -1,4 +1,4 @@
-"""The threads in which a node executes the goals of its actions."""
+"""Executes the goals of a node's actions in threads."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class GoalThreads:
     """
 
     def __init__(self, node: Node, max_goals: Callable[[], int]) -> None:
-        """Prepare to execute as many goals at the same time as max_goals returns."""
+        """Set up; max_goals returns how many goals may be in execution at the same time."""
         self._node = node
         self._max_goals = max_goals
         self._changed = threading.Condition()

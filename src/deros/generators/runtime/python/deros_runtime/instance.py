@@ -1,4 +1,4 @@
-"""One node of a name on this machine, and no second one."""
+"""Single-instance lock: one node of a name on a machine."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from typing import TextIO
 from .regular_file import is_same, open_regular
 
 
-class Refusal(Exception):  # noqa: N818 - it is no error of the program
+class Refusal(Exception):  # noqa: N818 - not an error of the program
     """The node must not run; the text says why."""
 
 
 def claim(name: str, domain: int, folder: Path | None = None) -> TextIO:
     """
-    Hold the lock of a node, by its fully qualified name, until the process ends, however it ends.
+    Acquire the lock of a node, by its fully qualified name, until the process ends.
 
-    Keep what is returned. A lock in a folder is a user's own: those of other users, and of other
-    machines, are not known here. Raises Refusal if another process holds the lock, and OSError if
-    there can be no lock.
+    Keep the file that is returned. Locks are in a folder of the user: nodes of other users, and on
+    other machines, are not detected. Raises Refusal if another process holds the lock, and OSError
+    if there can be no lock.
     """
     folder = folder or Path(tempfile.gettempdir()) / f'deros-{os.getuid()}'
     folder.mkdir(mode=0o700, exist_ok=True)
@@ -61,7 +61,7 @@ def _check_own(folder: Path) -> None:
 
 
 def file_stem(name: str, domain: int) -> str:
-    """Return what tells the files of a node from those of all others."""
+    """Return the stem of the names of a node's files, which no other node has."""
     stem = name.strip('/').replace('/', '.')
     if len(stem) > 200:  # a file name ends at 255 bytes
         stem = f'{stem[:100]}-{hashlib.sha256(stem.encode()).hexdigest()[:16]}'

@@ -1,4 +1,4 @@
-"""The file in which latched actions outlive the process."""
+"""Keeps latched actions active across restarts, in a state file."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from typing import IO
 from .regular_file import check_replaceable, is_same, open_regular
 
 HEAD = 'deros latches 1'
-LONGEST = 1 << 20  # bytes; what is longer is no state file
+LONGEST = 1 << 20  # bytes; a longer file is not a state file
 UNIQUE = 8  # random bytes in the name of a new file
 
 
 def default_path(stem: str) -> Path:
-    """Return where the file of a node is unless a parameter says otherwise."""
+    """Return the default path of a node's state file."""
     home = os.environ.get('ROS_HOME') or Path.home() / '.ros'
     return Path(home) / 'deros' / f'{stem}.latches'
 
@@ -27,21 +27,21 @@ class LatchFile:
     """
     A file with the names of the active actions, and a digest over them.
 
-    It is replaced as a whole, so it is never half written. Whatever cannot be read counts as
-    'all active': only a file that says so, or no file at all, lets an action begin inactive. What
-    stands in its place but is not a regular file (a link, a device, a pipe) counts as a file that
-    cannot be read, and is left as it is.
+    The file is replaced as a whole, so it is never partially written. A file that cannot be read
+    counts as 'all active': an action starts inactive only if the file says so, or if there is no
+    file. Anything that is not a regular file (a link, a device, a pipe) counts as a file that
+    cannot be read, and is not touched.
     """
 
     def __init__(self, path: Path, owner: str) -> None:
-        """Prepare; owner tells the node from others that are given the same file by mistake."""
+        """Set the path; owner is the node, in case others are given the same file by mistake."""
         self.path = path
         self.owner = owner
-        self.saved: frozenset[str] | None = None  # what the file says, if that is known
+        self.saved: frozenset[str] | None = None  # the content of the file, if that is known
         self._opened: IO[bytes] | None = None
 
     def load(self, known: Collection[str]) -> tuple[frozenset[str], str]:
-        """Return which of the known actions are active, and why it is all if it should not be."""
+        """Return the active ones of the known actions, and why all of them count as active."""
         try:
             text = self._read().decode()
         except FileNotFoundError:
@@ -58,9 +58,9 @@ class LatchFile:
 
     def save(self, active: Set[str]) -> None:
         """
-        Have the file say which actions are active, now and after a loss of power.
+        Write which actions are active; they are on the disk when this returns.
 
-        Raises OSError if that is impossible; what the file says then is not known.
+        Raises OSError; the content of the file is unknown then.
         """
         if self.saved == active:
             return
@@ -79,11 +79,11 @@ class LatchFile:
 
     @property
     def is_in_place(self) -> bool:
-        """Whether the name still stands for the file that was saved."""
+        """Whether the path still refers to the file that was saved."""
         return self._opened is not None and is_same(self.path, self._opened.fileno())
 
     def remove_leftovers(self) -> None:
-        """Remove new files that processes have left that were killed while they saved."""
+        """Remove temporary files of processes that were killed while saving."""
         first, last = f'{self.path.name}.', '.new'
         length = len(self._new_name())
         with contextlib.suppress(OSError):
@@ -95,10 +95,10 @@ class LatchFile:
 
     def mark_dirty(self) -> None:
         """
-        Have the file count as 'all active' until it is saved again.
+        Make the file count as 'all active' until it is saved again.
 
-        This takes microseconds, because it does not wait for the disk: it outlives the process,
-        however that ends, though not a loss of power.
+        This takes microseconds, because it does not wait for the disk. It survives any end of the
+        process, but not a loss of power.
         """
         self.saved = None
         if self._opened is not None:
@@ -107,9 +107,9 @@ class LatchFile:
 
     def truncate(self) -> None:
         """
-        Empty the file, which needs no space: it counts as 'all active' then.
+        Truncate the file, which needs no disk space, so that it counts as 'all active'.
 
-        Raises OSError if that is impossible, too.
+        Raises OSError.
         """
         descriptor = open_regular(self.path, os.O_WRONLY | os.O_CREAT)
         try:
@@ -129,7 +129,7 @@ class LatchFile:
         return f'{self.path.name}.{os.urandom(UNIQUE).hex()}.new'
 
     def _write(self, data: bytes) -> None:
-        """Replace the file by a new one, which nobody else can have prepared."""
+        """Replace the file by a new one, whose name cannot be predicted."""
         new = self.path.with_name(self._new_name())
         file = new.open('xb')
         try:
@@ -152,18 +152,18 @@ class LatchFile:
 
 
 class Latches:
-    """The latched actions that are active, in this process and in the file."""
+    """The active latched actions, in memory and in the state file."""
 
     def __init__(
-        self, file: LatchFile, known: Collection[str], tell: Callable[[str, str], None]
+        self, file: LatchFile, known: Collection[str], report: Callable[[str, str], None]
     ) -> None:
         """
-        Begin as the file says; if it cannot be read or written, with all known actions active.
+        Load the file; if it cannot be read or written, all known actions are active.
 
-        tell takes what is wrong with the file, empty if nothing is any more.
+        report takes a subject and what is wrong with it; an empty text takes that back.
         """
         self._file = file
-        self._tell = tell
+        self._report = report
         file.remove_leftovers()
         active, problem = file.load(known)
         self.active: frozenset[str] = active
@@ -174,10 +174,10 @@ class Latches:
             self.active = frozenset(known)
             problem = f'{file.path} cannot be written: {error}'
         if problem:
-            tell('latches', f'{problem}; all latched actions are active')
+            report('latches', f'{problem}; all latched actions are active')
 
     def mark_pending(self, action: str) -> None:
-        """Make sure, before an action is carried out, that no end of the process forgets it."""
+        """Mark the file before an action is executed, so that no crash loses the action."""
         if action in self._known and action not in self.active:
             self._file.mark_dirty()
 
@@ -187,11 +187,11 @@ class Latches:
             self.active = self.active | {action} if active else self.active - {action}
 
     def persist(self) -> str:
-        """Have the file say what is active; return why it does not. To be tried again then."""
+        """Save the active actions; return why that failed, or an empty text."""
         if self._file.saved == self.active:
             if self._file.is_in_place:
                 return ''
-            self._file.saved = None  # somebody has removed it, or put something else there
+            self._file.saved = None  # it was removed or replaced by somebody else
         try:
             self._file.save(self.active)
         except OSError as error:
@@ -201,17 +201,17 @@ class Latches:
                 text += '; after a restart all latched actions are active'
             except OSError as second:
                 text += f'; nor emptied: {second}'
-            self._tell('latches', text)
+            self._report('latches', text)
             return text
-        self._tell('latches', '')
+        self._report('latches', '')
         return ''
 
     def allow_reset(self, remaining: Set[str]) -> str:
-        """Have the file say what a reset will leave active, in advance, or return why not."""
+        """Save in advance what a reset will leave active; return why that failed, or empty."""
         try:
             self._file.save(remaining)
         except OSError as error:
             self.persist()
             return f'nothing is reset, because {self._file.path} cannot be written: {error}'
-        self._tell('latches', '')
+        self._report('latches', '')
         return ''

@@ -1,4 +1,4 @@
-"""What a managed node needs beside what rclpy has."""
+"""Managed nodes, with what rclpy leaves out."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FA
 
 HOOKS = ('configure', 'activate', 'deactivate', 'cleanup', 'shutdown', 'error')
 
-# After which results of a hook publishers, handlers and timers are left as they are.
+# The results of a hook after which publishers, handlers and timers are left as they are.
 UNLESS = {
     'activate': (SUCCESS,),
     'deactivate': (SUCCESS, FAILURE),  # the hook deactivates them; if it fails, the node is active
@@ -22,22 +22,22 @@ UNLESS = {
 
 class ManagedNode(LifecycleNode):
     """
-    A managed node whose publishers, handlers and timers rest unless it is active.
+    A managed node whose publishers, handlers and timers are inactive unless the node is active.
 
     rclpy deactivates them in on_deactivate() alone: not when the node is shut down while it is
-    active, nor when a hook that activates or deactivates it raises or fails. And it does not say
-    what a hook has raised.
+    active, nor when a hook that activates or deactivates it raises or fails. And it does not log
+    the exception of a hook.
     """
 
     def __init__(self, node_name: str, **kwargs: Any) -> None:
-        """Prepare the hooks, which rclpy looks up once; the arguments are those of its class."""
+        """Wrap the hooks, which rclpy looks up once; the arguments are those of its class."""
         for name in HOOKS:
             hook = getattr(self, f'on_{name}')
-            setattr(self, f'on_{name}', self._resting(name, hook))
+            setattr(self, f'on_{name}', self._wrapped(name, hook))
         super().__init__(node_name, **kwargs)
 
-    def _resting(self, name: str, hook: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """Return a hook that logs what it raises, and deactivates what it has to."""
+    def _wrapped(self, name: str, hook: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """Return a hook that logs its exceptions, and deactivates the node where it has to."""
         unless = UNLESS.get(name)
 
         def run(state: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The program around a node that must not be late: one thread, which waits for nothing else."""
+"""Runs a node that must not be late: in one thread, which waits for nothing else."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ def run(
     """
     Run the node until SIGINT or SIGTERM, call end with it, and end without an error.
 
-    All callbacks run in the calling thread. Whatever one of them raises, SystemExit included, ends
-    the program with exit code 1: a node that does not watch any more must not go on saying that it
-    does, nor look as if it had been told to end. So does a shutdown of the context from within. A
-    Refusal ends it with its text.
+    All callbacks run in the calling thread. An exception of one of them, SystemExit included, ends
+    the program with exit code 1: a node that no longer watches must not keep publishing that it
+    does, nor look as if it had been asked to end. So does a shutdown of the context from within.
+    Of a Refusal, only the text is printed.
     """
     make_output_nonblocking()
     minimize_timer_slack()  # before any thread of the middleware starts, so that it inherits them
@@ -61,8 +61,8 @@ def _spin(
         if ok():
             end(node)
     except BaseException:
-        with contextlib.suppress(Exception):  # what ends the node is what is to be reported
-            node.destroy_node()  # so that the others need not wait until they miss it
+        with contextlib.suppress(Exception):  # the cause of the end is what is reported
+            node.destroy_node()  # so that others need not wait for a timeout
         raise
 
 
@@ -72,20 +72,20 @@ def _serve(node: Node, signals: StopSignals) -> None:
     executor.add_node(node)
     try:
         with Waker(node):
-            # What is there now stays for good: no later collection has to look through it.
+            # These objects stay for good: no later collection has to look through them.
             gc.collect()
             gc.freeze()
             with contextlib.suppress(ExternalShutdownException):
-                while ok() and not signals.came:
+                while ok() and not signals.received:
                     executor.spin_once(timeout_sec=WAIT)
     finally:
         executor.shutdown()  # it holds the node, which could not be destroyed before
-    if not signals.came:
+    if not signals.received:
         raise Refusal('the context of ROS 2 was shut down within the node, which ends now')
 
 
 def _fail(reason: str) -> NoReturn:
-    """End the process now, with a reason and exit code 1, whatever other threads are at."""
+    """End the process now, with a reason and exit code 1, whatever other threads do."""
     try_shutdown()
     with contextlib.suppress(OSError, ValueError):  # nobody reads it
         print(reason.rstrip(), file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""The other ends of a node's topics: publishers that are unheard or too many, unserved readers."""
+"""Checks the other endpoints of a node's topics: publishers and subscriptions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rclpy.qos import qos_check_compatible, QoSCompatibility, QoSProfile
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-UNNAMED = '_NODE_NAME_UNKNOWN_'  # what the middleware calls a node of which it knows no more yet
+UNNAMED = '_NODE_NAME_UNKNOWN_'  # the name of a node that the middleware has not discovered yet
 
 
 def node_of(info: TopicEndpointInfo) -> str:
@@ -22,9 +22,9 @@ def node_of(info: TopicEndpointInfo) -> str:
 
 
 def matched_publishers(node: Node, subscription: Subscription) -> list[TopicEndpointInfo]:
-    """Return the publishers whose messages a subscription gets, as far as the graph knows."""
+    """Return the publishers that match a subscription, as far as the graph knows."""
     infos = node.get_publishers_info_by_topic(subscription.topic_name)
-    return [info for info in infos if not _unheard(info, subscription)]
+    return [info for info in infos if not _mismatch(info, subscription)]
 
 
 def node_names(infos: list[TopicEndpointInfo]) -> str:
@@ -33,7 +33,7 @@ def node_names(infos: list[TopicEndpointInfo]) -> str:
 
 
 def unmatched_subscriptions(node: Node, topic: str) -> str:
-    """Return which subscriptions of a topic get nothing from this node, and why."""
+    """Return the subscriptions of a topic that do not match this node, and why."""
     own = node.get_fully_qualified_name()
     infos = node.get_publishers_info_by_topic(topic)
     offer = next((info for info in infos if node_of(info) == own), None)
@@ -53,20 +53,20 @@ def unmatched_subscriptions(node: Node, topic: str) -> str:
 
 class PublisherCheck:
     """
-    Looks, one topic at a time, at the publishers on the topics that a node subscribes to.
+    Checks the publishers on the topics that a node subscribes to, one topic at a time.
 
-    Those of another type or of an unfit quality of service cannot be heard: the middleware keeps
-    silent about the first, and does not say when the second ends. And where one publisher is
-    expected, a second one contradicts it, or hides that it has died.
+    A publisher of another type or with an incompatible QoS does not match: the middleware does not
+    report the first, nor when the second ends. And where one publisher is expected, a second one
+    contradicts it, or hides that it has died.
     """
 
     def __init__(
         self, node: Node, report: Callable[[str, str], None], shared: Container[str] = ()
     ) -> None:
         """
-        Prepare; report takes a topic and what is wrong with it, empty if nothing is.
+        Set up; report takes a topic and what is wrong with it, empty if nothing is.
 
-        On the topics that are shared, by their full names, there may be any number of publishers.
+        shared are the full names of topics that may have any number of publishers.
         """
         self._node = node
         self._report = report
@@ -74,7 +74,7 @@ class PublisherCheck:
         self._subscriptions = itertools.cycle(list(node.subscriptions))
 
     def check(self) -> None:
-        """Look at the next topic."""
+        """Check the next topic."""
         subscription = next(self._subscriptions, None)
         if subscription is not None:
             self._report(subscription.topic_name, '; '.join(self._faults(subscription)))
@@ -84,7 +84,7 @@ class PublisherCheck:
         heard: list[TopicEndpointInfo] = []
         unheard: dict[str, None] = {}
         for info in self._node.get_publishers_info_by_topic(topic):
-            fault = _unheard(info, subscription)
+            fault = _mismatch(info, subscription)
             if fault:
                 unheard[f'{node_of(info) or info.node_name} {fault}'] = None
             else:
@@ -94,8 +94,8 @@ class PublisherCheck:
             yield f'{len(heard)} publishers where one is expected: {node_names(heard)}'
 
 
-def _unheard(info: TopicEndpointInfo, subscription: Subscription) -> str:
-    """Return why a subscription does not hear a publisher; empty if it does."""
+def _mismatch(info: TopicEndpointInfo, subscription: Subscription) -> str:
+    """Return why a publisher does not match a subscription; empty if it does."""
     kind: Any = subscription.msg_type
     if info.topic_type != f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}':
         return f'publishes {info.topic_type} on it, which is not heard'

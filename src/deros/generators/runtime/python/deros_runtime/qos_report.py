@@ -1,4 +1,4 @@
-"""Reports the ends of other nodes that are not connected with those of this one."""
+"""Reports endpoints of other nodes whose QoS does not match."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from rclpy.qos import (
 )
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-UNNAMED = '_NODE_NAME_UNKNOWN_'  # what the middleware calls a node of which it knows no more yet
+UNNAMED = '_NODE_NAME_UNKNOWN_'  # the name of a node that the middleware has not discovered yet
 
 
 class QosReport:
     """
-    Logs an error when an end of another node appears whose QoS does not match.
+    Logs an error when an endpoint of another node appears whose QoS does not match.
 
-    No message ever passes between the two. The middleware tells of one policy; the graph tells who
-    it is, and of all policies.
+    No message ever passes between the two. The middleware reports one policy; the graph has the
+    node, and all policies.
     """
 
     def __init__(self, node: Node) -> None:
-        """Prepare the callbacks to create publishers and subscriptions with."""
+        """Set up the callbacks to create publishers and subscriptions with."""
         self._node = node
         self._known: set[str] = set()
         self.of_publishers = PublisherEventCallbacks(incompatible_qos=self._on_incompatible)

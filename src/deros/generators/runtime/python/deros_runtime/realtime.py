@@ -1,4 +1,4 @@
-"""What a node that must not be late asks of the machine: Linux settings, each on its own."""
+"""Real-time process settings of Linux, each independent of the others."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ ON_LINUX = sys.platform.startswith('linux')
 
 
 def minimize_timer_slack() -> None:
-    """Have the kernel wake this thread, and those it starts, without the usual 50 us of slack."""
+    """Reduce the timer slack of this thread, and of those it starts, from 50 us to 1 ns."""
     if ON_LINUX:
         ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0)
 
 
 def make_output_nonblocking() -> None:
     """
-    Lose what is written to a full pipe as output, rather than wait until somebody reads it.
+    Discard output to a full pipe rather than wait until it is read.
 
-    A launcher that hangs would hang the node, too. The pipes are opened anew, because the flag
-    would else hold for all who share them.
+    A launcher that hangs would block the node, too. The pipes are reopened, because the flag would
+    otherwise apply to every process that shares them.
     """
     for number in (1, 2):
         with contextlib.suppress(OSError):  # closed, or of another user: it stays as it is
@@ -40,7 +40,7 @@ def make_output_nonblocking() -> None:
 
 def configure_process(priority: int, lock_memory: bool, garbage_collection: bool) -> list[str]:
     """
-    Set the process up as its parameters say; return what was not permitted, each in words.
+    Apply the parameters of the process; return a message for each that is not permitted.
 
     A priority above 0 puts all threads under the scheduling policy SCHED_FIFO. Locked memory is
     never paged out. Without garbage collection, cycles of objects stay until the process ends.
@@ -54,7 +54,7 @@ def configure_process(priority: int, lock_memory: bool, garbage_collection: bool
 
 
 def _raise_priority(priority: int) -> Iterator[str]:
-    """Change all threads there are; those started later inherit it."""
+    """Change all present threads; those started later inherit the policy."""
     try:
         settings = os.sched_param(priority)
         for thread in Path('/proc/self/task').iterdir():
@@ -65,7 +65,7 @@ def _raise_priority(priority: int) -> Iterator[str]:
 
 
 def can_lock_memory() -> bool:
-    """Tell whether locked memory can grow: a limit would fail later what is asked for then."""
+    """Return whether locked memory can grow: with a limit, later allocations would fail."""
     limit, _ = resource.getrlimit(resource.RLIMIT_MEMLOCK)
     return limit == resource.RLIM_INFINITY or os.geteuid() == 0
 

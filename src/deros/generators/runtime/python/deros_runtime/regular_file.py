@@ -1,4 +1,4 @@
-"""Regular files, and nothing else that stands in their place."""
+"""Opens regular files, and nothing else."""
 
 from __future__ import annotations
 
@@ -21,14 +21,13 @@ def open_regular(path: Path, flags: int, mode: int = 0o600) -> int:
     """
     Open a regular file and return its descriptor; it never waits.
 
-    Anything else is not even opened, for that alone can start what a device stands for. Raises
-    OSError.
+    Anything else is not even opened, because opening a device can have an effect. Raises OSError.
     """
     check_replaceable(path)
     flags |= os.O_NOFOLLOW | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC
     descriptor = os.open(path, flags, mode)
     try:
-        _check(os.fstat(descriptor))  # what was opened may have come after the first look
+        _check(os.fstat(descriptor))  # it may have been replaced after the first check
     except OSError:
         os.close(descriptor)
         raise
@@ -42,7 +41,7 @@ def check_replaceable(path: Path) -> None:
 
 
 def is_same(path: Path, descriptor: int) -> bool:
-    """Return whether the name still stands for an open file."""
+    """Return whether a path still refers to an open file."""
     try:
         found = path.lstat()
     except OSError:

@@ -1,4 +1,4 @@
-"""What was done is told afterwards, a little at a time, so that no message waits for it."""
+"""Publishes queued reports in batches, so that no message waits for them."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from .event_reporter import EventReporter
 from .one_shot_timer import OneShotTimer
 from .report_types import Event, Explanation
 
-SOON = 2_000_000  # ns after an action, when it is told of: those who have to act come first
-CHUNK = 4  # reports at once: more of them would keep the monitor waiting for too long
-PAUSE = 1_000_000  # ns from one chunk to the next, in which messages are judged
-ROOM = 16  # reports that can wait; of one more, the oldest is told of at once
+SOON = 2_000_000  # ns from an action to its report: subscribers that have to act come first
+CHUNK = 4  # reports in a batch: more would delay the monitor for too long
+PAUSE = 1_000_000  # ns between batches, in which messages are handled
+ROOM = 16  # reports that can wait; if there is one more, the oldest is published at once
 
 
 class ReportQueue:
     """
-    Tells of what was done, in order.
+    Publishes the reports of events in order.
 
-    What happens faster than it can be told, on a busy machine, waits; what is told of is never
-    more than a chunk between two messages.
+    On a busy machine, events that come faster than they can be reported wait: never more than one
+    batch is published between two messages.
     """
 
     def __init__(
@@ -38,10 +38,9 @@ class ReportQueue:
         defer: Callable[[], int],
     ) -> None:
         """
-        Prepare.
+        Set up.
 
-        prepare is called after some have been told, for what can come next; defer is that of an
-        timer.
+        prepare is called after each batch, for what can come next; defer is that of a timer.
         """
         self._events = events
         self._diagnostics = diagnostics
@@ -55,32 +54,32 @@ class ReportQueue:
         self, events: Sequence[Event], done: Sequence[int], states: Sequence[Explanation]
     ) -> None:
         """
-        Tell soon of events of the monitor.
+        Report events of the monitor soon.
 
-        done is when each was acted upon; states are what the monitor explained after each.
+        done is when each was acted upon; states are the monitor's explanations after each.
         """
         self._waiting.append((events, done, states))
         if len(self._waiting) > ROOM:
-            self._tell_of(1)
+            self._publish_batch(1)
         if not self._timer.is_scheduled:
             self._timer.schedule(time.monotonic_ns() + SOON)
 
     def flush(self) -> None:
-        """Tell of all that is left, at the end."""
-        self._tell_of(len(self._waiting))
+        """Publish all that is left, at the end."""
+        self._publish_batch(len(self._waiting))
 
     def _fire(self) -> None:
-        self._tell_of(min(CHUNK, len(self._waiting)))
+        self._publish_batch(min(CHUNK, len(self._waiting)))
         if self._waiting:
             self._timer.schedule(time.monotonic_ns() + PAUSE)
 
-    def _tell_of(self, count: int) -> None:
+    def _publish_batch(self, count: int) -> None:
         for _ in range(count):
-            self._tell(*self._waiting.popleft())
+            self._publish(*self._waiting.popleft())
         self._prepare()
         self._diagnostics.changed()
 
-    def _tell(
+    def _publish(
         self, events: Sequence[Event], done: Sequence[int], states: Sequence[Explanation]
     ) -> None:
         for event, done_at, explained in zip(events, done, states, strict=False):

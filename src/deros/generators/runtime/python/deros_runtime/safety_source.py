@@ -1,4 +1,4 @@
-"""The safety node as the source of heartbeats and states: a gate obeys it, and nobody else."""
+"""Heartbeats and states as a gate takes them: from the safety node, and from no other."""
 
 from __future__ import annotations
 
@@ -16,34 +16,35 @@ State = Callable[..., bool]  # takes the time, what is active, and whether that 
 
 
 class Gate(Protocol):
-    """What the logic of a gate does about the safety node."""
+    """The logic of a gate, as far as it depends on the safety node."""
 
     def on_no_safety_node(self, t: int) -> None:
-        """Take note that no node, or more than one, can be the safety node."""
+        """Handle that no node, or more than one, can be the safety node."""
 
 
-class Living(Gate, Protocol):
+class HeartbeatGate(Gate, Protocol):
     """The same of a gate with a line about the heartbeat."""
 
     def on_heartbeat(self, t: int, counter: int) -> None:
-        """Take a heartbeat of the safety node."""
+        """Handle a heartbeat of the safety node."""
 
 
 class SafetySource:
     """
-    Hands heartbeats and states to the logic of a gate if they can be of the safety node alone.
+    Passes heartbeats and states to the logic of a gate if only the safety node can have sent them.
 
-    The safety node is the node of the heartbeat's only publisher; a gate without a line about the
-    heartbeat takes the node of the states' only publishers for it. rclpy does not say who sent a
-    message, so the graph and the middleware's events about publishers have to:
+    The safety node is the node of the heartbeat's only publisher; for a gate without a line about
+    the heartbeat, it is the node of the only publishers of the states. rclpy does not report the
+    sender of a message, so it follows from the graph and from the middleware's events:
 
-    * With each publisher that comes or goes, what the topic has said is forgotten.
-    * What would free the robot waits until the graph shows the safety node as the only publisher
-      of the topic, and until all events that came before it have been dealt with. A publisher is
-      in the graph before its first message can come, and the event of its coming goes before that
-      of its going: whoever came, spoke and went meanwhile is found out by the one or the other.
+    * When a publisher of a topic appears or disappears, all that was received on it is discarded.
+    * A message that would release the robot waits until the graph shows the safety node as the
+      only publisher of the topic, and until all earlier events have been handled. A publisher is
+      in the graph before its first message can arrive, and the event of its appearance precedes
+      that of its disappearance: a publisher that appeared, sent a message and disappeared in the
+      meantime is detected by the one or the other.
 
-    What stops the robot waits for nothing.
+    A message that stops the robot never waits.
     """
 
     def __init__(
@@ -53,7 +54,7 @@ class SafetySource:
         settled: Callable[[], None],
         report: Callable[[str, str], None],
     ) -> None:
-        """Prepare; settled is called when the logic of the gate has been told of something."""
+        """Set up; settled is called after each call of the gate's logic."""
         self._node = node
         self._now = now
         self._settled = settled
@@ -65,35 +66,35 @@ class SafetySource:
         self._waiting: dict[str, Sequence[bool]] = {}  # states that are not trusted yet
         self._handlers: list[EventHandler] = []
 
-    # Before anything comes
+    # Setup
 
-    def add_heartbeat(self, topic: str, gate: Living) -> None:
-        """Watch over the publishers of the heartbeat."""
-        self._living = gate
+    def add_heartbeat(self, topic: str, gate: HeartbeatGate) -> None:
+        """Observe the publishers of the heartbeat."""
+        self._heartbeat_gate = gate
         self._heartbeat = self._subscription(topic)
         self._watch(self._heartbeat, lambda: self._on_heartbeat_change(gate))
 
     def add_state(self, topic: str, take: State, actions: int) -> None:
-        """Watch over the publishers of a topic with the states of so many actions."""
+        """Observe the publishers of a topic with the states of so many actions."""
         subscription = self._subscription(topic)
         self._states[topic] = subscription, take, actions
         self._watch(subscription, lambda: self._on_state_change(topic))
 
-    # What comes
+    # Messages
 
     def take_heartbeat(self, counter: int | None) -> None:
-        """Take a heartbeat; None is one that could not be read."""
+        """Handle a heartbeat; None is one that could not be read."""
         if counter is None:
-            self._living.on_no_safety_node(self._now())
+            self._heartbeat_gate.on_no_safety_node(self._now())
         elif self._is_sure:
-            self._living.on_heartbeat(self._now(), counter)
+            self._heartbeat_gate.on_heartbeat(self._now(), counter)
         elif self._safety_node():
             changes = self._changes
             self._after_events(lambda: self._on_sure(changes))
         self._settled()
 
     def take_state(self, topic: str, *active: bool) -> None:
-        """Take what is active of the actions of a topic: at once, or what is not when trusted."""
+        """Handle the states of a topic: active ones at once, others when they are trusted."""
         _, take, _ = self._states[topic]
         if take(self._now(), *active, False):
             self._waiting.pop(topic, None)
@@ -102,10 +103,10 @@ class SafetySource:
             self._after_events(lambda: self._on_trusted(topic, active))
         self._settled()
 
-    # What follows
+    # Trust
 
     def _after_events(self, callback: Callable[[], None], turns: int = TURNS) -> None:
-        """Call back once all that the executor has been told of up to now is dealt with."""
+        """Call back when all that the executor has queued up to now is handled."""
         executor = self._node.executor
         assert executor is not None
         if turns > 1:
@@ -124,7 +125,7 @@ class SafetySource:
             self._settled()
 
     def _on_heartbeat_change(self, gate: Gate) -> None:
-        """Know nothing when a publisher of the heartbeat has come or gone."""
+        """Discard all when a publisher of the heartbeat has appeared or disappeared."""
         self._changes += 1
         self._is_sure = False
         self._waiting.clear()
@@ -132,7 +133,7 @@ class SafetySource:
         self._settled()
 
     def _on_state_change(self, topic: str) -> None:
-        """Take all actions of a topic for active when a publisher of it has come or gone."""
+        """Treat all actions of a topic as active when its publishers have changed."""
         self._waiting.pop(topic, None)
         _, take, actions = self._states[topic]
         take(self._now(), *[True] * actions, False)

@@ -1,22 +1,22 @@
-"""Which of two nodes of one name ends: the one that started last."""
+"""Decides which of two nodes of one name ends: the one that started last."""
 
 from __future__ import annotations
 
 YOUNG = 5_000_000_000  # ns; a node that meets the other one later than this after its start stays
-PATIENCE = 200_000_000  # ns for which the other one has to be there: it may be just ending
+PATIENCE = 200_000_000  # ns for which the other one has to be present: it may be ending
 
 
 class StartOrder:
     """
     Decides whether a node gives way to another one of its name.
 
-    The two find each other at about the same moment, and neither knows when the other one started.
+    The two detect each other at about the same time, and neither knows when the other one started.
     So each waits for as long again as it has run until then: the one that started last ends first,
-    and the other one finds itself alone.
+    and the other one is alone.
     """
 
     def __init__(self, now: int) -> None:
-        """Start to count, in nanoseconds."""
+        """Start at a time, in nanoseconds."""
         self._started = now
         self._met: int | None = None
 

@@ -1,4 +1,4 @@
-"""Topics that carry the states of bound actions."""
+"""Publishes the states of bound actions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rclpy.serialization import serialize_message
 
 
 class _State:
-    """A set of active actions, its message if that is always the same, and what can be next."""
+    """A set of active actions, its serialized message, and the states that can follow."""
 
     __slots__ = ('active', 'after', 'message')
 
@@ -21,10 +21,10 @@ class _State:
 
 class StateTopic:
     """
-    A topic on which some actions show whether they are active.
+    Publishes the states of some actions on one topic.
 
-    A message without a time stamp is made before it is needed, so that all that is left to do when
-    an action becomes active is to look it up and hand it over.
+    Messages without a time stamp are serialized in advance, so that all that is left to do when an
+    action becomes active is to look one up and publish it.
     """
 
     def __init__(
@@ -35,10 +35,10 @@ class StateTopic:
         stamped: bool = False,
     ) -> None:
         """
-        Prepare; begin() comes before anything else.
+        Create the topic; call begin() before anything else.
 
-        The message of a set of active actions must always be the same unless it is stamped.
-        publish takes it serialized.
+        message returns the message of a set of active actions, which is always the same unless it
+        is stamped; publish takes it serialized.
         """
         self.actions = actions
         self._message = message
@@ -53,21 +53,21 @@ class StateTopic:
         return self._state.active
 
     def begin(self, active: Set[str]) -> None:
-        """Begin anew with some actions active; nothing is published yet."""
+        """Start again with some actions active, without publishing anything."""
         self._state = self._get(frozenset(active & self.actions))
         self.prepare()
 
     def show(self, action: str, active: bool) -> None:
-        """Publish that an action is active, or not; call prepare() when there is time."""
+        """Publish that an action is active, or not; call prepare() later, when there is time."""
         state = self._state = self._state.after.get((action, active)) or self._next(action, active)
-        self._publish(state.message or self._made(state.active))
+        self._publish(state.message or self._serialized(state.active))
 
     def publish(self) -> None:
-        """Publish the present state."""
-        self._publish(self._state.message or self._made(self._state.active))
+        """Publish the current state."""
+        self._publish(self._state.message or self._serialized(self._state.active))
 
     def prepare(self) -> None:
-        """Make the messages that can be next."""
+        """Serialize the messages that can follow."""
         for action in self.actions:
             for active in (True, False):
                 self._next(action, active)
@@ -81,10 +81,10 @@ class StateTopic:
     def _get(self, active: frozenset[str]) -> _State:
         state = self._states.get(active)
         if state is None:
-            state = _State(active, b'' if self._stamped else self._made(active))
+            state = _State(active, b'' if self._stamped else self._serialized(active))
             self._states[active] = state
         return state
 
-    def _made(self, active: frozenset[str]) -> bytes:
-        made: bytes = serialize_message(self._message(active))
-        return made
+    def _serialized(self, active: frozenset[str]) -> bytes:
+        data: bytes = serialize_message(self._message(active))
+        return data

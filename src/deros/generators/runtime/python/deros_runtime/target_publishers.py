@@ -1,4 +1,4 @@
-"""The target of a gate: who else publishes on it, and whom the gate's commands do not reach."""
+"""Checks the target of a gate: other publishers, and subscriptions that do not match."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from .one_shot_timer import OneShotTimer
 from .publishers import node_names, node_of, unmatched_subscriptions
 from .start_order import StartOrder, YOUNG
 
-PERIOD = 100_000_000  # ns from look to look, while a second gate might be met
+PERIOD = 100_000_000  # ns between checks while a second gate may appear
 EARLY = 2 * YOUNG  # ns after its start; a gate that met it while young has given way by then
 
 
 class TargetPublisherCheck:
-    """Looks for publishers on the target of a gate beside its own, and for unserved readers."""
+    """Checks for publishers besides the gate's own, and for subscriptions that do not match."""
 
     def __init__(self, node: Node, target: str, report: Callable[[str, str], None]) -> None:
-        """Prepare; report takes the topic and what is wrong with it, empty if nothing is."""
+        """Set up; report takes the topic and what is wrong with it, empty if nothing is."""
         self._node = node
         self._target = node.resolve_topic_name(target)
         self._report = report
@@ -35,7 +35,7 @@ class TargetPublisherCheck:
         self._early.schedule(0)
 
     def check(self) -> None:
-        """Look now; raises Refusal if there is a second gate and this one started last."""
+        """Check now; raises Refusal if there is a second gate and this one started last."""
         others, second = self._found()
         faults = [second] if second else []
         if others:
@@ -51,7 +51,7 @@ class TargetPublisherCheck:
         self._found()
 
     def _found(self) -> tuple[list[TopicEndpointInfo], str]:
-        """Return the publishers of other nodes, and what is to be said of a second gate."""
+        """Return the publishers of other nodes, and a message about a second gate."""
         publishers = self._node.get_publishers_info_by_topic(self._target)
         own = self._node.get_fully_qualified_name()
         others = [info for info in publishers if node_of(info) != own]

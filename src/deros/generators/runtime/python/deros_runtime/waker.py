@@ -1,4 +1,4 @@
-"""What wakes a waiting node beside its messages and timers: signals, and a wall clock set back."""
+"""Wakes a waiting executor: on signals, and when the wall clock is set back."""
 
 from __future__ import annotations
 
@@ -18,33 +18,33 @@ STEP = 1_000_000  # nanoseconds; the clock is being set, not merely slowed
 
 class StopSignals:
     """
-    SIGINT and SIGTERM as a flag, so that none of them breaks a callback in the middle.
+    Records SIGINT and SIGTERM in a flag, so that they interrupt no callback.
 
-    It takes the place of rclpy's own handling, which shuts the context down at once: a message
-    that is being judged then could not be acted upon any more.
+    This replaces the handling of rclpy, which shuts the context down at once: a message that is
+    being evaluated then could no longer be acted upon.
     """
 
     def __init__(self) -> None:
-        """Take the signals over, for good: whoever is told twice ends once."""
-        self.came = False
+        """Install the handlers, for good; repeated signals are ignored."""
+        self.received = False
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._take)
 
     def _take(self, _number: int, _frame: FrameType | None) -> None:
-        self.came = True
+        self.received = True
 
 
 class Waker:
     """
-    Has the EventsExecutor of a node look around when a signal comes or the wall clock goes back.
+    Wakes the EventsExecutor of a node when a signal arrives or the wall clock goes back.
 
     Builds of rclpy for glibc before 2.30, as those of the package index are, cannot wait on a
     steady clock: their waits end at a time of the wall clock. Set it back by an hour, and no timer
-    of the executor expires for an hour. A thread of its own sees that, and starts the waits anew.
+    of the executor expires for an hour. A separate thread detects that, and restarts the waits.
     """
 
     def __init__(self, node: Node) -> None:
-        """Prepare to wake the timers that the node has now; works while it is entered."""
+        """Set up for the timers that the node has now; works while it is entered."""
         # The executor waits for the timers of each clock on their own.
         clocks = {id(timer.clock): timer.clock for timer in node.timers}
         self._timers = [
@@ -81,13 +81,13 @@ class Waker:
             readable, _, _ = select.select([self._signalled], [], [], PERIOD)
             before, ahead = ahead, wall_clock_ahead()
             if readable:
-                self._forget()
+                self._drain()
             if readable or ahead < before - STEP:
                 for timer in self._timers:
-                    timer.reset()  # has the executor compute how long to wait
+                    timer.reset()  # makes the executor compute anew how long to wait
 
-    def _forget(self) -> None:
-        """Take out of the pipe what the signals have written."""
+    def _drain(self) -> None:
+        """Empty the pipe that the signals write to."""
         with contextlib.suppress(BlockingIOError):
             while os.read(self._signalled, 1024):
                 pass
