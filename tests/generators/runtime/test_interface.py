@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -17,6 +18,7 @@ from deros.generators.runtime.interface import (
     runtime_package,
     runtime_source,
 )
+from deros.generators.runtime.python.deros_runtime.report_types import EventKind
 from deros.generators.runtime.python.interface import python_runtime
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
@@ -106,3 +108,12 @@ def test_package_with_the_name_of_the_runtime_is_rejected() -> None:
     with pytest.raises(ValueError, match="has the name of the runtime"):
         python_runtime(PYTHON_RUNTIME, {"runtime": "package"})
     assert python_runtime(PYTHON_RUNTIME, {}).version == ""
+
+
+def test_monitors_have_the_event_kinds_of_the_runtime() -> None:
+    """The two classes are compared by value, so each member has to be in both."""
+    monitor: dict[str, Any] = {"__name__": "monitor"}
+    exec(generated(EVERY_THING)["every_thing_safety/every_thing_safety/monitor.py"].text, monitor)
+    kinds = {kind.name: kind.value for kind in monitor["EventKind"]}
+    assert kinds == {kind.name: kind.value for kind in EventKind}
+    assert all(kind == EventKind[kind.name] for kind in monitor["EventKind"])

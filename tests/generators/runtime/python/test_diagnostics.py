@@ -14,7 +14,7 @@ pytest.importorskip("rclpy")
 pytest.importorskip("diagnostic_msgs.msg")
 
 from deros.generators.runtime.python.deros_runtime.diagnostics import CHUNK, Diagnostics
-from deros.generators.runtime.python.deros_runtime.report_types import Behaviour
+from deros.generators.runtime.python.deros_runtime.report_types import Behaviour, EventKind
 
 OK, WARN, ERROR, STALE = range(4)
 
@@ -41,7 +41,7 @@ class Explanation(NamedTuple):
 class Event(NamedTuple):
     """An event of the monitor."""
 
-    kind: str
+    kind: EventKind
     action: str
     behaviour: str = "stopping"
     t: int = 5_000_000_000
@@ -127,8 +127,8 @@ def test_action_shows_cause_and_start() -> None:
     """Another trigger does not change the start."""
     shown = PublishedDiagnostics()
     why = Explanation((), {"stopping": ("a.a: speed 2.0 > 1", "b.b: lidar.missing()")})
-    shown.diagnostics.update(Event("trigger", "stop"), why)
-    shown.diagnostics.update(Event("trigger", "stop", "another", 5_500_000_000), why)
+    shown.diagnostics.update(Event(EventKind.TRIGGER, "stop"), why)
+    shown.diagnostics.update(Event(EventKind.TRIGGER, "stop", "another", 5_500_000_000), why)
     status = shown.publish()["action stop"]
     values = {value.key: value.value for value in status.values}
     assert (status.level[0], status.message) == (WARN, "active")
@@ -139,9 +139,9 @@ def test_action_shows_cause_and_start() -> None:
         "since": "1.000 s ago",
         "since_ns": "5000000000",
     }
-    shown.diagnostics.update(Event("refused", "stop"), Explanation())
+    shown.diagnostics.update(Event(EventKind.REFUSED, "stop"), Explanation())
     assert shown.publish()["action stop"].message == "active"
-    shown.diagnostics.update(Event("reset", "stop"), Explanation())
+    shown.diagnostics.update(Event(EventKind.RESET, "stop"), Explanation())
     assert shown.publish()["action stop"].message == "inactive"
 
 

@@ -21,6 +21,7 @@ from deros.generators.runtime.python.deros_runtime.monitor_runner import ActionE
 from deros.generators.runtime.python.deros_runtime.report_types import (
     Action,
     Behaviour,
+    EventKind,
     RuleMetadata,
 )
 from deros.generators.runtime.python.deros_runtime.safety_node_core import (
@@ -46,7 +47,7 @@ class Event(NamedTuple):
     """An event of the monitor."""
 
     t: int
-    kind: str
+    kind: EventKind
     action: str
     behaviour: str = "halt"
     arguments: tuple[Any, ...] = ()
@@ -92,7 +93,7 @@ class Monitor:
         if self.holding or self.unknown:
             return False
         for action in sorted(self.latched):
-            self.emit(Event(now, "reset", action, ""))
+            self.emit(Event(now, EventKind.RESET, action, ""))
         return True
 
 
@@ -223,7 +224,7 @@ def robot(tmp_path: Path) -> Robot:
 
 def stop_event(kind: str = "trigger", action: str = "stop", *arguments: Any) -> Event:
     """Return an event."""
-    return Event(5, kind, action, arguments=arguments)
+    return Event(5, EventKind(kind), action, arguments=arguments)
 
 
 def test_second_instance_is_refused(tmp_path: Path) -> None:
@@ -256,7 +257,7 @@ def test_refused_reset_publishes_nothing(robot: Robot) -> None:
     """The state does not change."""
     robot.emit(stop_event())
     before = list(robot.stop.published)
-    robot.emit(Event(6, "refused", "stop", "", holding=("halt",)))
+    robot.emit(Event(6, EventKind.REFUSED, "stop", "", holding=("halt",)))
     assert robot.stop.published == before
 
 

@@ -117,7 +117,7 @@ class _Writer:
         name = self._program.actions[trigger.action].name
         return lines + _emit(
             indent,
-            ["t", "'trigger'", repr(name), repr(behaviour.name)],
+            ["t", "EventKind.TRIGGER", repr(name), repr(behaviour.name)],
             [repr(trigger.arguments), str(trigger.span.line)],
         )
 
@@ -144,7 +144,7 @@ class _Writer:
         indent = 16 if holds else 12
         reset = [
             f"{' ' * indent}self._{self._layout.active[action.index]} = False",
-            *_emit(indent, ["t", "'reset'", name], ["''", "()", line]),
+            *_emit(indent, ["t", "EventKind.RESET", name], ["''", "()", line]),
         ]
         if not holds:
             return reset

@@ -92,7 +92,7 @@ class GeneratedMonitor:
         self.events.append(
             Event(
                 event.t,
-                event.kind,
+                event.kind.value,
                 event.action,
                 behaviour,
                 event.arguments,

@@ -58,7 +58,7 @@ class EventReporter:
             told |= {f'cause {name}': cause(name, after) for name in event.holding}
             for name in (*event.holding, *event.unknown):
                 told |= self._values(name, after)
-        self.report(event.kind, level, message, **told)
+        self.report(event.kind.value, level, message, **told)
 
     def report(self, kind: str, level: bytes, message: str, **values: object) -> None:
         """Report any other event."""

@@ -11,7 +11,12 @@ Value = bool | int | float | str
 
 
 class EventKind(str, enum.Enum):
-    """What a monitor did, or saw the clock do."""
+    """
+    What a monitor did, or saw the clock do.
+
+    A monitor needs no other module, and so has a class of its own with the same values: compare by
+    value, not by identity.
+    """
 
     TRIGGER = 'trigger'
     RESET = 'reset'
@@ -39,8 +44,8 @@ class Event(ActionCall, Protocol):
         """Return the time, in nanoseconds."""
 
     @property
-    def kind(self) -> str:
-        """Return the value of an EventKind."""
+    def kind(self) -> EventKind:
+        """Return what happened."""
 
     @property
     def behaviour(self) -> str:
