@@ -1,8 +1,8 @@
 # Models to sources, while a project is built.
 #
-# What a run of deros rests on (imported models, folders that globs search, definitions of messages,
-# deros itself) it tells in a depfile. Its output stands behind one stamp: files that did not change
-# are not touched, so that nothing is compiled that need not be.
+# The dependencies of a run of deros (imported models, folders that globs search, definitions of
+# messages, deros itself) are in a depfile. One stamp represents its output: files that did not
+# change are not touched, so that nothing is compiled unnecessarily.
 
 include_guard(GLOBAL)
 
@@ -48,8 +48,8 @@ function(deros_generate target)
   cmake_path(RELATIVE_PATH arg_MODEL OUTPUT_VARIABLE shown)
   set(forget "")
   if(CMAKE_GENERATOR MATCHES "Makefiles")
-    # CMake adds what a depfile says to what it said before. A file that is gone would be missed
-    # again in each build; without this summary CMake reads the depfile anew.
+    # CMake adds a depfile to its earlier content, so that a deleted file would trigger every build.
+    # Without this summary, CMake reads the depfile again.
     set(summary "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/compiler_depend.internal")
     set(forget COMMAND "${CMAKE_COMMAND}" -E rm -f "${summary}")
   endif()
@@ -181,7 +181,7 @@ deros_generate is for other outputs")
   set(${result} "${arg_OUTPUT_DIRECTORY}/${package}" PARENT_SCOPE)
 endfunction()
 
-# What the functions share; they set the caller's arg_* variables ------------------------------------
+# Helpers; they set the caller's arg_* variables -------------------------------------------------
 
 macro(_deros_check_arguments function)
   if(arg_UNPARSED_ARGUMENTS)
@@ -210,7 +210,7 @@ macro(_deros_default variable value base)
   cmake_path(ABSOLUTE_PATH ${variable} BASE_DIRECTORY "${${base}}" NORMALIZE)
 endmacro()
 
-# Sets `result` to what the C generator lets all names of a program begin with.
+# Sets `result` to the prefix of all names of a program that the C generator emits.
 function(_deros_c_prefix name result)
   string(REGEX REPLACE "[^A-Za-z0-9_]+" "_" name "${name}")
   string(REGEX REPLACE "([a-z0-9])([A-Z])" "\\1_\\2" name "${name}")
@@ -220,8 +220,8 @@ function(_deros_c_prefix name result)
   set(${result} "${name}" PARENT_SCOPE)
 endfunction()
 
-# Sets `result` to the command for the caller's arguments. Where messages are defined is fixed here:
-# a build from an editor has not the environment of the shell that configured the project.
+# Sets `result` to the command for the caller's arguments. The folders of message definitions are
+# fixed here: a build from an editor lacks the environment of the shell that configured the project.
 function(_deros_command result)
   _deros_default(arg_SOURCE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" CMAKE_CURRENT_SOURCE_DIR)
   set(command
@@ -237,7 +237,7 @@ function(_deros_command result)
   set(${result} ${command} ${arg_OPTIONS} PARENT_SCOPE)
 endfunction()
 
-# Has the project configured anew when something changes that the depfile names.
+# Reconfigures the project when a file in the depfile changes.
 function(_deros_configure_depends depfile)
   file(READ "${depfile}" text)
   string(STRIP "${text}" text)

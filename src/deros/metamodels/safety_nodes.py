@@ -1,6 +1,6 @@
 """The nodes that safety rules become: the safety node and its gates, with parameters and ports.
 
-This is the one place that says what they are. The generators write these nodes, a ``safety``
+This is their only definition. The generators write these nodes, a ``safety``
 statement of a system creates them, and checks compare hand-written wirings with them.
 
 The nodes follow from an :class:`Outline`, which the rules as written give as well as the program

@@ -41,9 +41,9 @@ class Reference(Generic[T]):
 
 @dataclass(slots=True)
 class FileIndex:
-    """What the imports of one file define, by name.
+    """The definitions in the imports of one file, by name.
 
-    ``complete`` is false when an import could not be loaded: then an unknown name proves nothing.
+    ``complete`` is false when an import could not be loaded: then unknown names are not reported.
     """
 
     node_types: dict[str, tuple[NodeType, ...]] = field(default_factory=dict)

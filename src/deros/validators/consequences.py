@@ -46,7 +46,7 @@ def without_consequences(
     """Yield the findings that are not mere consequences of one of ``causes``.
 
     Args:
-        findings: what would be reported.
+        findings: the findings to filter.
         causes: all findings, reported or not.
         files: all files of the run.
     """

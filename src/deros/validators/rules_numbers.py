@@ -1,4 +1,4 @@
-"""Sets of numbers, as unions of intervals with exact ends."""
+"""Sets of numbers, as unions of intervals with exact bounds."""
 
 from __future__ import annotations
 

@@ -338,7 +338,7 @@ def _misconnected(each: HandWired, end: FlatPort, topic: str, says: tuple[str, S
 
 
 def check_users(rules: Rules) -> Iterator[Diagnostic]:
-    """Yield each further system that starts the safety node of rules which use several."""
+    """Yield the systems beyond the first that start the safety node of the rules."""
     systems = list(_systems([rules]))
     first: Span | None = None
     for system in systems if len(systems) > 1 else ():

@@ -19,7 +19,7 @@ _COMPARED = 64
 
 
 def check_swapped(flat: FlatSystem) -> Iterator[Diagnostic]:
-    """Yield the pairs of connections whose ports and targets have each other's words.
+    """Yield the pairs of connections whose port and target names match crosswise.
 
     Only ports of one type can be exchanged without another finding, and of services and actions
     only those on one side. Safety nodes and gates are compared with their rules instead.
