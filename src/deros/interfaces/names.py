@@ -1,6 +1,6 @@
 """Names: near matches for hints, and the naming rules of ROS 2.
 
-The checks return ``None`` for a name that ROS 2 accepts, else the reason why it does not, as a phrase
+The checks return ``None`` for a name that ROS 2 accepts, else the reason for rejecting it, a phrase
 that completes "the name … ". Sources: ``rcl_validate_topic_name``, ``rmw_validate_node_name``,
 ``rmw_validate_namespace``, the ROS 2 design article "Topic and Service name mapping", REP 144, and
 the command line grammar of rcl for parameters.

@@ -50,7 +50,7 @@ class KnownTopic:
 
     @property
     def offers(self) -> Offers:
-        """What the publishers offer: as stated, and as the first declaration with a QoS pins it."""
+        """The QoS that publishers offer: stated, and pinned by the first declaration with a QoS."""
         pins = (each.declaration.qos for each in self.declarations)
         return Offers(
             [each.port.qos for each in self.publishers],

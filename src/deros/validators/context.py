@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CheckContext:
-    """What a check may use besides its model.
+    """The inputs of a check besides its model.
 
     Attributes:
         store: the definitions of messages.
