@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from deros.codes import ALL_CODES
 from tests.support.wheel import Environment, build_wheel
 
 pytestmark = pytest.mark.slow
@@ -75,7 +76,7 @@ def test_textx_check_runs_all_checks(
     """``textx check`` has the findings of ``deros check``, and never prints a traceback."""
     done = installed.run("textx", "check", CASES / case, cwd=tmp_path)
     assert done.returncode == 1
-    assert f"error[{code}]" in done.stderr
+    assert f"error[{ALL_CODES[code]}]" in done.stderr
     assert "Traceback" not in done.stderr
 
 

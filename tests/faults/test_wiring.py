@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from deros.codes import ALL_CODES
 from tests.support.cli import deros
 from tests.support.hand_wired import DIFFERENCES, write_hand_wired
 
@@ -29,7 +30,7 @@ def test_wrongly_wired_robot_is_not_started(
     system.write_text(text.replace(old, new, 1), encoding="utf-8")
     started = deros("up", "robot.system")
     assert (started.code, started.out) == (1, "")
-    assert f"error[{code}]" in started.err
+    assert f"error[{ALL_CODES[code]}]" in started.err
     assert words in started.err
     for target in ("launch", "script"):
         assert deros("generate", "robot.system", "--target", target, "-o", "out").code == 1
