@@ -52,7 +52,7 @@ def test_textx_lists_languages_and_generators(run_textx: Run, command: str) -> N
 def test_textx_and_deros_generate_the_same_files(
     run_textx: Run, rules: Path, tmp_path: Path
 ) -> None:
-    """``textx check`` accepts the model, and ``textx generate`` writes what ``deros`` writes."""
+    """``textx check`` accepts the model; ``textx generate`` and ``deros`` write the same files."""
     assert run_textx("check", rules).err.endswith("courier.deros: OK.")
     trees = []
     for name, run in (("textx", run_textx), ("deros", deros)):

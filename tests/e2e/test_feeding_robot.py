@@ -48,8 +48,8 @@ def logs(folder: Path) -> list[str]:
     ]
 
 
-def test_the_runs_cover_the_fifteen_cases() -> None:
-    """No case is left out, and none is played twice."""
+def test_runs_cover_all_fifteen_cases() -> None:
+    """No case is omitted or repeated."""
     assert [number for cases in RUNS for number in cases] == list(range(1, 16))
 
 

@@ -404,7 +404,7 @@ class Page(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Count an element, and note what it refers to."""
+        """Count an element, and record its references."""
         self.count[tag] = self.count.get(tag, 0) + 1
         self.loads += [value or "" for name, value in attrs if name in {"src", "href"}]
         if tag not in self.VOID:

@@ -8,7 +8,7 @@ FUNCTIONS = [f"function_{number}" for number in range(40)]
 
 
 def test_share_is_decided_by_the_text() -> None:
-    """The same commit proves the same functions, another one others."""
+    """The same commit proves the same functions, and another commit proves others."""
     assert drawn(FUNCTIONS, 0.25, "a") == drawn(FUNCTIONS[::-1], 0.25, "a")
     assert set(drawn(FUNCTIONS, 0.25, "a")) != set(drawn(FUNCTIONS, 0.25, "b"))
     assert len(drawn(FUNCTIONS, 0.25, "a")) == 10

@@ -108,7 +108,7 @@ def test_errors_cannot_be_allowed() -> None:
     ],
 )
 def test_mistyped_code_gets_suggestions(written: str, hint: str) -> None:
-    """A word that is nearly a code or a slug is reported with what it was meant to be."""
+    """A word similar to a code or slug is reported with that code or slug."""
     _write("lone.system", f"// deros: allow {written} known")
     listed = json.loads(deros("check", "--format", "json", "lone.system").out)
     hints = [each["hint"] for each in listed if each["code"] == "DRS021"]

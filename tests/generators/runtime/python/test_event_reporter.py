@@ -57,7 +57,7 @@ RULES = (
 HOLDING = Explanation(RULES, {"halt": ("drive.fast: speed 2.0 > 1", "body.near: x")})
 
 
-def told(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
+def reported(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
     """Return the line in the log, and the values on the topic."""
     node, published = Mock(), list[Any]()
     node.get_fully_qualified_name.return_value = "/safety"
@@ -76,7 +76,7 @@ def told(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
 
 def test_trigger_shows_its_cause() -> None:
     """The log shows it instead of the condition, the topic shows both."""
-    line, values = told(Event(EventKind.TRIGGER, behaviour="halt"), HOLDING)
+    line, values = reported(Event(EventKind.TRIGGER, behaviour="halt"), HOLDING)
     cause = "drive.fast: speed 2.0 > 1 and body.near: x"
     assert line == f"stop, by halt (robot.deros:7): {cause}"
     assert (values["cause"], values["condition"]) == (cause, "drive.fast or body.near")
@@ -85,14 +85,14 @@ def test_trigger_shows_its_cause() -> None:
 
 def test_trigger_of_a_past_cause_shows_its_condition() -> None:
     """The behaviour may have become true at a clock step, and false with the next message."""
-    line, values = told(Event(EventKind.TRIGGER, behaviour="halt"), Explanation(RULES, {}))
+    line, values = reported(Event(EventKind.TRIGGER, behaviour="halt"), Explanation(RULES, {}))
     assert line == "stop, by halt (robot.deros:7: if drive.fast or body.near)"
     assert values["cause"] == ""
 
 
 def test_refused_reset_lists_holding_and_unknown_behaviours() -> None:
     """Each has its cause, or the terms without a value."""
-    line, values = told(Event(EventKind.REFUSED, holding=("halt",), unknown=("back",)), HOLDING)
+    line, values = reported(Event(EventKind.REFUSED, holding=("halt",), unknown=("back",)), HOLDING)
     cause = "drive.fast: speed 2.0 > 1 and body.near: x"
     assert line == (
         f"stop stays active, called for by halt (robot.deros:7): {cause}; not known to be false:"
