@@ -9,6 +9,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.interfaces.fields import format_path
 from deros.metamodels.rules import Call, Input, NamePath, Negative, Rules, Term, TopicPath
+from deros.monitor.functions import WRITTEN, Argument
 from deros.validators.rules_walk import rules_of, terms_of
 
 _SHOWN = 3
@@ -59,7 +60,7 @@ def _values_read(term: Term) -> Iterator[NamePath | TopicPath]:
             yield term
         case Negative():
             yield from _values_read(term.operand)
-        case Call() if term.receiver is not None and term.function.text not in ("age", "missing"):
+        case Call() if term.receiver is not None and not _asks_for_messages(term):
             yield from _values_read(term.receiver)
         case _:
             pass
@@ -77,3 +78,9 @@ def _untimed(read: NamePath | TopicPath, inputs: dict[str, Input]) -> _Untimed |
     name = declared.name.text
     hint = f"add 'timeout 0.5 sec', and a rule that reacts to '{name}.missing()'"
     return _Untimed(name, declared.term.topic.text, declared.name.span, hint)
+
+
+def _asks_for_messages(call: Call) -> bool:
+    """Return whether a function asks when messages came, and reads no value of them."""
+    row = WRITTEN.get(call.function.text)
+    return row is not None and row.argument is Argument.INPUT

@@ -32,17 +32,20 @@ class Atom:
 
 
 @dataclass(frozen=True, slots=True)
-class AllOf:
+class _Junction:
+    operands: tuple[Logic, ...]
+
+
+class AllOf(_Junction):
     """The conjunction of two or more operands."""
 
-    operands: tuple[Logic, ...]
+    __slots__ = ()
 
 
-@dataclass(frozen=True, slots=True)
-class AnyOf:
+class AnyOf(_Junction):
     """The disjunction of two or more operands."""
 
-    operands: tuple[Logic, ...]
+    __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,67 +46,56 @@ class AcslSemantics:
         self._layout = layout
 
     def true(self, condition: Condition) -> str:
-        """Return when a condition is true."""
-        match condition:
-            case Truth(operand=Const(value=value)):
-                return "\\true" if value else "\\false"
-            case Truth() | Compare() | Within():
-                return f"({self._known(condition)} && {self._holds(condition)})"
-            case Missing():
-                return f"m->{self._layout.inputs[condition.input].missing} != 0"
-            case Unknown():
-                known = known_of(self._layout, condition)
-                return f"(m->{known} == 0 && {self._has_come(condition.input)})"
-            case Age():
-                return f"({self._came(condition)} && {self._age(condition)})"
-            case Not():
-                return self.false(condition.operand)
-            case And():
-                return _joined(" && ", [self.true(each) for each in condition.operands])
-            case Or():
-                return _joined(" || ", [self.true(each) for each in condition.operands])
-            case For():
-                if condition.index not in self._layout.since:
-                    return self.true(condition.operand)
-                return f"({self.runs(condition)} && {self.lasted(condition)})"
-            case Failsafe():
-                come = [self._has_come(index) for index in condition.inputs]
-                due = _joined(" && ", [f"!({self.false(condition.operand)})", *come])
-                return f"({self.true(condition.operand)} || {due})"
-            case RuleRef():
-                verdict = self._layout.verdicts[condition.rule]
-                return f"m->{verdict} == {self._layout.macro}_TRUE"
+        """Return the predicate that a condition is true."""
+        return self._is(condition, True)
 
     def false(self, condition: Condition) -> str:
-        """Return when a condition is false."""
+        """Return the predicate that a condition is false."""
+        return self._is(condition, False)
+
+    def _is(self, condition: Condition, truth: bool) -> str:
+        """Return the predicate that a condition is known, and true or false."""
         match condition:
             case Truth(operand=Const(value=value)):
-                return "\\false" if value else "\\true"
+                return "\\true" if bool(value) is truth else "\\false"
             case Truth() | Compare() | Within():
-                return f"({self._known(condition)} && !{self._holds(condition)})"
+                return f"({self._known(condition)} && {_not(truth)}{self._holds(condition)})"
             case Missing():
-                return f"m->{self._layout.inputs[condition.input].missing} == 0"
+                missing = self._layout.inputs[condition.input].missing
+                return f"m->{missing} {'!=' if truth else '=='} 0"
             case Unknown():
-                known = known_of(self._layout, condition)
-                return f"(m->{known} != 0 || !{self._has_come(condition.input)})"
+                known, has_come = known_of(self._layout, condition), self._has_come(condition.input)
+                return (
+                    f"(m->{known} == 0 && {has_come})"
+                    if truth
+                    else f"(m->{known} != 0 || !{has_come})"
+                )
             case Age():
-                return f"({self._came(condition)} && !{self._age(condition)})"
+                return f"({self._came(condition)} && {_not(truth)}{self._age(condition)})"
             case Not():
-                return self.true(condition.operand)
-            case And():
-                return _joined(" || ", [self.false(each) for each in condition.operands])
-            case Or():
-                return _joined(" && ", [self.false(each) for each in condition.operands])
+                return self._is(condition.operand, not truth)
+            case And() | Or():
+                word = " && " if isinstance(condition, And) is truth else " || "
+                return _joined(word, [self._is(each, truth) for each in condition.operands])
             case For():
-                false = self.false(condition.operand)
-                if condition.index not in self._layout.since:
-                    return false
-                return f"({false} || ({self.runs(condition)} && !{self.lasted(condition)}))"
+                return self._interval(condition, truth)
             case Failsafe():
-                return self.false(condition.operand)
+                return self._failsafe(condition) if truth else self.false(condition.operand)
             case RuleRef():
-                verdict = self._layout.verdicts[condition.rule]
-                return f"m->{verdict} == {self._layout.macro}_FALSE"
+                verdict, name = self._layout.verdicts[condition.rule], "TRUE" if truth else "FALSE"
+                return f"m->{verdict} == {self._layout.macro}_{name}"
+
+    def _interval(self, condition: For, truth: bool) -> str:
+        operand = self._is(condition.operand, truth)
+        if condition.index not in self._layout.since:
+            return operand
+        runs, lasted = self.runs(condition), self.lasted(condition)
+        return f"({runs} && {lasted})" if truth else f"({operand} || ({runs} && !{lasted}))"
+
+    def _failsafe(self, condition: Failsafe) -> str:
+        come = [self._has_come(index) for index in condition.inputs]
+        due = _joined(" && ", [f"!({self.false(condition.operand)})", *come])
+        return f"({self.true(condition.operand)} || {due})"
 
     def _has_come(self, index: int) -> str:
         """Return when an input is not awaited: it has come, or is missing."""
@@ -180,6 +169,10 @@ class AcslSemantics:
         if self._is_double(other) or isinstance(value.value, float):
             return f"(double){number(float(value.value))}"
         return str(value.value)
+
+
+def _not(truth: bool) -> str:
+    return "" if truth else "!"
 
 
 def _joined(word: str, parts: list[str]) -> str:
