@@ -1,1 +1,1 @@
-"""What rules mean: the monitor's intermediate form, and the reference engine that defines it."""
+"""The semantics of rules: the intermediate form, and the reference engine that defines it."""

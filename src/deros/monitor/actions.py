@@ -1,4 +1,4 @@
-"""Actions of the rules: their declarations, what bound ones publish, and the calls of them."""
+"""Actions of the rules: declarations, the messages of bound actions, and calls."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _WORDS = C | CPP_20 | PYTHON  # rules are to generate for every target
 
 
 class Actions:
-    """The declared actions of one program, by name; faults go to the scope."""
+    """The declared actions of one program, by name; faults are reported to the scope."""
 
     def __init__(self, scope: Scope, terms: Terms, declared: tuple[rules.Action, ...]) -> None:
         """Check the declarations."""
@@ -108,7 +108,7 @@ class Actions:
         definition: MessageDefinition,
         value: Fixed,
     ) -> ir.Binding | None:
-        """Put the value into the first field of the message that can hold it."""
+        """Assign the value to the first field of the message that can hold it."""
         candidates = [
             (name, kind, self._scope.unit_of(topic, binding.type, (name,)))
             for name, kind in definition.fields
@@ -132,7 +132,7 @@ class Actions:
         return None
 
     def _scalar(self, kind: FieldType, unit: Unit | None, value: Fixed) -> ir.Scalar | None:
-        """Return the value as a field of this type and unit holds it, or ``None`` if it cannot."""
+        """Return the value for a field of this type and unit, or ``None`` if it does not fit."""
         if not isinstance(value, Quantity):
             scalar = value.value if isinstance(value, Plain) else value.constant.value
             if isinstance(value, MessageConstant) and value.constant.type != kind.base:
@@ -176,7 +176,7 @@ class Actions:
     # Calls --------------------------------------------------------------------------------------
 
     def trigger(self, call: rules.ActionCall, behaviour: int) -> ir.Trigger | None:
-        """Return the run of an action in the body of the behaviour with this index."""
+        """Return the call of an action in the body of the behaviour with this index."""
         name = call.action.text
         arguments = tuple(self._argument(each) for each in call.arguments)
         self._triggered_by.setdefault(name, []).append(behaviour)
@@ -210,7 +210,7 @@ class Actions:
         self._scope.fault(codes.UNKNOWN_NAME, message, name.span, hint)
 
     def bound(self, name: Name) -> int | None:
-        """Return the index of a bound action that a gate heeds; report any other."""
+        """Return the index of a bound action that a gate reacts to; report any other."""
         declared = self._declared.get(name.text)
         if declared is None:
             self._unknown(name)

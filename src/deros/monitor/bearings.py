@@ -1,4 +1,4 @@
-"""Bearings that are probably not what was meant: degrees without a unit, and odd sectors."""
+"""Checks of suspicious bearings: degrees without a unit, and odd sectors."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SLACK = 1e-3
 
 
 def check_sector(scope: Scope, terms: Sequence[rules.Term], bearings: Sequence[Quantity]) -> None:
-    """Report what is suspect in the two ends of a sector; all of it is well defined."""
+    """Report suspicious ends of a sector; all of them are well defined."""
     radian = scope.units.parse("rad")
     plausible = [
         _check_bearing(scope, term, bearing, rounded(bearing.in_unit(radian)))
@@ -84,12 +84,12 @@ def _check_width(scope: Scope, terms: Sequence[rules.Term], start: float, end: f
 
 
 def _is_whole_scan(start: float) -> bool:
-    """Tell whether a full turn that begins here is how one writes the whole scan."""
+    """Return whether a full turn that starts here is a usual way to write the whole scan."""
     return any(abs(start - usual) <= _SLACK for usual in (-math.pi, 0.0, -_TURN))
 
 
 def _declaration(scope: Scope, term: rules.Term) -> tuple[Related, ...]:
-    """Return where the constant is declared that a bearing names."""
+    """Return the declaration of the constant that a bearing names."""
     while isinstance(term, rules.Negative):
         term = term.operand
     declared = scope.constants.get(term.name.text) if isinstance(term, rules.NamePath) else None

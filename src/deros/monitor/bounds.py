@@ -1,4 +1,4 @@
-"""Exact numbers around comparisons: what a type can hold, what an operator and a bound let through.
+"""Exact bounds of values: of types, and of the numbers that satisfy a comparison.
 
 An end is an exact fraction, or a float for the infinities.
 """
@@ -37,7 +37,7 @@ def type_bounds(kind: FieldType) -> Ends:
 
 
 def bounds_of_absolute(operand: Ends) -> Ends:
-    """Return the least and greatest value that a number within ``operand`` has without its sign."""
+    """Return the bounds of the absolute value of a number within ``operand``."""
     lower, upper = operand
     sizes = [each if each >= 0 else -each for each in operand]
     return (Fraction(0) if lower <= 0 <= upper else min(sizes)), max(sizes)
@@ -96,7 +96,7 @@ def integer_bound(operator: ir.Operator, number: Fraction) -> tuple[ir.Operator,
 
 
 def bounds_of(operator: ir.Operator, number: Fraction | float) -> Bounds:
-    """Return the numbers that compare so with ``number``; infinities are numbers."""
+    """Return the numbers that satisfy a comparison with ``number``; infinities are numbers."""
     match operator:
         case "=" | "!=":
             return Bounds(number, number, outside=operator == "!=")

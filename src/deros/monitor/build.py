@@ -1,7 +1,7 @@
-"""From the rules as written to the program of a monitor, or to what is wrong with them.
+"""Builds the program of a monitor from the rules as written, or reports what is wrong with them.
 
 Names, field paths, types and units are resolved here, once; engine and generators read the result.
-Every fault is reported, as far as one does not follow from another.
+Every fault is reported, unless it follows from another.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from deros.monitor.topics import SystemTopics
 
 @dataclass(frozen=True, slots=True)
 class BuildResult:
-    """What became of the rules.
+    """The result of building rules.
 
     Attributes:
         program: ``None`` when there is an error, here or, with a used system that could not be
@@ -36,7 +36,7 @@ class BuildResult:
         diagnostics: in the order found.
         comparisons: the comparisons that could be resolved, for further checks.
         functions: the functions of messages and arrays that could be resolved, likewise.
-        topics: what the used systems tell of their topics.
+        topics: the topics of the used systems.
     """
 
     program: ir.Program | None
@@ -47,7 +47,7 @@ class BuildResult:
 
 
 def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
-    """Resolve everything that the rules name, and give them the form that a monitor runs."""
+    """Resolve all names in the rules, and return them in the intermediate form."""
     builder = _Builder(program, store)
     built = builder.build()
     scope = builder.scope
@@ -63,7 +63,7 @@ def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
 
 
 class _Builder:
-    """Builds one program. What has a fault is left out, and makes the result useless as a whole."""
+    """Builds one program. Faulty parts are left out, and make the whole result unusable."""
 
     def __init__(self, program: rules.Rules, store: InterfaceStore) -> None:
         self._program = program
@@ -156,7 +156,7 @@ class _Builder:
     # Behaviours ---------------------------------------------------------------------------------
 
     def _name_behaviours(self) -> None:
-        """Check that no two behaviours have one name, given or numbered."""
+        """Check that behaviour names, given or numbered, are unique."""
         everyone = [each for top in self._program.behaviours for each in _with_nested(top)]
         numbered = {f"behaviour_{i}": i for i, each in enumerate(everyone, 1) if not each.name}
         given = [each.name for each in everyone if each.name]
@@ -191,7 +191,7 @@ class _Builder:
 
 
 def _declared(program: rules.Rules) -> Iterator[Name]:
-    """Yield every name that the rules declare, but those of units, which are in no code."""
+    """Yield every name that the rules declare, but those of units, which are not emitted."""
     yield from (each.name for each in program.constants)
     yield from (each.name for each in program.inputs)
     yield from (each.name for each in program.entities)

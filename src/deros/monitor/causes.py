@@ -1,6 +1,6 @@
-"""Why a condition is true, or false: the parts of it that make it so, each with its values.
+"""The causes of a condition that is true or false: its decisive parts, each with its values.
 
-Of an ``or`` those are the true operands, of an ``and`` all, of a ``for`` those of its operand with
+For an ``or`` they are the true operands, for an ``and`` all, for a ``for`` its operand's, with
 the duration behind them; ``not`` asks why its operand is false. A :data:`Plan` holds all of that
 which does not depend on values; the reference interprets it, and the generators emit it.
 """
@@ -105,7 +105,7 @@ Plan = Say | SayRule | AllOf | AnyOf | During | OrUnknown
 def causes_of_rule(
     program: Program, index: int, holds: bool, state: State, t_ns: int
 ) -> tuple[str, ...]:
-    """Return why a rule is true, or false, as which it was evaluated last."""
+    """Return why a rule is true, or false, as of its last evaluation."""
     plan = plan_of(program, program.rules[index].condition, holds)
     return tuple(_tell(program, plan, state, t_ns))
 
@@ -118,7 +118,7 @@ def causes_of_behaviour(
 
 
 def plan_of_behaviour(program: Program, behaviour: Behaviour) -> Plan:
-    """Return how to tell why a behaviour holds: the outermost condition first, each part once."""
+    """Return the plan of a behaviour's causes: the outermost condition first, each part once."""
     everyone = {each.index: each for each in walk.behaviours(program)}
     around = [behaviour]
     while (parent := around[0].parent) is not None:
@@ -127,7 +127,7 @@ def plan_of_behaviour(program: Program, behaviour: Behaviour) -> Plan:
 
 
 def negated_rules(program: Program) -> frozenset[int]:
-    """Return the rules of which some plan tells why they are false."""
+    """Return the rules whose falsehood is a cause in some plan."""
     found: set[int] = set()
     plans = [plan_of_behaviour(program, each) for each in walk.behaviours(program)]
     plans += [plan_of(program, each.condition, True) for each in program.rules]
@@ -144,12 +144,12 @@ def negated_rules(program: Program) -> frozenset[int]:
 
 
 def plan_of(program: Program, condition: Condition, holds: bool, suffix: str = "") -> Plan:
-    """Return how to tell why a condition is true or, if not ``holds``, why it is false.
+    """Return the plan of the causes of a condition that is true or, if not ``holds``, false.
 
     Args:
         program: whose condition it is.
         condition: the condition.
-        holds: what it is.
+        holds: whether it is true.
         suffix: what follows each cause: for how long.
     """
     match condition:
@@ -172,7 +172,7 @@ def plan_of(program: Program, condition: Condition, holds: bool, suffix: str = "
 
 
 def _plan_of_interval(program: Program, condition: For, holds: bool, suffix: str) -> Plan:
-    """Return the plan of an interval; however deep they are nested, each adds as much text."""
+    """Return the plan of an interval; nested ones add the same amount of text at each level."""
     duration = condition.wording or seconds_text(condition.duration_ns)
     is_deep = suffix.count(" for ") > 1 or suffix.endswith(_MORE)
     further = f" for {duration}{_MORE if is_deep else suffix}"
@@ -274,7 +274,7 @@ def _name(program: Program, value: ValueExpression) -> str:
 
 
 def _term(value: ValueExpression) -> Term:
-    """Return what is read: a value before its conversion into the unit of another one."""
+    """Return the value that is read, before its conversion into the unit of another one."""
     while isinstance(value, Scale):
         value = value.operand
     assert not isinstance(value, Const)
@@ -282,7 +282,7 @@ def _term(value: ValueExpression) -> Term:
 
 
 def _joined(pieces: list[str | Term]) -> list[str | Term]:
-    """Return pieces with texts that stand side by side made one."""
+    """Return pieces, with adjacent texts joined."""
     found: list[str | Term] = []
     for piece in pieces:
         if isinstance(piece, str) and found and isinstance(found[-1], str):

@@ -1,4 +1,4 @@
-"""Comparisons of the rules, their types and units checked, resolved into those of the monitor."""
+"""Comparisons of the rules: types and units are checked, and resolved into the monitor's."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ _FIXED = (Quantity, Plain, MessageConstant)
 
 
 class Comparisons:
-    """Builds the conditions that hold no other ones. ``None`` means that a fault has been reported.
+    """Builds the conditions without operands. ``None`` means that a fault has been reported.
 
     ``found`` collects every comparison with its types, for the checks of value ranges.
     """
 
     def __init__(self, scope: Scope, terms: Terms) -> None:
-        """Remember where names are looked up."""
+        """Look up names in a scope."""
         self._scope = scope
         self._terms = terms
         self.found: list[ResolvedComparison] = []
@@ -200,7 +200,7 @@ class Comparisons:
         number: Fraction,
         constant: Fixed,
     ) -> ir.Condition:
-        """Compare with an exact number, which for an integer is brought to an integer first."""
+        """Compare with an exact number, which is rounded to an integer for an integer."""
         bound: int | float
         shown = wording(operator, value, constant)
         if value.is_integer:
@@ -233,7 +233,7 @@ class Comparisons:
         return ir.Compare(left.expression, operator, self._scaled(right, left), shown)
 
     def _scaled(self, value: Value, wanted: Value) -> ir.ValueExpression:
-        """Return the value in the unit of ``wanted``."""
+        """Return the value converted to the unit of ``wanted``."""
         if value.unit is None or wanted.unit is None:
             return value.expression
         factor, offset = self._scope.units.factor(value.unit, wanted.unit)
@@ -393,7 +393,7 @@ class Comparisons:
     def _note_age(
         self, node: rules.Comparison | rules.Membership, age: AgeOf, bounds: Bounds
     ) -> None:
-        """Let the checks of value ranges know an age as the number of seconds that it is."""
+        """Report an age, in seconds, to the checks of value ranges."""
         self._note(node, self._seconds_of(age), bounds, equality=False)
 
     def _seconds_of(self, age: AgeOf) -> Value:

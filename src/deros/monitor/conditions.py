@@ -17,7 +17,7 @@ class Conditions:
     """Builds conditions within a scope. ``None`` means that a fault has been reported."""
 
     def __init__(self, scope: Scope, comparisons: Comparisons) -> None:
-        """Remember who builds what stands between the logical operators."""
+        """Build the operands of logical operators with ``comparisons``."""
         self._scope = scope
         self._comparisons = comparisons
         self._durations = 0

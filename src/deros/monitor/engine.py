@@ -1,13 +1,13 @@
-"""The reference engine: what rules mean is what this does.
+"""The reference engine, which defines the semantics of rules.
 
-It interprets the intermediate form directly and aims at being right at a glance; every generated
-monitor is held to give the same events at the same nanosecond. In short:
+It interprets the intermediate form directly and aims to be obviously correct; every generated
+monitor must emit the same events at the same nanosecond. In short:
 
 * The monitor is driven by messages and by deadlines. The start is no event.
 * An event is: the deadlines of one instant, or one message, or a backward step of the clock. At
-  each, all rules are evaluated, then all behaviours, top to bottom; then resets are settled.
+  each, all rules are evaluated, then all behaviours, top to bottom; then resets are processed.
 * An action is reset only if every condition that triggers it is known to be false.
-* Deadlines that are due when a call comes are settled first, in time order, with the old values.
+* Deadlines that are due at a call are processed first, in time order, with the old values.
 * A call with an earlier time than the one before shows a backward step of the clock.
 * To enable or disable an optional behaviour is an event too, after which the inputs are as before.
 
@@ -34,7 +34,7 @@ EventKind = Literal["trigger", "reset", "refused", "clock_step"]
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that a monitor did, or that it saw the clock do.
+    """An event: something that a monitor did, or a step of the clock.
 
     Attributes:
         t_ns: when; of a ``clock_step`` the new time.
@@ -61,7 +61,7 @@ class Engine:
     """Runs one program. Times are nanoseconds of one clock, given with every call.
 
     Attributes:
-        events: all that has happened since the start, in order.
+        events: all events since the start, in order.
     """
 
     def __init__(
@@ -110,7 +110,7 @@ class Engine:
         )
 
     def message(self, t_ns: int, topic: str, leaves: Mapping[int, LeafValue]) -> list[Event]:
-        """Take a message: the value of every leaf of the topic's inputs. Return what happened.
+        """Process a message: the value of every leaf of the topic's inputs. Return the events.
 
         ``None`` or NaN stands for an array element that the message does not have.
 
@@ -128,13 +128,13 @@ class Engine:
         return self.events[before:]
 
     def advance(self, t_ns: int) -> list[Event]:
-        """Settle all that is due up to and including ``t_ns``. Return what happened."""
+        """Process all deadlines up to and including ``t_ns``. Return the events."""
         before = len(self.events)
         self._catch_up(t_ns)
         return self.events[before:]
 
     def reset(self, t_ns: int) -> bool:
-        """Reset every latched action that is active, where nothing refuses it.
+        """Reset every latched action that is active, unless a condition refuses it.
 
         An action is reset if every condition that triggers it is known to be false. Before the
         first event no condition is.
@@ -147,10 +147,10 @@ class Engine:
         return all(results)
 
     def enable(self, t_ns: int, behaviour: str, enabled: bool) -> list[Event]:
-        """Enable or disable an optional behaviour. Return what happened.
+        """Enable or disable an optional behaviour. Return the events.
 
         While it is disabled its condition counts as false, and its intervals go on. Enabled while
-        its condition is true, it acts. What is so already is no event.
+        its condition is true, it acts. There is no event if nothing changes.
 
         Raises:
             ValueError: there is no optional behaviour of that name.
@@ -166,13 +166,13 @@ class Engine:
         return self.events[before:]
 
     def explain(self) -> Explanation:
-        """Return what each rule is worth since the last event, and why each behaviour holds."""
+        """Return the verdict of each rule as of the last event, and why each behaviour holds."""
         return explain(self._program, self._state, self._now_ns)
 
     # Time ---------------------------------------------------------------------------------------
 
     def _deadlines(self) -> Iterator[int]:
-        """Yield every instant, not settled yet, at which a verdict can change by itself."""
+        """Yield every pending time at which a verdict can change by itself."""
         for each, state in zip(self._program.inputs, self._state.inputs, strict=True):
             if each.timeout_ns is not None and not state.missing:
                 yield state.base_ns + each.timeout_ns
@@ -221,7 +221,7 @@ class Engine:
                 self._follow(function, function.state, t_ns)
 
     def _counts(self, each: Input) -> bool:
-        """Tell whether the message just stored is one: all elements there, no NaN, guards met."""
+        """Return whether the message just stored counts: no element missing, no NaN, guards met."""
         for index in each.leaves:
             leaf, value = self._program.leaves[index], self._state.values[index]
             if value is None or (leaf.nan_is_unknown and _has_nan(value)):
@@ -237,7 +237,7 @@ class Engine:
         return True
 
     def _follow(self, function: Apply, number: int, t_ns: int) -> None:
-        """Let a function that remembers something see the message just stored."""
+        """Update the memory of a function with the message just stored."""
         if number not in self._state.memories:
             self._state.memories[number] = FUNCTIONS[function.function].new_memory()
         memory = self._state.memories[number]
@@ -255,7 +255,7 @@ class Engine:
     # Verdicts and actions -----------------------------------------------------------------------
 
     def _evaluate(self) -> None:
-        """Settle one event: all rules, all behaviours, and then the resets that were asked for."""
+        """Process one event: all rules, all behaviours, and then the requested resets."""
         self._ran.clear()
         for rule in self._program.rules:
             verdict = evaluate_condition(rule.condition, self._state, self._now_ns)
@@ -310,7 +310,7 @@ class Engine:
 
 
 def age_changes(age: Age) -> tuple[int, ...]:
-    """Return the ages, in nanoseconds, from which on a comparison of an age has another result."""
+    """Return the ages, in nanoseconds, at which the result of a comparison of an age changes."""
     reached, passed = age.bound_ns, age.bound_ns + 1
     match age.operator:
         case ">=" | "<":

@@ -1,4 +1,4 @@
-"""What expressions and conditions are worth, by direct interpretation.
+"""Evaluates expressions and conditions by direct interpretation.
 
 Source: Kleene's strong three-valued logic, with ``None`` for unknown.
 """
@@ -44,13 +44,13 @@ COMPARE: Mapping[Operator, Callable[[Any, Any], bool]] = {
 
 
 def is_nan(value: object) -> bool:
-    """Tell whether a scalar is NaN, of whichever library's floating-point type."""
+    """Return whether a scalar of any library's floating-point type is NaN."""
     return bool(value != value)
 
 
 # The types of operands agree by construction (deros.monitor.build), which Any stands for here.
 def evaluate_value(value: ValueExpression, state: State) -> Any:
-    """Return a value as of now, ``None`` for unknown; so is a NaN that computing yields."""
+    """Return the present value, ``None`` for unknown, which includes a computed NaN."""
     match value:
         case Const():
             return value.value
@@ -69,9 +69,9 @@ def evaluate_value(value: ValueExpression, state: State) -> Any:
 
 
 def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict:
-    """Return a condition's verdict at an event, and let its intervals (``For``) start or clear.
+    """Return a condition's verdict at an event, and start or clear its intervals (``For``).
 
-    No operand is ever skipped: an interval must see every event, whatever stands beside it.
+    No operand is ever skipped: an interval must be evaluated at every event.
     """
     match condition:
         case Truth():

@@ -1,4 +1,4 @@
-"""What the rules are worth and by which values, and why behaviours hold, for people to read."""
+"""The verdict of each rule with its values, and why behaviours hold, for people to read."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Explanation(NamedTuple):
 
 
 def explain(program: Program, state: State, t_ns: int) -> Explanation:
-    """Return what everything is worth since the last event."""
+    """Return the verdicts and causes as of the last event."""
     rules = tuple(_explain_rule(program, rule, state, t_ns) for rule in program.rules)
     causes = {
         each.name: causes_of_behaviour(program, each, state, t_ns)

@@ -51,7 +51,7 @@ class RateWindow:
     __slots__ = ('latest', 'stamps', 'values')
 
     def __init__(self) -> None:
-        """Hold no sample."""
+        """Start without samples."""
         self.stamps: list[int] = []
         self.values: list[float] = []
         self.latest = 0
@@ -78,14 +78,14 @@ class RateWindow:
 ''',
     "stamp_of": '''\
 def stamp_of(sec: int, nanosec: int) -> int | None:
-    """Return the time of a header; None for zero, which means that nobody has stamped it."""
+    """Return the time of a header; None for zero, which means that it has no stamp."""
     if sec < 0 or not 0 <= nanosec < 1_000_000_000:
         return None
     return (sec * 1_000_000_000 + nanosec) or None
 ''',
     "unwrapped": '''\
 def unwrapped(value: float, turn: float, previous: float, total: float) -> float:
-    """Return an angle without its jumps: the total goes on the shortest way round."""
+    """Return an unwrapped angle: the total changes by the shortest way."""
     change = value - previous
     return total + math.remainder(change, turn) if math.isfinite(change) else float(value)
 ''',
@@ -104,7 +104,7 @@ def array_max(values: Sequence[float]) -> float | None:
 def scan_beams(
     count: int, angle_min: float, angle_increment: float, start: float, end: float,
 ) -> slice | np.ndarray:
-    """Return which beams lie from bearing start to end; kept for further scans of this form."""
+    """Return the beams from bearing start to end; cached for scans of the same form."""
     turn = 2.0 * math.pi
     width = end - start if end >= start else end - start + turn
     with np.errstate(all='ignore'):
@@ -136,7 +136,7 @@ def scan_nearest(
 ''',
     "scan_usable": '''\
 def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
-    """Tell whether any beam of the scan is valid."""
+    """Return whether any beam of the scan is valid."""
     measured = np.asarray(ranges)
     if not measured.size:
         return False

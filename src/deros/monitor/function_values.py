@@ -1,6 +1,6 @@
-"""What each function of the function table computes: the reference that every target is held to.
+"""Reference implementations of functions of the function table, which every target must match.
 
-A result of ``None`` is *unknown*; none of them ever returns NaN. Arguments are never NaN, because
+A result of ``None`` is *unknown*; no function returns NaN. Arguments are never NaN, because
 an input that carries one is unknown as a whole (the beams of ``nearest`` excepted).
 """
 
@@ -143,5 +143,5 @@ def nearest(
 
 
 def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
-    """Tell whether any beam of the scan is valid; a scan without one is no message at all."""
+    """Return whether any beam of the scan is valid; otherwise it does not count as a message."""
     return any(measured >= range_min or measured == -math.inf for measured in ranges)

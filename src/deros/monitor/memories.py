@@ -1,4 +1,4 @@
-"""What functions remember from message to message: the reference that every target is held to.
+"""The memories of functions between messages: the reference that every target must match.
 
 A memory is fed each message that counts, and gives the function's result until the next one. It is
 dropped when the input becomes unknown. A result of ``None`` is *unknown*.

@@ -84,7 +84,7 @@ class DeclaredInput:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part of an input's message that is no single value: a message or an array."""
+    """A part of an input's message that is not a single value: a message or an array."""
 
     input: DeclaredInput
     path: FieldPath  # from the root of the message
@@ -156,7 +156,7 @@ class ResolvedComparison:
         condition: what it comes from.
         operand: the value on its left side (a constant on the left has been moved to the right).
         bounds: which numbers satisfy it; ``None`` where no constant number decides that.
-        exact: whether it asks floating-point values to be equal, or different.
+        exact: whether it tests floating-point values for equality.
         other: of a comparison of two values, the operator and the value on the right.
     """
 
@@ -197,11 +197,11 @@ def family_of(value: bool | float | str) -> str:
 
 
 def is_written_whole(value: Decimal) -> bool:
-    """Tell whether a number is written as an integer: ``3``, not ``3.0``."""
+    """Return whether a number is written as an integer: ``3``, not ``3.0``."""
     exponent = value.as_tuple().exponent
     return isinstance(exponent, int) and exponent >= 0
 
 
 def is_float(kind: FieldType) -> bool:
-    """Tell whether a single value is a floating-point one."""
+    """Return whether a single value is a floating-point number."""
     return kind.base in FLOAT_TYPES

@@ -1,6 +1,6 @@
 """The names of a DeRoS program: units, constants, inputs and the topics of the used systems.
 
-A scope also hands out the inputs and leaves that the program turns out to read.
+A scope also numbers the inputs and leaves that the program reads.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _PATH_PART = re.compile(rf"{_GAP}(?:\.{_GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])", re.
 
 
 class Scope:
-    """What the names of one program mean; every fault found on the way is in ``diagnostics``."""
+    """The symbol table of one program; every fault that it finds is in ``diagnostics``."""
 
     def __init__(self, program: rules.Rules, store: InterfaceStore) -> None:
         """Read the declarations that terms refer to."""
@@ -75,11 +75,11 @@ class Scope:
         related: tuple[Related, ...] = (),
         fix: Fix | None = None,
     ) -> None:
-        """Note a finding."""
+        """Add a finding."""
         self.diagnostics.append(report(code, message, span, hint, related, fix))
 
     def check_duplicates(self, names: Iterable[Name], what: str) -> None:
-        """Report every name that stands for a second thing; ``what`` has ``{}`` for the name."""
+        """Report every name that is declared twice; ``what`` has ``{}`` for the name."""
         first: dict[str, Name] = {}
         for name in names:
             earlier = first.setdefault(name.text, name)
@@ -92,7 +92,7 @@ class Scope:
                 )
 
     def check_names(self, names: Iterable[Name]) -> None:
-        """Report every name that is not one in all languages that code is generated in."""
+        """Report every name that is not an identifier in all languages of generated code."""
         for name in names:
             fault = check_identifier(name.text)
             if fault is not None:
@@ -137,7 +137,7 @@ class Scope:
         self.fault(codes.UNKNOWN_UNIT, f"unknown unit '{text}'", span, hint, fix=fix)
 
     def duration_ns(self, number: rules.Number) -> int | None:
-        """Return a duration in nanoseconds; report what is none."""
+        """Return a duration in nanoseconds; report a term that is not a duration."""
         if number.unit is None:
             message = f"the duration '{number.value}' has no unit"
             hint = f"write '{number.value} sec'"
@@ -153,7 +153,7 @@ class Scope:
         return self.nanoseconds(Fraction(number.value) * unit.factor, number.span)
 
     def nanoseconds(self, seconds: Fraction, span: Span) -> int | None:
-        """Return seconds in whole nanoseconds; report what does not fit 64 bits of them."""
+        """Return seconds as whole nanoseconds; report a value that does not fit 64 bits."""
         try:
             return whole_nanoseconds(seconds)
         except ValueError as error:
@@ -161,7 +161,7 @@ class Scope:
             return None
 
     def unit_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> Unit | None:
-        """Return a field's unit: as a node description annotates it, else as REP 103 has it."""
+        """Return a field's unit: as a node description annotates it, else according to REP 103."""
         known = self.topics.get(topic)
         text = (known.unit_of(path) if known else None) or unit_of(self.store, kind, path)
         return self.units.parse(text) if text else None
@@ -174,7 +174,7 @@ class Scope:
         return rounded(360 * degree.factor / unit.factor)
 
     def turn_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> float | None:
-        """Return the full turn by which a field jumps where its angle begins anew, if it does."""
+        """Return the full turn by which a field wraps around, if it does."""
         known = self.topics.get(topic)
         if (known is not None and known.is_wrapping(path)) or is_wrapping(self.store, kind, path):
             return self.full_turn(self.unit_of(topic, kind, path))
@@ -218,7 +218,7 @@ class Scope:
         return DeclaredInput(name, topic, kind, term.path, timeout_ns, span)
 
     def topic_name(self, name: Name) -> str | None:
-        """Return the full name of a topic that the rules name; report one that ROS 2 refuses."""
+        """Return the full name of a topic that the rules name; report one that ROS 2 rejects."""
         refused = check_topic_name(name.text)
         hint = ""
         if refused is None and name.text.startswith("~"):
@@ -230,7 +230,7 @@ class Scope:
         return None
 
     def topic_type(self, name: Name, topic: str) -> InterfaceType | None:
-        """Return the type of a topic of the used systems; report what they lack."""
+        """Return the type of a topic of the used systems; report a missing topic."""
         known = self.topics.get(topic)
         if known is None:
             if self.systems_known:
@@ -310,9 +310,9 @@ class Scope:
     def field(
         self, kind: InterfaceType, path: FieldPath, before: Span, span: Span, written: int
     ) -> ResolvedField | None:
-        """Resolve a field path of ``kind``; report what leads nowhere at the part that does.
+        """Resolve a field path of ``kind``; report the first part that does not exist.
 
-        The last ``written`` parts stand in the term ``span``, behind its part ``before``.
+        The last ``written`` parts are in the term ``span``, after its part ``before``.
         """
         found = resolve(self.store, kind, path)
         if not isinstance(found, FieldError):

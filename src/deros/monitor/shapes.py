@@ -14,7 +14,7 @@ _SEARCH_DEPTH = 3
 
 
 def fits(store: InterfaceStore, row: Function, kind: FieldType) -> bool:
-    """Tell whether the function can be applied to a part of this type."""
+    """Return whether the function can be applied to a part of this type."""
     match row.argument:
         case Argument.ARRAY:
             return kind.is_array

@@ -1,4 +1,4 @@
-"""Running a monitor over a trace, without ROS and as fast as it goes."""
+"""Runs a monitor over a trace, without ROS and as fast as possible."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from deros.monitor.trace import TraceHeartbeat, TraceLine, TraceMessage, TraceRe
 
 
 class Monitor(Protocol):
-    """What runs a program: the reference engine, or something generated that is driven like it."""
+    """The interface of a monitor: the reference engine, or a generated monitor."""
 
     events: list[Event]
 
@@ -32,23 +32,23 @@ class Monitor(Protocol):
         ...
 
     def message(self, t_ns: int, topic: str, leaves: Mapping[int, LeafValue]) -> list[Event]:
-        """Take a message and return what happened."""
+        """Process a message and return the events."""
         ...
 
     def advance(self, t_ns: int) -> list[Event]:
-        """Settle what is due and return what happened."""
+        """Process what is due and return the events."""
         ...
 
     def reset(self, t_ns: int) -> bool:
-        """Reset every latched action that is active, where nothing refuses it."""
+        """Reset every latched action that is active, unless a condition refuses it."""
         ...
 
     def enable(self, t_ns: int, behaviour: str, enabled: bool) -> list[Event]:
-        """Enable or disable an optional behaviour and return what happened."""
+        """Enable or disable an optional behaviour and return the events."""
         ...
 
     def explain(self) -> Explanation:
-        """Return what each rule is worth since the last event, and why each behaviour holds."""
+        """Return the verdict of each rule as of the last event, and why each behaviour holds."""
         ...
 
 
@@ -63,7 +63,7 @@ class Explained:
 def simulate(
     monitor: Monitor, lines: Iterable[TraceLine], until_ns: int | None = None
 ) -> Iterator[Event]:
-    """Yield what happens when the lines of a trace come at their times.
+    """Yield the events when the lines of a trace arrive at their times.
 
     Args:
         monitor: what runs the rules, started at 0.
@@ -82,7 +82,7 @@ def play(
     until_ns: int | None = None,
     gates: GateSimulation | None = None,
 ) -> Iterator[Explained | GateAnswer]:
-    """Yield the events of :func:`simulate` with their causes, and what the gates do."""
+    """Yield the events of :func:`simulate` with their causes, and those of the gates."""
     player = _Player(monitor, gates)
     for line in lines:
         if until_ns is not None and line.t_ns > until_ns:
@@ -94,7 +94,7 @@ def play(
 
 
 class _Player:
-    """Settles one instant after the other, so that each is explained by what was known then."""
+    """Processes one point in time after the other, so that each is explained by the state then."""
 
     def __init__(self, monitor: Monitor, gates: GateSimulation | None) -> None:
         self._monitor = monitor
@@ -131,7 +131,7 @@ class _Player:
                     gates.heard = line.heard
 
     def _next_ns(self) -> int | None:
-        """Return when something happens by itself, if it does."""
+        """Return the next time at which something happens without a message, if there is one."""
         found = [self._monitor.next_deadline, self._gates.next_ns if self._gates else None]
         return min((each for each in found if each is not None), default=None)
 
@@ -153,7 +153,7 @@ class _Player:
 
 
 def event_record(event: Event, causes: Mapping[str, str] | None = None) -> dict[str, Any]:
-    """Return an event as it is written in JSON; the time is exact, in seconds.
+    """Return an event as a JSON record; the time is exact, in seconds.
 
     ``causes`` are those of the behaviours that it names.
     """
@@ -181,7 +181,7 @@ def event_record(event: Event, causes: Mapping[str, str] | None = None) -> dict[
 
 
 def event_line(event: Event, causes: Mapping[str, str]) -> str:
-    """Return an event as people read it, in one line."""
+    """Return an event as one line of text."""
     if event.kind == "reset":
         text = f"{event.action} is reset"
     elif event.kind == "refused":
@@ -198,7 +198,7 @@ def event_line(event: Event, causes: Mapping[str, str]) -> str:
 
 
 def answer_record(answer: GateAnswer) -> dict[str, Any]:
-    """Return what a gate does as it is written in JSON."""
+    """Return an event of a gate as a JSON record."""
     record: dict[str, Any] = {"t": seconds(answer.t_ns), "event": answer.event}
     record |= {"gate": answer.gate, "why": list(answer.why)}
     if answer.message is not None:
@@ -207,7 +207,7 @@ def answer_record(answer: GateAnswer) -> dict[str, Any]:
 
 
 def answer_line(answer: GateAnswer) -> str:
-    """Return what a gate does as people read it, in one line."""
+    """Return an event of a gate as one line of text."""
     why = f", {'; '.join(answer.why)}" if answer.why else ""
     return f"{seconds(answer.t_ns)} {answer.gate}: {_SHOWN[answer.event]}{why}"
 

@@ -1,4 +1,4 @@
-"""What a monitor remembers between two events."""
+"""The state of a monitor between two events."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class InputState:
 
 
 class State:
-    """The whole memory of a monitor, at its start.
+    """The whole state of a monitor, at its start.
 
     Attributes:
         values: of each leaf, ``None`` while its input is unknown.
@@ -72,7 +72,7 @@ class State:
         self.since: dict[int, int] = {}
 
     def make_unknown(self, index: int) -> None:
-        """Make one input unknown; its age and its timeout are no values and go on."""
+        """Make one input unknown; its age and its timeout are not values and continue."""
         self.inputs[index].known = False
         for leaf in self._program.inputs[index].leaves:
             self.values[leaf] = None

@@ -22,7 +22,7 @@ def counted(arguments: int) -> str:
 
 
 def describe(found: Resolved) -> str:
-    """Return what a term is, as a diagnostic says it."""
+    """Return the description of a term for diagnostics."""
     match found:
         case Quantity():
             return "a constant number"

@@ -1,4 +1,4 @@
-"""Terms of the rules, resolved: numbers, names, field paths and functions of the table."""
+"""Resolves terms of the rules: numbers, names, field paths and functions of the table."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Terms:
     """Resolves terms within a scope. ``None`` means that a fault has been reported."""
 
     def __init__(self, scope: Scope, entities: Iterable[str] = ()) -> None:
-        """Remember the scope, and the names of entities, for hints."""
+        """Resolve in a scope; the names of entities are for hints."""
         self._scope = scope
         self._entities = frozenset(entities)
         self._constants: dict[str, Resolved | None] = {}
@@ -64,7 +64,7 @@ class Terms:
     def resolve(
         self, term: rules.Term, message: MessageDefinition | None = None
     ) -> Resolved | None:
-        """Return what ``term`` is; constants of ``message`` may be used by name."""
+        """Return the resolved term; constants of ``message`` may be used by name."""
         match term:
             case rules.Number():
                 return self._number(term)
@@ -83,7 +83,7 @@ class Terms:
                 return self._call(term)
 
     def is_open(self, term: rules.Term) -> bool:
-        """Tell whether ``term`` is a name that only a message's own constants can explain."""
+        """Return whether ``term`` is a name that only a message's own constants can define."""
         while isinstance(term, rules.Negative):
             term = term.operand
         return (
@@ -173,7 +173,7 @@ class Terms:
     def _located(
         self, owner: DeclaredInput, path: FieldPath, before: Span, span: Span
     ) -> Value | Part | None:
-        """Return what stands at ``path`` of an input's message."""
+        """Return the field at ``path`` of an input's message."""
         tail = len(path) - len(owner.path)
         found = self._scope.field(owner.type, path, before, span, tail)
         if found is None:
@@ -274,7 +274,7 @@ class Terms:
         return Quantity(operand.value, source, target, whole=False)
 
     def compatible(self, found: Unit, wanted: Unit, term: rules.Term) -> bool:
-        """Tell whether a term's unit converts to the wanted one; report it where it does not."""
+        """Return whether a term's unit converts to the wanted one; report it if it does not."""
         if self._scope.units.compatible(found, wanted):
             return True
         need = "a plain number" if wanted.text == "1" else f"{wanted.text} ({wanted.dimension})"
@@ -334,7 +334,7 @@ class Terms:
         return UnknownOf(owner, function)
 
     def has_timeout(self, owner: DeclaredInput, without: str, span: Span) -> bool:
-        """Tell whether an input has a timeout; report ``without`` where it has none."""
+        """Return whether an input has a timeout; report ``without`` if it has none."""
         if owner.timeout_ns is not None:
             return True
         hint = "declare it with one: 'input NAME = topic ... timeout 0.5 sec'"
@@ -342,7 +342,7 @@ class Terms:
         return False
 
     def _watch(self, part: Part) -> None:
-        """Read every floating-point number of a part: a NaN there is a sensor that has no value.
+        """Read every floating-point number of a part: a NaN means that the sensor has no value.
 
         A whole message is left alone, because in many a one NaN means that a field is not in use.
         """
@@ -399,7 +399,7 @@ class Terms:
         return ir.Apply(function, tuple(arguments), self._scope.use(operand.input), state)
 
     def _span_ns(self, term: rules.Term, span: Quantity) -> int | None:
-        """Return the span of time that a rate is asked over; report what is none."""
+        """Return the span of time of a rate; report a term that is not a duration."""
         if span.unit is None:
             message = f"the duration '{term.span.text}' has no unit"
             hint = f"write '{term.span.text} sec'"

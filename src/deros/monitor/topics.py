@@ -1,4 +1,4 @@
-"""What the used systems tell of a topic: that it exists, its type, its ends, its units."""
+"""The topics of the used systems: their types, publishers, subscriptions and units."""
 
 from __future__ import annotations
 

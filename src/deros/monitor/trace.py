@@ -1,4 +1,4 @@
-"""Traces: what happens to a robot, one JSON object a line, for simulation and tests.
+"""Traces: the messages of a robot, one JSON object per line, for simulation and tests.
 
 A message is ``{"t": "1.5", "topic": "/imu", "data": {"angular_velocity.z": 0.2}}``: the time in
 seconds, read exactly, as text or as a number; the topic; and the fields that matter, nested or
@@ -69,7 +69,7 @@ class TraceSwitch:
 
 @dataclass(frozen=True, slots=True)
 class TraceHeartbeat:
-    """From now on the gates hear the safety node, its states and its heartbeat, or do not."""
+    """The gates receive the safety node's states and heartbeat from now on, or do not."""
 
     t_ns: int
     heard: bool
@@ -81,7 +81,7 @@ TraceLine = TraceMessage | TraceReset | TraceSwitch | TraceHeartbeat
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """What a trace holds for one program, and what is wrong with it."""
+    """The contents of a trace for one program, and its faults."""
 
     lines: tuple[TraceLine, ...]
     diagnostics: tuple[Diagnostic, ...]
@@ -103,7 +103,7 @@ def read_trace(source: SourceFile, program: Program, store: InterfaceStore) -> T
 
 
 def nanoseconds(seconds: str) -> int | None:
-    """Return a time, given in seconds as a decimal number, or ``None`` for what is no such time.
+    """Return a time, given in seconds as a decimal number, or ``None`` if it is not valid.
 
     Times are not negative, not finer than a nanosecond and not beyond 64 bits, as ROS has them.
     """
@@ -180,7 +180,7 @@ class _Reader:
         return TraceMessage(t_ns, topic, leaves, command, topic in self._program.topics)
 
     def _reset(self, given: Any, span: Span) -> str | None:
-        """Return which gate is reset; none is the safety node."""
+        """Return the gate that is reset; ``None`` is the safety node."""
         if given is True:
             if not any(each.latched for each in self._program.actions):
                 raise _fault("no action is 'latched', so there is nothing to reset", "reset", span)
@@ -237,7 +237,7 @@ def _listed(what: str, names: Iterable[str]) -> str:
 
 
 def _kind(record: Mapping[str, Any], span: Span) -> str:
-    """Return what a line is, by the key that only such lines have."""
+    """Return the kind of a line, by the key that only such lines have."""
     kinds = [each for each in _KINDS if each in record]
     if len(kinds) > 1:
         text = f"one line has both '{kinds[0]}' and '{kinds[1]}'"

@@ -1,4 +1,4 @@
-"""The messages of a trace: JSON data laid over a message definition and its defaults."""
+"""Reads the messages of a trace: JSON data merged into the defaults of a message definition."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class DataError(Exception):
     Attributes:
         key: the key of the data at fault, as written.
         unknown: whether the message has no such field; otherwise the value does not fit the field.
-        hint: what was probably meant.
+        hint: a suggestion.
     """
 
     def __init__(self, key: str, message: str, *, unknown: bool = False, hint: str = "") -> None:
@@ -150,7 +150,7 @@ class MessageReader:
         message[name] = self._laid_over(present, kind, rest, value, key)
 
     def _laid_over(self, present: Any, kind: FieldType, steps: Path, value: Any, key: str) -> Any:
-        """Return ``present``, of the type ``kind``, with ``value`` at the place ``steps`` in it."""
+        """Return ``present``, of the type ``kind``, with ``value`` at the path ``steps``."""
         if kind.is_array:
             return self._array(present, kind, steps, value, key)
         if not isinstance(kind.base, InterfaceType):

@@ -1,4 +1,4 @@
-"""Ways through a program: every behaviour, every condition, every value, in the order evaluated."""
+"""Traversals of a program: behaviours, conditions and values, in the order of evaluation."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def behaviours(program: Program) -> Iterator[Behaviour]:
 
 
 def refusing(program: Program) -> frozenset[int]:
-    """Return the behaviours, by index, on whose falsehood a reset depends, with all around them."""
+    """Return the behaviours, by index, on whose falsehood a reset depends, with enclosing ones."""
     found = {
         index
         for action in program.actions
@@ -75,7 +75,7 @@ def parts(condition: Condition) -> Iterator[Condition]:
 
 
 def values(conditions: Iterable[Condition]) -> Iterator[ValueExpression]:
-    """Yield every value expression that the given conditions hold, arguments before functions."""
+    """Yield every value expression in the given conditions, arguments before functions."""
     for condition in conditions:
         match condition:
             case Truth(operand=operand):

@@ -1,4 +1,4 @@
-"""How comparisons are shown to people: the author's own numbers and units, constants resolved."""
+"""The texts of comparisons for people: the author's numbers and units, constants resolved."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _GREATEST_WHOLE = 10**16  # beyond that, a number is written with an exponent
 
 
 def wording(operator: ir.Operator, left: Value, *right: Resolved, brackets: str = "") -> ir.Wording:
-    """Return how a comparison of a value with what stands on its right is shown."""
+    """Return the text of a comparison of a value with its right side."""
     units = [each.unit for each in right if isinstance(each, Quantity | Value)]
     differ = any(each and not _same(each, left.unit) for each in units)
     shown = tuple(_side(each, units_differ=differ) for each in right)

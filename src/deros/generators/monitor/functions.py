@@ -1,4 +1,4 @@
-"""Refuses functions that a target does not know, by name, before it emits something else."""
+"""Rejects, by name, functions that a target cannot emit."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from deros.monitor.ir import Apply, Program
 
 
 def refuse_unknown(program: Program, knows: Callable[[Function], bool], language: str) -> None:
-    """Refuse each function of the rules that a target cannot emit.
+    """Reject each function of the rules that a target cannot emit.
 
     Args:
         program: the rules.

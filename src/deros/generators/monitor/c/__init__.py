@@ -1,1 +1,1 @@
-"""The monitor as C99: what a program means, for machines that have neither ROS nor a heap."""
+"""Monitors in C99, for machines without ROS and without a heap."""

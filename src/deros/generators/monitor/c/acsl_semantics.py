@@ -1,6 +1,6 @@
-"""What a rule means, in ACSL: derived from the rule, not from the code that is emitted for it.
+"""The semantics of rules in ACSL, derived from the rules and not from the emitted code.
 
-A condition is given by two predicates, when it is true and when it is false; otherwise it is
+A condition has two predicates: it is true, and it is false. Otherwise it is
 unknown. They read the struct as it is after an event. The code computes one verdict of three values
 instead, and the two are proved to agree.
 """
@@ -39,10 +39,10 @@ _OF_DOUBLES: dict[Operator, str] = {
 
 
 class AcslSemantics:
-    """Writes conditions as predicates on ``m``."""
+    """Prints conditions as predicates on ``m``."""
 
     def __init__(self, layout: Layout) -> None:
-        """Remember what is named how."""
+        """Use the names of a layout."""
         self._layout = layout
 
     def true(self, condition: Condition) -> str:
@@ -98,20 +98,20 @@ class AcslSemantics:
         return f"({self.true(condition.operand)} || {due})"
 
     def _has_come(self, index: int) -> str:
-        """Return when an input is not awaited: it has come, or is missing."""
+        """Return the predicate that an input is not awaited: it has come, or is missing."""
         fields = self._layout.inputs[index]
         return f"(m->{fields.came} != 0 || m->{fields.missing} != 0)"
 
     def runs(self, condition: For) -> str:
-        """Return when an interval is running, which it must exactly while its operand is true.
+        """Return the predicate that an interval is running: its operand is true.
 
-        What an interval means is said by this name, not by what its operand means: that would be
-        repeated for each interval around it, and be twice as long with each level.
+        The predicate names the field, not the operand: the operand's predicate would be
+        repeated for each enclosing interval, and double in length with each level.
         """
         return f"m->{self._layout.since[condition.index]} != {self._layout.macro}_UNSET"
 
     def lasted(self, condition: For) -> str:
-        """Return when a running interval has lasted for long enough."""
+        """Return the predicate that a running interval has lasted long enough."""
         since = self._layout.since[condition.index]
         return f"(m->now >= m->{since} + {condition.duration_ns})"
 
@@ -131,7 +131,7 @@ class AcslSemantics:
         return f"(m->{finding.name} != 0)" if finding else self.holds(condition)
 
     def holds(self, condition: Condition) -> str:
-        """Return whether a comparison of values, which must be known, holds."""
+        """Return the comparison of values that are known."""
         match condition:
             case Truth():
                 return f"(m->{self._layout.terms[condition.operand].name} != 0)"

@@ -1,6 +1,6 @@
-r"""What becomes of a monitor between two moments, as predicates in ACSL.
+r"""Changes of a monitor between two points in time, as predicates in ACSL.
 
-The earlier moment is that of the call in a contract (``\old``), and ``Before`` in a predicate.
+The earlier point is that of the call in a contract (``\old``), and ``Before`` in a predicate.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from deros.monitor.ir import For, Rule
 
 
 class Changes:
-    """Writes what is said of one monitor as it is and as it was."""
+    """Prints predicates on one monitor as it is and as it was."""
 
     def __init__(self, view: MonitorView, predicates: Predicates) -> None:
-        """Remember what is named how."""
+        """Use the names of a layout."""
         self._view = view
         self._layout = view.layout
         self._predicates = predicates
@@ -52,7 +52,7 @@ class Changes:
         yield "stepped_back", self._stepped_back()
 
     def turned(self, rule: Rule) -> str:
-        """Return since when a rule is true, or is not."""
+        """Return when a rule last became true or ceased to be."""
         verdict, turned = self._layout.verdicts[rule.index], self._layout.turned[rule.index]
         true = self._macro("TRUE")
         turns = (
@@ -62,7 +62,7 @@ class Changes:
         return f"m->{turned} == ({turns} ? m->now : \\old(m->{turned}))"
 
     def run_on(self, fors: Iterable[For]) -> Iterator[str]:
-        """Yield that intervals begin now or run on, and that the next deadline is no later."""
+        """Yield that intervals begin now or continue, and that the next deadline is not later."""
         unset, due = self._macro("UNSET"), "\\old(m->due)"
         kept = []
         for each in fors:
@@ -81,7 +81,7 @@ class Changes:
         return any_of(f"m->{name} != \\old(m->{name})" for name in dict.fromkeys(names))
 
     def same(self, names: Iterable[str]) -> str:
-        """Return that each of the named fields is as it was."""
+        """Return that the named fields are unchanged."""
         doubles = {name for name, type_ in self._types.items() if type_ == "double"}
         return all_of(
             f"same(m->{each}, \\old(m->{each}))"
@@ -91,7 +91,7 @@ class Changes:
         )
 
     def states_done(self) -> list[str]:
-        """Return what an event of the rules leaves of actions."""
+        """Return the states of actions after an event of the rules."""
         states = []
         for index, name in self._layout.ran.items():
             rises = [self._emissions.rises(each) for each in self._emissions.callers(index)]
@@ -117,12 +117,12 @@ class Changes:
         return [f"(\\old({name}) != 0 ==> {name} != 0)" for name in names]
 
     def _caught_up(self) -> list[str]:
-        """Return what of inputs, and of what is emitted, is left by all that was due."""
+        """Return the state of inputs, and the emitted events, after all deadlines that were due."""
         expired = [each for one in self._view.timeouts for each in self.expired(one)]
         return [*expired, "follows(\\old(emitted), emitted)"]
 
     def _stepped_back(self) -> list[str]:
-        """Return that all is as new, and one event of the rules is settled."""
+        """Return that all is reset, and one event of the rules has been evaluated."""
         unset, macro = self._macro("UNSET"), self._macro
         sinces = self._layout.since.values()
         new = self._inputs_as_new("m->now")
@@ -133,13 +133,13 @@ class Changes:
         return ["m->started == 1", *new, *self.states_done(), emitted]
 
     def as_new(self, start: str) -> list[str]:
-        """Return what all inputs, dates and intervals are after a restart."""
+        """Return the state of inputs, times and intervals after a restart."""
         unset = self._macro("UNSET")
         sinces = [f"m->{name} == {unset}" for name in self._layout.since.values()]
         return [*self._inputs_as_new(start), *sinces] or ["\\true"]
 
     def _inputs_as_new(self, start: str) -> list[str]:
-        """Return what all inputs and dates are after a restart."""
+        """Return the state of inputs and times after a restart."""
         layout = self._layout
         found = []
         for fields in layout.inputs.values():
@@ -152,12 +152,12 @@ class Changes:
         return found + [each for forget in self._view.forgets for each in self.forgotten(forget)]
 
     def forgotten(self, forget: Forget) -> list[str]:
-        """Return that no value of an input is known, and none is remembered."""
+        """Return that no value of an input is known or remembered."""
         cleared = [f"m->{name} == 0" for name in (*forget.known, *forget.counts)]
         return [*cleared, *(text for _, text in _forgotten_numbers(forget))]
 
     def forgets_of(self, function: str) -> list[Forget]:
-        """Return what a function forgets; nothing if it is empty, since there is none."""
+        """Return what a function forgets; nothing for an empty name."""
         return [each for each in self._view.forgets if each.function == function]
 
     def expired(self, timeout: Timeout) -> list[str]:
@@ -175,7 +175,7 @@ class Changes:
         return found
 
     def emission_done(self) -> list[str]:
-        """Return what an event of the rules emits."""
+        """Return that an event of the rules emits what it must."""
         events = self._emissions.by_event("\\old(emitted)")
         return [f"emitted == {events}"]
 
@@ -184,11 +184,11 @@ class Changes:
         return [self.same(self.acted_upon()), "emitted == \\old(emitted)"]
 
     def kept_but(self, changed: Iterable[str]) -> str:
-        """Return that all fields but some are as they were."""
+        """Return that all fields but some are unchanged."""
         return self.same(self._all_but(changed))
 
     def kept_over_time_but(self, changed: Iterable[str]) -> str:
-        """Return that of what does not change as time passes all but some fields are kept."""
+        """Return that the fields that do not change with time are unchanged, but for some."""
         gone = set(changed)
         return self.same(name for name in self._lasting() if name not in gone)
 
@@ -199,20 +199,20 @@ class Changes:
         return [name for table in tables for name in table.values()]
 
     def _judged(self) -> list[str]:
-        """Return the fields that are changed where all is judged."""
+        """Return the fields that change when all rules are evaluated."""
         layout = self._layout
         tables = (layout.verdicts, layout.turned, layout.since)
         names = [each for table in tables for each in table.values()]
         return ["started", *names, *self.acted_upon(), "due"]
 
     def _settled(self) -> list[str]:
-        """Return the fields that are changed where deadlines are settled."""
+        """Return the fields that change when deadlines are processed."""
         names = [each.missing for each in self._view.timeouts]
         names += [name for each in self._view.forgets for name in each.changed]
         return ["now", *names, *self._judged()]
 
     def _lasting(self) -> list[str]:
-        """Return the fields that do not change as time passes."""
+        """Return the fields that do not change with time."""
         values = [term.name for term in self._layout.terms.values()]
         values += [finding.name for finding in self._layout.findings.values()]
         return list(dict.fromkeys(["owner", *values, *self._layout.enabled.values()]))
@@ -235,7 +235,7 @@ def _forgotten_numbers(forget: Forget) -> Iterator[tuple[str, str]]:
 
 
 def _since(text: str) -> str:
-    """Return a text of a contract as that of a predicate, which names the moment before."""
+    """Return a text of a contract as that of a predicate, which names the earlier state."""
     parts = text.split("\\old(")
     for place in range(len(parts) - 1, 0, -1):
         depth, end = 1, 0

@@ -12,10 +12,10 @@ from deros.generators.text.prose import paragraph
 
 @dataclass(slots=True)
 class Contract:
-    """What a function, or a loop, relies on, may change and ensures.
+    """The contract of a function or a loop: what it requires, may change and ensures.
 
-    Nothing under ``assigns`` means that it changes nothing. What is ``checked`` is ensured, too,
-    but not relied on by callers: what is said of numbers would make their proofs long for nothing.
+    An empty ``assigns`` means that it changes nothing. What is ``checked`` is ensured, too,
+    but callers do not rely on it: statements on numbers would make their proofs long in vain.
     With ``cases``, names and conditions of which one always holds, all is ensured of each by
     itself, and what is ``of_case``: so no proof is about the branches of a function at once. What
     is ensured ``at_once`` is proved of all cases together: callers read it once.

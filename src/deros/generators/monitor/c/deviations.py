@@ -1,4 +1,4 @@
-"""Where the emitted C does otherwise than MISRA C:2012 advises, and why; all else complies."""
+"""Deviations of the emitted C from advisory guidelines of MISRA C:2012, with reasons."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """A guideline of the category *advisory*, by its number, that the text does not follow."""
+    """An advisory guideline, by its number, that the emitted text does not follow."""
 
     guideline: str
     reason: str

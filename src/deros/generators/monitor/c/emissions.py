@@ -1,6 +1,6 @@
-"""What is emitted, in ACSL: the events that the rules make, in their order.
+"""The events that the rules emit, in order, in ACSL.
 
-Nothing of a list is needed. ``emitted`` is one value for all events so far, and ``after`` gives
+No list is needed. ``emitted`` is one value for all events so far, and ``after`` returns
 that of one event more, whatever function it is: values that are equal for every such function
 stand for the same events in the same order.
 """
@@ -30,17 +30,17 @@ _EVENTS = """\
 
 
 class Emissions:
-    """Writes what functions emit as terms: the value of all events, from that before."""
+    """Prints what functions emit as terms: the value of all events, from the value before."""
 
     def __init__(self, view: MonitorView) -> None:
-        """Remember what is named how."""
+        """Use the names of a layout."""
         self._layout = view.layout
         self._program = view.program
         self._sites = view.sites
         self._behaviours = tuple(walk.behaviours(view.program))
 
     def declarations(self) -> str:
-        """Return the logic functions: what a behaviour, a reset, and an event of the rules emit."""
+        """Return the logic functions for the emissions of behaviours, resets and events."""
         prefix = self._layout.prefix
         emit = [
             "/*@ assigns emitted;",
@@ -71,18 +71,18 @@ class Emissions:
     # Terms on a monitor -------------------------------------------------------------------------
 
     def by_behaviour(self, behaviour: Behaviour, before: str) -> str:
-        """Return all events once a behaviour, and those within it, have been run."""
+        """Return all events after a behaviour, and those nested in it, have run."""
         arguments = [each for one in self.closure(behaviour) for each in self._edges(one)]
         return self._call(self._name(behaviour), before, arguments)
 
     def by_settling(self, action: Action, before: str, active: str) -> str:
-        """Return all events once an action has been reset, or not; ``active`` is what it was."""
+        """Return all events after a possible reset; ``active`` is the action's state before."""
         rest = self._read(action)[1:]
         arguments = [active, *(f"m->{each}" for each in rest)]
         return self._call(f"emitted_by_settle_{action.name}", before, arguments)
 
     def by_event(self, before: str) -> str:
-        """Return all events once every behaviour has been run and every reset asked for is done."""
+        """Return all events after every behaviour has run and every requested reset is done."""
         arguments = [each for one in self._behaviours for each in self._edges(one)]
         for action in self._resettable():
             active, ran = self._reset(action)
@@ -96,7 +96,7 @@ class Emissions:
         return f"({now.format(name)} == {true} && {was.format(name)} != {true})"
 
     def closure(self, behaviour: Behaviour) -> list[Behaviour]:
-        """Return a behaviour and those within it."""
+        """Return a behaviour and those nested in it."""
         found = [behaviour]
         for item in behaviour.body:
             if isinstance(item, Behaviour):
@@ -169,7 +169,7 @@ class Emissions:
         return text
 
     def active(self, action: int, was: str = "\\old(m->{})", now: str = "m->{}") -> str:
-        """Return whether an action is active once all behaviours have been run."""
+        """Return whether an action is active after all behaviours have run."""
         before = was.format(self._layout.active[action])
         rises = [self.rises(each, was, now) for each in self.callers(action)]
         return f"({' || '.join(rises)} ? 1 : {before})" if rises else before

@@ -1,4 +1,4 @@
-"""Values and conditions of the rules as expressions of C."""
+"""Values and conditions of the rules as C expressions."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ SYMBOLS: dict[Operator, str] = {
 
 
 class Conditions:
-    """Writes conditions as expressions of the type of verdicts."""
+    """Prints conditions as expressions of the verdict type."""
 
     def __init__(self, program: Program, layout: Layout) -> None:
-        """Remember what is named how."""
+        """Use the names of a layout."""
         self._program = program
         self._layout = layout
         self._intervals: dict[int, str] = {}
@@ -121,7 +121,7 @@ class Conditions:
         return Call("truth_of", (known, holds))
 
     def holds(self, condition: Condition) -> Expression:
-        """Return whether a comparison of values, which must be known, holds."""
+        """Return the comparison of values that are known."""
         match condition:
             case Truth():
                 return self._operand(condition.operand)
@@ -167,7 +167,7 @@ class Conditions:
         return f"{self._operand(left)} {SYMBOLS[operator]} {self._operand(right)}"
 
     def _compare_integer(self, left: ValueExpression, operator: Operator, right: int) -> str:
-        """Compare with a constant; the result may be the same for all that the value can be."""
+        """Compare with a constant; the result may be the same for all possible values."""
         unsigned = type_of(self._program, left) == "uint64_t"
         lowest, highest = (0, 2**64 - 1) if unsigned else (-(2**63), 2**63 - 1)
         tried = {lowest, highest, *({right} if lowest <= right <= highest else ())}
@@ -188,7 +188,7 @@ class Conditions:
 
 
 def known_of(layout: Layout, condition: Unknown) -> str:
-    """Return the field that tells whether what a condition asks for is known."""
+    """Return the flag that the value that a condition asks for is known."""
     if condition.operand is None:
         return layout.inputs[condition.input].known
     return layout.terms[condition.operand].known
@@ -196,12 +196,12 @@ def known_of(layout: Layout, condition: Unknown) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Arguments:
-    """What is called how in a handler.
+    """The names in a handler.
 
     Attributes:
         leaves: the arguments, by leaf; an array's elements stand with their count.
         counts: the number of elements, by the leaf of an array.
-        computed: the local constants that hold what functions with a memory give.
+        computed: the local constants that hold the results of functions with a memory.
         lengths: those that hold the lengths of quaternions, by their parts.
     """
 
@@ -240,7 +240,7 @@ def expression(value: ValueExpression, program: Program, arguments: Arguments) -
 
 
 def as_double(value: ValueExpression, program: Program, arguments: Arguments) -> str:
-    """Return a number, of whichever type it is, as a double; NaN, where it is unknown."""
+    """Return a number of any type as a double; NaN if it is unknown."""
     text = expression(value, program, arguments)
     if type_of(program, value) == "double":
         return text
@@ -249,7 +249,7 @@ def as_double(value: ValueExpression, program: Program, arguments: Arguments) ->
 
 
 def present(value: ValueExpression, program: Program, arguments: Arguments) -> str:
-    """Return what must hold for an integer to be known: that arrays with a least have elements."""
+    """Return the condition for an integer to be known: arrays with a minimum have elements."""
     if type_of(program, value) == "double" or not isinstance(value, Apply):
         return ""
     operand = value.arguments[0]

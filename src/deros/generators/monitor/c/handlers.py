@@ -1,4 +1,4 @@
-"""What a message does to its inputs: one function per topic."""
+"""The effect of messages on their inputs: one function per topic."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ class Parameter:
         path: the field, from the message's root.
         leaves: the leaves of the program that it feeds.
         form: what is passed: the ``value``; an ``array``'s elements and count; its ``count`` alone;
-            a ``text``'s characters and length; nothing but what ``given`` tells.
+            a ``text``'s characters and length; only the flag ``given``.
         element: the C type of an array's elements; empty for others.
-        given: whether a flag follows that tells whether the message's array has the element; of
+        given: whether a flag follows that the message's array has the element; for
             floating-point numbers a NaN says it instead.
     """
 
@@ -65,9 +65,9 @@ class Handler:
         topic: the topic as the rules name it; ``type`` its message type, as ROS 2 writes it.
         function: the function's name; it takes the monitor, the time, then ``parameters``.
         signature: its first line or lines, without what follows them.
-        observer: the name of the function that takes the inputs' values; empty if nobody asks.
+        observer: the name of the function that stores the inputs' values; empty if none are read.
         observing: the first line or lines of that; ``observe`` what is in it.
-        taker: the name of the function that settles a message at its time; empty likewise.
+        taker: the name of the function that processes a message at its time; empty likewise.
         taking: the first line or lines of that.
         values: the names of all parameters.
         inputs: what it changes.
@@ -153,7 +153,7 @@ class _Writer:
     # Parameters ---------------------------------------------------------------------------------
 
     def _known_names(self) -> UniqueNames:
-        """Return what names parameters and constants, none as a function that is called there."""
+        """Return the source of names for parameters and constants, without called functions."""
         called = (*self._functions, *self._layout.judges.values())
         return new_names({*helper_names(self._program), *called, "news"})
 
@@ -193,23 +193,23 @@ class _Writer:
         return Parameter(name, tuple(declarations), path, leaves, form, element, given)
 
     def _is_observed(self, each: Input) -> bool:
-        """Tell whether any condition asks for an input; of others only that a message came."""
+        """Return whether any condition reads an input; of others only arrivals are recorded."""
         layout, index = self._layout, each.index
         remembered = layout.terms_of(index) or layout.memories_of(index)
         return bool(remembered or layout.inputs[index].base)
 
     def _is_needed(self, leaf: Leaf) -> bool:
-        """Tell whether a leaf is used, or the message would not count without it."""
+        """Return whether a leaf is used, or a message does not count without it."""
         return _has_index(leaf) or self._is_read(leaf)
 
     def _is_read(self, leaf: Leaf) -> bool:
-        """Tell whether the value of a leaf is used, or must not be NaN."""
+        """Return whether the value of a leaf is used, or must not be NaN."""
         if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
             return True
         return Read(leaf.index) in walk.values(walk.conditions(self._program))
 
     def _reads_elements(self, leaf: Leaf) -> bool:
-        """Tell whether more than the length of an array is asked for."""
+        """Return whether more than the length of an array is read."""
         if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
             return True
         return any(
@@ -256,7 +256,7 @@ class _Writer:
         return [*lines, "  }"]
 
     def _tests(self, each: Input) -> list[str]:
-        """Return what must hold for a message to count: no NaN, all elements there, guards met."""
+        """Return the conditions for a message to count: no NaN, no element missing, guards met."""
         tests: dict[str, None] = {}
         for index in each.leaves:
             leaf = self._program.leaves[index]
@@ -282,7 +282,7 @@ class _Writer:
         return list(tests)
 
     def _values(self, each: Input, terms: Sequence[Term]) -> Iterator[str]:
-        """Yield the statements that store values; what rules read of them is news if it differs."""
+        """Yield the statements that store values, and set ``news`` if one has changed."""
         yield from self._lengths(each)
         for value, memory in self._layout.memories_of(each.index).items():
             yield from self._angle(value.arguments[0])
@@ -309,7 +309,7 @@ class _Writer:
                 yield from _news(finding.name, conditions.holds(condition))
 
     def _stamp(self, value: Apply) -> str:
-        """Return when a message was stamped, or if it has no header, when it came."""
+        """Return the stamp of a message, or its time of arrival if it has no header."""
         header = [expression(each, self._program, self._arguments) for each in value.arguments[2:]]
         return f"stamp_of({', '.join(header)})" if header else "m->now"
 
@@ -327,7 +327,7 @@ class _Writer:
                 yield from lay_out(2, f"const double {name} = ", Call("length_of", tuple(texts)))
 
     def _angle(self, operand: ValueExpression) -> Iterator[str]:
-        """Yield the statement that computes what a memory takes of a quaternion, once."""
+        """Yield the statement that computes the angle that a memory reads, once."""
         while isinstance(operand, Scale):
             operand = operand.operand
         computed, lengths = self._arguments.computed, self._arguments.lengths
@@ -395,7 +395,7 @@ _PUT = {"bool": "truth", "int64_t": "integer", "uint64_t": "unsigned", "uint32_t
 
 
 def _news(field: str, value: Expression, kind: str = "truth") -> list[str]:
-    """Return the statement that stores a value, and finds whether it is another one."""
+    """Return the statement that stores a value and compares it with the one before."""
     call = Call(f"store_{kind}", (f"&m->{field}", value, "news"))
     # It stands in a block in the end, two columns further.
     return [line[2:] for line in lay_out(4, "news = ", call)]

@@ -1,4 +1,4 @@
-"""The functions that every monitor's text is made of, those that it does not call left out.
+"""The helper functions of monitors; those that a monitor does not call are left out.
 
 Each text holds its contract. ``@`` stands for the prefix of public types, ``$`` for that of macros.
 """
@@ -20,7 +20,7 @@ from deros.monitor.functions import FUNCTIONS, Argument, Function
 from deros.monitor.ir import Program
 
 _IS_NUMBER = """\
-/* Tells whether a number is one: no comparison holds of a NaN. */
+/* Returns whether a number is not NaN, with which no comparison is true. */
 /*@ assigns \\nothing;
     ensures \\result == 0 <==> \\is_NaN(value); */
 static bool is_number(double value)
@@ -30,7 +30,7 @@ static bool is_number(double value)
 """
 
 _ARE_NUMBERS = """\
-/* Tells whether no element is a NaN. */
+/* Returns whether no element is a NaN. */
 /*@ requires \\valid_read(values + (0 .. count - 1));
     assigns \\nothing; */
 static bool are_numbers_BASE(const ELEMENT *values, size_t count)
@@ -49,7 +49,7 @@ static bool are_numbers_BASE(const ELEMENT *values, size_t count)
 """
 
 _IS_TEXT = """\
-/* Tells whether a text is the expected one. */
+/* Returns whether a text is the expected one. */
 /*@ requires \\valid_read(text + (0 .. length - 1));
     requires \\valid_read(expected + (0 .. expected_length - 1));
     assigns \\nothing; */
@@ -70,7 +70,7 @@ static bool is_text(
 """
 
 _TRUTH_OF = """\
-/* What holds, if it is known. */
+/* The verdict of a condition, which is unknown unless its values are known. */
 /*@ assigns \\nothing;
     ensures is_verdict(\\result);
     ensures \\result == $_TRUE <==> known != 0 && holds != 0;
@@ -130,7 +130,7 @@ static @_verdict either(@_verdict a, @_verdict b)
 """
 
 _FAILSAFE = """\
-/* A rule that counts as true where it is unknown, but for what is unknown since the start. */
+/* A failsafe rule: unknown counts as true, unless an input has been awaited since the start. */
 /*@ requires is_verdict(operand);
     assigns \\nothing;
     ensures is_verdict(\\result);
@@ -174,7 +174,7 @@ static @_verdict lasting(
 """
 
 _PUT = """\
-/* Stores a value; tells whether it is another one than before, or there was news already. */
+/* Stores a value; returns whether it has changed, or another one had. */
 /*@ requires \\valid(place);
     assigns *place;
     ensures *place == value;
@@ -188,7 +188,7 @@ static bool store_KIND(TYPE *place, TYPE value, bool news)
 """
 
 _TURNED = """\
-/* Takes a rule's verdict over, and tells whether it is another one than before. */
+/* Stores a rule's verdict; returns whether it has changed. */
 /*@ requires \\valid(held) && \\valid(since) && \\separated(held, since);
     assigns *held, *since;
     ensures *held == verdict;
@@ -216,7 +216,7 @@ static int64_t earlier(int64_t a, int64_t b)
 """
 
 _AHEAD = """\
-/* The earlier of two deadlines, of which the second counts only if it lies ahead. */
+/* The earlier of two deadlines, of which the second counts only if it is in the future. */
 /*@ assigns \\nothing;
     ensures \\result == due || (\\result == end && end > now);
     ensures \\result <= due && (end > now ==> \\result <= end); */
@@ -259,7 +259,7 @@ def helper_texts(program: Program, text: str) -> list[str]:
 
 
 def helper_names(program: Program) -> frozenset[str]:
-    """Return the names of all functions that the monitor of a program may have beside its own."""
+    """Return the names of all helper functions that the monitor of a program may have."""
     return frozenset(name for name, _ in _all(program))
 
 
@@ -347,7 +347,7 @@ _MAGNITUDE = """\
 """
 
 _RATE = """\
-/* The change per second since the message before; none between two of one instant. */
+/* The change per second since the message before; NaN for two at the same time. */
 /*@ requires \\valid(last) && \\valid(last_t) && \\separated(last, last_t);
     requires 0 <= t <= INT64_MAX && 0 <= *last_t <= INT64_MAX;
     assigns *last, *last_t;
@@ -375,7 +375,7 @@ def _of_elements(text: str, base: str) -> str:
 
 
 def _with_loop(text: str, assigned: str, kept: Iterable[str] = ()) -> str:
-    """Return a function's text with what is to be proved of its loop."""
+    """Return a function's text with the annotation of its loop."""
     start = text.index("  for (")
     bounds, rest = _LOOP.replace("LOOP", assigned).split("\n", 1)
     indented = (each.replace("\n", "\n      ") for each in kept)

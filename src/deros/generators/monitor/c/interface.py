@@ -1,4 +1,4 @@
-"""What other parts of the generators use of the monitor in C: its struct, and what reads it."""
+"""The interface of the monitor in C for other generators: its struct, and what reads it."""
 
 from deros.generators.monitor.c.expressions import SYMBOLS, Conditions, known_of
 from deros.generators.monitor.c.handlers import Parameter

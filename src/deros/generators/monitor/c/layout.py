@@ -1,4 +1,4 @@
-"""What the emitted monitor remembers: the fields of its one struct, and what each stands for."""
+"""The symbol table of the emitted monitor: the fields of its struct, and their meaning."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ class Layout:
 
     @property
     def macro(self) -> str:
-        """What macros and enumerators begin with."""
+        """The prefix of macros and enumerators."""
         return self.prefix.upper()
 
     def terms_of(self, index: int) -> list[Term]:
@@ -184,7 +184,7 @@ class Layout:
 
 
 def lay_out(program: Program) -> Layout:
-    """Name all that the monitor of a program remembers, in the program's order.
+    """Name the attributes of a program's monitor, in the program's order.
 
     Raises:
         GenerationError: what a rule compares has no place in a monitor of fixed size.

@@ -38,7 +38,7 @@ class MessageContracts:
         changes: Changes,
         rules: RuleContracts,
     ) -> None:
-        """Remember what is named how."""
+        """Use the names of a layout."""
         self._view = view
         self._program = view.program
         self._layout = view.layout

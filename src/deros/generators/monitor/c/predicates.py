@@ -19,7 +19,7 @@ class Predicates:
     """Writes the predicates of one monitor."""
 
     def __init__(self, view: MonitorView) -> None:
-        """Remember what is named how."""
+        """Use the names of a layout."""
         self._view = view
         self._layout = view.layout
         self.semantics = AcslSemantics(view.layout)

@@ -1,7 +1,7 @@
-"""What is to be proved of the functions that judge rules and run behaviours.
+"""The contracts of the functions that evaluate rules and run behaviours.
 
-Each says what it reads, changes and ensures by itself, and no more: what it does not mention is
-seen to be as it was wherever it is called.
+Each states what it reads, changes and ensures itself. What it does not mention is
+seen to be unchanged wherever it is called.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ _FIELD = re.compile(r"m->(\w+)")
 
 
 class RuleContracts:
-    """Writes the contracts of what settles an event."""
+    """Prints the contracts of the functions that process an event."""
 
     def __init__(self, view: MonitorView, predicates: Predicates, changes: Changes) -> None:
-        """Remember what is named how."""
+        """Use the names of a layout."""
         self._program = view.program
         self._layout = view.layout
         self._predicates = predicates
@@ -41,7 +41,7 @@ class RuleContracts:
         self._false = predicates.macro("FALSE")
 
     def judge(self, rule: Rule) -> Contract:
-        """Return that a rule's verdict is what it means, and whether it has changed."""
+        """Return that a rule's verdict is what the rule means, and whether it has changed."""
         name = self._layout.verdicts[rule.index]
         fors = self._predicates.fors(rule.condition)
         contract = Contract(["\\valid(m)"])
@@ -56,7 +56,7 @@ class RuleContracts:
         return contract
 
     def judge_by(self, message: MessageView) -> Contract:
-        """Return that the rules that read a topic are judged, and whether a verdict changes."""
+        """Return that the rules that read a topic are evaluated, and whether a verdict changes."""
         rules = [each for each in self._program.rules if each.index in message.rules]
         contract = self._judge(rules)
         changed = self._changes.changed(self._layout.verdicts[each.index] for each in rules)
@@ -64,11 +64,11 @@ class RuleContracts:
         return contract
 
     def judge_all(self) -> Contract:
-        """Return that all rules are judged."""
+        """Return that all rules are evaluated."""
         return self._judge(self._program.rules)
 
     def _judge(self, rules: Sequence[Rule]) -> Contract:
-        """Return that some rules are judged; all is written out, as for :meth:`act`."""
+        """Return that some rules are evaluated; all is written out, as for :meth:`act`."""
         names = [self._layout.verdicts[each.index] for each in rules]
         turned = [self._layout.turned[each.index] for each in rules]
         fors = [each for rule in rules for each in self._predicates.fors(rule.condition)]
@@ -83,7 +83,7 @@ class RuleContracts:
         return contract
 
     def settle(self, action: Action) -> Contract:
-        """Return that an action is reset if that is asked for and all its causes are over."""
+        """Return that an action is reset if a reset is requested and all its causes are over."""
         active = self._layout.active[action.index]
         conditions = [self._layout.conditions[each] for each in action.triggered_by]
         read = [active, *conditions]
@@ -101,7 +101,7 @@ class RuleContracts:
         return contract
 
     def behave(self, behaviour: Behaviour) -> Contract:
-        """Return the contract of the function that runs a behaviour, and those within it."""
+        """Return the contract of the function that runs a behaviour, and those nested in it."""
         group = self.emissions.closure(behaviour)
         fors = [each for one in group for each in self._predicates.fors(one.condition)]
         changed = [self._layout.conditions[each.index] for each in group] + self._touched(group)
@@ -119,7 +119,7 @@ class RuleContracts:
         return contract
 
     def act(self) -> Contract:
-        """Return that conditions are what they mean, and what is run, reset and emitted.
+        """Return that conditions have their verdicts, and what is run, reset and emitted.
 
         All is written out: of what it changes field by field, no predicate is seen to hold.
         """
@@ -142,7 +142,7 @@ class RuleContracts:
         return contract
 
     def evaluate(self) -> Contract:
-        """Return that all is judged, and acted upon."""
+        """Return that all rules are evaluated and all behaviours have run."""
         contract = Contract(["\\valid(m)", *SOUND, "m->now <= m->due"], list(ALL))
         contract.ensures += [*SOUND, KEPT_BY_JUDGING, "m->started == 1", "judged(m)", "acted(m)"]
         contract.ensures += [LATCHED_KEPT, VERDICTS_DATED, *DONE, INTERVALS_RUN_ON]
@@ -150,7 +150,7 @@ class RuleContracts:
         return contract
 
     def _acted(self) -> list[str]:
-        """Return what each behaviour's condition is worth."""
+        """Return the verdict of each behaviour's condition."""
         return [all_of(self._predicates.acted(each)) for each in self._behaviours]
 
     def kept_called(self, action: Action) -> Iterator[str]:
@@ -167,13 +167,13 @@ class RuleContracts:
         return [*_FIELD.findall(text), *self._sinces(self._predicates.fors(condition))]
 
     def _ranges(self, names: Iterable[str]) -> str:
-        """Return that fields are in range, each said once."""
+        """Return that fields are in range, each once."""
         return all_of(self._predicates.ranges(dict.fromkeys(names)))
 
     def _with_own_intervals(self, contract: Contract, fors: Sequence[For]) -> None:
-        """Add what becomes of the intervals of a condition, and of the next deadline.
+        """Add the changes of the intervals of a condition, and of the next deadline.
 
-        They begin now, run on or are cleared, and stay in range and in time.
+        They begin now, continue or are cleared, and stay in range and in time.
         """
         sinces = self._sinces(fors)
         if sinces:

@@ -1,4 +1,4 @@
-"""The functions that judge rules and run behaviours."""
+"""The functions that evaluate rules and run behaviours."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from deros.monitor.ir import Action, Behaviour, Condition, For, Program, Rule, T
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """A place in the rules that makes an event: a call, or the declaration of an action."""
+    """A place in the rules that emits an event: a call, or the declaration of an action."""
 
     action: int
     behaviour: int | None
@@ -26,7 +26,7 @@ class Site:
 
 @dataclass(frozen=True, slots=True)
 class Sites:
-    """All places that make events, numbered; ``calls`` by behaviour and place in its body."""
+    """All places that emit events, numbered; ``calls`` by behaviour and place in its body."""
 
     rows: tuple[Site, ...]
     calls: dict[tuple[int, int], int]
@@ -34,7 +34,7 @@ class Sites:
 
 
 def sites(program: Program) -> Sites:
-    """Return the places that make events: the calls from top to bottom, then the declarations."""
+    """Return the places that emit events: the calls from top to bottom, then the declarations."""
     rows: list[Site] = []
     calls: dict[tuple[int, int], int] = {}
     for behaviour in walk.behaviours(program):
@@ -53,7 +53,7 @@ def sites(program: Program) -> Sites:
 
 @dataclass(frozen=True, slots=True)
 class Function:
-    """A function of the emitted text: the comment above it, and the lines of its body."""
+    """A function of the emitted text: its comment, and the lines of its body."""
 
     name: str
     comment: tuple[str, ...]
@@ -61,7 +61,7 @@ class Function:
 
 
 def judge(program: Program, layout: Layout, rule: Rule) -> Function:
-    """Return the function that judges a rule and tells whether its verdict has changed."""
+    """Return the function that evaluates a rule and returns whether its verdict has changed."""
     conditions = Conditions(program, layout)
     verdict = layout.verdicts[rule.index]
     arguments = (f"&m->{verdict}", f"&m->{layout.turned[rule.index]}", "m->now")
@@ -144,7 +144,7 @@ def _trigger(layout: Layout, item: Trigger, site: int, program: Program) -> Iter
 def settle(layout: Layout, action: Action, places: Sites) -> list[str]:
     """Return the lines that reset an action if it is active and its reset ran, if it needs one.
 
-    They refuse to unless each condition that triggers it is known to be false.
+    The reset is refused unless each condition that triggers it is known to be false.
     """
     site, active = places.declarations[action.index], layout.active[action.index]
     asked = [f"m->{active}"]

@@ -1,8 +1,8 @@
-"""What is to be proved of the functions that read laser scans, in ACSL.
+"""The contracts of the functions that read laser scans, in ACSL.
 
-What a beam shows, whether a scan is usable and which distance is the nearest each have a name that
-callers are told of (see :mod:`quantities <deros.generators.monitor.c.quantities>`); what the name
-stands for is proved of the function itself.
+The range of a beam, the usability of a scan and the nearest range each have a predicate that
+callers rely on (see :mod:`quantities <deros.generators.monitor.c.quantities>`); its formula
+is proved of the function itself.
 """
 
 from __future__ import annotations

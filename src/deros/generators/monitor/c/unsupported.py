@@ -1,4 +1,4 @@
-"""What rules may say and C cannot do; with what compares two texts, all that is refused."""
+"""Rules that C cannot express; these are rejected, as are comparisons of two texts."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ _LIBRARY = ("fabs",)
 
 
 def refuse_unsupported(program: Program) -> None:
-    """Refuse what would not mean in C what it means.
+    """Reject rules that C would give another meaning.
 
     Raises:
-        GenerationError: such a thing is in the program.
+        GenerationError: the program has such a rule.
     """
     refuse_unknown(program, knows, "C")
     for condition, span in rule_parts(program):
@@ -62,7 +62,7 @@ def _refuse(message: str, span: Span, hint: str = "") -> NoReturn:
 
 
 def _refuse_integer(program: Program, condition: Condition, span: Span) -> None:
-    """Refuse a function of integers that has a text for numbers of floating point alone."""
+    """Reject a function of integers that C has for floating-point numbers only."""
     for value in walk.values([condition]):
         if not isinstance(value, Apply):
             continue
@@ -76,7 +76,7 @@ def _refuse_integer(program: Program, condition: Condition, span: Span) -> None:
 
 
 def _refuse_wide(program: Program, condition: Condition, span: Span) -> None:
-    """Refuse what C would compute in fewer digits than the meaning asks for."""
+    """Reject functions of 64-bit integers, which a double does not hold."""
     for term in walk.values([condition]):
         if not isinstance(term, Apply) or FUNCTIONS[term.function].argument is not Argument.NUMBER:
             continue
@@ -86,7 +86,7 @@ def _refuse_wide(program: Program, condition: Condition, span: Span) -> None:
 
 
 def _refuse_mixed(program: Program, condition: Condition, span: Span) -> None:
-    """Refuse comparisons in which C would convert a 64-bit integer to what does not hold it."""
+    """Reject comparisons in which C would convert a 64-bit integer to a narrower type."""
     values = compared(condition)
     types = {type_of(program, each) for each in values}
     if len(types) > 1 and any(_is_wide(program, each) for each in values):
@@ -101,7 +101,7 @@ def _refuse_great(item: Trigger) -> None:
 
 
 def _is_wide(program: Program, value: ValueExpression) -> bool:
-    """Tell whether a value is an integer that a double does not hold."""
+    """Return whether a value is an integer that a double does not hold."""
     match value:
         case Read():
             return program.leaves[value.leaf].type.base in ("int64", "uint64")

@@ -21,7 +21,7 @@ from deros.monitor.memories import SAMPLES
 
 @dataclass(frozen=True, slots=True)
 class Timeout:
-    """A timeout: its duration, the fields that it concerns, and the function that looks at it."""
+    """A timeout: its duration, the fields that it concerns, and the function that checks it."""
 
     input: str
     function: str
@@ -88,8 +88,8 @@ class MessageView:
 
     Attributes:
         rules: the indices of the rules that a message can change; ``judges`` their functions.
-        judge: the function that judges them all; empty if there are none.
-        after: the function that does so if there is news; empty if there are none.
+        judge: the function that evaluates them all; empty if there are none.
+        after: the function that does so if a value has changed; empty if there are none.
     """
 
     handler: Handler
@@ -101,7 +101,7 @@ class MessageView:
 
 @dataclass(frozen=True, slots=True)
 class TextTable:
-    """A text as the rules know it: the places, from 1, of the constants it is compared with."""
+    """A text that rules compare: the positions, from 1, of the constants it is compared with."""
 
     name: str
     texts: tuple[tuple[str, int], ...]
@@ -109,7 +109,7 @@ class TextTable:
 
 @dataclass(frozen=True, slots=True)
 class ActionView:
-    """An action: its name, and the field that tells whether it is active, if it can be reset."""
+    """An action: its name, and the flag that it is active, if it can be reset."""
 
     name: str
     enumerator: str
@@ -131,7 +131,7 @@ class ArgumentRows:
 
 @dataclass(frozen=True, slots=True)
 class MonitorView:
-    """All that the templates print; see the parts."""
+    """The data of the templates."""
 
     program: Program
     layout: Layout
@@ -151,12 +151,12 @@ class MonitorView:
 
     @property
     def prefix(self) -> str:
-        """What public names begin with."""
+        """The prefix of public names."""
         return self.layout.prefix
 
     @property
     def macro(self) -> str:
-        """What macros and enumerators begin with."""
+        """The prefix of macros and enumerators."""
         return self.layout.macro
 
     @property
@@ -206,7 +206,7 @@ class MonitorView:
             yield f"{{{', '.join(cells)}}}"
 
     def resets_before(self, action: ActionView) -> list[str]:
-        """Return what resets the actions that stand before one."""
+        """Return the actions that reset those declared before one."""
         return [each.reset_by for each in self.actions[: self.actions.index(action)]]
 
     @property
@@ -221,7 +221,7 @@ class MonitorView:
 
     @property
     def has_arrays(self) -> bool:
-        """Whether a message hands in an array."""
+        """Whether a message passes an array."""
         return any(
             parameter.form == "array"
             for message in self.messages
@@ -233,7 +233,7 @@ def monitor_view(program: Program) -> MonitorView:
     """Return the view of a program.
 
     Raises:
-        GenerationError: the rules ask for what a monitor of fixed size, or C, cannot do.
+        GenerationError: the rules need more than a monitor of fixed size, or C, can do.
     """
     refuse_unsupported(program)
     layout = lay_out(program)

@@ -1,6 +1,6 @@
-"""What is to be proved of functions that remember several messages, in ACSL.
+"""The contracts of functions that remember several messages, in ACSL.
 
-An angle without its jumps, and rates over a span of time; what they keep is of fixed size.
+They are unwrapped angles and rates over a span of time; their memory has a fixed size.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _BEFORE = "\\at(w->stamps[k], Pre)"
 _CHANGE = change_per_second("\\at(w->values[k], Pre)", f"time_between({_BEFORE}, stamp)")
 
 UNWRAPPED = f"""\
-/* An angle without its jumps: the total goes on the shortest way round. */
+/* An unwrapped angle: the total changes by the shortest way. */
 /*@ requires \\valid(last) && \\valid(total) && \\separated(last, total);
     assigns *last, *total;
     ensures same(*last, value);
@@ -36,7 +36,7 @@ BETWEEN = """\
 """
 
 STAMP_OF = """\
-/* The time of a header; negative if it is zero, which means that nobody has stamped it. */
+/* The time of a header; negative if it is zero, which means that it has no stamp. */
 /*@ assigns \\nothing;
     ensures 0 <= sec <= INT32_MAX && 0 <= nanosec < 1000000000 && sec + nanosec > 0
       ==> \\result == (sec * 1000000000) + nanosec;
@@ -45,7 +45,7 @@ STAMP_OF = """\
 """
 
 BASE_OF = f"""\
-/* The newest sample that lies the span back; else the oldest one. */
+/* The newest sample that is at least the span old; else the oldest one. */
 /*@ requires \\valid_read(w) && {_FILLED};
     assigns \\nothing;
     ensures \\result == 0 || \\result < w->count;
@@ -110,7 +110,7 @@ KEEP = f"""\
 """
 
 RATE_OVER = f"""\
-/* The change per second since the newest sample that lies the span back; none without one. */
+/* The change per second since the newest sample at least the span old; NaN without one. */
 /*@ requires \\valid(w) && {_FILLED} && 0 < span <= $_LATEST;
     assigns {_ALL}, w->latest;
     ensures {_FILLED};

@@ -1,4 +1,4 @@
-"""The method that acts: all behaviours from top to bottom, then the resets they ask for.
+"""The method that runs all behaviours from top to bottom, then the resets they request.
 
 A behaviour is True or False; one on whose falsehood a reset depends is None while it is unknown.
 """
@@ -16,12 +16,12 @@ from deros.monitor.ir import Action, Behaviour, Program, RuleRef, Trigger
 
 
 def act_lines(program: Program, layout: Layout) -> list[str]:
-    """Return the body of the method that acts."""
+    """Return the body of the method that runs behaviours."""
     return _Writer(program, layout).act()
 
 
 def latched_lines(program: Program, layout: Layout) -> list[str]:
-    """Return what ``reset()`` does to the latched actions."""
+    """Return the lines of ``reset()`` for the latched actions."""
     return _Writer(program, layout).latched()
 
 
@@ -137,7 +137,7 @@ class _Writer:
         return comment(8, f"Action {action.name} {what}", action.span, "")
 
     def _settle(self, action: Action) -> list[str]:
-        """Return the statements that reset an action, if nothing that triggers it refuses it."""
+        """Return the statements that reset an action, unless a condition refuses it."""
         assert action.span is not None
         name, line = repr(action.name), str(action.span.line)
         holds = [f"self._{self._layout.holds[each]}" for each in action.triggered_by]

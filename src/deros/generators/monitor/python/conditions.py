@@ -1,6 +1,6 @@
 """Three-valued conditions as two-valued questions: is it true, is it false?
 
-Both answers are no where the condition is unknown. As unknown numbers are held as NaN, with which
+Both answers are no if the condition is unknown. As unknown numbers are stored as NaN, with which
 every comparison is false, most conditions need no test for *unknown* at all: ``speed > 0.5`` is the
 question whether it is true, ``speed <= 0.5`` whether it is false.
 """
@@ -42,7 +42,7 @@ from deros.monitor.ir import (
 
 
 class Conditions:
-    """Emits the conditions of one program. Names stand for local copies of what is remembered."""
+    """Emits the conditions of one program. Names are those of local copies of the attributes."""
 
     def __init__(self, program: Program, layout: Layout) -> None:
         """Emit for ``program`` with the names of ``layout``."""

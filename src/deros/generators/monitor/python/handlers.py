@@ -1,4 +1,4 @@
-"""What a message does to its inputs: one handler per topic."""
+"""The effect of messages on their inputs: one handler per topic."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ def handlers(
 ) -> tuple[Handler, ...]:
     """Return the handlers of a program, in the order of its topics.
 
-    Those judge nothing when a message says nothing new, unless something is ``known_at_start``:
-    then the first message, whatever it says, is the first event.
+    They evaluate nothing if a message changes no value, unless a verdict is ``known_at_start``:
+    then the first message, whatever its values, is the first event.
     """
     methods = UniqueNames(frozenset())
     return tuple(
@@ -152,7 +152,7 @@ class _Writer:
         return lines
 
     def _presence(self, each: Input) -> list[Logic]:
-        """Return the tests for NaN: a sensor's, or the caller's for an element not there."""
+        """Return the tests for NaN: from the sensor, or from the caller for a missing element."""
         tests: list[Logic] = []
         for index in each.leaves:
             leaf = self._program.leaves[index]
@@ -264,7 +264,7 @@ class _Writer:
         ]
 
     def _observe(self, each: Input, indent: int) -> list[str]:
-        """Return the statements that remember a message, and find whether it says anything new."""
+        """Return the statements that store a message, and detect whether it changes a value."""
         layout, index = self._layout, each.index
         statements: list[str] = []
         if index in layout.counted:
@@ -284,7 +284,7 @@ class _Writer:
         return lines + self._news(slots, indent)
 
     def _heard(self, each: Input, timeout_ns: int, has_values: bool) -> list[str]:
-        """Return the statements that start the timeout anew."""
+        """Return the statements that restart the timeout."""
         silent, missing = self._layout.silent[each.index], self._layout.missing[each.index]
         lines = [
             f"self._{self._layout.heard[each.index]} = t",
@@ -299,7 +299,7 @@ class _Writer:
         return [*lines, "else:", "    return"] if self._tells_news else lines
 
     def _news(self, slots: Sequence[tuple[str, str]], indent: int) -> list[str]:
-        """Return the statements that take the values over, after a look whether they differ."""
+        """Return the statements that store the values if they differ."""
         blank = " " * indent
         stores = [f"{blank}{attribute} = {local}" for attribute, local in slots]
         if not slots or not self._tells_news:
@@ -348,7 +348,7 @@ class _Writer:
 
 
 def needed_texts(function: Apply) -> tuple[str, ...]:
-    """Return the names of the texts that the text of a function, or its call, needs beside it."""
+    """Return the names of the texts that the text of a function, or its call, needs."""
     row = FUNCTIONS[function.function]
     is_stamped = row.over_span and len(function.arguments) > 2
     return (*row.python_needs, "stamp_of") if is_stamped else row.python_needs
@@ -359,7 +359,7 @@ def _call_of_unit(row: Function) -> str:
 
 
 def _stamp(header: Sequence[str]) -> str:
-    """Return when a message was stamped, or if it has no header, when it came."""
+    """Return the stamp of a message, or its time of arrival if it has no header."""
     return f"stamp_of({', '.join(header)})" if header else "t"
 
 
@@ -379,7 +379,7 @@ def _is_old(attribute: str, local: str) -> Logic:
 
 
 def _call_at(wait_ns: int) -> list[str]:
-    """Return the statements that make the deadline one that is so long after now."""
+    """Return the statements that schedule the deadline at a time after now."""
     return [f"if t + {wait_ns:_} < self._due:", f"    self._due = t + {wait_ns:_}"]
 
 

@@ -1,4 +1,4 @@
-"""What other parts of the generators use of the monitor in Python."""
+"""The interface of the monitor in Python for other generators."""
 
 from deros.generators.monitor.python.handlers import Handler, Parameter
 from deros.generators.monitor.python.render import render_monitor

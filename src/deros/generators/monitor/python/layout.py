@@ -1,4 +1,4 @@
-"""What the emitted monitor remembers: which attribute holds what, and what it is called."""
+"""The symbol table of the emitted monitor: its attributes and their names."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from deros.monitor.ir import (
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """One remembered value: the attribute is ``_name``, a local copy of it ``name``.
+    """One stored value: the attribute is ``_name``, a local copy of it ``name``.
 
     ``unknown`` is how *unknown* is written: ``NAN`` for numbers, with which every comparison is
     false, and ``None`` for all else.
@@ -38,7 +38,7 @@ class Slot:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The names of all that a program's monitor remembers.
+    """The names of all attributes of a program's monitor.
 
     Attributes:
         names: of them all, and of the methods.
@@ -62,9 +62,9 @@ class Layout:
         active: of each action that can be reset.
         ran: of each action that resets another, whether it ran in the present event.
         forget: of each input with values, the method that makes them unknown.
-        why: of each rule, the method that tells why it is true.
-        why_not: of each rule that a behaviour negates, the method that tells why it is false.
-        why_holds: of each behaviour, the method that tells why it holds.
+        why: of each rule, the method that returns why it is true.
+        why_not: of each rule that a behaviour negates, the method that returns why it is false.
+        why_holds: of each behaviour, the method that returns why it holds.
     """
 
     names: UniqueNames
@@ -91,7 +91,7 @@ class Layout:
 
 
 def lay_out_memory(program: Program) -> Layout:
-    """Name all that the monitor of a program remembers, in the program's order."""
+    """Name the attributes of a program's monitor, in the program's order."""
     layout = Layout(
         UniqueNames(RESERVED),
         three_valued=frozenset(_three_valued(program)),
@@ -214,7 +214,7 @@ def _slot(program: Program, value: ValueExpression, names: UniqueNames) -> Slot:
 
 
 def _three_valued(program: Program) -> set[int]:
-    """Return the rules of which some behaviour, or a reset, asks whether they are false."""
+    """Return the rules whose falsehood a behaviour or a reset depends on."""
     found: set[int] = set()
     refusing = walk.refusing(program)
 

@@ -1,4 +1,4 @@
-"""Names of the emitted module that nothing made from a model gets."""
+"""Names of the emitted module that are reserved: no name from a model is one of them."""
 
 from __future__ import annotations
 

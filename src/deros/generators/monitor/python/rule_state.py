@@ -1,4 +1,4 @@
-"""What the emitted monitor tells of itself: its rules' states, and whether it is waiting."""
+"""The states of rules that the emitted monitor reports, and whether it is waiting."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 
 def rule_state_lines(program: Program, layout: Layout) -> list[str]:
-    """Return the items of the tuple that ``explain()`` returns, one call a rule."""
+    """Return the items of the tuple that ``explain()`` returns, one call per rule."""
     lines: list[str] = []
     for rule in program.rules:
         reads = [
@@ -45,7 +45,7 @@ def rule_state_lines(program: Program, layout: Layout) -> list[str]:
 
 
 def waiting_lines(layout: Layout) -> list[str]:
-    """Return the statement that tells whether an input has yet to come for the first time."""
+    """Return the statement that returns whether an input has yet to come for the first time."""
     inputs = [
         all_of((Atom(f"self._{layout.silent[n]}"), Atom(f"not self._{layout.missing[n]}")))
         for n in layout.silent

@@ -28,7 +28,7 @@ class Judge:
 
     @property
     def subject(self) -> str:
-        """What its rules are about, in a few words."""
+        """The topics of its rules, in a few words."""
         if not self.topics:
             return "constants"
         return self.topics[0] if len(self.topics) == 1 else f"{len(self.topics)} topics together"
@@ -127,7 +127,7 @@ def interval_lines(conditions: Conditions, layout: Layout, condition: Condition)
 
 
 def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:
-    """Return the statements that find a rule's verdict, and note when it changes."""
+    """Return the statements that compute a rule's verdict, and record when it changes."""
     held, since = f"self._{layout.verdicts[rule.index]}", f"self._{layout.since[rule.index]}"
     true = conditions.true(rule.condition)
     if rule.index not in layout.three_valued:

@@ -1,4 +1,4 @@
-"""Running the generated monitor in this process, driven and answering as the reference engine."""
+"""Runs the generated monitor in this process, with the interface of the reference engine."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class GeneratedMonitor:
     """The generated Python monitor of a program, with the methods of the reference engine.
 
     Attributes:
-        events: all that has happened since the start, in order.
+        events: all events since the start, in order.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class GeneratedMonitor:
         return waiting
 
     def message(self, t_ns: int, topic: str, leaves: Mapping[int, LeafValue]) -> list[Event]:
-        """Take a message and return what happened.
+        """Process a message and return the events.
 
         Raises:
             KeyError: no input of the program is on ``topic``.
@@ -65,24 +65,24 @@ class GeneratedMonitor:
         return self.events[before:]
 
     def advance(self, t_ns: int) -> list[Event]:
-        """Settle all that is due up to and including ``t_ns`` and return what happened."""
+        """Process all deadlines up to and including ``t_ns`` and return the events."""
         before = len(self.events)
         self._monitor.advance(t_ns)
         return self.events[before:]
 
     def reset(self, t_ns: int) -> bool:
-        """Reset every latched action that is active; tell whether none was refused."""
+        """Reset every latched action that is active; return whether none was refused."""
         done: bool = self._monitor.reset(t_ns)
         return done
 
     def enable(self, t_ns: int, behaviour: str, enabled: bool) -> list[Event]:
-        """Enable or disable an optional behaviour and return what happened."""
+        """Enable or disable an optional behaviour and return the events."""
         before = len(self.events)
         self._monitor.enable(t_ns, behaviour, enabled)
         return self.events[before:]
 
     def explain(self) -> Explanation:
-        """Return what each rule is worth since the last event, and why each behaviour holds."""
+        """Return the verdict of each rule as of the last event, and why each behaviour holds."""
         told = self._monitor.explain()
         return Explanation(tuple(RuleState(*each) for each in told.rules), told.causes)
 

@@ -35,7 +35,7 @@ class Forget:
 
 @dataclass(frozen=True, slots=True)
 class Timeout:
-    """An input's timeout: what is remembered of it, and what to do when it passes."""
+    """An input's timeout: its attributes, and the method that is called when it expires."""
 
     duration_ns: int
     heard: str
@@ -45,35 +45,35 @@ class Timeout:
 
     @property
     def end(self) -> str:
-        """The instant at which it passes."""
+        """The time at which it expires."""
         return f"self._{self.heard} + {self.duration_ns:_}"
 
 
 @dataclass(frozen=True, slots=True)
 class MonitorView:
-    """All that the template prints.
+    """The data of the template.
 
     Attributes:
         name: of the program, as the first line of the module has room for it.
         functions: definitions of the functions that the rules use.
         uses_sequences: whether an array comes into a handler or a function.
-        uses_numpy: whether its numbers are looked at.
-        uses_cache: whether something computed of it is kept.
+        uses_numpy: whether its numbers are read.
+        uses_cache: whether a result that depends on it is cached.
         slots: the names of the attributes, in order.
-        initial: pairs of attribute and value at the start, of what a clock step leaves alone.
-        restarted: the same of what it does not.
+        initial: pairs of attribute and value at the start, for those that a clock step keeps.
+        restarted: the same for those that it resets.
         forgets, timeouts: of the inputs.
         handlers: one per topic.
         judges: the methods that evaluate rules, and by topic which of them a message calls.
-        behaviours: the name of each, and the attribute that tells whether its condition holds.
+        behaviours: the name of each, and the flag that its condition holds.
         refusing: the same of those that can refuse a reset.
         rules_of: the name of each, and the rules that its condition names.
         optional: the names of those that can be disabled.
-        explained: the lines of what ``explain()`` says of each rule.
-        whys: the methods that tell why rules are true or false, and why behaviours hold.
-        why_holds: the name of each behaviour, its attribute, and the method that tells why.
-        says_unknown: whether one of them tells which terms have no value.
-        joins_causes: whether one of them asks whether several parts have causes.
+        explained: the lines of the rule states that ``explain()`` returns.
+        whys: the methods that return why rules are true or false, and why behaviours hold.
+        why_holds: the name of each behaviour, its attribute, and the method that returns why.
+        says_unknown: whether one of them names the terms without a value.
+        joins_causes: whether one of them combines the causes of several parts.
         waiting: the lines of what ``waiting`` returns.
         act: the lines of all behaviours and resets.
         ends: instants, as attributes or sums, that are deadlines while they lie ahead.
@@ -111,7 +111,7 @@ class MonitorView:
 
 
 def monitor_view(program: Program) -> MonitorView:
-    """Return the view of a program; the glue of a node finds the handlers' signatures in it.
+    """Return the view of a program; safety nodes read the handlers' signatures from it.
 
     Raises:
         GenerationError: if a rule calls a function that does not exist in Python.

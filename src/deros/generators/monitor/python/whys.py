@@ -1,4 +1,4 @@
-"""The methods that tell why a rule is true, or false, and why a behaviour holds."""
+"""The methods that return why a rule is true, or false, and why a behaviour holds."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ Key = TypeVar("Key")
 
 @dataclass(frozen=True, slots=True)
 class Why:
-    """A method that tells why something is as it is.
+    """A method that returns causes.
 
     Attributes:
         method: its name, without the leading ``_``.
-        subject: what it tells the causes of.
+        subject: the rule or behaviour whose causes it returns.
         lines: of its body.
     """
 
@@ -64,7 +64,7 @@ def whys(program: Program, layout: Layout) -> Iterator[Why]:
 
 
 class _Emitter:
-    """Emits plans. Conditions read the attributes themselves, as causes are told seldom."""
+    """Emits plans. Conditions read the attributes themselves, as causes are seldom requested."""
 
     def __init__(self, program: Program, layout: Layout) -> None:
         self._program = program
@@ -86,7 +86,7 @@ class _Emitter:
         self._parts = 0  # local variables of a method
 
     def body(self, plan: Plan) -> list[str]:
-        """Return the statements that tell the causes of what is known to be so."""
+        """Return the statements that collect the causes of a condition that is known to hold."""
         self._parts = 0
         tests = list(self._tests(plan))
         if not tests:
@@ -96,7 +96,7 @@ class _Emitter:
         return [*lines, "        return tuple(found)"]
 
     def _tests(self, plan: Plan, known: bool = True) -> Iterator[str]:
-        """Yield the conditions that telling asks for."""
+        """Yield the conditions that a plan reads."""
         match plan:
             case Say() | SayRule():
                 if not known:
@@ -117,7 +117,7 @@ class _Emitter:
     # Statements, which append to what was found ---------------------------------------------------
 
     def _block(self, indent: int, plan: Plan, known: bool) -> list[str]:
-        """Return the statements of a plan; ``known``: of what is known to be so."""
+        """Return the statements of a plan; ``known``: the condition is known to hold."""
         match plan:
             case Say() | SayRule() if known:
                 return lay_out_call(indent, "found.append(", [self._cause(plan)])
