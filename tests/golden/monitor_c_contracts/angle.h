@@ -9,7 +9,7 @@
     admit ensures is_roll(\result, ux, uy, uz, uw); */
 static double roll(double ux, double uy, double uz, double uw);
 
-/* Settles a message of /imu that comes now. */
+/* Processes a message of /imu that arrives now. */
 /*@ requires \valid(m);
     requires sane(m);
     assigns *m, emitted;

@@ -19,7 +19,7 @@
       SMALL_TRUE && \old(m->e_r) == SMALL_TRUE) ? m->now : \old(m->e_r_turned)); */
 static bool judge_e_r(small_monitor *m);
 
-/* Settles a message of /odom that comes now. */
+/* Processes a message of /odom that arrives now. */
 /*@ requires \valid(m);
     requires sane(m);
     assigns *m, emitted;

@@ -4,7 +4,7 @@
       (m->e_r == SMALL_TRUE <==> (m->v_rate_known != 0 && (m->v_rate_above_2 != 0))) &&
       (m->e_r == SMALL_FALSE <==> (m->v_rate_known != 0 && !(m->v_rate_above_2 != 0))); */
 
-/* The change per second since the message before; none between two of one instant. */
+/* The change per second since the message before; NaN for two at the same time. */
 /*@ requires \valid(last) && \valid(last_t) && \separated(last, last_t);
     requires 0 <= t <= INT64_MAX && 0 <= *last_t <= INT64_MAX;
     assigns *last, *last_t;

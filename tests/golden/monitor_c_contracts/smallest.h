@@ -1,5 +1,5 @@
 /*
- * What is to be proved of the functions of small_monitor.c, written from the rules.
+* The contracts of the functions of small_monitor.c, written from the rules.
  *
  * Frama-C reads it, after the header; no compiler does. Conditions are given by when they are true
  * and when they are false; otherwise they are unknown. What is not mentioned under assigns stays
@@ -126,21 +126,21 @@ static int64_t earlier(int64_t a, int64_t b);
     ensures \result == (t < 0 ? 0 : t > SMALL_LATEST ? SMALL_LATEST : t); */
 static int64_t bounded(int64_t t);
 
-/* Stores a value; tells whether it is another one than before, or there was news already. */
+/* Stores a value; returns whether it has changed, or another one had. */
 /*@ requires \valid(place);
     assigns *place;
     ensures *place == value;
     ensures \result != 0 <==> news != 0 || value != \old(*place); */
 static bool store_truth(bool *place, bool value, bool news);
 
-/* What holds, if it is known. */
+/* The verdict of a condition, which is unknown unless its values are known. */
 /*@ assigns \nothing;
     ensures is_verdict(\result);
     ensures \result == SMALL_TRUE <==> known != 0 && holds != 0;
     ensures \result == SMALL_FALSE <==> known != 0 && holds == 0; */
 static small_verdict truth_of(bool known, bool holds);
 
-/* Takes a rule's verdict over, and tells whether it is another one than before. */
+/* Stores a rule's verdict; returns whether it has changed. */
 /*@ requires \valid(held) && \valid(since) && \separated(held, since);
     assigns *held, *since;
     ensures *held == verdict;
@@ -149,7 +149,7 @@ static small_verdict truth_of(bool known, bool holds);
     ensures \result != 0 <==> verdict != \old(*held); */
 static bool turned(small_verdict verdict, small_verdict *held, int64_t *since, int64_t now);
 
-/* Makes the values of input b unknown; tells whether they were known. */
+/* Makes the values of input b unknown; returns whether they were known. */
 /*@ requires \valid(m);
     requires ((m->b_known == 0 || m->b_known == 1));
     assigns m->b_known;
@@ -196,7 +196,7 @@ static bool judge_e_r(small_monitor *m);
       \old(m->behaviour_1_condition), m->behaviour_1_condition); */
 static void behave_behaviour_1(small_monitor *m);
 
-/* Runs the behaviours whose conditions turned true, then the resets that they asked for. */
+/* Runs the behaviours whose conditions turned true, then the resets that they request. */
 /*@ requires \valid(m);
     requires (0 <= m->now <= SMALL_LATEST && is_verdict(m->e_r) &&
       is_verdict(m->behaviour_1_condition));
@@ -225,7 +225,7 @@ static void behave_behaviour_1(small_monitor *m);
     disjoint behaviors; */
 static void act(small_monitor *m, bool changed);
 
-/* Judges all rules. */
+/* Evaluates all rules. */
 /*@ requires \valid(m);
     requires (0 <= m->now <= SMALL_LATEST && (m->b_known == 0 || m->b_known == 1) && (m->b == 0 ||
       m->b == 1));
@@ -240,7 +240,7 @@ static void act(small_monitor *m, bool changed);
       SMALL_TRUE && \old(m->e_r) == SMALL_TRUE) ? m->now : \old(m->e_r_turned))); */
 static void judge_all(small_monitor *m);
 
-/* Settles one event: all rules, then all behaviours. */
+/* Processes one event: all rules, then all behaviours. */
 /*@ requires \valid(m);
     requires ranged(m);
     requires timeouts_in_time(m, m->due);
@@ -277,7 +277,7 @@ static void evaluate(small_monitor *m);
     ensures (m->due == SMALL_NEVER); */
 static void restart(small_monitor *m, int64_t from);
 
-/* Goes to the next deadline, settles all that ends there, and finds the one after it. */
+/* Advances to the next deadline, processes all that ends there, and finds the one after it. */
 /*@ requires \valid(m);
     requires sane(m);
     requires is_end(m, m->due);
@@ -291,7 +291,7 @@ static void restart(small_monitor *m, int64_t from);
     ensures kept_by_deadlines{Old, Here}(m); */
 static void reach_deadline(small_monitor *m);
 
-/* Settles the deadlines up to t in the order of time. */
+/* Processes the deadlines up to t in order. */
 /*@ requires \valid(m);
     requires sane(m);
     requires m->now <= t <= SMALL_LATEST;
@@ -303,7 +303,7 @@ static void reach_deadline(small_monitor *m);
     ensures kept_by_deadlines{Old, Here}(m); */
 static void catch_up(small_monitor *m, int64_t t);
 
-/* Settles a backward step of the clock, to t. */
+/* Processes a backward step of the clock, to t. */
 /*@ requires \valid(m);
     requires sane(m);
     requires 0 <= t < m->now;
@@ -315,7 +315,7 @@ static void catch_up(small_monitor *m, int64_t t);
     ensures kept_by_time{Old, Here}(m); */
 static void step_back(small_monitor *m, int64_t t);
 
-/* Lets time pass in which nothing is due. */
+/* Advances the time to an instant before the next deadline. */
 /*@ requires \valid(m);
     requires sane(m);
     requires m->now <= t < m->due;
@@ -327,7 +327,7 @@ static void step_back(small_monitor *m, int64_t t);
     ensures nothing_changed{Old, Here}(m); */
 static void pass(small_monitor *m, int64_t t);
 
-/* Brings the monitor to the time of a call. */
+/* Advances the monitor to the time of a call. */
 /*@ requires \valid(m);
     requires sane(m);
     assigns *m, emitted;
@@ -346,7 +346,7 @@ static void pass(small_monitor *m, int64_t t);
     disjoint behaviors; */
 static void arrive(small_monitor *m, int64_t t);
 
-/* Makes all that a restart leaves alone what it is before the first event. */
+/* Initialises all fields that a restart does not set. */
 /*@ requires \valid(m);
     assigns *m;
     ensures (m->owner == owner && m->now == time_of(t) && m->e_r == SMALL_UNKNOWN &&
@@ -380,7 +380,7 @@ int64_t small_advance(small_monitor *m, int64_t t);
     ensures (\result != 0 <==> (\false)); */
 bool small_waiting(const small_monitor *m);
 
-/* Takes the values of a message of /flag; tells whether they say anything new. */
+/* Takes the values of a message of /flag; returns whether one has changed. */
 /*@ requires \valid(m);
     requires (0 <= m->now <= SMALL_LATEST && (m->b_known == 0 || m->b_known == 1) && (m->b == 0 ||
       m->b == 1));
@@ -394,7 +394,7 @@ bool small_waiting(const small_monitor *m);
     ensures (m->due == \old(m->due) && m->b_known == 1 && m->b == data); */
 static bool observe_b(small_monitor *m, bool data);
 
-/* Judges what a message of /flag can change, and all at the first event. */
+/* Evaluates the rules that a message of /flag can change; all rules at the first event. */
 /*@ requires \valid(m);
     requires ranged(m);
     requires timeouts_in_time(m, m->due);
@@ -454,7 +454,7 @@ static bool observe_b(small_monitor *m, bool data);
     disjoint behaviors; */
 static void after_b(small_monitor *m, bool news);
 
-/* Settles a message of /flag that comes now. */
+/* Processes a message of /flag that arrives now. */
 /*@ requires \valid(m);
     requires sane(m);
     assigns *m, emitted;

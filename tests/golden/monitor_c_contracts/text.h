@@ -4,7 +4,7 @@
       (m->e_r == SMALL_TRUE <==> (m->s_known != 0 && (m->s == 1))) &&
       (m->e_r == SMALL_FALSE <==> (m->s_known != 0 && !(m->s == 1))); */
 
-/* Settles a message of /name that comes now. */
+/* Processes a message of /name that arrives now. */
 /*@ requires \valid(m);
     requires sane(m);
     requires \valid_read(data + (0 .. data_length - 1));

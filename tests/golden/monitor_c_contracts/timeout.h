@@ -9,7 +9,7 @@
 /*@ predicate timeouts_in_time(small_monitor *m, integer due) =
       (m->v_missing == 0 ==> due <= m->v_base + 500000000); */
 
-/* Makes the values of input v unknown; tells whether they were known. */
+/* Makes the values of input v unknown; returns whether they were known. */
 /*@ requires \valid(m);
     requires ((m->v_known == 0 || m->v_known == 1));
     assigns m->v_known;
@@ -17,7 +17,7 @@
     ensures (\result != 0 <==> (\old(m->v_known) != 0)); */
 static bool forget_v(small_monitor *m);
 
-/* Finds whether the timeout of input v has passed. */
+/* Checks whether the timeout of input v has passed. */
 /*@ requires \valid(m);
     requires (0 <= m->now <= SMALL_LATEST && 0 <= m->v_base <= SMALL_LATEST && (m->v_missing == 0
       || m->v_missing == 1) && (m->v_known == 0 || m->v_known == 1));

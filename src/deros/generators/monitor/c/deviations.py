@@ -14,8 +14,10 @@ class Deviation:
 
 
 DEVIATIONS = (
-    Deviation("Directive 4.6", "char, float and double are what messages are made of"),
-    Deviation("Rule 2.3", "the type that checks the monitor's size serves nothing else"),
-    Deviation("Rule 5.9", "monitors that are linked together have static functions of equal names"),
+    Deviation("Directive 4.6", "messages consist of char, float and double"),
+    Deviation("Rule 2.3", "the type that checks the monitor's size has no other use"),
+    Deviation(
+        "Rule 5.9", "monitors that are linked together have static functions of the same names"
+    ),
 )
 """All of them; none is of a guideline that is required or mandatory."""
