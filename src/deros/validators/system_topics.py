@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, report
 from deros.interfaces.names import did_you_mean
-from deros.interfaces.standard_services import OF_EVERY_NODE, OF_MANAGED_NODES
 from deros.interfaces.standard_topics import is_operated, is_shown_only, wrong_type
-from deros.metamodels.flatten import FlatNode, FlatSystem
+from deros.metamodels.flatten import FlatSystem
 from deros.validators.graph import End, Vertex, channels
 from deros.validators.rules_ends import RulesEnds
+from deros.validators.system_services import check_services
 from deros.validators.topic_channels import (
     Channel,
     channel_of,
@@ -58,10 +58,7 @@ def check_topics(
         if not matches[0].sinks:
             misspelt.add(matches[0].name)
     yield from _missing_ends(topics, misspelt, partners)
-    nodes = {node.full_name: node for node in flat.nodes}
-    for channel in found:
-        if channel.vertex[0] != "topic":
-            yield from _missing_server(channel, nodes)
+    yield from check_services(flat, found)
     by_vertex = {channel.vertex: channel for channel in found}
     yield from check_unwired(flat, by_vertex, partners, rules.read.__contains__)
 
@@ -209,45 +206,6 @@ def _names(ends: list[End]) -> str:
 
 def _s(ends: list[End]) -> str:
     return "s" if len(ends) == 1 else ""
-
-
-def _missing_server(channel: Channel, nodes: Mapping[str, FlatNode]) -> Iterator[Diagnostic]:
-    if channel.sinks or channel.open:
-        return
-    name = channel.name
-    owner, _, service = name.rpartition("/")
-    node = nodes.get(owner) if channel.vertex[0] == "service" else None
-    if node is not None and node.type is None:
-        return  # whether it is a managed node is unknown
-    served = _own_service(node, service) if node is not None else None
-    for end in channel.sources:
-        if served is not None:
-            if end.type != served:
-                yield report(
-                    codes.TYPE_MISMATCH,
-                    f"'{name}' joins two types: {end.name} has {end.type.short}, "
-                    f"'{owner}' serves {served.short} like every node of its kind",
-                    end.span,
-                    related=(Related(end.port.port.type_span, "the client is declared here"),),
-                )
-        elif end.wired:
-            yield report(
-                codes.SERVICE_WITHOUT_SERVER,
-                f"no node serves the {channel.vertex[0]} '{name}' that {end.name} calls",
-                end.span,
-                hint=f"'{owner}' is not described as 'lifecycle'"
-                if node is not None and service in OF_MANAGED_NODES
-                else "connect a server to that name; if it is outside the model, "
-                f"declare 'external topic {name}'",
-                related=(Related(end.port.port.span, "the client is declared here"),),
-            )
-
-
-def _own_service(node: FlatNode, service: str) -> InterfaceType | None:
-    """Return the type of a service that a node has without describing it, or ``None``."""
-    if node.type is not None and node.type.lifecycle and service in OF_MANAGED_NODES:
-        return OF_MANAGED_NODES[service]
-    return OF_EVERY_NODE.get(service)
 
 
 # Misspellings -----------------------------------------------------------------------------------
