@@ -136,7 +136,7 @@ def _load(repository: Repository, paths: Iterable[Path]) -> list[LoadedFile]:
 
 
 def _generate(file: LoadedFile, context: Context, target: str = "python") -> Files:
-    generator = discover().find(str(file.language), target)
+    generator = discover().find(file.language.name, target) if file.language else None
     if generator is None:
         raise BuildError(f"no generator makes {target} of {file.path}")
     return generator(file.model, context)
