@@ -1,4 +1,4 @@
-"""What a safety package needs of the safety node, whatever the language."""
+"""The safety node as safety packages use it, in every language."""
 
 from deros.generators.safety_node.node import package_options, safety_node
 from deros.generators.safety_node.view import shared_topics

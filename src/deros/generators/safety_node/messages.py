@@ -1,4 +1,4 @@
-"""What the safety node asks of the messages that it receives."""
+"""Properties of the messages of a safety node."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ from deros.monitor.commands import HEADER
 
 
 def is_stamped(store: InterfaceStore, kind: InterfaceType) -> bool:
-    """Tell whether messages of a type have a header with a time stamp."""
+    """Return whether messages of a type have a header with a time stamp."""
     definition = store.message(kind)
     return definition is not None and definition.field("header") == FieldType(HEADER)

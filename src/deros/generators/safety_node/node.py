@@ -1,6 +1,6 @@
-"""The safety node as a node type: what it subscribes to, publishes and serves.
+"""The safety node as a node type: its subscriptions, publishers and services.
 
-What it is made of is said in :mod:`deros.metamodels.safety_nodes`; here it follows from a program.
+Its parts are defined in :mod:`deros.metamodels.safety_nodes`; here they follow from a program.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ def safety_node(
 
     Args:
         program: the rules.
-        topics: what the used systems tell of the topics, for the QoS of the subscriptions.
-        options: ``package`` and ``node``, which else come from the name of the rules.
-        rules_source: for the places that diagnostics about the node speak of.
+        topics: the topics of the used systems, for the QoS of the subscriptions.
+        options: ``package`` and ``node``; by default, both follow from the name of the rules.
+        rules_source: for the locations of diagnostics about the node.
 
     Raises:
         GenerationError: if the rules watch a topic that they publish.
-        ValueError: if an option is no name that ROS 2 accepts.
+        ValueError: if an option is not a name that ROS 2 accepts.
     """
     _check_ends(program)
     package = options.get("package", package_name(program.name))
@@ -57,7 +57,7 @@ def package_options(rules: Rules, options: Options, target: str) -> Options:
 
 
 def _check_ends(program: Program) -> None:
-    """Refuse a topic with both ends in this node: its own state would come back as an input."""
+    """Reject a topic that the node publishes and watches: its own state would be its input."""
     watched = {each.topic: each.span for each in reversed(program.inputs)}
     found = [
         report(

@@ -1,4 +1,4 @@
-"""What the templates of a safety node see in every language: its states, actions, behaviours."""
+"""The view of a safety node in every language: its states, actions and behaviours."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SHARED_BY_CONVENTION = frozenset(
 
 
 def origin_file(model: Rules) -> str:
-    """Return the file name of the rules, without the folder: no output depends on the machine."""
+    """Return the file name of the rules; without the folder, output is the same everywhere."""
     return file_label(model.source.path)
 
 
@@ -32,7 +32,7 @@ def origin_file(model: Rules) -> str:
 
 @dataclass(frozen=True, slots=True)
 class FieldView:
-    """A field that carries states: each action, as the code names it, with what it publishes there.
+    """A field that carries states: the actions, as the code names them, each with its value.
 
     ``single`` is a boolean field of one action, written without a choice; ``inactive`` what the
     field is set to while none is active, if it has to be.
@@ -71,7 +71,7 @@ def states_by_path(
 
 
 def shared_topics(program: Program, topics: SystemTopics) -> frozenset[str]:
-    """Return the watched topics on which more than one publisher is no fault.
+    """Return the watched topics that may have more than one publisher.
 
     Several nodes publish some topics by convention, and others because the used systems say so.
     """
@@ -84,22 +84,22 @@ def shared_topics(program: Program, topics: SystemTopics) -> frozenset[str]:
 
 
 def needs_code(action: Action) -> bool:
-    """Tell whether an action is robot code."""
+    """Return whether an action is robot code."""
     return action.binding is None and action.name != LOG_STATE
 
 
 def only_resets(action: Action, program: Program) -> bool:
-    """Tell whether an action is there to reset others: running it is all that it has to do.
+    """Return whether the only purpose of an action is to reset others.
 
-    It may have code all the same; that it has none is no mistake. With parameters, or a state of
-    its own, it is for more than that.
+    It may have code all the same, but need not. An action with parameters, or with a state of its
+    own, has another purpose, too.
     """
     resets = any(other.reset_by == action.index for other in program.actions)
     return resets and needs_code(action) and not lasts(action) and not action.parameters
 
 
 def lasts(action: Action) -> bool:
-    """Tell whether an action has a state, and is not just run."""
+    """Return whether an action has a state, and is not just run."""
     return action.binding is not None or action.latched or action.reset_by is not None
 
 
@@ -119,7 +119,7 @@ def calls(program: Program) -> list[Trigger]:
 
 
 def action_notes(action: Action, program: Program, description: str) -> list[str]:
-    """Return what the one who writes an action's code is told: what it is for, and who runs it."""
+    """Return the notes for the stub of an action: its purpose, and the behaviours that run it."""
     callers = [b.name for b in walk.behaviours(program) if b.index in action.triggered_by]
     place = f"Declared in {origin(action.span)}" if action.span else "Declared"
     note = f"{place}, run by {', '.join(callers) if callers else 'no behaviour'}."
@@ -151,7 +151,7 @@ def argument_types(action: Action, program: Program) -> list[dict[str, Trigger]]
 
 @dataclass(frozen=True, slots=True)
 class BehaviourView:
-    """What people want to know of a behaviour.
+    """A behaviour, for the reports.
 
     Attributes:
         origin: file and line.
@@ -166,7 +166,7 @@ class BehaviourView:
 
 
 def behaviour_views(program: Program) -> Iterator[BehaviourView]:
-    """Yield what people want to know of each behaviour, from top to bottom."""
+    """Yield the views of the behaviours, from top to bottom."""
     rules: dict[int, tuple[str, ...]] = {}
     for each in walk.behaviours(program):
         around = rules[each.parent] if each.parent is not None else ()

@@ -1,1 +1,1 @@
-"""What the targets of system descriptions share."""
+"""Parts that the targets of system descriptions share."""

@@ -1,4 +1,4 @@
-"""A system as its targets see it: the nodes to start, each with what it is to be told."""
+"""The view of a system: the nodes to start, each with its names and parameters."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class SystemView:
 
 
 def system_view(system: System) -> SystemView:
-    """Work out what is to be started.
+    """Return the nodes to start.
 
     Raises:
         GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
@@ -150,7 +150,7 @@ def _parameters(node: FlatNode, node_type: NodeType) -> Iterator[tuple[str, Valu
 
 
 def _as_declared(value: Value, declared: Parameter | None) -> Value:
-    """Turn whole numbers into doubles where the node declares doubles: ROS 2 tells them apart."""
+    """Convert integers to doubles where the node declares doubles, which ROS 2 distinguishes."""
     if declared is None:
         return value
     if declared.type is ParameterType.DOUBLE and isinstance(value, int):
@@ -177,7 +177,7 @@ def _remappings(node: FlatNode) -> Iterator[tuple[str, str]]:
 
 
 def _description(system: System, path: tuple[str, ...]) -> str:
-    """Return what the model says about a subsystem, or else about the system that it uses."""
+    """Return the description of a subsystem, or else of the system that it uses."""
     members: tuple[NodeInstance | Subsystem, ...] = system.members
     description = ""
     for name in path:
@@ -218,7 +218,7 @@ def _unsupported(node: FlatNode) -> Iterator[Diagnostic]:
 
 
 def _has_spelling(declared: Parameter | None, value: Value) -> bool:
-    """Tell whether rcl's YAML can say the value: of an empty array it cannot tell the type."""
+    """Return whether rcl's YAML can express a value; the type of an empty array it cannot."""
     bytes_wanted = declared is not None and declared.type is ParameterType.BYTE_ARRAY
     return value != () and not bytes_wanted
 

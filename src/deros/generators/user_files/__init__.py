@@ -1,1 +1,1 @@
-"""What the files that belong to users lack of what newly generated code needs."""
+"""Checks whether the files of users fit newly generated code."""

@@ -1,4 +1,4 @@
-"""What is read of generated classes and of the user's classes, whatever their language."""
+"""The generated classes and the user's classes, as they are read in every language."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ LIFECYCLE_HOOKS = (
     "on_shutdown",
 )
 HOOKS = frozenset((*NODE_HOOKS, *LIFECYCLE_HOOKS))
-"""Methods of ROS 2 and of the generated classes that a node may override, whatever its ports."""
+"""Methods of ROS 2 and of the generated classes that every node may override."""
 
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A name in a file, and where it stands."""
+    """A name in a file, and its location."""
 
     text: str
     span: Span
@@ -29,7 +29,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """What a generated class gives to the user's class, and asks of it.
+    """A generated class: its offers to the user's class, and its requirements.
 
     Attributes:
         name: of the generated class.

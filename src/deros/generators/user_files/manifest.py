@@ -1,4 +1,4 @@
-"""What the user's package.xml lacks."""
+"""Checks the user's package.xml."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _BUILD_TYPE = "export/build_type"
 
 
 def lacking(generated: str, present: SourceFile) -> Iterator[Diagnostic]:
-    """Yield what a manifest lacks of what would be generated today.
+    """Yield findings about what a manifest lacks of the one that would be generated.
 
     A dependency that it has besides is the user's business.
     """

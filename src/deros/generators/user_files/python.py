@@ -1,4 +1,4 @@
-"""The classes of the user's Python files, read by their syntax tree."""
+"""Reads the classes of the user's Python files from their syntax trees."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def python_classes(
 def _functions(
     path: str, wanted: ast.Module, tree: ast.Module, source: SourceFile
 ) -> tuple[Base, Written]:
-    """Return the functions that a module has to have, main() among them, and those it has."""
+    """Return the functions that a module requires, main() among them, and those it defines."""
     name = path.rpartition("/")[2]
     required = tuple(each.name for each in wanted.body if isinstance(each, ast.FunctionDef))
     known: set[str] = set()
@@ -150,7 +150,7 @@ def _methods(definition: ast.ClassDef) -> Iterator[ast.FunctionDef | ast.AsyncFu
 
 
 def _is_plain(method: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-    """Tell whether a method is neither a property nor static: those are nobody's handlers."""
+    """Return whether a method can be a handler: it is neither a property nor static."""
     return all(_name(each) in ("not_filled_in", "override") for each in method.decorator_list)
 
 
@@ -169,7 +169,7 @@ def _attributes(definition: ast.ClassDef) -> set[str]:
 
 
 def _is_parameters(node: ast.expr) -> bool:
-    """Tell whether an expression is ``self.parameters``."""
+    """Return whether an expression is ``self.parameters``."""
     if not isinstance(node, ast.Attribute) or node.attr != "parameters":
         return False
     return isinstance(node.value, ast.Name) and node.value.id == "self"

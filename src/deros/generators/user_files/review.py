@@ -1,4 +1,4 @@
-"""What the user's files lack now: they were written once, and the model has changed since.
+"""Compares the user's files, which are written once, with a model that has changed since.
 
 A generator returns, for each file of the user, what it would be if it were written today, and the
 base classes that belong to it. Both are compared with the file as it is. Nothing is imported or
@@ -25,7 +25,7 @@ _OFFERED = ("publish_", "call_", "send_", "client_", "timer_")
 
 
 def review(files: Files, places: Mapping[str, Path]) -> list[Diagnostic]:
-    """Return what the user's files lack, and what they have that nothing needs any more.
+    """Return findings about missing and obsolete names in the user's files.
 
     Args:
         files: what a generator returned.
@@ -113,7 +113,7 @@ def _unknown_uses(base: Base, written: Written, own: Iterable[str]) -> Iterator[
 
 
 def _pairs(missing: Sequence[str], unknown: Sequence[Name]) -> dict[str, Name]:
-    """Return which old method probably is which new one: a near name, or the only candidate."""
+    """Match old methods to new ones: by similar names, or as the only candidates."""
     from deros.interfaces.names import near
 
     pairs: dict[str, Name] = {}

@@ -1,4 +1,4 @@
-"""The files of the safety node in Python, beside those that any node has."""
+"""The files of the safety node in Python, besides those of every node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a safety package in Python needs of the safety node."""
+"""The Python safety node as safety packages use it."""
 
 from deros.generators.safety_node.python.generate import node_files
 from deros.generators.safety_node.python.view import RUNTIME, SafetyView, safety_view

@@ -1,4 +1,4 @@
-"""What the templates of the safety node see: the program in terms of rclpy."""
+"""The view of the safety node: the program in terms of rclpy."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ RUNTIME = (
 
 @dataclass(frozen=True, slots=True)
 class HandlerView:
-    """What is done with the messages of one topic.
+    """The handler of the messages of one topic.
 
     Attributes:
         identifier: of the port: the node's method is ``on_<identifier>``.
@@ -82,13 +82,13 @@ class HandlerView:
 
     @property
     def arguments(self) -> str:
-        """What the monitor's method takes."""
+        """The arguments of the monitor's method."""
         return "now, value" if self.fields == "value" else "now, *fields"
 
 
 @dataclass(frozen=True, slots=True)
 class ActionView:
-    """An action whose code the user writes; one that is ``optional`` may well do nothing."""
+    """An action whose code the user writes; if it is ``optional``, it may do nothing."""
 
     name: str
     method: str
@@ -99,7 +99,7 @@ class ActionView:
 
 @dataclass(frozen=True, slots=True)
 class ActionMetadata:
-    """What the reports of a node say of an action.
+    """An action, for the reports of a node.
 
     Attributes:
         lasts: whether it has a state, and is not just run.
@@ -117,14 +117,14 @@ class ActionMetadata:
 
 @dataclass(frozen=True, slots=True)
 class SafetyView:
-    """All that the templates print.
+    """The view of a safety node.
 
     Attributes:
         runtime: the package that the modules of the runtime are imported from.
         rules: the file name of the rules.
         imports: the statements that import the interfaces.
         shared: the watched topics that may have several publishers.
-        metadata: what the reports say of each action.
+        metadata: the actions, for the reports.
         optional: the behaviours that can be disabled, with the field of their parameter.
         trigger: the service class of ``~/reset`` as the module names it; empty without latches.
     """

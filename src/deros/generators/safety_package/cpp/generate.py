@@ -63,7 +63,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
 
 
 def _as_linted(text: str) -> str:
-    """Return a file of the monitor as cpplint wants it, which knows no C."""
+    """Return a file of the monitor in the style of cpplint, which does not know C."""
     text = re.sub(r"^#endif  /\* (\w+) \*/$", r"#endif  // \1", text, flags=re.MULTILINE)
     own = r'^#include "\w+\.h"$'
     return re.sub(own, r"\g<0>  // NOLINT(build/include_subdir)", text, flags=re.MULTILINE)

@@ -1,4 +1,4 @@
-"""The parameter file: what the system sets, keyed by the full names of the nodes."""
+"""The parameter file: the parameters of a system by the full names of its nodes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _INDENT = "  "
 
 
 class _Leaf:
-    """A value's text, told apart from the mappings of names."""
+    """The text of a value, as opposed to the mappings of names."""
 
     def __init__(self, value: Value) -> None:
         self.text = yaml(value)

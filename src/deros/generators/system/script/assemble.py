@@ -1,4 +1,4 @@
-"""The texts of the standalone modules, put together to one."""
+"""The standalone modules, joined to one text."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PARTS = (
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What is left of a module without its imports: what it is about, and its code."""
+    """A module without its imports: its title and its code."""
 
     title: str
     code: str
@@ -31,7 +31,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Runtime:
-    """All modules in one: the imports that they need together, and the parts."""
+    """All modules in one: their merged imports, and the parts."""
 
     imports: str
     parts: tuple[Part, ...]
@@ -39,7 +39,7 @@ class Runtime:
 
 @functools.cache
 def runtime() -> Runtime:
-    """Read the modules; imports of each other are dropped, all others merged."""
+    """Read the modules; drop imports of each other, and merge all others."""
     package = files("deros.generators.system.script.standalone")
     parts: list[Part] = []
     imports: list[ast.Import | ast.ImportFrom] = []
@@ -55,7 +55,7 @@ def runtime() -> Runtime:
 
 
 def _merged(imports: Iterable[ast.Import | ast.ImportFrom]) -> str:
-    """Write import statements in the order that ament asks for: by module, whatever the form."""
+    """Return import statements in the order of ament: by module, in either form."""
     plain: set[str] = set()
     members: dict[str, set[str]] = {}
     for statement in imports:

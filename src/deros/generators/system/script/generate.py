@@ -1,4 +1,4 @@
-"""The script: the table of a system's nodes, and below it what runs them."""
+"""The script: the table of a system's nodes, and the code that runs them."""
 
 from __future__ import annotations
 
@@ -53,5 +53,5 @@ def table(view: SystemView) -> tuple[Node, ...]:
 
 
 def rule(title: str) -> str:
-    """Return the comment line that opens a part of a file."""
+    """Return the comment line above a part of a file."""
     return f"# {title} ".ljust(LINE_LENGTH, "-")

@@ -134,7 +134,7 @@ def _matches(node: Node, pattern: str) -> bool:
 
 
 def _labels(nodes: Sequence[Node]) -> list[str]:
-    """Name nodes in the output: by name where that tells them apart, else by full name."""
+    """Return the labels of nodes in the output: names where they are unique, else full names."""
     names = [node.name for node in nodes]
     return [node.name if names.count(node.name) == 1 else node.full_name for node in nodes]
 
@@ -142,7 +142,7 @@ def _labels(nodes: Sequence[Node]) -> list[str]:
 def _print_commands(
     nodes: Sequence[Node], found: Sequence[list[str] | None], additions: Mapping[str, str]
 ) -> None:
-    """Print what can be pasted into bash, in the environment that this program runs in."""
+    """Print the commands for bash, in the environment of this program."""
     needed = ''.join(f'{name}={shlex.quote(value)} ' for name, value in additions.items())
     for node, start in zip(nodes, found, strict=True):
         print(f'# {node.full_name}' + (f' ({node.subsystem})' if node.subsystem else ''))

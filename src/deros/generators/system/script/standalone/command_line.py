@@ -9,7 +9,7 @@ from .node import Node, Value
 
 
 def yaml(value: Value) -> str:
-    """Write a value as ROS 2 reads it from YAML: doubles as doubles, every string quoted."""
+    """Return a value as ROS 2 reads it from YAML: doubles as doubles, every string quoted."""
     if isinstance(value, bool):
         return 'true' if value else 'false'
     if isinstance(value, int):

@@ -1,4 +1,4 @@
-"""What ends the nodes when the script itself is killed."""
+"""Ends the nodes when the script itself is killed."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PR_SET_CHILD_SUBREAPER = 36
 
 
 def signal_group(group: int, number: int) -> bool:
-    """Send a signal to a process group (0 sends nothing); tell whether there is such a group."""
+    """Send a signal to a process group (0 sends nothing); return whether the group exists."""
     try:
         os.killpg(group, number)
     except ProcessLookupError:
@@ -83,7 +83,7 @@ class Guard:
             signal.pthread_sigmask(signal.SIG_SETMASK, self._mask)
 
     def _take_signals(self) -> None:
-        """Let signals do to the calling process, a child, what they do by default."""
+        """Restore the default handling of signals in the calling child process."""
         signal.set_wakeup_fd(-1)
         for number in self._handled:
             signal.signal(number, signal.SIG_DFL)
@@ -91,7 +91,7 @@ class Guard:
 
     @property
     def inherited(self) -> tuple[int, ...]:
-        """Name the descriptors that the nodes have to keep open."""
+        """Return the descriptors that the nodes have to keep open."""
         return (self._alive,)
 
     def ticket(self) -> int:

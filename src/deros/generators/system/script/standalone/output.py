@@ -1,4 +1,4 @@
-"""Output that never waits for its reader."""
+"""Output that never blocks on its reader."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Output:
     LIMIT = 1 << 20  # bytes held back before the nodes have to wait, too
 
     def __init__(self, descriptor: int, selector: selectors.BaseSelector) -> None:
-        """Write to the descriptor, whenever the selector says that it takes something."""
+        """Write to the descriptor whenever the selector reports that it is writable."""
         self._descriptor = descriptor
         self._selector = selector
         self._held = bytearray()
@@ -25,11 +25,11 @@ class Output:
 
     @property
     def full(self) -> bool:
-        """Whether so much is held back that nothing should be added."""
+        """Whether the buffer is full."""
         return len(self._held) >= self.LIMIT
 
     def write(self, data: bytes) -> None:
-        """Hand over bytes; they go out in order, as fast as the reader takes them."""
+        """Queue bytes; they are written in order, as fast as the reader takes them."""
         if self.broken or not data:
             return
         if not self._held:
@@ -37,7 +37,7 @@ class Output:
         self._held += data
 
     def drain(self, patience: float) -> None:
-        """Write out what is held back, and give up on a reader that takes nothing for so long."""
+        """Write the buffer; give up if the reader takes nothing for so long."""
         while self._held and select.select([], [self._descriptor], [], patience)[1]:
             self._flush()
 

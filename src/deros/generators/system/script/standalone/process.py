@@ -16,7 +16,7 @@ PIPE_CAPACITY = 1 << 16  # bytes, of Linux; a line that is longer goes out in pi
 
 
 class State(enum.Enum):
-    """Where a node is in its life."""
+    """The state of a node."""
 
     WAITING = 'waiting'  # for the moment of its start
     RUNNING = 'running'
@@ -25,10 +25,10 @@ class State(enum.Enum):
 
 
 class Process:
-    """A node's program and its process group, from start to start again."""
+    """A node's program and its process group, across restarts."""
 
     def __init__(self, node: Node, label: str, command: list[str]) -> None:
-        """Prepare to run the command; nothing is started yet."""
+        """Set the command, without starting it."""
         self.node = node
         self.label = label
         self.command = command
@@ -75,11 +75,11 @@ class Process:
         return read
 
     def gone(self) -> bool:
-        """Tell whether the program has ended and nothing of its group is left."""
+        """Return whether the program has ended and its group is empty."""
         return self.exit_code is not None and not signal_group(self.group, 0)
 
     def read(self) -> tuple[list[bytes], bool]:
-        """Return the lines that have come, without their ends, and whether more may follow."""
+        """Return the received lines, without line ends, and whether more may follow."""
         assert self.pipe is not None
         try:
             data = os.read(self.pipe, PIPE_CAPACITY)
@@ -119,7 +119,7 @@ def starting(pid: int) -> bool:
 
 
 def describe(exit_code: int) -> str:
-    """Say in words how a program ended."""
+    """Return how a program ended, in words."""
     if exit_code == 0:
         return 'ended'
     if exit_code > 0:

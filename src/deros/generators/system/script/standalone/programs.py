@@ -1,4 +1,4 @@
-"""Where the programs of packages are."""
+"""Finds the programs of packages."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Programs:
     """
 
     def __init__(self, folders: Sequence[Path], environment: Mapping[str, str]) -> None:
-        """Look into the folders first, then where the environment says."""
+        """Search the folders first, then those of the environment."""
         self._environment = environment
         given = [folder.absolute() for folder in folders]
         below = [entry for folder in given for entry in _folders(folder)]
@@ -91,7 +91,7 @@ def _python_folders(prefix: Path) -> list[Path]:
 
 
 def _entry_point(source: Path, package: str, executable: str) -> tuple[str, str] | None:
-    """Read from a source package which function its setup.py or setup.cfg makes a program of."""
+    """Return the function of a program from the setup.py or setup.cfg of a source package."""
     if source.name != package and not (source / package).is_dir():
         return None
     pattern = re.compile(rf'(?<![\w.-]){re.escape(executable)}\s*=\s*([\w.]+)\s*:\s*(\w+)')

@@ -1,4 +1,4 @@
-"""What starts the nodes, watches them, and stops them."""
+"""Starts the nodes, watches them, and stops them."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ class Supervisor:
         self._reap()
 
     def _reap(self) -> None:
-        """Learn how programs ended, and see which process groups are empty now."""
+        """Reap ended programs, and find the process groups that are empty now."""
         running = {process.group: process for process in self._processes if process.group}
         with contextlib.suppress(ChildProcessError):
             while True:
@@ -150,7 +150,7 @@ class Supervisor:
                 self._stop_process(process)  # its program has ended and left others behind
 
     def _next_due(self) -> None:
-        """Do what is due, but start one node at most: no signal is to wait for a thousand."""
+        """Do what is due, but start one node at most, so that no signal waits for all of them."""
         now = time.monotonic()
         for process in self._processes:
             if process.due is None or process.due > now:
@@ -193,7 +193,7 @@ class Supervisor:
         self._held_back.clear()
 
     def _ended(self, process: Process) -> None:
-        """Decide what follows the end of a node: nothing, a new start, or the end of all."""
+        """Decide what follows the end of a node: nothing, a restart, or the end of all."""
         self._guard.release(process.ticket)
         if process.pipe is not None:
             with contextlib.suppress(KeyError):  # after its end of file, or while it is held back
