@@ -37,37 +37,37 @@ test-all: $(READY)  ## Run the slow tests too, and 500 examples of each property
 
 .PHONY: property
 property: $(READY)  ## Compare monitors on 120,000 random pairs; 5,000 examples of each property (nightly)
-	@$(ALONE) $(BIN)/python tools/property.py --jobs $(JOBS)
+	@$(ALONE) $(BIN)/python -m tools.property --jobs $(JOBS)
 	@$(ALONE) $(BIN)/python -m pytest -n $(TESTERS) -m hypothesis --hypothesis-profile nightly
 
 .PHONY: repeat
 repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (nightly)
-	@$(ALONE) $(BIN)/python tools/repeat.py --jobs $(JOBS)
+	@$(ALONE) $(BIN)/python -m tools.repeat --jobs $(JOBS)
 
 .PHONY: sanitize
 sanitize: $(READY)  ## Compare monitors in C with the reference, watched by gcc's sanitizers
-	@$(ALONE) $(BIN)/python tools/sanitize.py
+	@$(ALONE) $(BIN)/python -m tools.sanitize
 
 .PHONY: fuzz
 fuzz: $(READY)  ## Fuzz the monitors in C of the examples, 30 seconds each; needs clang
-	@$(ALONE) $(BIN)/python tools/fuzz.py
+	@$(ALONE) $(BIN)/python -m tools.fuzz
 
 .PHONY: fuzz-models
 fuzz-models: $(READY)  ## Fuzz models, definitions, traces and messages for a minute; FUZZ="--seconds 36000" at night
-	@$(ALONE) $(BIN)/python tools/fuzz_models.py --jobs $(JOBS) $(FUZZ)
+	@$(ALONE) $(BIN)/python -m tools.fuzz_models --jobs $(JOBS) $(FUZZ)
 
 .PHONY: misra
 misra: $(READY)  ## Hold the emitted C against MISRA C:2012; needs cppcheck
-	@$(ALONE) $(BIN)/python tools/misra.py
+	@$(ALONE) $(BIN)/python -m tools.misra
 
 .PHONY: prove
 prove: $(READY)  ## Prove that the monitors in C of the examples do what the rules mean; needs Frama-C
-	@$(ALONE) $(BIN)/python tools/prove.py --jobs $(JOBS) $(RULES) \
+	@$(ALONE) $(BIN)/python -m tools.prove --jobs $(JOBS) $(RULES) \
 	  $(if $(SHARE),--share $(SHARE) --draw $$(git rev-parse HEAD))
 
 .PHONY: slips
 slips: $(READY)  ## Put every single slip into the C that is proved, and see the proof find each; takes hours
-	@$(ALONE) $(BIN)/python tools/mutate_proof.py --jobs $(JOBS)
+	@$(ALONE) $(BIN)/python -m tools.mutate_proof --jobs $(JOBS)
 
 .PHONY: lint
 lint: $(READY)  ## Check format, style, types and the layering of the packages
@@ -79,7 +79,7 @@ lint: $(READY)  ## Check format, style, types and the layering of the packages
 
 .PHONY: distribution
 distribution: $(READY)  ## Build sdist and wheel; use them with the lowest and the newest versions
-	@$(ALONE) $(BIN)/python tools/distribution.py
+	@$(ALONE) $(BIN)/python -m tools.distribution
 
 .PHONY: docs
 docs: $(DOCS_READY)  ## Build the documentation into site/; a warning is an error

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(REPOSITORY), str(REPOSITORY / "examples" / "feeding_robot")]
+sys.path.insert(0, str(REPOSITORY / "examples" / "feeding_robot"))  # its package demonstration
 
 ROUND_S = 10.0
 """Seconds that a round takes, about, with the start of the robot shared by several."""

@@ -12,8 +12,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
 from tests.support.c_everything import everything, examples
 from tests.support.c_fuzz import fuzz_text
 from tests.support.c_harness import DRIVER, Unit, unit

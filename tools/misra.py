@@ -12,8 +12,6 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
 from deros.generators.monitor.c.interface import render_monitor
 from tests.support import c_pairs, misra
 from tests.support.c_everything import everything, examples

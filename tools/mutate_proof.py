@@ -22,8 +22,6 @@ from queue import SimpleQueue
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
 from tests.support import c_proof
 from tests.support.c_mutants import TABLES, Mutant, mutants
 from tests.support.c_slips import Effort, Found, Original, Results

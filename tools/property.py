@@ -30,8 +30,6 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
 from tests.support import c_pairs, counterexamples
 from tests.support.c_library import Loaded, has_compiler
 from tests.support.counterexamples import Pair, pairs

@@ -17,8 +17,6 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules

@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def fuzz(*options: str) -> subprocess.CompletedProcess[str]:
     """Run the fuzzer with one worker."""
-    command = [sys.executable, str(ROOT / "tools" / "fuzz_models.py"), "--jobs", "1", *options]
-    return subprocess.run(command, capture_output=True, text=True, timeout=400)
+    command = [sys.executable, "-m", "tools.fuzz_models", "--jobs", "1", *options]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=400)
 
 
 def test_run_prints_seed_and_number() -> None:

@@ -13,7 +13,7 @@ REPEAT = Path(__file__).resolve().parents[2] / "tools" / "repeat.py"
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("body", "code", "told"),
+    ("body", "code", "expected_output"),
     [
         ("pass", 0, ["round 2 of 2: 1 passed, ", "2 of 2 rounds passed"]),
         ("raise ValueError", 1, ["round 1 of 2: 1 failed, ", "::test_it", "0 of 2 rounds passed"]),

@@ -1,0 +1,1 @@
+"""Shared support code of the tests, which the programs in ``tools`` import as well."""
