@@ -8,11 +8,15 @@ from hypothesis import strategies as st
 from deros.monitor.gate_engine import GateEngine
 from tests.support.gate_by_lines import GateByLines
 from tests.support.gates import ACTIONS, STORE, gates, happenings, play
+from tests.support.profiles import scaled
 
 START_NS = 100
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(
+    max_examples=scaled(2500),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
 @given(st.data())
 def test_steps_agree_with_the_lines(data: st.DataObject) -> None:
     """Both publish the same messages at the same nanosecond, and report the same reasons."""

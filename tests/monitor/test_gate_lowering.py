@@ -111,3 +111,18 @@ def test_reset_is_refused_by_zero_lines_and_losses() -> None:
     """Limits of actions do not refuse it."""
     program = lowered(line(0, until_reset=True), line(1, SLOW), loss("heartbeat", 5, SLOW))
     assert program.on_reset == (form.Reset((0, 2), (0,)),)
+
+
+def test_actions_are_forgotten_when_the_heartbeat_becomes_lost() -> None:
+    """The loss is found first, and the lines of the actions after that."""
+    program = lowered(line(0), loss("heartbeat", 5), line(1))
+    steps = [type(step).__name__ for step in program.settle]
+    assert steps[:5] == ["FindLine", "FindLoss", "ForgetActions", "FindLine", "FindLine"]
+    assert program.settle[1:3] == (
+        form.FindLoss("heartbeat", (1,)),
+        form.ForgetActions((0, 1)),
+    )
+    assert form.HeartbeatWasLost() in program.memory
+    without = lowered(loss("heartbeat", 5))
+    assert form.HeartbeatWasLost() not in without.memory
+    assert not any(isinstance(step, form.ForgetActions) for step in without.settle)
