@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -93,6 +94,22 @@ def test_bound_actions_need_no_user_file() -> None:
     rules = "action stop publishes true on /stop : std_msgs.Bool;\n"
     files = files_of_text(f"{rules}entity e {{ r: v > 0.5; }} if e.r then {{ stop; }};")
     assert not [path for path in files if "actions" in path]
+
+
+def test_class_hides_no_method_of_its_base_class() -> None:
+    """A topic /state_stop does not collide with the function that publishes /stop."""
+    rules = (
+        "action stop publishes true on /stop : std_msgs.Bool;\n"
+        "action report publishes true on /state_stop : std_msgs.Bool;\n"
+        "entity e { r: v > 0.5; } if e.r then { stop; report; };"
+    )
+    files = files_of_text(rules)
+    headers = {Path(path).name: file.text for path, file in files.items() if path.endswith(".hpp")}
+    base = headers["text_safety_node_base.hpp"]
+    own = re.findall(r"  void (\w+)\([^;]*\);", headers["text_safety_node.hpp"])
+    assert "show_state_stop" in own
+    assert "publish_state_stop" in base
+    assert [name for name in own if re.search(rf"\b{name}\(", base)] == []
 
 
 def test_argument_of_two_types_is_rejected() -> None:
