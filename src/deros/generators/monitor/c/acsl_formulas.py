@@ -218,10 +218,11 @@ def _contract(comment: str, clauses: list[str]) -> str:
 
 
 def loop_declarations(row: Function, loop: Loop, base: str, element: str) -> list[str]:
-    """Return the predicates of a function of arrays, for one type of floating-point elements.
+    """Return the predicates of a function of arrays of doubles.
 
     ``carried_f`` holds of what the loop carries after some elements, by induction; ``formula_of_f``
-    of the result. Callers know the result as ``is_f``.
+    of the result. Callers do not rely on it: no prover finds that what is stored in the monitor
+    leaves an array of doubles as it is.
     """
     name = f"{row.c_name}_{base}"
     constants = "".join(f", double {each}" for each in row.variables)
@@ -237,8 +238,6 @@ def loop_declarations(row: Function, loop: Loop, base: str, element: str) -> lis
     ends.names[loop.accumulator] = total
     result = ends.is_formula("r", loop.result)
     texts = [
-        f"/*@ axiomatic Of_{name} {{ predicate is_{name}{{L}}(double r, {array}, integer count"
-        f"{constants}) reads values[0 .. count - 1]; }} */",
         f"/*@ inductive carried_{name}{{L}}(double r, {array}, integer n{constants}) {{ "
         f"case begins{{L}}: \\forall double r{constants}, {array}; {begins} ==> "
         f"carried_{name}(r, values, 0{given}); "
@@ -251,17 +250,16 @@ def loop_declarations(row: Function, loop: Loop, base: str, element: str) -> lis
     return [line for text in texts for line in wrapped(text)]
 
 
-def loop_contract(row: Function, base: str, is_float: bool) -> str:
-    """Return the contract of a function of arrays; of integers, that it only reads them."""
+def loop_contract(row: Function, base: str, is_proved: bool) -> str:
+    """Return the contract of a function of arrays; without its result if they are not doubles."""
     clauses = ["requires \\valid_read(values + (0 .. count - 1))", "assigns \\nothing"]
-    if is_float:
+    if is_proved:
         arguments = ", ".join(["\\result", "values", "count", *row.variables])
         clauses.append(f"check ensures formula_of_{row.c_name}_{base}({arguments})")
-        clauses.append(f"admit ensures is_{row.c_name}_{base}({arguments})")
     return _contract("", clauses)
 
 
-def loop_invariants(row: Function, loop: Loop, base: str, is_float: bool) -> tuple[str, ...]:
+def loop_invariants(row: Function, loop: Loop, base: str, is_proved: bool) -> tuple[str, ...]:
     """Return what the loop of a function of arrays keeps."""
     arguments = ", ".join([loop.accumulator, "values", "i", *row.variables])
-    return (f"carried_{row.c_name}_{base}({arguments})",) if is_float else ()
+    return (f"carried_{row.c_name}_{base}({arguments})",) if is_proved else ()

@@ -329,10 +329,10 @@ def _of_array(row: Function, base: str) -> str:
     """Return a function of arrays, with its contract, for one type of elements."""
     if row.loop is None:
         return _of_elements(_ARRAY + row.c, base)
-    is_float = base in FLOAT_TYPES
-    kept = loop_invariants(row, row.loop, base, is_float)
+    is_proved = base in quantities.PROVED
+    kept = loop_invariants(row, row.loop, base, is_proved)
     text = _with_loop(printed(row), f"i, {row.loop.accumulator}", kept)
-    return loop_contract(row, base, is_float) + _of_elements(text, base)
+    return loop_contract(row, base, is_proved) + _of_elements(text, base)
 
 
 _ARRAY = """\

@@ -231,9 +231,7 @@ class MessageContracts:
             if term.type == "double":
                 if not isinstance(term.value, Read):
                     found.append(iff(f"m->{term.known} != 0", f"!\\is_NaN(m->{term.name})"))
-                numbers.append(
-                    is_value(f"m->{term.name}", term.value, doubles, self._bases(handler), lengths)
-                )
+                numbers.append(is_value(f"m->{term.name}", term.value, doubles, lengths))
             elif isinstance(term.value, Read) and not term.texts:
                 found.append(f"m->{term.name} == {leaves[term.value.leaf]}")
         numbers = [text for text in numbers if text]
@@ -245,19 +243,6 @@ class MessageContracts:
             names = ", ".join(lengths.values())
             return [*found, f"(\\exists double {names}; {' && '.join([*of, *numbers])})"]
         return [*found, *numbers]
-
-    def _bases(self, handler: Handler) -> dict[int, str]:
-        """Return the types of the arrays of which callers are told what functions give, by leaf.
-
-        They are those of ``float``: a monitor has no fields of that type, so that nothing that is
-        stored in it changes such an array. For ``double`` no prover finds that out.
-        """
-        return {
-            index: str(self._program.leaves[index].type.base)
-            for parameter in handler.parameters
-            for index in parameter.leaves
-            if parameter.form == "array" and self._program.leaves[index].type.base == "float32"
-        }
 
     def _forgets(self, each: Input) -> list[Forget]:
         """Return what is forgotten when a message of an input does not count."""

@@ -11,7 +11,6 @@ from deros.generators.monitor.c.acsl_formulas import called_by, formula_predicat
 from deros.generators.monitor.c.acsl_terms import constant, of
 from deros.generators.monitor.c.contracts import wrapped
 from deros.generators.monitor.c.layout import ELEMENTS
-from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor import walk
 from deros.monitor.formulas import SHARED, Formula
 from deros.monitor.function_forms import LENGTH_OF
@@ -24,6 +23,10 @@ def change_per_second(previous: str, elapsed: str) -> str:
     seconds = of("div", f"(double)({elapsed})", constant(1e9))
     change = of("div", of("sub", "value", previous), seconds)
     return change.replace(", \\div", ",\n      \\div")
+
+
+PROVED = ("float64",)
+"""The types of elements for which the result of a loop over an array is proved."""
 
 
 def _formula_of(row: Function) -> tuple[tuple[str, ...], Formula] | None:
@@ -51,7 +54,7 @@ def _used(program: Program) -> dict[str, tuple[tuple[str, ...], Formula]]:
 def _loops(program: Program) -> Iterator[list[str]]:
     """Yield the declarations of functions of arrays, one for each type of elements."""
     for row, base in loops_of(program):
-        if row.loop is not None and base in FLOAT_TYPES:
+        if row.loop is not None and base in PROVED:
             yield loop_declarations(row, row.loop, base, ELEMENTS[base])
 
 
@@ -105,7 +108,6 @@ def is_value(
     name: str,
     value: ValueExpression,
     leaves: Mapping[int, str],
-    bases: Mapping[int, str],
     lengths: Mapping[object, str],
 ) -> str:
     """Return that the double called ``name`` is a value; nothing if there is no predicate for it.
@@ -114,7 +116,6 @@ def is_value(
         name: the double.
         value: what it is computed as.
         leaves: the doubles that hold the leaves.
-        bases: the types of floating-point arrays, by leaf.
         lengths: those that hold the lengths of quaternions, by their parts.
     """
     if isinstance(value, Apply):
@@ -122,11 +123,6 @@ def is_value(
         match row.argument:
             case Argument.SCAN:
                 return _of_array(name, row.c_name, value, leaves)
-            case Argument.NUMBERS if row.loop is not None:
-                read = value.arguments[0]
-                assert isinstance(read, Read)
-                base = bases.get(read.leaf, "")
-                return _of_array(name, f"{row.c_name}_{base}", value, leaves) if base else ""
             case Argument.QUATERNION if value.arguments not in lengths:
                 return ""
         if _formula_of(row) is None or row.argument is Argument.NUMBERS:
