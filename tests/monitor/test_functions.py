@@ -226,6 +226,23 @@ def test_python_array_functions_agree_with_the_reference(array: list[float]) -> 
             assert text_of(name)(given_as) == evaluate(array)
 
 
+ZEROS = st.lists(st.sampled_from([0.0, -0.0]), min_size=1, max_size=40)
+
+
+@given(zeros=ZEROS)
+def test_python_returns_the_zero_of_the_reference(zeros: list[float]) -> None:
+    """Of positive and negative zeros, which are equal, both return the first."""
+    for name in ("min", "max"):
+        evaluate = FUNCTIONS[name].evaluate
+        assert evaluate is not None
+        assert str(text_of(name)(np.array(zeros))) == str(evaluate(zeros))
+    for ranges in (zeros, [-2.0, *zeros]):
+        arguments = (0.0, 0.01, -1.0, 50.0, 0.0, 6.0)
+        assert str(text_of("nearest")(np.array(ranges), *arguments)) == str(
+            values.nearest(ranges, *arguments)
+        )
+
+
 SCANS = st.tuples(
     BEAMS, ANGLES, st.floats(-0.5, 0.5), st.floats(0.0, 1.0), st.floats(0.0, 50.0), ANGLES, ANGLES
 )

@@ -92,12 +92,14 @@ def unwrapped(value: float, turn: float, previous: float, total: float) -> float
     "min": '''\
 def array_min(values: Sequence[float]) -> float | None:
     """Return the least element; None for an empty array."""
-    return np.min(values).item() if len(values) else None
+    numbers = np.asarray(values)
+    return numbers[numbers.argmin()].item() if len(values) else None
 ''',
     "max": '''\
 def array_max(values: Sequence[float]) -> float | None:
     """Return the greatest element; None for an empty array."""
-    return np.max(values).item() if len(values) else None
+    numbers = np.asarray(values)
+    return numbers[numbers.argmax()].item() if len(values) else None
 ''',
     "nearest": '''\
 @functools.lru_cache(maxsize=64)
@@ -132,6 +134,8 @@ def scan_nearest(
         if not valid.size:
             return None
         least = float(valid.min())
+    if least == 0.0:  # the first of the zeros, of which one may be negative
+        least = float(measured[measured == 0.0][0])
     return least if least <= range_max else math.inf
 ''',
     "scan_usable": '''\

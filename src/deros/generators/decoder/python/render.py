@@ -100,10 +100,9 @@ def _decoder(topic: Topic, store: InterfaceStore, parts: Parts, constants: Uniqu
     emitter = DecoderEmitter(store, writer, START)
     emitter.message(topic.type, select(paths, variables), more_selected=False)
     emitter.read_gathered()
-    result = f"tuple[{', '.join(types) or '()'}]" if len(paths) != 1 else types[0]
     return _Decoder(
         tuple(tuple(group) for group in writer.groups),
-        tuple(_signature(topic.function, result)),
+        tuple(_signature(topic.function, types)),
         tuple(_documentation(topic, paths)),
         tuple(_with_return(writer.lines, [variables[path] for path in paths])),
     )
@@ -145,12 +144,12 @@ def _value_type(type_: FieldType) -> str:
     return f"tuple[{scalar}, ...]" if is_tuple else "np.ndarray"
 
 
-def _signature(function: str, result: str) -> list[str]:
+def _signature(function: str, types: Sequence[str]) -> list[str]:
+    """Return the head of a decoder, which returns one value as it is and several as a tuple."""
     head = f"def {function}(data: bytes) -> "
-    if not result.startswith("tuple["):
-        return [f"{head}{result}:"]
-    types = result.removeprefix("tuple[").removesuffix("]").split(", ")
-    return lay_out_call(0, f"{head}tuple[", types, "]:")
+    if len(types) == 1:
+        return [f"{head}{types[0]}:"]
+    return lay_out_call(0, f"{head}tuple[", list(types) or ["()"], "]:")
 
 
 def _documentation(topic: Topic, paths: Sequence[FieldPath]) -> list[str]:
