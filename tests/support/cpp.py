@@ -182,6 +182,8 @@ def _colcon(folder: Path, env: dict[str, str], testing: bool) -> None:
     ]
     _run([colcon, "--log-base", "log", *build], folder, env)
     if testing:
+        # colcon's own wheels would put their libraries in front of those that were linked.
+        env = {**env, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
         test = [
             "test",
             "--merge-install",
