@@ -199,8 +199,7 @@ void GoalThreads::Shared::execute(const Goal & goal)
       RCLCPP_ERROR(logger, "%s: %s: %s", goal.handler, error.what(), problem);
     }
   } catch (...) {
-    const char * const thrown = "something that is not a std::exception";
-    RCLCPP_ERROR(logger, "%s threw %s: %s", goal.handler, thrown, problem);
+    RCLCPP_ERROR(logger, "%s threw what is not a std::exception: %s", goal.handler, problem);
   }
   abort(goal);
 }
