@@ -53,6 +53,7 @@ def cases(
         max_examples=wanted,
         database=None,
         deadline=None,
+        derandomize=False,  # a profile that draws from the test's name would ignore the seed
         phases=(Phase.generate,),
         suppress_health_check=list(HealthCheck),
     )
