@@ -103,6 +103,7 @@ def _run(file: Path, *options: str, env: Mapping[str, str], limit: float) -> dic
 
 
 @pytest.mark.ros
+@pytest.mark.slow
 def test_short_run_measures_rclpy(tmp_path: Path) -> None:
     """Without rclcpp it says so, and measures only rclpy."""
     env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}

@@ -32,6 +32,7 @@ def _run(folder: Path, **env: str) -> dict[str, Any]:
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
+@pytest.mark.slow
 def test_c_monitors_are_compared(tmp_path: Path) -> None:
     """Generated and hand-written have times above those of empty calls, a size, and a ratio."""
     results = _run(tmp_path)

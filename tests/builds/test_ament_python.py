@@ -103,6 +103,7 @@ def test_model_error_fails_the_build_with_its_place(package: Path) -> None:
     assert not list(_workspace(package).glob("install/**/monitor.py"))
 
 
+@pytest.mark.slow
 def test_additional_user_files_are_installed(package: Path) -> None:
     """Hand-written modules, programs and data files are installed with the generated ones."""
     (package / "setup.py").write_text(MORE)
@@ -121,6 +122,7 @@ def test_additional_user_files_are_installed(package: Path) -> None:
     assert "Keywords: field" in metadata.read_text()
 
 
+@pytest.mark.slow
 def test_missing_user_code_is_reported_by_every_build(package: Path) -> None:
     """A new action in the rules does not fail the build, but is reported until it is written."""
 

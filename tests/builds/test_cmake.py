@@ -68,6 +68,7 @@ def test_generates_only_when_an_input_changes(folder: Path, tool: str) -> None:
     assert project.generated() == 0
 
 
+@pytest.mark.slow
 def test_folders_of_import_globs_are_inputs(folder: Path, tool: str) -> None:
     """A description added to or removed from such a folder is detected."""
     source = folder / "my models"
@@ -87,6 +88,7 @@ def test_folders_of_import_globs_are_inputs(folder: Path, tool: str) -> None:
     assert project.generated() == 0
 
 
+@pytest.mark.slow
 def test_deros_itself_is_an_input(folder: Path, tool: str) -> None:
     """Another version of deros may generate other files."""
     project = configured(folder, tool, SCRIPT)
@@ -122,6 +124,7 @@ def test_project_with_a_faulty_model_can_be_configured(folder: Path, tool: str) 
     assert "error[DRS204 unknown-port]" in project.build().stdout
 
 
+@pytest.mark.slow
 def test_options_and_message_definitions_are_inputs(folder: Path, tool: str) -> None:
     """Changing either runs the generator again."""
     definitions = folder / "messages/nav_msgs/msg"

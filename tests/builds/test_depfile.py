@@ -96,6 +96,7 @@ def test_makefile_with_a_depfile_rebuilds_only_changes(tmp_path: Path) -> None:
     assert "up to date" in made()
 
 
+@pytest.mark.slow
 def test_parallel_runs_do_not_interfere(tmp_path: Path) -> None:
     """Builds that generate into one folder at the same time leave it complete."""
     models(tmp_path)

@@ -11,6 +11,7 @@ import pytest
 
 from tests.support.builds import GENERATORS, Project, configured, frozen_program, needs_cmake
 from tests.support.cli import deros
+from tests.support.profiles import slow
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "build-systems.md").read_text("utf-8")
 HEAD = "cmake_minimum_required(VERSION 3.22)\nproject(p LANGUAGES NONE)\nfind_package(deros)\n"
@@ -93,7 +94,7 @@ def test_every_snippet_has_a_test() -> None:
 
 @needs_c
 @needs_cmake
-@pytest.mark.parametrize("kind", ["", "STATIC", "OBJECT"])
+@pytest.mark.parametrize("kind", ["", slow("STATIC"), slow("OBJECT")])
 def test_monitor_library_snippet_builds_and_runs(folder: Path, kind: str) -> None:
     """The project of the page compiles, links and runs, with each kind of library."""
     script = _snippet("cmake", "deros_add_monitor").replace(

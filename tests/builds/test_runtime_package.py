@@ -100,6 +100,7 @@ def test_node_does_not_start_with_another_version(workspace: Path, ros_env: dict
         assert "watching" not in ended.stdout + ended.stderr
 
 
+@pytest.mark.slow
 def test_build_without_the_runtime_fails(tmp_path: Path) -> None:
     """The error names the missing package."""
     source = tmp_path / "src"
@@ -110,6 +111,7 @@ def test_build_without_the_runtime_fails(tmp_path: Path) -> None:
     assert "cannot build robot_safety: No module named 'deros_runtime'" in done.stdout
 
 
+@pytest.mark.slow
 def test_package_generated_during_the_build_checks_the_version(tmp_path: Path) -> None:
     """The scaffolded setup.py contains the option."""
     source = tmp_path / "src"

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.measured import Measured, run
+from tests.support.profiles import slow
 
 MOST_SECONDS = 5.0
 MOST_MB = 500.0
@@ -169,7 +170,9 @@ def test_pipes_and_devices_are_rejected_without_blocking(tmp_path: Path) -> None
     assert output.count("not a regular file") == 2
 
 
-@pytest.mark.parametrize("place", ["demo/demo/n.py", "demo/package.xml", "demo/demo/__init__.py"])
+@pytest.mark.parametrize(
+    "place", ["demo/demo/n.py", slow("demo/package.xml"), slow("demo/demo/__init__.py")]
+)
 def test_pipe_in_place_of_an_output_is_kept(tmp_path: Path, place: str) -> None:
     """It is neither opened nor replaced, and no other file is written."""
     (tmp_path / "n.rnd").write_text(NODE)

@@ -57,7 +57,8 @@ def test_runs_cover_all_fifteen_cases() -> None:
 @pytest.mark.parametrize(
     ("language", "cases"),
     [
-        *(("python", cases) for cases in RUNS),
+        ("python", RUNS[0]),
+        *(pytest.param("python", cases, marks=pytest.mark.slow) for cases in RUNS[1:]),
         pytest.param("cpp", range(1, 16), marks=needs_rclcpp),
     ],
     ids=lambda value: f"{value[0]}-{value[-1]}" if isinstance(value, range) else None,
@@ -109,6 +110,7 @@ def changed(tmp_path: Path, file: str, before: str, after: str) -> Path:
 
 
 @pytest.mark.ros
+@pytest.mark.slow
 def test_wrong_reaction_fails_the_demo(ros_env: dict[str, str], tmp_path: Path) -> None:
     """With a rule too lax, the case that needs it fails, and so does the run."""
     rule = "const forward_limit = "

@@ -19,7 +19,7 @@ from tests.support.gate_driver import ACTIONS, HEARTBEAT, INPUT, LOW, STOP, twis
 from tests.support.rules import embedded_store, program
 
 LIMIT = 0.1
-LONG = 10_000  # longer than any time of a random gate
+LONG = 1_000  # longer than any time of a random gate
 
 Happening = tuple[int, str, Any]
 

@@ -67,15 +67,8 @@ given = pytest.mark.parametrize("case", timelines.GIVEN, ids=lambda case: case.n
 @given
 def test_command_prints_the_timeline(case: Timeline, tmp_path: Path) -> None:
     """``deros simulate`` prints exactly the expected events, one per line."""
-    result = subprocess.run(
-        [str(DEROS), *_arguments(case, tmp_path)],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
-    assert result.returncode == 0, result.stderr
+    result = CliRunner().invoke(command, _arguments(case, tmp_path)[1:])
+    assert result.exit_code == 0, result.output
     assert _printed(result.stdout) == _expected(case)
 
 

@@ -18,6 +18,7 @@ def fuzz(*options: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=400)
 
 
+@pytest.mark.slow
 def test_run_prints_seed_and_number() -> None:
     """The output suffices to reproduce the mutants."""
     run = fuzz("--mutants", "60", "--seed", "3")

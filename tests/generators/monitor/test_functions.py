@@ -23,6 +23,7 @@ from deros.monitor.functions import Argument, Function, Result, UnitRule, usage_
 from deros.monitor.ir import Apply, Program
 from tests.support import c_pairs, c_proof
 from tests.support.c_library import Loaded, needs_c
+from tests.support.profiles import scaled, slow
 from tests.support.rules import program
 
 SPEED = "input v = topic /speed.data timeout 1 sec"
@@ -134,6 +135,9 @@ LEAST_ABOVE = Function(
 ROWS = (SQUARE, EXCESS, HEADING, PLANAR, HIGHEST, TOTAL, MEAN, LEAST_ABOVE)
 """Rows of each form, with and without parameters."""
 
+PROGRAMS = scaled(120, least=40)
+"""Number of random programs that call new rows."""
+
 KINDS = ("number", "integer", "quaternion", "vector", "array", "floats", "ints")
 """The kinds of inputs that some row applies to."""
 
@@ -172,8 +176,11 @@ def calls(rules: Program, name: str) -> bool:
 def test_rows_are_drawn_and_agree_everywhere(add: Callable[..., None], tmp_path: Path) -> None:
     """A row defines random programs, reference and both monitors, which agree on traces."""
     add(*ROWS)
-    cases = c_pairs.cases(KINDS, 160, 1)
-    drawn = [case for case in cases if any(calls(case.pairs[0].program, row.name) for row in ROWS)]
+
+    def calls_a_row(rules: Program) -> bool:
+        return any(calls(rules, row.name) for row in ROWS)
+
+    drawn = c_pairs.cases(KINDS, PROGRAMS, 1, traces=3, accept=calls_a_row)
     for row in ROWS:
         times = sum(calls(case.pairs[0].program, row.name) for case in drawn)
         assert times >= 2, f"{row.name} is in {times} programs"
@@ -267,6 +274,9 @@ PROVED = {
 }
 """The functions of new rows, and a slip in each."""
 
+QUICK = ("square_of", "highest_of")
+"""Functions that are proved quickly: one without state, one with."""
+
 
 @pytest.fixture
 def monitor(add: Callable[..., None], tmp_path: Path) -> Path:
@@ -276,16 +286,17 @@ def monitor(add: Callable[..., None], tmp_path: Path) -> Path:
 
 
 @pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
-def test_contracts_follow_from_rows(monitor: Path) -> None:
+@pytest.mark.parametrize("functions", [QUICK, slow(tuple(PROVED))], ids=["quick", "all"])
+def test_contracts_follow_from_rows(functions: tuple[str, ...], monitor: Path) -> None:
     """The contract of each function is derived from its row, and proved for the printed C."""
-    proof = c_proof.prove(monitor, tuple(PROVED))
+    proof = c_proof.prove(monitor, functions)
     assert proof.left == ()
     assert proof.complaints == ()
     assert proof.is_complete
 
 
 @pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
-@pytest.mark.parametrize("function", PROVED)
+@pytest.mark.parametrize("function", [each if each in QUICK else slow(each) for each in PROVED])
 def test_mutation_of_a_printed_function_fails_the_proof(function: str, monitor: Path) -> None:
     """A function that differs from its row cannot be proved."""
     right, wrong = PROVED[function]

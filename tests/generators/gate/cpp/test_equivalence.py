@@ -24,7 +24,7 @@ from tests.support.gate_traces import (
 )
 from tests.support.gates import ACTIONS, QUIET, STORE, Happening, message_type, play, span
 from tests.support.messages import message_types
-from tests.support.profiles import draws_new_examples, scaled
+from tests.support.profiles import draws_new_examples, scaled, thinned
 
 pytestmark = needs_compiler
 
@@ -36,7 +36,7 @@ SEED = random.randrange(2**32) if draws_new_examples() else 4
 START_NS = 100
 TRACES_OF_A_TYPE = 8
 
-TYPES_STEP = max(1, IN_CI // EXAMPLES)
+TYPES_STEP = 2 * thinned(1) - 1
 """One of so many message types is compiled."""
 
 FEW_COMMANDS = (

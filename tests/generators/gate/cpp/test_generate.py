@@ -91,7 +91,9 @@ def test_files_pass_the_ament_linters(tmp_path: Path) -> None:
 
 @needs_compiler
 @pytest.mark.parametrize(
-    "compiler", ["g++", pytest.param("clang++", marks=needs_clang)], ids=["gcc", "clang"]
+    "compiler",
+    ["g++", pytest.param("clang++", marks=[needs_clang, pytest.mark.slow])],
+    ids=["gcc", "clang"],
 )
 def test_every_kind_of_logic_compiles_strictly(compiler: str, tmp_path: Path) -> None:
     """No combination of lines and types causes a compiler warning; nor does the model."""

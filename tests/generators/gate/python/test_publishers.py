@@ -77,6 +77,7 @@ def test_incompatible_drive_is_a_fault(world: World) -> None:
 
 
 @pytest.mark.usefixtures("gate")
+@pytest.mark.slow
 def test_short_lived_foreign_publisher_does_not_release(
     world: World, ros_env: dict[str, str]
 ) -> None:

@@ -91,6 +91,7 @@ def test_fields_may_have_names_of_monitor_functions(source: Path) -> None:
 
 
 @needs_frama_c
+@pytest.mark.slow
 def test_contracts_refer_to_monitor_functions(source: Path) -> None:
     """A function called in a contract is not hidden by a parameter."""
     assert c_proof.unreadable(source) == ""

@@ -120,15 +120,11 @@ SLIPS = {
 """Mutations by name: the function, the right text, and the wrong text."""
 
 QUICK = {
-    "a missed clear",  # a statement
     "an additional clear",  # a condition
-    "a wrong timeout",  # a constant
     "a timeout that is one nanosecond late",  # a comparison
-    "swapped inputs",  # a name
     "an emission removed",
-    "the wrong site emitted",
 }
-"""One mutation of each kind, in functions whose proofs take a second or two."""
+"""Some mutations, in functions whose proofs take a second or two."""
 
 assert SLIPS.keys() >= QUICK
 
@@ -215,6 +211,7 @@ def test_wrong_table_is_detected(right: str, wrong: str, tmp_path: Path) -> None
 
 
 @needs_frama_c
+@pytest.mark.slow
 def test_lemmas_must_be_proved(tmp_path: Path) -> None:
     """Lemmas of the contracts are goals as well, and fail the proof if they are wrong."""
     (tmp_path / "order_contracts.h").write_text(

@@ -21,6 +21,7 @@ from deros.monitor.ir import Apply, Condition, Program
 from tests.support import c_pairs, misra
 from tests.support.c_everything import RULES, built, everything, examples
 from tests.support.golden import Golden
+from tests.support.profiles import slow
 
 PROGRAMS = {each.name: each for each in (everything(), *examples())}
 
@@ -70,7 +71,7 @@ def compiled(
     return [folder / name.replace(".c", ".o") for name in sources]
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("compiler", ["gcc", *map(slow, list(COMPILERS)[1:])])
 def test_all_compilers_accept_the_code_without_warnings(compiler: str, tmp_path: Path) -> None:
     """This holds for every compiler and any rules."""
     texts = [*map(render_monitor, PROGRAMS.values()), *random_texts()]
@@ -148,6 +149,7 @@ def test_rendering_is_deterministic() -> None:
 
 
 @pytest.mark.skipif(not misra.has_cppcheck(), reason=f"no {misra.CPPCHECK}")
+@pytest.mark.slow
 def test_code_follows_misra(tmp_path: Path) -> None:
     """The only violations of MISRA C:2012 are the advisory ones that the text lists."""
     texts = [render_monitor(each) for each in PROGRAMS.values()]

@@ -63,29 +63,30 @@ def test_files_pass_the_ament_linters(name: str, options: dict[str, str], tmp_pa
     assert_lint_clean(tmp_path / f"{name}_safety")
 
 
-@pytest.mark.parametrize(
-    "rules",
-    [
-        "action stop; entity e { r: v > 0.5; } if e.r then { stop; };",
-        "action stop publishes false on /go : std_msgs.Bool;"
-        " entity e { r: v > 0.5; } if e.r then { stop; };",
-        'action tell publishes "slow" on /told : std_msgs.String;'
-        " entity e { r: v > 0.5; } if e.r then { tell; };",
-        'entity e { r: v > 0.5; } if e.r then { log_state("it\'s {fast}"); };',
-        "action a reset_by b; action b; entity e { r: v > 0.5; } if e.r then { a; b; };",
-        "action gone; action stop publishes true on /gone : std_msgs.Bool latched;"
-        " entity e { r: v > 0.5; } if e.r then { stop; };",
-        "action very_long_name_of_an_action_that_goes_on_and_on(first_argument, second_argument);"
-        " entity entity_with_a_long_name { rule_with_a_long_name_too_which_goes_on: v > 0.5; }"
-        " if entity_with_a_long_name.rule_with_a_long_name_too_which_goes_on or"
-        " not entity_with_a_long_name.rule_with_a_long_name_too_which_goes_on then {"
-        ' very_long_name_of_an_action_that_goes_on_and_on(1, "two"); };',
-    ],
+KINDS = (
+    "action stop; entity e { r: v > 0.5; } if e.r then { stop; };",
+    "action stop publishes false on /go : std_msgs.Bool;"
+    " entity e { r: v > 0.5; } if e.r then { stop; };",
+    'action tell publishes "slow" on /told : std_msgs.String;'
+    " entity e { r: v > 0.5; } if e.r then { tell; };",
+    'entity e { r: v > 0.5; } if e.r then { log_state("it\'s {fast}"); };',
+    "action a reset_by b; action b; entity e { r: v > 0.5; } if e.r then { a; b; };",
+    "action gone; action stop publishes true on /gone : std_msgs.Bool latched;"
+    " entity e { r: v > 0.5; } if e.r then { stop; };",
+    "action very_long_name_of_an_action_that_goes_on_and_on(first_argument, second_argument);"
+    " entity entity_with_a_long_name { rule_with_a_long_name_too_which_goes_on: v > 0.5; }"
+    " if entity_with_a_long_name.rule_with_a_long_name_too_which_goes_on or"
+    " not entity_with_a_long_name.rule_with_a_long_name_too_which_goes_on then {"
+    ' very_long_name_of_an_action_that_goes_on_and_on(1, "two"); };',
 )
-def test_every_kind_of_program_is_lint_clean(rules: str, tmp_path: Path) -> None:
+"""Combinations of actions."""
+
+
+def test_every_kind_of_program_is_lint_clean(tmp_path: Path) -> None:
     """No combination of actions leaves an unused import, name or empty block behind."""
-    write(files_of_text(HEAD + rules), tmp_path)
-    assert_lint_clean(tmp_path / "text_safety")
+    for number, rules in enumerate(KINDS):
+        write(files_of_text(HEAD + rules), tmp_path / f"kind_{number}")
+    assert_lint_clean(tmp_path)
 
 
 def test_description_matches_the_node() -> None:
