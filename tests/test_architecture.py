@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -27,6 +27,7 @@ HOMES = {
 """Packages that may import a library; generated code is text, so ``rclpy`` has none."""
 
 
+@cache
 def _modules() -> list[Path]:
     return sorted(SOURCE.rglob("*.py"))
 
@@ -37,12 +38,15 @@ def _is_text(path: Path) -> bool:
     return path.parent in [SOURCE / "generators" / folder for folder in folders]
 
 
-def _imported(path: Path) -> Iterator[str]:
+@cache
+def _imported(path: Path) -> tuple[str, ...]:
+    names: list[str] = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from (name.name for name in node.names)
+            names += (name.name for name in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            yield node.module
+            names.append(node.module)
+    return tuple(names)
 
 
 def test_packages_import_downward_only() -> None:

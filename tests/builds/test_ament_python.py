@@ -92,6 +92,7 @@ def test_colcon_builds_the_current_models(package: Path, how: tuple[str, ...]) -
     assert (package / ".deros/.gitignore").read_text() == "*\n"
 
 
+@pytest.mark.slow
 def test_model_error_fails_the_build_with_its_place(package: Path) -> None:
     """The output shows the diagnostic, not a traceback of setup.py; nothing is installed."""
     rules = package / "models/robot.deros"
@@ -146,6 +147,7 @@ def test_missing_user_code_is_reported_by_every_build(package: Path) -> None:
         assert "DRS4" not in build()
 
 
+@pytest.mark.slow
 def test_missing_user_file_fails_the_build(package: Path) -> None:
     """An action with user code needs its file; the build names the command that writes it."""
     (package / ACTIONS).unlink()

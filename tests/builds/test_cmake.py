@@ -273,6 +273,7 @@ int main(void)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_firmware_links_to_the_monitor(folder: Path, tool: str) -> None:
     """Nothing is recompiled unless the code of the monitor changes."""

@@ -143,6 +143,7 @@ def test_scaffold_matches_the_page(
     assert (folder / file).read_text(encoding="utf-8").strip() == _snippet(language, word).strip()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make")
 def test_make_snippet_rebuilds_only_changes(folder: Path) -> None:
     """The rules for Make generate once, and again when a model changes."""

@@ -147,6 +147,7 @@ def test_number_out_of_range_is_a_finding(tmp_path: Path, place: str, number: st
 # Special files ------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_pipes_and_devices_are_rejected_without_blocking(tmp_path: Path) -> None:
     """Models, imports and definitions that lead to a pipe or a device are findings."""
     os.mkfifo(tmp_path / "pipe.rnd")

@@ -127,6 +127,7 @@ def test_robot_stops_after_two_seconds_of_overspeed(
     assert 0 <= stops[0] - first - 2_000_000_000 < 300_000_000 + lateness(meanwhile)
 
 
+@pytest.mark.slow
 @pytest.mark.ros
 def test_robot_halts_when_the_safety_node_is_killed(
     packages: tuple[list[str], dict[str, str]], ros_peer: Peer

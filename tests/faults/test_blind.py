@@ -83,6 +83,7 @@ def test_lidar_covered_ahead_stops_the_robot(robot: Robot, ahead: float) -> None
         robot.until_driving()
 
 
+@pytest.mark.slow
 @blind
 def test_lidar_covered_all_around_stops_the_robot(robot: Robot, ahead: float) -> None:
     """A scan without a valid beam does not count, but the rule is unknown at once."""
@@ -93,6 +94,7 @@ def test_lidar_covered_all_around_stops_the_robot(robot: Robot, ahead: float) ->
         robot.until(lambda: is_stopped(robot))
 
 
+@pytest.mark.slow
 def test_lidar_covered_from_the_start_keeps_the_robot_stopped(robot: Robot) -> None:
     """Its first scan ends the waiting, and the stop follows."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
@@ -104,6 +106,7 @@ def test_lidar_covered_from_the_start_keeps_the_robot_stopped(robot: Robot) -> N
         robot.until(lambda: is_stopped(robot))
 
 
+@pytest.mark.slow
 def test_attitude_of_zeros_stops_the_robot(robot: Robot) -> None:
     """A quaternion of zeros is not an attitude; it arrives in time, so the input is not missing."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:

@@ -41,6 +41,7 @@ def test_wall_clock_step_has_no_effect(robot: Robot, tmp_path: Path, seconds: in
         robot.until_stopped("/halt", limit=0.5 + 1.0)
 
 
+@pytest.mark.slow
 def test_timers_survive_a_wall_clock_step(robot: Robot, tmp_path: Path) -> None:
     """Set back by a year, without messages, the node keeps its heartbeat and its deadlines."""
     wall_clock = WallClock(tmp_path)
@@ -78,6 +79,7 @@ def test_paused_simulation_misses_timeouts_but_not_immediate_stops(robot: Robot)
             sensors.play("/clock", *ticks(2000.0))
 
 
+@pytest.mark.slow
 def test_restarted_simulation_is_reported_and_monitored(robot: Robot) -> None:
     """After the step back everything is unknown, and every rule works as from the start."""
     with robot.sensors(WITH_CLOCK) as sensors:
@@ -96,6 +98,7 @@ def test_restarted_simulation_is_reported_and_monitored(robot: Robot) -> None:
             robot.until_stopped("/halt", limit=0.5 + 1.0)
 
 
+@pytest.mark.slow
 def test_fast_simulation_counts_simulated_time(robot: Robot) -> None:
     """At twenty times the speed, 20 s pass in one: neither earlier nor 20 s later."""
     with robot.sensors(WITH_CLOCK) as sensors:

@@ -12,7 +12,6 @@ from tests.support.chaos.campaign import EXAMPLE, generate_packages
 from tests.support.chaos.round import play
 from tests.support.chaos.schedule import Schedule
 from tests.support.cpp import needs_rclcpp
-from tests.support.profiles import slow
 from tests.support.ros import environment
 
 pytestmark = pytest.mark.ros
@@ -36,9 +35,8 @@ def bench(
     patch.undo()
 
 
-@pytest.mark.parametrize(
-    "path", [SCHEDULES[0], *map(slow, SCHEDULES[1:])], ids=lambda path: path.stem
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("path", SCHEDULES, ids=lambda path: path.stem)
 def test_former_counterexample_has_no_violation(bench: Bench, path: Path) -> None:
     """The referee no longer finds a violation."""
     verdict = play(bench, Schedule.load(path))

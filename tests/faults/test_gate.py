@@ -75,6 +75,7 @@ def test_dead_or_hung_safety_node_stops_the_robot(
         robot.until_driving()
 
 
+@pytest.mark.slow
 def test_latched_stop_survives_any_crash(robot: Robot, tmp_path: Path) -> None:
     """From the stop to its reset the drive gets only zeros, whichever process dies."""
     lease = short_lease(tmp_path)
@@ -130,6 +131,7 @@ def test_dead_or_hung_controller_is_followed_by_zeros(
         assert not robot.is_active("/halt")
 
 
+@pytest.mark.slow
 def test_nan_command_counts_as_lost_input(robot: Robot) -> None:
     """No NaN reaches the drive; a zero does, at once."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
@@ -144,6 +146,7 @@ def test_nan_command_counts_as_lost_input(robot: Robot) -> None:
         robot.until_driving()
 
 
+@pytest.mark.slow
 def test_flood_of_commands_does_not_block_a_stop(robot: Robot) -> None:
     """At twenty thousand commands a second, a stop still becomes a zero."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
@@ -175,6 +178,7 @@ def test_limit_becomes_zero_when_the_safety_node_dies(robot: Robot) -> None:
         robot.restart()
 
 
+@pytest.mark.slow
 def test_zeros_survive_a_wall_clock_step(robot: Robot, tmp_path: Path) -> None:
     """Set back by a year, without messages, the gate still detects the loss and still commands."""
     wall_clock = WallClock(tmp_path)

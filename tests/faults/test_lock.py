@@ -41,6 +41,7 @@ def test_second_node_ends_even_if_the_lock_is_deleted(robot: Robot, tmp_path: Pa
         assert "another node publishes this heartbeat" in second.output()
 
 
+@pytest.mark.slow
 def test_node_survives_the_deletion_of_its_lock(robot: Robot, tmp_path: Path) -> None:
     """It continues without the lock, and a restart after a kill creates a new one."""
     with robot.safety_node(TMPDIR=str(tmp_path)) as node:
@@ -64,6 +65,7 @@ def put_link(folder: Path) -> None:
     locks(folder).symlink_to(folder / "another")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("put", [make_writable_for_all, put_link])
 def test_shared_lock_folder_is_not_used(
     robot: Robot, tmp_path: Path, put: Callable[[Path], None]

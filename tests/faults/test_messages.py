@@ -16,6 +16,7 @@ pytestmark = pytest.mark.ros
 TILTED = math.radians(20.0)
 
 
+@pytest.mark.slow
 def test_flood_on_one_input_does_not_block_others(robot: Robot) -> None:
     """With 20,000 messages a second on one input, rules on others stop, at once and after 0.4 s."""
     with robot.safety_node(), robot.sensors() as sensors, robot.sensors() as flood:
@@ -35,6 +36,7 @@ def test_flood_on_one_input_does_not_block_others(robot: Robot) -> None:
         assert sent > 10_000 * running, f"{sent} messages in {running:.1f} s are not a flood"
 
 
+@pytest.mark.slow
 def test_violation_within_a_flood_stops_the_robot(robot: Robot) -> None:
     """The flooded input itself is still evaluated."""
     with robot.safety_node(), robot.sensors() as flood:
@@ -43,6 +45,7 @@ def test_violation_within_a_flood_stops_the_robot(robot: Robot) -> None:
         robot.until_stopped("/slow")
 
 
+@pytest.mark.slow
 def test_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
     """A scan of at least a million beams is evaluated, and other inputs are monitored meanwhile.
 

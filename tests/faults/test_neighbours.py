@@ -51,6 +51,7 @@ def test_second_publisher_does_not_hide_a_dead_sensor(robot: Robot) -> None:
         robot.until_stopped("/halt")
 
 
+@pytest.mark.slow
 def test_every_publisher_of_an_input_is_evaluated(robot: Robot) -> None:
     """A message of either publisher may violate a rule."""
     with robot.safety_node(), robot.sensors() as sensors:
@@ -62,6 +63,7 @@ def test_every_publisher_of_an_input_is_evaluated(robot: Robot) -> None:
             robot.until_stopped(limit=PROMPT)
 
 
+@pytest.mark.slow
 def test_second_publisher_of_a_state_is_a_fault(robot: Robot) -> None:
     """Readers of the topic cannot distinguish the two, so the safety node names the other one."""
     with robot.safety_node():
@@ -86,6 +88,7 @@ def test_incompatible_reader_is_a_fault(robot: Robot) -> None:
             until_no_fault(robot, f"readers of {topic}")
 
 
+@pytest.mark.slow
 def test_node_corrects_states_from_other_publishers(robot: Robot) -> None:
     """The node repeats the state of its rules after a foreign message on its topic."""
     with robot.safety_node() as node:
@@ -101,6 +104,7 @@ def test_node_corrects_states_from_other_publishers(robot: Robot) -> None:
         assert "halt is reset" not in node.output()
 
 
+@pytest.mark.slow
 def test_second_publisher_of_the_heartbeat_is_a_fault(robot: Robot) -> None:
     """It could make a dead node look alive."""
     with robot.safety_node():
@@ -111,6 +115,7 @@ def test_second_publisher_of_the_heartbeat_is_a_fault(robot: Robot) -> None:
         until_no_fault(robot, HEARTBEAT)
 
 
+@pytest.mark.slow
 def test_second_node_is_detected_without_a_shared_folder(robot: Robot, tmp_path: Path) -> None:
     """As on another machine or in another container: the second exits, the first continues."""
     with robot.safety_node():
@@ -136,6 +141,7 @@ def test_second_clock_is_a_fault(robot: Robot) -> None:
             until_no_fault(robot, "/clock")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chosen", [True, False])
 def test_clock_source_cannot_be_changed(robot: Robot, chosen: bool) -> None:
     """A change of use_sim_time is rejected with a reason, and the node keeps monitoring."""

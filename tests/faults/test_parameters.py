@@ -53,6 +53,7 @@ def test_parameters_of_a_running_node_cannot_be_changed(robot: Robot) -> None:
     stranger.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("service", ["set_parameters", "reset"])
 def test_vanished_client_delays_the_node_only_briefly(robot: Robot, service: str) -> None:
     """The middleware waits 0.1 s per request for a vanished client; then the node continues."""

@@ -24,6 +24,7 @@ def test_killed_node_falls_silent(robot: Robot) -> None:
         robot.restart()
 
 
+@pytest.mark.slow
 def test_hung_node_falls_silent_and_continues(robot: Robot) -> None:
     """A hang stops the heartbeat; afterwards a lasting violation still stops the robot."""
     with robot.safety_node() as node, robot.sensors() as sensors:
@@ -37,6 +38,7 @@ def test_hung_node_falls_silent_and_continues(robot: Robot) -> None:
         robot.until_stopped(limit=PROMPT)
 
 
+@pytest.mark.slow
 def test_deadline_during_a_hang_is_late_but_not_lost(robot: Robot) -> None:
     """The 'for' of a rule ends while the node hangs; the halt follows when it continues."""
     with robot.safety_node() as node, robot.sensors() as sensors:
@@ -50,6 +52,7 @@ def test_deadline_during_a_hang_is_late_but_not_lost(robot: Robot) -> None:
         robot.until_stopped("/halt", limit=PROMPT)
 
 
+@pytest.mark.slow
 def test_events_delayed_by_a_hang_have_the_causes_of_their_time(
     robot: Robot,
 ) -> None:
@@ -99,6 +102,7 @@ def test_latched_stop_survives_kill(robot: Robot) -> None:
         assert not robot.is_active("/stop"), "the reset was undone by a restart"
 
 
+@pytest.mark.slow
 def test_node_restarts_after_a_kill_at_any_moment(robot: Robot) -> None:
     """Wherever it is killed, it can be started again, and monitors."""
     with robot.safety_node() as node, robot.sensors() as sensors:

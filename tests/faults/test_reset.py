@@ -44,6 +44,7 @@ def assert_reset(robot: Robot) -> None:
 NEAREST = "scan.nearest(-0.523599, 0.523599)"
 
 
+@pytest.mark.slow
 def test_reset_is_refused_while_the_lidar_measures_nothing(robot: Robot) -> None:
     """A scan of only NaN does not show that the obstacle is gone."""
     with robot.safety_node(), robot.gate(), robot.sensors() as sensors:
@@ -57,6 +58,7 @@ def test_reset_is_refused_while_the_lidar_measures_nothing(robot: Robot) -> None
         assert_reset(robot)
 
 
+@pytest.mark.slow
 def test_reset_is_refused_before_the_first_scan(robot: Robot, tmp_path: Path) -> None:
     """After a restart the obstacle is unknown until the lidar publishes."""
     lease = short_lease(tmp_path)
@@ -110,6 +112,7 @@ def test_second_reset_has_nothing_to_reset(robot: Robot) -> None:
         assert answers == ["no latched action was active", "stop is reset"]
 
 
+@pytest.mark.slow
 def test_late_reset_is_decided_when_it_is_served(robot: Robot) -> None:
     """A call during a hang is refused by the values known when it is served."""
     with robot.safety_node() as node, robot.sensors() as sensors:

@@ -104,6 +104,7 @@ def test_recovered_safety_node_starts_no_motion(
         release(robot, sensors)
 
 
+@pytest.mark.slow
 def test_restarted_gate_starts_no_motion(robot: Robot) -> None:
     """Killed while commands passed, it starts as after a loss."""
     with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
@@ -119,6 +120,7 @@ def test_restarted_gate_starts_no_motion(robot: Robot) -> None:
         gate.end()
 
 
+@pytest.mark.slow
 def test_hung_gate_starts_no_motion(robot: Robot) -> None:
     """It cannot know what it has missed, so it latches first."""
     with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
@@ -131,6 +133,7 @@ def test_hung_gate_starts_no_motion(robot: Robot) -> None:
         release(robot, sensors)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", [slow(Sensors.kill), Sensors.freeze])
 def test_recovered_controller_starts_no_motion(
     robot: Robot, fault: Callable[[Sensors], None]
@@ -176,6 +179,7 @@ def test_reset_of_an_action_starts_no_motion(robot: Robot) -> None:
         release(robot, sensors)
 
 
+@pytest.mark.slow
 def test_nan_between_commands_starts_no_motion(robot: Robot) -> None:
     """It is a loss that ends with the next command, which does not pass."""
     with robot.safety_node(), robot.wheels_gate(), moving(robot) as sensors:
@@ -185,6 +189,7 @@ def test_nan_between_commands_starts_no_motion(robot: Robot) -> None:
         release(robot, sensors)
 
 
+@pytest.mark.slow
 def test_zero_during_the_stop_does_not_release(robot: Robot) -> None:
     """It is outdated when the stop ends: the controller commands a speed by then."""
     with robot.safety_node(), robot.wheels_gate(), moving(robot) as sensors:
@@ -200,6 +205,7 @@ def test_zero_during_the_stop_does_not_release(robot: Robot) -> None:
         release(robot, sensors)
 
 
+@pytest.mark.slow
 def test_reset_is_refused_while_its_cause_lasts(robot: Robot, tmp_path: Path) -> None:
     """The response names the cause, and the request is not remembered."""
     lease = short_lease(tmp_path)
@@ -225,6 +231,7 @@ def test_reset_is_refused_while_its_cause_lasts(robot: Robot, tmp_path: Path) ->
         release(robot, sensors)
 
 
+@pytest.mark.slow
 def test_resets_from_other_participants_are_decided_like_any_other(robot: Robot) -> None:
     """Any number may call: each gets a response, and none starts a motion."""
     from std_srvs.srv import Trigger
@@ -246,6 +253,7 @@ def test_resets_from_other_participants_are_decided_like_any_other(robot: Robot)
     stranger.close()
 
 
+@pytest.mark.slow
 def test_late_reset_starts_no_motion(robot: Robot) -> None:
     """A call during a hang of the gate is decided when it is served, by the state then."""
     with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
@@ -261,6 +269,7 @@ def test_late_reset_starts_no_motion(robot: Robot) -> None:
         release(robot, sensors)
 
 
+@pytest.mark.slow
 def test_vanished_reset_client_delays_the_gate_only_briefly(robot: Robot) -> None:
     """The middleware waits 0.1 s per request for a vanished client; then the zeros continue."""
     from std_srvs.srv import Trigger

@@ -29,6 +29,7 @@ def test_dead_or_hung_sensor_stops_the_robot(
         robot.until_stopped("/halt", limit=0.5 + 1.0)
 
 
+@pytest.mark.slow
 def test_restarted_sensor_is_used_again(robot: Robot) -> None:
     """The safety node need not be restarted."""
     with robot.safety_node():
@@ -44,6 +45,7 @@ def test_restarted_sensor_is_used_again(robot: Robot) -> None:
             robot.until_stopped()
 
 
+@pytest.mark.slow
 def test_sensor_is_used_again_after_a_hang(robot: Robot) -> None:
     """Its messages count as before."""
     with robot.safety_node(), robot.sensors() as sensors:
@@ -67,6 +69,7 @@ def test_nan_counts_as_silence(robot: Robot) -> None:
         robot.until_stopped()
 
 
+@pytest.mark.slow
 def test_nan_between_valid_messages_misses_no_stop(robot: Robot) -> None:
     """One valid message among many NaN is enough for an immediate rule."""
     with robot.safety_node(), robot.sensors() as sensors:
@@ -77,6 +80,7 @@ def test_nan_between_valid_messages_misses_no_stop(robot: Robot) -> None:
         robot.until_stopped()
 
 
+@pytest.mark.slow
 def test_unordered_stamps_change_no_verdict(robot: Robot) -> None:
     """Times are those of receipt, not of the stamps: a 'for' elapses normally."""
     with robot.safety_node(), robot.sensors() as sensors:
@@ -87,6 +91,7 @@ def test_unordered_stamps_change_no_verdict(robot: Robot) -> None:
         robot.until_stopped("/halt", limit=0.4 + 1.0)
 
 
+@pytest.mark.slow
 def test_plausible_wrong_value_is_believed(robot: Robot) -> None:
     """A stuck sensor is alive, and its value is used: only another sensor can contradict it."""
     with robot.safety_node(), robot.sensors() as sensors:

@@ -12,6 +12,7 @@ pytestmark = pytest.mark.ros
 GRACE = 3.0
 
 
+@pytest.mark.slow
 def test_existing_inputs_are_used_from_the_start(robot: Robot) -> None:
     """A node started in a running robot detects a violation in progress."""
     with robot.sensors() as sensors:
@@ -21,6 +22,7 @@ def test_existing_inputs_are_used_from_the_start(robot: Robot) -> None:
             robot.until_stopped()
 
 
+@pytest.mark.slow
 def test_late_inputs_are_used_when_they_appear(robot: Robot) -> None:
     """Publishers discovered seconds after the node are used like any other."""
     with robot.safety_node():

@@ -46,7 +46,7 @@ def put_unreadable(file: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "damage", [flip, empty, *map(slow, (truncate, write_garbage, put_unreadable))]
+    "damage", [flip, *map(slow, (empty, truncate, write_garbage, put_unreadable))]
 )
 def test_damaged_state_file_means_stopped(
     robot: Robot, tmp_path: Path, damage: Callable[[Path], object]
@@ -108,8 +108,8 @@ def described(folder: Path) -> list[tuple[str, int, bytes]]:
 @pytest.mark.parametrize(
     "put",
     [
-        *(put_link, put_pipe),
-        *map(slow, (put_dangling_link, put_socket, put_device, put_unreadable)),
+        put_link,
+        *map(slow, (put_pipe, put_dangling_link, put_socket, put_device, put_unreadable)),
     ],
 )
 def test_irregular_state_file_means_stopped_and_is_kept(
@@ -146,6 +146,7 @@ def test_state_file_of_another_node_means_stopped(robot: Robot, tmp_path: Path) 
         assert f"{file} is damaged, or not of /{NODE}" in node.output()
 
 
+@pytest.mark.slow
 def test_state_file_removed_at_run_time_is_recreated(robot: Robot, tmp_path: Path) -> None:
     """Removing the file does not undo a stop."""
     file = tmp_path / "state"
@@ -168,6 +169,7 @@ def test_link_created_at_run_time_is_reported(robot: Robot, tmp_path: Path) -> N
         assert file.is_symlink()
 
 
+@pytest.mark.slow
 def test_missing_folder_is_created(robot: Robot, tmp_path: Path) -> None:
     """It is private to the user, and the latch is in it."""
     folder = tmp_path / "made" / "for"
@@ -205,6 +207,7 @@ def test_full_disk_does_not_prevent_a_stop(robot: Robot, tmp_path: Path) -> None
         assert robot.is_active("/stop"), "the stop was undone by a restart"
 
 
+@pytest.mark.slow
 def test_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
     """A reset that a restart would undo is refused until there is space again."""
     folder = tmp_path / "disk"

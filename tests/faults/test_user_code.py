@@ -27,9 +27,7 @@ FAILURES = {
 """Modes of failure, and a part of the reason that the node prints."""
 
 
-@pytest.mark.parametrize(
-    "how", ["throw", "exit", *map(slow, sorted(FAILURES.keys() - {"throw", "exit"}))]
-)
+@pytest.mark.parametrize("how", ["throw", *map(slow, sorted(FAILURES.keys() - {"throw"}))])
 def test_user_code_that_ends_the_node_loses_neither_stop_nor_latch(robot: Robot, how: str) -> None:
     """The stop after the code is published, the node exits with 1, and the latch is stored."""
     with robot.safety_node() as node:
@@ -45,6 +43,7 @@ def test_user_code_that_ends_the_node_loses_neither_stop_nor_latch(robot: Robot,
         )
 
 
+@pytest.mark.slow
 def test_failed_node_leaves_the_graph_at_once(robot: Robot) -> None:
     """After a restart its remains do not count as a second publisher."""
     with robot.safety_node() as node:
@@ -85,6 +84,7 @@ def test_slow_user_code_does_not_delay_a_stop(robot: Robot) -> None:
         robot.until_alive()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["wait", slow("exit")])
 def test_user_code_repeated_at_the_start_runs_after_the_states(
     robot: Robot, tmp_path: Path, how: str

@@ -85,6 +85,7 @@ class Asking:
             self._peer.node.destroy_subscription(subscription)
 
 
+@pytest.mark.slow
 def test_compatibility_of_every_pair_agrees_with_the_middleware(
     ros_peer: Peer, other_peer: Peer
 ) -> None:

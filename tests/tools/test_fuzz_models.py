@@ -28,6 +28,7 @@ def test_run_prints_seed_and_number() -> None:
     assert run.stdout.endswith("no findings\n")
 
 
+@pytest.mark.slow
 def test_finding_sets_the_exit_code() -> None:
     """With a tiny time limit everything is a finding, stored in a folder."""
     run = fuzz("--mutants", "2", "--seed", "3", "--limit", "0.00001", "--kind", "model")

@@ -82,6 +82,7 @@ TIME = "builtin_interfaces::msg::Time"
 STAMP = f"  {TIME} stamp() override {{return {TIME}();}}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("gate", "logic", "command", "stamp"),
     [

@@ -128,6 +128,7 @@ def test_gate_stops_while_safety_node_is_suspended(drive: Drive, start_safety: S
     report("stopped", delays)
 
 
+@pytest.mark.slow
 def test_gate_stops_after_a_violated_rule(drive: Drive, start_safety: StartSafety) -> None:
     """The time from the sensor message to the zero, through safety node and gate, is short."""
     delays: list[float] = []

@@ -217,6 +217,7 @@ def test_wrong_clock_stamps_zeros_but_hides_no_loss(
 ON_CLOCK = "use_sim_time:=true"
 
 
+@pytest.mark.slow
 def test_second_clock_is_a_fault(run_gate: RunGate, ros_env: dict[str, str], world: World) -> None:
     """Both are used, which affects only the stamps of zeros; the other publisher is named."""
     with simulated_time(world.peer, 1_000) as clock, run_gate(GATE, ros_env, ON_CLOCK):

@@ -87,7 +87,7 @@ KINDS = (
 def test_every_kind_of_gate_is_lint_clean(tmp_path: Path) -> None:
     """No combination of lines and types leaves an unused import, name or empty block behind."""
     for number, gate in enumerate(KINDS):
-        files = files_of(f"{HEAD}gate /wish/of/somebody -> /command : {gate}")
+        files = files_of(f"{HEAD}gate /wish/of/somebody -> /command : {gate}", runtime="package")
         write(files, tmp_path / f"kind_{number}")
     assert_lint_clean(tmp_path)
 

@@ -145,6 +145,7 @@ def test_foreign_heartbeat_does_not_replace_a_dead_safety_node(
         world.assert_stands(1.0)
 
 
+@pytest.mark.slow
 def test_constant_heartbeat_releases_nothing(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
@@ -206,6 +207,7 @@ def test_publisher_that_bypasses_the_gate_is_a_fault(world: World, ros_env: dict
     world.wish_until(0.3, lambda: "stranger" not in world.status["message"])
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_second_gate_without_a_shared_lock_ends(
     run_gate: RunGate, world: World, ros_env: dict[str, str], tmp_path: Path
@@ -220,6 +222,7 @@ def test_second_gate_without_a_shared_lock_ends(
     world.until_driving()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_second_gate_that_stays_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
     """An older gate may not exit; both report it."""

@@ -43,6 +43,7 @@ def test_former_counterexample_passes(path: Path) -> None:
     c_pairs.compare_alone(pair)
 
 
+@pytest.mark.slow
 @needs_c
 def test_difference_is_minimised(tmp_path: Path) -> None:
     """A failing pair is reported without unnecessary steps."""

@@ -80,6 +80,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return c_proof.write(built.program, folder / "c")
 
 
+@pytest.mark.slow
 @needs_c
 def test_fields_may_have_names_of_monitor_functions(source: Path) -> None:
     """Each becomes a parameter of a function that calls functions of the monitor."""

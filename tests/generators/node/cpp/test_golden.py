@@ -107,15 +107,12 @@ def test_user_class_overrides_every_handler(name: str) -> None:
 
 
 @pytest.mark.parametrize("options", [{}, COPYRIGHT], ids=["plain", "copyright"])
-@pytest.mark.parametrize("name", MODELS)
-def test_package_passes_the_ament_linters(
-    name: str, options: dict[str, str], tmp_path: Path
-) -> None:
+def test_packages_pass_the_ament_linters(options: dict[str, str], tmp_path: Path) -> None:
     """The C++ and Python linters of ament find nothing in any file."""
-    write(files_of(name, options), tmp_path)
-    (package,) = tmp_path.iterdir()
-    assert_cpp_lint_clean(package)
-    assert_lint_clean(package)
+    for name in MODELS:
+        write(files_of(name, options), tmp_path)
+    assert_cpp_lint_clean(tmp_path)
+    assert_lint_clean(tmp_path)
 
 
 @needs_rclcpp

@@ -13,6 +13,7 @@ import pytest
 
 from tests.support.breakers import STUBBORN, USUAL, Breaker, CppBreaker, PythonBreaker
 from tests.support.cpp import needs_rclcpp
+from tests.support.profiles import slow
 from tests.support.ros import LIMIT, Peer, running, set_parameter, stop
 
 pytestmark = pytest.mark.ros
@@ -98,7 +99,7 @@ def client(ros_peer: Peer) -> Iterator[Client]:
 # Failing code -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", [WAYS[0], *map(slow, WAYS[1:])])
 @pytest.mark.parametrize("place", PLACES)
 def test_failing_user_code_ends_the_program_with_the_reason(
     place: str, way: str, breaker: Breaker, start: Start, client: Client

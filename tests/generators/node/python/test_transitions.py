@@ -12,6 +12,7 @@ import pytest
 
 from tests.support.cpp import needs_rclcpp
 from tests.support.leavers import TRANSITIONS, CppLeaver, Leaver, PythonLeaver
+from tests.support.profiles import slow
 from tests.support.ros import LIMIT, Peer, running, set_parameter, stop
 
 pytestmark = pytest.mark.ros
@@ -134,7 +135,7 @@ def client(ros_peer: Peer) -> Client:
 
 
 @pytest.mark.parametrize("place", TRANSITIONS)
-@pytest.mark.parametrize("way", ["error", "ERROR"])
+@pytest.mark.parametrize("way", ["error", slow("ERROR")])
 def test_transition_with_an_error_leaves_the_node_unconfigured(
     place: str, way: str, leaver: Leaver, start: Start, client: Client
 ) -> None:
@@ -155,7 +156,7 @@ def test_transition_with_an_error_leaves_the_node_unconfigured(
 
 
 @pytest.mark.parametrize("place", TRANSITIONS)
-@pytest.mark.parametrize("way", ["odd", "exit"])
+@pytest.mark.parametrize("way", [slow("odd"), "exit"])
 def test_transition_may_end_the_program(
     place: str, way: str, leaver: Leaver, start: Start, client: Client
 ) -> None:

@@ -48,6 +48,7 @@ def model() -> tuple[Rules, Context]:
     return model, context
 
 
+@pytest.mark.slow
 def test_hot_path_does_not_allocate(model: tuple[Rules, Context], tmp_path: Path) -> None:
     """From message to state, over hundreds of triggers and resets."""
     program = compiled(HERE / "hot_path.cpp", tmp_path, generate(*model, {}))

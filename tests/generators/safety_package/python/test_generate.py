@@ -85,7 +85,7 @@ KINDS = (
 def test_every_kind_of_program_is_lint_clean(tmp_path: Path) -> None:
     """No combination of actions leaves an unused import, name or empty block behind."""
     for number, rules in enumerate(KINDS):
-        write(files_of_text(HEAD + rules), tmp_path / f"kind_{number}")
+        write(files_of_text(HEAD + rules, runtime="package"), tmp_path / f"kind_{number}")
     assert_lint_clean(tmp_path)
 
 
