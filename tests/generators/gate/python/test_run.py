@@ -14,6 +14,7 @@ import pytest
 from tests.support.gate_nodes import GATE, SAFETY_NODE, STILL, World
 from tests.support.gate_runners import RunGate
 from tests.support.ros import LIMIT, Peer, set_parameter
+from tests.support.stalls import stalls
 
 pytestmark = pytest.mark.ros
 
@@ -58,13 +59,13 @@ def test_stop_publishes_zero_at_once_and_periodically(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """The first zero comes with the stop, the others at the rate, with or without commands."""
-    with run_gate(GATE, ros_env):
+    with run_gate(GATE, ros_env), stalls() as stalled:
         world.meet()
         world.release()
-        before = len(world.heard)
+        before, held_up = len(world.heard), stalled.seconds
         stopped = world.stop(True)
         world.hear_after(before)
-        assert world.heard[before][0] - stopped < 0.02
+        assert world.heard[before][0] - stopped < 0.02 + stalled.seconds - held_up
         world.peer.until(lambda: len(world.heard) >= before + 20)
         world.wish_until(0.3, lambda: len(world.heard) >= before + 40)
         zeros = world.heard[before:]
@@ -115,14 +116,14 @@ def test_non_finite_command_is_refused(
     run_gate: RunGate, ros_env: dict[str, str], world: World, bad: float
 ) -> None:
     """It counts as lost input: zeros until the next valid command; and it is counted."""
-    with run_gate(GATE, ros_env):
+    with run_gate(GATE, ros_env), stalls() as stalled:
         world.meet()
         world.release()
-        before = len(world.heard)
+        before, held_up = len(world.heard), stalled.seconds
         sent = time.monotonic()
         world.wish(0.3, y=bad)
         world.hear_after(before)
-        assert world.heard[before][0] - sent < 0.02
+        assert world.heard[before][0] - sent < 0.02 + stalled.seconds - held_up
         assert world.last == STILL
         world.peer.until(
             lambda: "a NaN or an infinite number" in world.status.get("refused_last", "")
@@ -151,19 +152,21 @@ def test_silence_of_input_or_heartbeat_gives_zero(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
     """The time counts from the last message, and the zero needs no message."""
-    with run_gate(GATE, ros_env):
+    with run_gate(GATE, ros_env), stalls() as stalled:
         world.meet()
         world.release()
         last, _ = world.heard[-1]
         world.peer.until(lambda: world.last == STILL)
-        assert world.heard[-1][0] - last == pytest.approx(0.5, abs=0.05)
+        assert -0.05 < world.heard[-1][0] - last - 0.5 < 0.05 + stalled.seconds
 
         world.release()
         world.beating.cancel()
+        before = stalled.seconds
         world.beat()
         beaten = time.monotonic()
         world.wish_until(0.3, lambda: world.last == STILL)
-        assert world.heard[-1][0] - beaten == pytest.approx(0.3, abs=0.05)
+        late = world.heard[-1][0] - beaten - 0.3
+        assert -0.05 < late < 0.05 + stalled.seconds - before
         world.stop(False)
         world.mode(0)
 

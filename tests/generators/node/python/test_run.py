@@ -343,6 +343,16 @@ def shown_by(peer: Peer, service: str) -> list[str]:
     return words
 
 
+def clients_of(peer: Peer, node: str) -> set[str]:
+    """Return the services of which a node is known to have clients: none before its discovery."""
+    from rclpy.node import NodeNameNonExistentError
+
+    try:
+        return {name for name, _ in peer.node.get_client_names_and_types_by_node(node, "/")}
+    except NodeNameNonExistentError:
+        return set()
+
+
 def test_node_publishes_and_subscribes_to_one_name(start: Start, ros_peer: Peer) -> None:
     """Both ends follow the remapping of a topic, server and client that of a service."""
     from std_msgs.msg import String
@@ -357,8 +367,8 @@ def test_node_publishes_and_subscribes_to_one_name(start: Start, ros_peer: Peer)
         publisher.publish(String(data="ping"))
         ros_peer.until(lambda: "pong" in received)
         assert shown_by(ros_peer, "/show")
-        clients = dict(ros_peer.node.get_client_names_and_types_by_node("mapper", "/"))
-        assert {"/show", "/count", "/count/_action/send_goal"} <= clients.keys()
+        expected = {"/show", "/count", "/count/_action/send_goal"}
+        ros_peer.until(lambda: expected <= clients_of(ros_peer, "mapper"))
         assert not ros_peer.node.count_publishers("/map")
 
 

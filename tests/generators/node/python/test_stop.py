@@ -27,7 +27,9 @@ MODEL = """
 SIGNALLED = """\
         import os, signal
         from std_msgs.msg import String
-        os.kill(os.getpid(), signal.{signal})
+        if not hasattr(self, 'signalled'):  # a second signal would end the program at once
+            self.signalled = True
+            os.kill(os.getpid(), signal.{signal})
         try:
             total = sum(range(1_000_000))  # the interpreter looks for signals again and again
             self.publish_words(String(data=str(total)))
