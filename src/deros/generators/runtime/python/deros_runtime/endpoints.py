@@ -23,7 +23,7 @@ def shown_node_of(info: TopicEndpointInfo) -> str:
 
 
 def incompatibility(offered: QoSProfile, requested: QoSProfile) -> str:
-    """Return why the middleware does not connect a publisher and a subscription; empty if it does."""
+    """Return why a publisher and a subscription are not connected; empty if they are."""
     fits, reason = qos_check_compatible(offered, requested)
     if fits != QoSCompatibility.ERROR:
         return ''
