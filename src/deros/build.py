@@ -16,6 +16,7 @@ import configparser
 import os
 import runpy
 import sys
+import time
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -84,7 +85,7 @@ def _generate(request: Request, source: Path) -> _Outcome:
     from deros.generators.output.writer import WriteError
     from deros.pipeline.depfile import is_current, read_stamp, write_if_changed
     from deros.pipeline.generate import Refused, generate
-    from deros.pipeline.output import OutputSpec, now_ns, write
+    from deros.pipeline.output import OutputSpec, write
     from deros.pipeline.scaffold import scaffold_command
 
     output = source / FOLDER
@@ -95,7 +96,7 @@ def _generate(request: Request, source: Path) -> _Outcome:
     try:
         write_if_changed(output / ".gitignore", "*\n")
         write_if_changed(ros, os.environ.get("AMENT_PREFIX_PATH", ""))
-        started = now_ns()
+        started = time.time_ns()
         there = read_stamp(stamp)
         whole = bool(there) and all((output / each).exists() for each in there)
         if whole and is_current(stamp, depfile):

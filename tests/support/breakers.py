@@ -18,7 +18,7 @@ STUBBORN = 1
 """The order of a goal that never returns."""
 
 USUAL = 2
-"""The order of one that heeds the end of ROS 2, as tutorials have it, but not that of its goal."""
+"""The order of one that checks for the end of ROS 2, as in tutorials, not for that of its goal."""
 
 
 class Breaker(ABC):

@@ -255,7 +255,7 @@ def _adapter(view: GateView) -> str:
         logic=view.logic_class,
         states=states,
         heartbeat=heartbeat if view.heartbeat_port else "",
-        lost=lost if view.heeds_safety_node else "",
+        lost=lost if view.depends_on_safety_node else "",
         reset=reset if view.latching else "",
         stamp=_STAMP if view.stamped else "",
     )

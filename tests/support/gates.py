@@ -293,7 +293,7 @@ class GeneratedGate:
 
     def no_safety_node(self, t_ns: int) -> None:
         """Take note that no node can be the safety node."""
-        if self._view.heeds_safety_node:
+        if self._view.depends_on_safety_node:
             self._gate.on_no_safety_node(t_ns)
         else:
             self._gate.advance(t_ns)
@@ -372,7 +372,7 @@ class Player(Protocol):
         """Take note that no node can be the safety node."""
 
     def reset(self, t_ns: int) -> object:
-        """Take a reset."""
+        """Decide a reset."""
 
     def advance(self, t_ns: int) -> object:
         """Settle all that is due."""

@@ -63,7 +63,7 @@ def fail(*_):
     say("got SIGINT in an import"); os._exit(1)
 signal.signal(signal.SIGINT, fail); signal.pthread_sigmask(signal.SIG_UNBLOCK, ALL)
 say("ready"); signal.pause()""",
-    # The same failure, of a node that is up: it heeds SIGTERM, too.
+    # The same failure, of a node that is up: it handles SIGTERM, too.
     "untidy": """\
 for number in ALL:
     signal.signal(number, lambda *_: os._exit(1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -99,12 +100,12 @@ def generate(
     from deros.generators.output.source_tree import SourceTreeError
     from deros.generators.output.writer import WriteError
     from deros.pipeline import generate as pipeline
-    from deros.pipeline.output import OutputSpec, now_ns, review_source_tree, write
+    from deros.pipeline.output import OutputSpec, review_source_tree, write
     from deros.pipeline.scaffold import scaffold_command, scaffold_files
 
     if scaffold is not None and (depfile or stamp or source):
         raise click.UsageError("--scaffold cannot be combined with --depfile, --stamp or --source")
-    started = now_ns()
+    started = time.time_ns()
     models, options = _apart(files)
     requests = plan(models, target, options, interfaces)
     request = requests[0]

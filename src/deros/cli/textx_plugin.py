@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import sys
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -91,9 +92,9 @@ def _run_generator(
     """
     from deros.generators.output.writer import WriteError
     from deros.pipeline.generate import Refused, Request, generate
-    from deros.pipeline.output import OutputSpec, now_ns, write
+    from deros.pipeline.output import OutputSpec, write
 
-    started_ns = now_ns()
+    started_ns = time.time_ns()
     spec = OutputSpec(Path(output_path) if output_path else Path(filename).parent, overwrite)
     try:
         generated = generate(

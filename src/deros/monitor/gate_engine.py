@@ -120,7 +120,7 @@ class GateEngine:
         return self._take(t_ns, self._program.on_no_safety_node)
 
     def reset(self, t_ns: int) -> tuple[int, ...]:
-        """Take a reset. Return the indices of the lines that refuse it: without any, it is done."""
+        """Decide a reset. Return the indices of the lines that refuse it: with none, it is done."""
         self._catch_up(t_ns)
         for step in self._program.on_reset:
             assert isinstance(step, form.Reset), step

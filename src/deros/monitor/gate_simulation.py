@@ -162,7 +162,7 @@ class _Gate:
         yield from self.reports(self.engine.command(t_ns, message))
 
     def reset(self, t_ns: int) -> Iterator[GateAnswer]:
-        """Take a reset."""
+        """Decide a reset."""
         against = [self.gate.lines[index] for index in self.engine.reset(t_ns)]
         why = tuple(map(_shown, against))
         event: AnswerKind = "gate_reset_refused" if against else "gate_reset"

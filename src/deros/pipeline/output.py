@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -122,8 +121,3 @@ def _review(generated: Generated, present: Mapping[str, Path]) -> tuple[Diagnost
     from deros.generators.user_files.review import review
 
     return tuple(review(generated.files, present))
-
-
-def now_ns() -> int:
-    """Return the current time on the clock of file modification times."""
-    return time.time_ns()

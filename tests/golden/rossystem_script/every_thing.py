@@ -598,9 +598,9 @@ class Process:
 
 def starting(pid: int) -> bool:
     """
-    Tell whether a program is not up yet: Python from its first instruction heeds SIGINT alone.
+    Tell whether a program is not up yet: Python from its first instruction handles SIGINT alone.
 
-    A node of ROS 2 heeds SIGTERM as well, from its initialization on.
+    A node of ROS 2 handles SIGTERM as well, from its initialization on.
     """
     try:
         text = Path(f'/proc/{pid}/status').read_text(encoding='utf-8', errors='replace')

@@ -123,7 +123,7 @@ class GateBase:
         return bool(self.types and self.types[-1].stamped)
 
     @property
-    def heeds_safety_node(self) -> bool:
+    def depends_on_safety_node(self) -> bool:
         """Whether a line is about an action, or about the heartbeat."""
         return bool(self.program.on_no_safety_node)
 

@@ -144,7 +144,7 @@ def test_incompatible_publisher_is_reported(start: Start, ros_peer: Peer) -> Non
         ros_peer.until(lambda: ros_peer.node.count_subscribers("/chatter"))
         offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         ros_peer.node.create_publisher(String, "/chatter", offered)
-        line = until_printed(process, "/chatter is not heard from ")
+        line = until_printed(process, "/chatter is not received from ")
         assert "[ERROR]" in line
         assert f"from {PEER}: " in line or f"from {UNKNOWN}: " in line
         assert "Best effort publisher and reliable subscription" in line

@@ -159,10 +159,10 @@ def test_true_rule_shows_its_true_parts() -> None:
 def test_fault_is_an_error_until_it_ends() -> None:
     """It is in the node's own status; only changes are reported as such."""
     shown = PublishedDiagnostics()
-    assert shown.diagnostics.fault("/imu", "is not heard")
-    assert not shown.diagnostics.fault("/imu", "is not heard")
+    assert shown.diagnostics.fault("/imu", "is not received")
+    assert not shown.diagnostics.fault("/imu", "is not received")
     status = shown.publish()["/safety"]
-    assert (status.level[0], status.message) == (ERROR, "is not heard")
+    assert (status.level[0], status.message) == (ERROR, "is not received")
     assert shown.diagnostics.fault("/imu", "")
     assert not shown.diagnostics.fault("/imu", "")
     shown.not_ready = "starting"

@@ -51,8 +51,8 @@ def test_other_type_and_incompatible_qos_are_faults() -> None:
     """Each publisher is named with its node."""
     _, text = report(publisher("std_msgs/msg/String"), publisher(qos=BEST_EFFORT), publisher())
     first, second = text.split("; ", 1)
-    assert first == "/arm/driver publishes std_msgs/msg/String on it, which is not heard"
-    assert second.startswith("/arm/driver offers a QoS on it that is not heard:")
+    assert first == "/arm/driver publishes std_msgs/msg/String on it, which is not received"
+    assert second.startswith("/arm/driver offers an incompatible QoS on it:")
 
 
 def test_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
@@ -111,6 +111,6 @@ def test_other_publisher_of_a_state_is_named() -> None:
     detector = DuplicateInstanceDetector(node, "/safety/heartbeat", ["/stop", "/slow"], found)
     for _ in range(3):
         detector.check()
-    text = "published by /arm/driver, too: whoever obeys it cannot tell them apart"
+    text = "published by /arm/driver, too: its subscribers cannot tell them apart"
     assert _reports(found, "/stop") == [text, text]
     assert _reports(found, "/slow") == [""]

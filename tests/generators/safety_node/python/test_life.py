@@ -186,7 +186,7 @@ def test_incompatible_publishers_are_reported(
         robot.meet()
         publisher = robot.peer.node.create_publisher(Float64, "/speed", unfit)
         event = robot.event("fault", subject="/speed")
-        assert "offers a QoS on it that is not heard" in event["message"]
+        assert "offers an incompatible QoS on it" in event["message"]
         robot.peer.until(lambda: "/speed" in robot.status().values)
         robot.peer.node.destroy_publisher(publisher)
         robot.peer.until(lambda: "/speed" not in robot.status().values)

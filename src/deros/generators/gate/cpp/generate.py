@@ -31,8 +31,8 @@ from deros.metamodels.safety_nodes import RESET, TRIGGER
 from deros.monitor.ir import Program
 
 _SHARED = (
-    *("clock_choice", "digest", "event_loop", "instance", "ports", "process", "publishers"),
-    *("realtime", "regular_file", "simulated_time", "start_order", "text", "worker"),
+    *("clock_choice", "digest", "endpoints", "event_loop", "instance", "ports", "process"),
+    *("publishers", "realtime", "regular_file", "simulated_time", "start_order", "text", "worker"),
 )
 """The runtime sources that gates share with the safety node."""
 
@@ -120,7 +120,7 @@ def render(template: str, view: GateView, runtime: CppRuntime | None = None) -> 
     templates = environment("deros.generators.gate.cpp")
     headers = [f"{view.package}/{view.name}{part}.hpp" for part in ("_base", "_logic")]
     headers.append(runtime.header("gate_runner"))
-    if view.heeds_safety_node:
+    if view.depends_on_safety_node:
         headers.append(runtime.header("safety_source"))
     heard = [view.heartbeat_port.header] if view.heartbeat_port else []
     if view.latching:

@@ -23,6 +23,7 @@ MODULES = ("logic", "message")
 
 RUNTIME = (
     "clock_choice",
+    "endpoints",
     "gate_report",
     "gate_runner",
     "instance",

@@ -203,7 +203,7 @@ def gate_view(
         node: its node.
         program: the rules that it is of.
         store: the message definitions.
-        safety_node: the node whose states and heartbeat it heeds.
+        safety_node: the node whose states and heartbeat it evaluates.
         runtime: the package that the runtime is imported from; by default, the node's own.
 
     Raises:

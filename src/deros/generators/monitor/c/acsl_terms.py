@@ -17,5 +17,5 @@ def of(operation: str, first: str, second: str) -> str:
     return f"\\{operation}_double({first}, {second})"
 
 
-ONE, TWO, ZERO = constant(1.0), constant(2.0), constant(0.0)
+ONE, ZERO = constant(1.0), constant(0.0)
 INFINITY, NAN = of("div", ONE, ZERO), of("div", ZERO, ZERO)

@@ -154,7 +154,8 @@ class NodeView(NodeBase[PortView, TimerView]):
         """The parts of the runtime that its base class uses."""
         goals = ("goal_threads",) if self.actions else ()
         managed = ("managed_node",) if self.lifecycle else ()
-        return (*goals, *managed, "qos_report") if self.reports_qos else (*goals, *managed)
+        topics = ("endpoints", "qos_report") if self.reports_qos else ()
+        return (*goals, *managed, *topics)
 
     @property
     def reports_qos(self) -> bool:

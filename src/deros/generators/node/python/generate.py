@@ -11,6 +11,7 @@ from deros.generators.node.files import shared_files
 from deros.generators.node.package import maintainer, nodes_beside, refuse_legacy, unsupported
 from deros.generators.node.python.imports import base_imports, user_imports
 from deros.generators.node.python.view import (
+    ENDPOINTS,
     GOAL_THREADS,
     MANAGED_NODE,
     QOS_REPORT,
@@ -99,7 +100,8 @@ def package_files(
         files[f"{root}/{each.module}.py"] = File(text, Owner.USER)
     shared = {GOAL_THREADS for node in package.nodes if node.actions}
     shared |= {MANAGED_NODE for node in package.nodes if node.lifecycle}
-    shared |= {QOS_REPORT for node in package.nodes if node.reports_qos}
+    if any(node.reports_qos for node in package.nodes):
+        shared |= {ENDPOINTS, QOS_REPORT}
     return files | runtime.files(package.name, sorted(shared))
 
 

@@ -41,7 +41,10 @@ GOAL_THREADS = "goal_threads"
 """The runtime module of packages with actions."""
 
 QOS_REPORT = "qos_report"
-"""The runtime module of packages with topics."""
+"""The runtime module of packages with topics, which reports incompatible QoS."""
+
+ENDPOINTS = "endpoints"
+"""The runtime module that `QOS_REPORT` uses."""
 
 MANAGED_NODE = "managed_node"
 """The runtime module of packages with managed nodes."""
@@ -400,6 +403,7 @@ def package_view(
     with_topics = [model for model in models if model.name not in raw and _has_topics(model)]
     for model in with_topics[:1]:
         modules.append(Emitted(QOS_REPORT, "the report of QoS", model.name_span))
+        modules.append(Emitted(ENDPOINTS, "the report of QoS", model.name_span))
     nodes = tuple(node_view(model, model.name in raw) for model in models)
     custom = _custom_modules(models)
     modules += custom.values()

@@ -23,8 +23,8 @@ from deros.generators.text.notice import licensed_cpp
 from deros.generators.text.templates import environment
 
 RUNTIME = (
-    *("clock_choice", "descriptor", "diagnostics", "digest", "duplicate_instance", "event_loop"),
-    *("event_reporter", "instance", "latches", "monitor_runner", "ports", "process"),
+    *("clock_choice", "descriptor", "diagnostics", "digest", "duplicate_instance", "endpoints"),
+    *("event_loop", "event_reporter", "instance", "latches", "monitor_runner", "ports", "process"),
     *("publishers", "realtime", "refusal", "regular_file", "report_types", "safety_node_core"),
     *("simulated_time", "start_order", "text", "worker"),
 )

@@ -44,6 +44,7 @@ RUNTIME = (
     "clock_choice",
     "diagnostics",
     "duplicate_instance",
+    "endpoints",
     "event_reporter",
     "instance",
     "latches",

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "deros_runtime_cpp/endpoints.hpp"
 #include "deros_runtime_cpp/publishers.hpp"
 #include "deros_runtime_cpp/refusal.hpp"
 #include "deros_runtime_cpp/text.hpp"
@@ -35,14 +36,14 @@ void DuplicateInstanceDetector::check()
   const std::string names = others(topic);
   report_(
     topic, names.empty() ? "" :
-    "published by " + names + ", too: whoever obeys it cannot tell them apart");
+    "published by " + names + ", too: its subscribers cannot tell them apart");
 }
 
 void DuplicateInstanceDetector::check_heartbeat()
 {
   const bool has_double = node_.count_publishers(heartbeat_) > 1;
   const std::string text =
-    "another node publishes this heartbeat: whoever heeds it cannot tell them apart";
+    "another node publishes this heartbeat: its subscribers cannot tell them apart";
   if (order_.gives_way(has_double, steady_now())) {
     throw Refusal(heartbeat_ + ": " + text + "; this one started last and ends now");
   }

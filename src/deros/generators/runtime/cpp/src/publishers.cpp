@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "deros_runtime_cpp/endpoints.hpp"
 #include "deros_runtime_cpp/text.hpp"
 
 namespace deros_runtime_cpp
@@ -17,32 +17,14 @@ namespace deros_runtime_cpp
 namespace
 {
 
-/// Return why the QoS of a publisher and a subscription are incompatible; empty if they are not.
-std::string incompatible(const rclcpp::QoS & offered, const rclcpp::QoS & requested)
-{
-  const auto fit = rclcpp::qos_check_compatible(offered, requested);
-  if (fit.compatibility != rclcpp::QoSCompatibility::Error) {
-    return "";
-  }
-  const std::string mark = "ERROR: ";
-  std::vector<std::string> reasons;
-  std::istringstream parts(fit.reason);
-  for (std::string part; std::getline(parts, part, ';'); ) {
-    if (const std::size_t at = part.find(mark); at != std::string::npos) {
-      reasons.push_back(part.substr(at + mark.size()));
-    }
-  }
-  return joined(reasons, "; ");
-}
-
 /// Return why a publisher does not match a subscription of this node; empty if it does.
 std::string mismatch(const rclcpp::TopicEndpointInfo & info, const SubscribedTopic & topic)
 {
   if (info.topic_type() != topic.type) {
-    return "publishes " + info.topic_type() + " on it, which is not heard";
+    return "publishes " + info.topic_type() + " on it, which is not received";
   }
-  const std::string reason = incompatible(info.qos_profile(), topic.qos);
-  return reason.empty() ? "" : "offers a QoS on it that is not heard: " + reason;
+  const std::string reason = incompatibility(info.qos_profile(), topic.qos);
+  return reason.empty() ? "" : "offers an incompatible QoS on it: " + reason;
 }
 
 /// Return why a subscription does not match the publisher of this node; empty if it does.
@@ -52,21 +34,11 @@ std::string mismatch(
   if (subscription.topic_type() != offer.topic_type()) {
     return "subscribes to " + subscription.topic_type() + " on it, which is not published";
   }
-  const std::string reason = incompatible(offer.qos_profile(), subscription.qos_profile());
+  const std::string reason = incompatibility(offer.qos_profile(), subscription.qos_profile());
   return reason.empty() ? "" : "asks for a QoS on it that is not offered: " + reason;
 }
 
 }  // namespace
-
-std::string node_of(const rclcpp::TopicEndpointInfo & info)
-{
-  // The name that the middleware gives to a node whose name it does not know yet.
-  if (info.node_name().empty() || info.node_name() == "_NODE_NAME_UNKNOWN_") {
-    return "";
-  }
-  const std::string & space = info.node_namespace();
-  return (space == "/" ? "" : space) + '/' + info.node_name();
-}
 
 std::vector<rclcpp::TopicEndpointInfo> matched_publishers(
   const rclcpp::Node & node, const SubscribedTopic & topic)
@@ -130,12 +102,12 @@ std::string PublisherCheck::faults(const Topic & topic) const
   std::vector<std::string> matched;
   const std::string & on = topic.subscribed.name;
   for (const rclcpp::TopicEndpointInfo & info : node_.get_publishers_info_by_topic(on)) {
-    const std::string name = node_of(info);
     const std::string reason = mismatch(info, topic.subscribed);
     if (reason.empty()) {
-      matched.push_back(name.empty() ? "a node that is not known yet" : name);
+      matched.push_back(shown_node_of(info));
       continue;
     }
+    const std::string name = node_of(info);
     const std::string fault = (name.empty() ? info.node_name() : name) + ' ' + reason;
     if (std::find(faults.begin(), faults.end(), fault) == faults.end()) {
       faults.push_back(fault);

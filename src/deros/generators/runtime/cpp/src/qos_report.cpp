@@ -2,12 +2,12 @@
 
 #include "deros_runtime_cpp/qos_report.hpp"
 
-#include <cstddef>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "deros_runtime_cpp/endpoints.hpp"
 
 namespace deros_runtime_cpp
 {
@@ -18,34 +18,6 @@ namespace
 using rclcpp::TopicEndpointInfo;
 using rclcpp::node_interfaces::NodeBaseInterface;
 using rclcpp::node_interfaces::NodeGraphInterface;
-
-/// Return why the QoS of a publisher and a subscription are incompatible; empty if they are not.
-std::string incompatible(const TopicEndpointInfo & offer, const TopicEndpointInfo & request)
-{
-  const auto fit = rclcpp::qos_check_compatible(offer.qos_profile(), request.qos_profile());
-  if (fit.compatibility != rclcpp::QoSCompatibility::Error) {
-    return "";
-  }
-  const std::string mark = "ERROR: ";
-  std::string reasons;
-  std::istringstream parts(fit.reason);
-  for (std::string part; std::getline(parts, part, ';'); ) {
-    if (const std::size_t at = part.find(mark); at != std::string::npos) {
-      reasons += (reasons.empty() ? "" : "; ") + part.substr(at + mark.size());
-    }
-  }
-  return reasons;
-}
-
-/// Return the name of a node; the middleware may know its topics earlier.
-std::string node_of(const TopicEndpointInfo & info)
-{
-  if (info.node_name().empty() || info.node_name() == "_NODE_NAME_UNKNOWN_") {
-    return "a node that is not known yet";
-  }
-  const std::string & space = info.node_namespace();
-  return (space == "/" ? "" : space) + '/' + info.node_name();
-}
 
 /// The report of one endpoint of a node.
 class EndpointReport
@@ -92,11 +64,11 @@ private:
         if (node_of(is_publisher ? offer : request) != own) {
           continue;
         }
-        const std::string reason = incompatible(offer, request);
+        const std::string reason = incompatibility(offer.qos_profile(), request.qos_profile());
         if (!reason.empty()) {
           endpoints.insert(
-            (is_publisher ? "does not reach " : "is not heard from ") +
-            node_of(is_publisher ? request : offer) + ": " + reason);
+            (is_publisher ? "does not reach " : "is not received from ") +
+            shown_node_of(is_publisher ? request : offer) + ": " + reason);
         }
       }
     }

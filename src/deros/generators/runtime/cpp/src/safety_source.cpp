@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "deros_runtime_cpp/endpoints.hpp"
 #include "deros_runtime_cpp/text.hpp"
 
 namespace deros_runtime_cpp

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "deros_runtime_cpp/endpoints.hpp"
 #include "deros_runtime_cpp/publishers.hpp"
 #include "deros_runtime_cpp/refusal.hpp"
 #include "deros_runtime_cpp/text.hpp"

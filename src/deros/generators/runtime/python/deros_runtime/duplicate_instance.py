@@ -8,8 +8,9 @@ import time
 
 from rclpy.node import Node
 
+from .endpoints import node_of
 from .instance import Refusal
-from .publishers import node_names, node_of, unmatched_subscriptions
+from .publishers import node_names, unmatched_subscriptions
 from .start_order import StartOrder
 
 
@@ -29,7 +30,7 @@ class DuplicateInstanceDetector:
         states: Iterable[str],
         report: Callable[[str, str], None],
     ) -> None:
-        """Set up; report takes a topic and what is wrong with it, empty if nothing is."""
+        """Set up; report is called with a topic and its problem, empty if it has none."""
         self._node = node
         self._heartbeat = heartbeat
         own = list(states)
@@ -44,14 +45,14 @@ class DuplicateInstanceDetector:
         topic = next(self._states, None)
         if topic is not None:
             others = self._others(topic)
-            text = f'published by {others}, too: whoever obeys it cannot tell them apart'
+            text = f'published by {others}, too: its subscribers cannot tell them apart'
             self._report(topic, text if others else '')
         topic = next(self._offered)
         self._report(f'readers of {topic}', unmatched_subscriptions(self._node, topic))
 
     def _check_heartbeat(self) -> None:
         has_double = self._node.count_publishers(self._heartbeat) > 1
-        text = 'another node publishes this heartbeat: whoever heeds it cannot tell them apart'
+        text = 'another node publishes this heartbeat: its subscribers cannot tell them apart'
         if self._order.gives_way(has_double, time.monotonic_ns()):
             raise Refusal(f'{self._heartbeat}: {text}; this one started last and ends now')
         self._report(self._heartbeat, text if has_double else '')

@@ -7,18 +7,10 @@ import itertools
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import qos_check_compatible, QoSCompatibility, QoSProfile
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-UNNAMED = '_NODE_NAME_UNKNOWN_'  # the name of a node that the middleware has not discovered yet
-
-
-def node_of(info: TopicEndpointInfo) -> str:
-    """Return the fully qualified name of the node of a publisher; empty if it is not known yet."""
-    if info.node_name in ('', UNNAMED):
-        return ''
-    return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+from .endpoints import incompatibility, node_of, shown_node_of
 
 
 def matched_publishers(node: Node, subscription: Subscription) -> list[TopicEndpointInfo]:
@@ -29,7 +21,7 @@ def matched_publishers(node: Node, subscription: Subscription) -> list[TopicEndp
 
 def node_names(infos: list[TopicEndpointInfo]) -> str:
     """Return the names of the nodes of publishers, in order."""
-    return ', '.join(sorted(node_of(info) or 'a node that is not known yet' for info in infos))
+    return ', '.join(sorted(map(shown_node_of, infos)))
 
 
 def unmatched_subscriptions(node: Node, topic: str) -> str:
@@ -39,16 +31,16 @@ def unmatched_subscriptions(node: Node, topic: str) -> str:
     offer = next((info for info in infos if node_of(info) == own), None)
     if offer is None:
         return ''
-    unserved: dict[str, None] = {}
+    unmatched: dict[str, None] = {}
     for info in node.get_subscriptions_info_by_topic(topic):
-        reason = _incompatible(offer.qos_profile, info.qos_profile)
+        reason = incompatibility(offer.qos_profile, info.qos_profile)
         if info.topic_type != offer.topic_type:
             reason = f'subscribes to {info.topic_type} on it, which is not published'
         elif reason:
             reason = f'asks for a QoS on it that is not offered: {reason}'
         if reason:
-            unserved[f'{node_of(info) or info.node_name} {reason}'] = None
-    return '; '.join(unserved)
+            unmatched[f'{node_of(info) or info.node_name} {reason}'] = None
+    return '; '.join(unmatched)
 
 
 class PublisherCheck:
@@ -64,7 +56,7 @@ class PublisherCheck:
         self, node: Node, report: Callable[[str, str], None], shared: Container[str] = ()
     ) -> None:
         """
-        Set up; report takes a topic and what is wrong with it, empty if nothing is.
+        Set up; report is called with a topic and its problem, empty if it has none.
 
         shared are the full names of topics that may have any number of publishers.
         """
@@ -81,31 +73,23 @@ class PublisherCheck:
 
     def _faults(self, subscription: Subscription) -> Iterator[str]:
         topic = subscription.topic_name
-        heard: list[TopicEndpointInfo] = []
-        unheard: dict[str, None] = {}
+        matched: list[TopicEndpointInfo] = []
+        unmatched: dict[str, None] = {}
         for info in self._node.get_publishers_info_by_topic(topic):
             fault = _mismatch(info, subscription)
             if fault:
-                unheard[f'{node_of(info) or info.node_name} {fault}'] = None
+                unmatched[f'{node_of(info) or info.node_name} {fault}'] = None
             else:
-                heard.append(info)
-        yield from unheard
-        if len(heard) > 1 and topic not in self._shared:
-            yield f'{len(heard)} publishers where one is expected: {node_names(heard)}'
+                matched.append(info)
+        yield from unmatched
+        if len(matched) > 1 and topic not in self._shared:
+            yield f'{len(matched)} publishers where one is expected: {node_names(matched)}'
 
 
 def _mismatch(info: TopicEndpointInfo, subscription: Subscription) -> str:
     """Return why a publisher does not match a subscription; empty if it does."""
     kind: Any = subscription.msg_type
     if info.topic_type != f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}':
-        return f'publishes {info.topic_type} on it, which is not heard'
-    reason = _incompatible(info.qos_profile, subscription.qos_profile)
-    return f'offers a QoS on it that is not heard: {reason}' if reason else ''
-
-
-def _incompatible(offered: QoSProfile, requested: QoSProfile) -> str:
-    """Return why the middleware does not connect a publisher with a subscription."""
-    fits, reason = qos_check_compatible(offered, requested)
-    if fits != QoSCompatibility.ERROR:
-        return ''
-    return '; '.join(part.strip() for part in reason.replace('ERROR: ', '').split(';') if part)
+        return f'publishes {info.topic_type} on it, which is not received'
+    reason = incompatibility(info.qos_profile, subscription.qos_profile)
+    return f'offers an incompatible QoS on it: {reason}' if reason else ''

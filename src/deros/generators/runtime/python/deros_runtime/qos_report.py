@@ -7,15 +7,9 @@ from typing import Any
 
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.qos import (
-    qos_check_compatible,
-    qos_policy_name_from_kind,
-    QoSCompatibility,
-    QoSProfile,
-)
-from rclpy.topic_endpoint_info import TopicEndpointInfo
+from rclpy.qos import qos_policy_name_from_kind
 
-UNNAMED = '_NODE_NAME_UNKNOWN_'  # the name of a node that the middleware has not discovered yet
+from .endpoints import incompatibility, shown_node_of
 
 
 class QosReport:
@@ -34,38 +28,25 @@ class QosReport:
         self.of_subscriptions = SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible)
 
     def _on_incompatible(self, event: Any) -> None:
-        found = {*self._unserved(), *self._unheard()}
+        found = {*self._receivers(), *self._senders()}
         policy = qos_policy_name_from_kind(event.last_policy_kind)
         unknown = f'an end of another node does not match in the QoS policy {policy}'
         for text in sorted(found - self._known) or [unknown]:
             self._node.get_logger().error(text)
         self._known = found
 
-    def _unserved(self) -> Iterable[str]:
+    def _receivers(self) -> Iterable[str]:
         for publisher in self._node.publishers:
             for info in self._node.get_subscriptions_info_by_topic(publisher.topic_name):
-                reason = _incompatible(publisher.qos_profile, info.qos_profile)
+                reason = incompatibility(publisher.qos_profile, info.qos_profile)
                 if reason:
-                    yield f'{publisher.topic_name} does not reach {_node_of(info)}: {reason}'
+                    other = shown_node_of(info)
+                    yield f'{publisher.topic_name} does not reach {other}: {reason}'
 
-    def _unheard(self) -> Iterable[str]:
+    def _senders(self) -> Iterable[str]:
         for subscription in self._node.subscriptions:
             for info in self._node.get_publishers_info_by_topic(subscription.topic_name):
-                reason = _incompatible(info.qos_profile, subscription.qos_profile)
+                reason = incompatibility(info.qos_profile, subscription.qos_profile)
                 if reason:
-                    yield f'{subscription.topic_name} is not heard from {_node_of(info)}: {reason}'
-
-
-def _node_of(info: TopicEndpointInfo) -> str:
-    """Return the name of a node, which the middleware may learn later than that of its topics."""
-    if info.node_name in ('', UNNAMED):
-        return 'a node that is not known yet'
-    return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-
-
-def _incompatible(offered: QoSProfile, requested: QoSProfile) -> str:
-    """Return why the middleware does not connect a publisher with a subscription."""
-    fits, reason = qos_check_compatible(offered, requested)
-    if fits != QoSCompatibility.ERROR:
-        return ''
-    return '; '.join(part.strip() for part in reason.replace('ERROR: ', '').split(';') if part)
+                    other = shown_node_of(info)
+                    yield f'{subscription.topic_name} is not received from {other}: {reason}'

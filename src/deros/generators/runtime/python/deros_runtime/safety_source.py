@@ -9,7 +9,8 @@ from rclpy.event_handler import EventHandler, QoSSubscriptionEventType
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
-from .publishers import matched_publishers, node_names, node_of
+from .endpoints import node_of
+from .publishers import matched_publishers, node_names
 
 TURNS = 3  # of the executor's queue, which deals with an event in two
 State = Callable[..., bool]  # takes the time, what is active, and whether that is trusted

@@ -10,9 +10,10 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from .endpoints import node_of
 from .instance import Refusal
 from .one_shot_timer import OneShotTimer
-from .publishers import node_names, node_of, unmatched_subscriptions
+from .publishers import node_names, unmatched_subscriptions
 from .start_order import StartOrder, YOUNG
 
 PERIOD = 100_000_000  # ns between checks while a second gate may appear
@@ -23,7 +24,7 @@ class TargetPublisherCheck:
     """Checks for publishers besides the gate's own, and for subscriptions that do not match."""
 
     def __init__(self, node: Node, target: str, report: Callable[[str, str], None]) -> None:
-        """Set up; report takes the topic and what is wrong with it, empty if nothing is."""
+        """Set up; report is called with the topic and its problem, empty if it has none."""
         self._node = node
         self._target = node.resolve_topic_name(target)
         self._report = report

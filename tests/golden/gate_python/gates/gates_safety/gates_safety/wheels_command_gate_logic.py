@@ -133,7 +133,7 @@ class Gate:
         self._settle(t)
 
     def on_reset(self, t: int) -> tuple[str, ...]:
-        """Take a reset; return the lines that refuse it: without any, it is done."""
+        """Decide a reset; return the lines that refuse it: without any, it is done."""
         self.advance(t)
         against = tuple(LINES[number] for number in REFUSING if self.applying[number])
         if not against:

@@ -55,7 +55,7 @@ class QosReport:
             for info in self._node.get_publishers_info_by_topic(subscription.topic_name):
                 reason = _incompatible(info.qos_profile, subscription.qos_profile)
                 if reason:
-                    yield f'{subscription.topic_name} is not heard from {_node_of(info)}: {reason}'
+                    yield f'{subscription.topic_name} is not received from {_node_of(info)}: {reason}'
 
 
 def _node_of(info: TopicEndpointInfo) -> str:

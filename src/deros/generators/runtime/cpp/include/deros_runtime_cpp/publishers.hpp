@@ -13,9 +13,6 @@
 namespace deros_runtime_cpp
 {
 
-/// Return the fully qualified name of the node of a publisher; empty if it is not known yet.
-std::string node_of(const rclcpp::TopicEndpointInfo & info);
-
 /// A topic as a subscription of this node sees it.
 struct SubscribedTopic
 {

@@ -87,7 +87,7 @@ public:
   /// Note that no node, or more than one, can be the safety node.
   void on_no_safety_node(std::int64_t t);
 
-  /// Take a reset; return false if it is refused, because one of REFUSING applies.
+  /// Decide a reset; return false if it is refused, because one of REFUSING applies.
   bool on_reset(std::int64_t t);
 
   // Time

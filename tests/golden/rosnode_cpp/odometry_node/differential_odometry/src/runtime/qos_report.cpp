@@ -97,7 +97,7 @@ private:
         const std::string reason = incompatible(offer, request);
         if (!reason.empty()) {
           endpoints.insert(
-            (is_publisher ? "does not reach " : "is not heard from ") +
+            (is_publisher ? "does not reach " : "is not received from ") +
             node_of(is_publisher ? request : offer) + ": " + reason);
         }
       }
