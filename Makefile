@@ -4,6 +4,8 @@ PYTHON ?= python3
 JOBS ?= 2
 # Tests on the middleware wait more than they compute, so two processes a core.
 TESTERS ?= 4
+# The many processes of a test run import the same modules: they share what Python compiled.
+unexport PYTHONDONTWRITEBYTECODE
 
 VENV := .venv
 BIN := $(VENV)/bin

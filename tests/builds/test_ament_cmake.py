@@ -164,6 +164,7 @@ def test_generated_and_hand_written_files_are_built(counted: Path, tool: str) ->
     assert "Total Tests: 1" in listed.stdout
 
 
+@pytest.mark.slow
 @needs_cmake
 @needs_compiler
 @pytest.mark.parametrize("tool", EACH_GENERATOR)

@@ -67,13 +67,8 @@ def test_new_package_has_four_kinds_of_files(package: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(
-    "how",
-    [
-        pytest.param((), id="install"),
-        pytest.param(("--symlink-install",), id="symlink-install", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("how", [(), ("--symlink-install",)], ids=["install", "symlink-install"])
 def test_colcon_builds_the_current_models(package: Path, how: tuple[str, ...]) -> None:
     """Each build uses the models as they are, and leaves no other files in the source tree."""
     workspace = _workspace(package)

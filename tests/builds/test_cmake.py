@@ -98,6 +98,7 @@ def test_deros_itself_is_an_input(folder: Path, tool: str) -> None:
     assert project.generated() == 0
 
 
+@pytest.mark.slow
 def test_model_error_fails_the_build(folder: Path, tool: str) -> None:
     """The build ends with the diagnostic; the output stays until the model is fixed."""
     project = configured(folder, tool, SCRIPT)

@@ -67,6 +67,7 @@ def _another_version(folder: Path) -> Iterator[None]:
         os.utime(module, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
+@pytest.mark.slow
 @pytest.mark.ros
 def test_safety_node_runs_with_the_runtime_package(
     workspace: Path, ros_env: dict[str, str], ros_peer: Peer

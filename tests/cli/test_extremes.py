@@ -89,8 +89,11 @@ MODELS: dict[str, tuple[str, Callable[[], str], str]] = {
     "20,000 imports": (".system", lambda: "system s imports " + 'import "x" ' * 20_000, "DRS005"),
 }
 
+LONG = ("20,000 imports", "escapes of 3 MB", "a topic of 1 MB", "units that name each other")
+"""The models that take longest."""
 
-@pytest.mark.parametrize("what", MODELS)
+
+@pytest.mark.parametrize("what", [slow(each) if each in LONG else each for each in MODELS])
 def test_extreme_models_stay_within_the_limits(tmp_path: Path, what: str) -> None:
     """Broken models give a finding at its place, sound ones none, all within the limits."""
     suffix, text, code = MODELS[what]
@@ -101,6 +104,7 @@ def test_extreme_models_stay_within_the_limits(tmp_path: Path, what: str) -> Non
     assert done.code == (2 if code in ("DRS008", "DRS005") else bool(code))
 
 
+@pytest.mark.slow
 def test_file_of_100_mb_is_not_read(tmp_path: Path) -> None:
     """A file too large for a model is rejected by its size."""
     for name in ("a.rnd", "a.system", "a.deros"):
@@ -200,6 +204,7 @@ def test_endless_trace_is_rejected(tmp_path: Path) -> None:
     assert "DRS008" in done.out
 
 
+@pytest.mark.slow
 def test_import_globs_over_link_loops_terminate(tmp_path: Path) -> None:
     """Each folder is searched once, however many links lead to it."""
     folder = tmp_path / "nodes" / "inner"

@@ -110,6 +110,7 @@ def test_dry_run_matches_the_script(up: Up, tmp_path: Path) -> None:
     assert run.lines[-4:] == done.stdout.splitlines()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arguments", [["--only", "b"], ["--", "--only", "b"], ["--except", "a"]])
 def test_nodes_can_be_selected(up: Up, arguments: list[str]) -> None:
     """Arguments of the script are options of the command, and may also follow ``--``."""

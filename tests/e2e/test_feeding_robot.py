@@ -16,7 +16,7 @@ from tests.support.examples import EXAMPLES
 from tests.support.processes import processes_with
 
 DEMO = EXAMPLES / "feeding_robot/demo.py"
-RUNS = (range(1, 8), range(8, 15), range(15, 16))
+RUNS = (range(1, 4), range(4, 8), range(8, 15), range(15, 16))
 """Cases that are played in one run each, so that test processes share them; the last one is played
 on simulated time, which needs a start of its own anyway.
 """
@@ -80,9 +80,8 @@ def test_cases_pass(language: str, cases: range, ros_env: dict[str, str], tmp_pa
 
 
 @pytest.mark.ros
-@pytest.mark.parametrize(
-    "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_demo_leaves_no_process(
     number: signal.Signals, ros_env: dict[str, str], tmp_path: Path
 ) -> None:
@@ -121,6 +120,7 @@ def test_wrong_reaction_fails_the_demo(ros_env: dict[str, str], tmp_path: Path) 
     assert "Case 10 failed: the reaction took" in text, text
 
 
+@pytest.mark.slow
 @pytest.mark.ros
 def test_failed_node_ends_the_demo_at_once(ros_env: dict[str, str], tmp_path: Path) -> None:
     """The demo does not wait for a missing robot, and the message names the failed node."""

@@ -60,6 +60,7 @@ SIMULATED = "use_sim_time:=true"
 WITH_CLOCK = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}
 
 
+@pytest.mark.slow
 def test_paused_simulation_misses_timeouts_but_not_immediate_stops(robot: Robot) -> None:
     """Paused time pauses timeouts and the heartbeat, but immediate rules still act."""
     with robot.sensors(WITH_CLOCK) as sensors:

@@ -111,6 +111,7 @@ def test_gate_without_a_safety_node_commands_zero(robot: Robot) -> None:
         gate.end()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", [Sensors.kill, slow(Sensors.freeze)])
 def test_dead_or_hung_controller_is_followed_by_zeros(
     robot: Robot, fault: Callable[[Sensors], None]
@@ -161,6 +162,7 @@ def test_flood_of_commands_does_not_block_a_stop(robot: Robot) -> None:
         assert_zeros_only(robot, len(robot.commands))
 
 
+@pytest.mark.slow
 def test_limit_becomes_zero_when_the_safety_node_dies(robot: Robot) -> None:
     """The robot does not creep under a limit that is no longer monitored."""
     with robot.safety_node() as node, robot.gate(), robot.sensors() as sensors:

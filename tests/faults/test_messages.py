@@ -67,6 +67,7 @@ def test_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
         assert not robot.is_active("/halt"), "an active sensor was treated as silent"
 
 
+@pytest.mark.slow
 def test_publisher_of_another_type_is_not_the_sensor(robot: Robot) -> None:
     """It is reported, has no effect, and does not hide the silence."""
     with robot.safety_node() as node, robot.sensors({"/speed": "std_msgs/msg/Bool"}) as stranger:

@@ -129,6 +129,7 @@ def test_second_node_is_detected_without_a_shared_folder(robot: Robot, tmp_path:
         until_no_fault(robot, HEARTBEAT)
 
 
+@pytest.mark.slow
 def test_second_clock_is_a_fault(robot: Robot) -> None:
     """Time set by two publishers would jump back and forth."""
     with_clock = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}

@@ -16,6 +16,7 @@ pytestmark = pytest.mark.ros
 TILTED = math.radians(20.0)
 
 
+@pytest.mark.slow
 def test_killed_node_falls_silent(robot: Robot) -> None:
     """Heartbeat and states are not repeated, so that readers detect the loss."""
     with robot.safety_node() as node:

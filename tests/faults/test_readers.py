@@ -17,6 +17,7 @@ OWN = ("/stop", "/halt", "/slow", f"/{NODE}/heartbeat", f"/{NODE}/events", "/dia
 """Topics published by the node."""
 
 
+@pytest.mark.slow
 def test_node_does_not_read_its_own_topics(robot: Robot) -> None:
     """It subscribes to none of them, so messages on them have no effect."""
     reports = {

@@ -88,6 +88,7 @@ def test_reset_is_refused_while_a_sensor_is_dead(robot: Robot) -> None:
         assert_reset(robot)
 
 
+@pytest.mark.slow
 def test_second_reset_has_nothing_to_reset(robot: Robot) -> None:
     """Of two calls at once, one resets the stop; the other is answered, and undoes nothing."""
     with robot.safety_node(), robot.sensors() as sensors:
@@ -136,6 +137,7 @@ def test_late_reset_is_decided_when_it_is_served(robot: Robot) -> None:
         assert robot.is_active("/stop")
 
 
+@pytest.mark.slow
 def test_reset_from_another_participant_is_decided_like_any_other(robot: Robot) -> None:
     """It is refused while the cause lasts, and succeeds when it is over."""
     from std_srvs.srv import Trigger

@@ -160,6 +160,7 @@ def test_recovered_controller_starts_no_motion(
             release(robot, controller)
 
 
+@pytest.mark.slow
 def test_reset_of_an_action_starts_no_motion(robot: Robot) -> None:
     """This holds for a latched action that a person resets, and for one that ends by itself."""
     with robot.safety_node(), robot.wheels_gate(), moving(robot) as sensors:

@@ -57,6 +57,7 @@ def test_sensor_is_used_again_after_a_hang(robot: Robot) -> None:
         robot.until_free()
 
 
+@pytest.mark.slow
 def test_nan_counts_as_silence(robot: Robot) -> None:
     """A sensor that publishes NaN is missing like a silent one, at any rate."""
     with robot.safety_node(), robot.sensors() as sensors:

@@ -34,6 +34,7 @@ def test_late_inputs_are_used_when_they_appear(robot: Robot) -> None:
             robot.until_stopped()
 
 
+@pytest.mark.slow
 def test_grace_has_neither_halt_nor_heartbeat(robot: Robot) -> None:
     """While inputs are awaited there is neither; the heartbeat starts with the inputs."""
     with robot.sensors() as sensors:

@@ -133,6 +133,7 @@ def test_irregular_state_file_means_stopped_and_is_kept(
         assert described(folder) == before
 
 
+@pytest.mark.slow
 def test_state_file_of_another_node_means_stopped(robot: Robot, tmp_path: Path) -> None:
     """A file without active actions of another node does not apply to this one."""
     file = tmp_path / "state"
@@ -160,6 +161,7 @@ def test_state_file_removed_at_run_time_is_recreated(robot: Robot, tmp_path: Pat
         assert robot.is_active("/stop"), "the stop was undone by a restart"
 
 
+@pytest.mark.slow
 def test_link_created_at_run_time_is_reported(robot: Robot, tmp_path: Path) -> None:
     """From then on the node cannot store anything, and reports it."""
     file = tmp_path / "state"
@@ -183,6 +185,7 @@ def test_missing_folder_is_created(robot: Robot, tmp_path: Path) -> None:
         assert robot.is_active("/stop")
 
 
+@pytest.mark.slow
 def test_folder_that_cannot_be_created_means_stopped(robot: Robot, tmp_path: Path) -> None:
     """If nothing can be stored, the robot stays stopped."""
     (tmp_path / "file").write_text("")
@@ -233,6 +236,7 @@ def test_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
         robot.until(lambda: not robot.is_active("/stop"))
 
 
+@pytest.mark.slow
 def test_disk_full_from_the_start_means_stopped(robot: Robot, tmp_path: Path) -> None:
     """A node that could not store a stop starts stopped."""
     folder = tmp_path / "disk"

@@ -54,6 +54,7 @@ def test_failed_node_leaves_the_graph_at_once(robot: Robot) -> None:
         robot.restart()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [slow("exit at once"), "kill"])
 def test_user_code_that_ends_the_process_loses_neither_stop_nor_latch(
     robot: Robot, how: str
@@ -70,6 +71,7 @@ def test_user_code_that_ends_the_process_loses_neither_stop_nor_latch(
         )
 
 
+@pytest.mark.slow
 def test_slow_user_code_does_not_delay_a_stop(robot: Robot) -> None:
     """A stop after code that never returns does not wait for it."""
     with robot.safety_node() as node:
@@ -112,6 +114,7 @@ def test_user_code_repeated_at_the_start_runs_after_the_states(
         assert robot.is_active("/stop")
 
 
+@pytest.mark.slow
 def test_user_code_without_effect_is_not_detected(robot: Robot) -> None:
     """Code that only claims to act looks like code that acts; bound actions need no such trust."""
     with robot.safety_node() as node:
@@ -141,6 +144,7 @@ def _calls(node: Process) -> list[str]:
     return re.findall(r"interference: (\w+)$", node.output(), re.MULTILINE)
 
 
+@pytest.mark.slow
 def test_user_code_has_the_privileges_of_the_node(robot: Robot) -> None:
     """It runs in the process of the node: its author may do anything that the node may."""
     with robot.safety_node() as node:

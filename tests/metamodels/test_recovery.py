@@ -15,6 +15,7 @@ from deros.metamodels.node import NodeType
 from deros.metamodels.recovery import MOST_ERRORS, recogniser
 from deros.metamodels.rules import Rules
 from deros.metamodels.system import NodeInstance, System
+from tests.support.profiles import slow
 
 # Each line with an error ends in "// here".
 NODE = """\
@@ -219,12 +220,12 @@ def test_findings_beyond_the_limit_are_counted() -> None:
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("a.rnd", "node a : b\nparameters\n" + "  name x double = 1.0\n" * 10_000),
+        slow("a.rnd", "node a : b\nparameters\n" + "  name x double = 1.0\n" * 10_000),
         ("a.rnd", "node a : b\nparameters\n" + "  ? ? ?\n" * 10_000),
         ("a.rnd", "node a : b publishes " + "topic x :" * 20_000),
         ("a.system", "system a\n" + "subsystem x {\n" * 90 + "node x : y wirings connect\n" * 999),
         ("a.system", "system a node " + "node : " * 20_000),
-        ("a.deros", "entity e {\n" + "  r: a > 1 ?? b;\n" * 10_000 + "}\n"),
+        slow("a.deros", "entity e {\n" + "  r: a > 1 ?? b;\n" * 10_000 + "}\n"),
         ("a.deros", "if a.b then { " * 99 + "? ; " * 1_000),
         ("a.deros", "if a.b then stop;\n" * 10_000),
         ("a.deros", "a: b\n" * 10_000),

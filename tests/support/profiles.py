@@ -54,6 +54,6 @@ def draws_new_examples() -> bool:
     return not settings().derandomize
 
 
-def slow(value: Any) -> Any:
-    """Return a parameter of a test with which the test is slow, and another one is not."""
-    return pytest.param(value, marks=pytest.mark.slow)
+def slow(*values: Any) -> Any:
+    """Return a parameter of a test, or one value of each, with which the test is slow."""
+    return pytest.param(*values, marks=pytest.mark.slow)

@@ -296,7 +296,7 @@ def test_contracts_follow_from_rows(functions: tuple[str, ...], monitor: Path) -
 
 
 @pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
-@pytest.mark.parametrize("function", [each if each in QUICK else slow(each) for each in PROVED])
+@pytest.mark.parametrize("function", [each if each == QUICK[-1] else slow(each) for each in PROVED])
 def test_mutation_of_a_printed_function_fails_the_proof(function: str, monitor: Path) -> None:
     """A function that differs from its row cannot be proved."""
     right, wrong = PROVED[function]

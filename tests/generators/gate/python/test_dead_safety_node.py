@@ -116,6 +116,7 @@ def test_gate_stops_with_the_default_lease(drive: Drive, start_safety: StartSafe
         drive.until_moving()
 
 
+@pytest.mark.slow
 def test_gate_stops_while_safety_node_is_suspended(drive: Drive, start_safety: StartSafety) -> None:
     """SIGSTOP has the same effect; when the node continues, its next states count again."""
     delays: list[float] = []

@@ -61,6 +61,7 @@ def commands_without_states(world: World) -> set[tuple[float, float, float]]:
     return commands
 
 
+@pytest.mark.slow
 def test_state_counts_from_its_arrival(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
@@ -102,6 +103,7 @@ def test_node_that_replaces_the_safety_node_is_obeyed(
         world.wish_until(0.3, live)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_restarted_safety_node_may_publish_states_first(
     world: World, ros_env: dict[str, str]
@@ -321,6 +323,7 @@ def test_shared_lock_folder_is_not_used(
     assert list(locks(env).iterdir()) == []
 
 
+@pytest.mark.slow
 def test_second_gate_is_found_after_the_lock_was_deleted(
     run_gate: RunGate, ros_env: dict[str, str], world: World, tmp_path: Path
 ) -> None:

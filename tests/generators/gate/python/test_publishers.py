@@ -93,6 +93,7 @@ def test_short_lived_foreign_publisher_does_not_release(
     assert {world.speeds(data) for _, data in world.heard[before:]} == {STILL}
 
 
+@pytest.mark.slow
 def test_foreign_publisher_that_ends_during_a_hang_does_not_release(
     gate: Popen[str], world: World, ros_env: dict[str, str]
 ) -> None:
@@ -131,6 +132,7 @@ def test_second_heartbeat_publisher_counts_as_a_loss(world: World, ros_env: dict
     world.until_driving()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_foreign_heartbeat_does_not_replace_a_dead_safety_node(
     world: World, ros_env: dict[str, str]
@@ -179,6 +181,7 @@ def test_state_of_another_node_than_the_heartbeat_is_ignored(
     world.beating.callback = world.live
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_second_command_publisher_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
     """It is reported; the gate cannot know which one is right, so both pass."""
@@ -195,6 +198,7 @@ def test_second_command_publisher_is_a_fault(world: World, ros_env: dict[str, st
     assert passed == {(0.3, 0.0, 0.0), (0.1, 0.0, 0.0)}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_publisher_that_bypasses_the_gate_is_a_fault(world: World, ros_env: dict[str, str]) -> None:
     """The gate cannot block it, but reports it; it does not subscribe to its target."""
@@ -234,6 +238,7 @@ def test_second_gate_that_stays_is_a_fault(world: World, ros_env: dict[str, str]
         world.until_fault(f"a second gate of the name /{GATE} publishes on it")
 
 
+@pytest.mark.slow
 def test_gate_without_a_heartbeat_obeys_only_a_sole_publisher(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:

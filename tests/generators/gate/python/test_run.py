@@ -216,6 +216,7 @@ def test_second_instance_does_not_run(
         world.release()
 
 
+@pytest.mark.slow
 def test_simulated_time_pauses_and_steps_back(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
@@ -302,6 +303,7 @@ def test_losses_are_measured_on_the_steady_clock(
         assert statistics.median(gaps) == pytest.approx(PERIOD, abs=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chosen", [False, True])
 def test_clock_source_cannot_change_at_run_time(
     run_gate: RunGate, ros_env: dict[str, str], world: World, chosen: bool

@@ -10,7 +10,7 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.interface import render_monitor
 from tests.support import c_pairs, counterexamples
 from tests.support.c_library import Loaded, needs_c
-from tests.support.profiles import scaled
+from tests.support.profiles import scaled, slow
 
 PROGRAMS = scaled(60)
 """Number of programs drawn per property; five traces are compared for each.
@@ -18,11 +18,16 @@ PROGRAMS = scaled(60)
 ``make property`` draws others in every run.
 """
 
+QUICK = ("all kinds", "arrays", "rates")
+"""The kinds of programs that every run compares; all of them in CI."""
+
 KEPT = sorted([*counterexamples.FOLDER.glob("*.json"), *c_pairs.FOLDER.glob("*.json")])
 
 
 @needs_c
-@pytest.mark.parametrize("focus", c_pairs.FOCUSES)
+@pytest.mark.parametrize(
+    "focus", [each if each in QUICK else slow(each) for each in c_pairs.FOCUSES]
+)
 def test_events_match_the_reference(focus: str, tmp_path: Path) -> None:
     """Both give the same events at the same nanosecond, and the same state after every call."""
     cases = c_pairs.cases(c_pairs.FOCUSES[focus], PROGRAMS, 1)

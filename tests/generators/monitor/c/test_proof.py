@@ -119,15 +119,6 @@ SLIPS = {
 }
 """Mutations by name: the function, the right text, and the wrong text."""
 
-QUICK = {
-    "an additional clear",  # a condition
-    "a timeout that is one nanosecond late",  # a comparison
-    "an emission removed",
-}
-"""Some mutations, in functions whose proofs take a second or two."""
-
-assert SLIPS.keys() >= QUICK
-
 
 @pytest.fixture(scope="module")
 def example() -> Unit:
@@ -175,10 +166,8 @@ def test_contracts_of_rates_are_proved(tmp_path: Path) -> None:
 
 
 @needs_frama_c
-@pytest.mark.parametrize(
-    "slip",
-    [each if each in QUICK else pytest.param(each, marks=pytest.mark.slow) for each in SLIPS],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("slip", SLIPS)
 def test_mutation_fails_the_proof(
     slip: str, example: Unit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -171,6 +171,7 @@ def test_failing_destructor_ends_the_program_with_the_reason(
 # Goals --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_goals_delay_neither_messages_nor_cancel_requests(start: Start, client: Client) -> None:
     """Even with the maximum number of goals, all other requests are served at once."""
     from action_msgs.msg import GoalStatus

@@ -209,6 +209,7 @@ def stranger(topic: str, env: dict[str, str]) -> Any:
 # Optional behaviours --------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_optional_behaviour_can_be_disabled_and_enabled(start: Start, robot: Robot) -> None:
     """Disabled, it does nothing and is listed as such; enabled, it acts at once if it holds."""
     with start("behaviours.speeding.enabled:=false", "diagnostics_freq:=20.0"):
@@ -232,6 +233,7 @@ def test_optional_behaviour_can_be_disabled_and_enabled(start: Start, robot: Rob
 # Latched actions ------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_latched_action_survives_a_restart(start: Start, robot: Robot) -> None:
     """Killed or ended, the next process starts with it, until a reset."""
     with start() as process:
@@ -258,6 +260,7 @@ def test_latched_action_survives_a_restart(start: Start, robot: Robot) -> None:
         assert not any(robot.stop)
 
 
+@pytest.mark.slow
 def test_damaged_state_file_means_active(
     start: Start, robot: Robot, ros_env: dict[str, str]
 ) -> None:
