@@ -64,8 +64,14 @@ def evaluate_value(value: ValueExpression, state: State) -> Any:
             result = None if unknown else FUNCTIONS[value.function].value(*arguments)
         case Scale():
             operand = evaluate_value(value.operand, state)
-            result = None if operand is None else operand * value.factor + value.offset
+            result = None if operand is None else _scaled(operand, value)
     return None if not isinstance(result, Iterable) and is_nan(result) else result
+
+
+def _scaled(number: float, scale: Scale) -> float:
+    """Return a number in another unit; without an offset, zero keeps its sign."""
+    product = number * scale.factor
+    return product + scale.offset if scale.offset else product
 
 
 def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict:

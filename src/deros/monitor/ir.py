@@ -114,7 +114,10 @@ class Apply:
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """``operand * factor + offset``: the conversion of a field into the other side's unit."""
+    """``operand * factor + offset``: the conversion of a field into the other side's unit.
+
+    An offset of 0 is not added: it would make 0 of -0.
+    """
 
     operand: ValueExpression
     factor: float
@@ -405,7 +408,7 @@ class Gate:
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """Everything a monitor does, and the gates that heed it."""
+    """Everything a monitor does, and the gates that act on it."""
 
     name: str
     leaves: tuple[Leaf, ...]

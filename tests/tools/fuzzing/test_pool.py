@@ -7,6 +7,7 @@ from collections import Counter
 
 import pytest
 
+from tests.support.profiles import slow
 from tests.tools.fuzzing.victims import Victim
 from tools.fuzzing import pool
 from tools.fuzzing.findings import Finding
@@ -39,9 +40,9 @@ def test_passing_mutants_are_counted() -> None:
     [
         ("raise", 5.0, "ValueError in"),
         ("loop", 0.3, "TooSlow in"),
-        ("regex", 0.5, "Lost: took more than"),
+        slow("regex", 0.5, "Lost: took more than"),
         ("exit", 5.0, "Lost: the process died (model)"),
-        ("peak", 5.0, "TooMuch in"),
+        slow("peak", 5.0, "TooMuch in"),
     ],
 )
 def test_failure_costs_one_mutant(entry: str, seconds: float, signature: str) -> None:

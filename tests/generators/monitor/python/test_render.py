@@ -16,10 +16,13 @@ import pytest
 
 from deros.diagnostics import SourceFile, Span
 from deros.generators.api.protocol import File
+from deros.generators.monitor.python.conditions import scaled
 from deros.generators.monitor.python.interface import monitor_view, render_monitor
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor import ir
+from deros.monitor.evaluate import evaluate_value
+from deros.monitor.state import State
 from tests.support import timelines
 from tests.support.golden import Golden
 from tests.support.profiles import slow
@@ -265,3 +268,18 @@ def test_rules_of_behaviours_are_listed() -> None:
     assert module["Monitor"].rules_of is module["RULES_OF"]
     assert module["RULES_OF"]["behaviour_1"] == ("drive.too_fast", "controller.auto")
     assert module["RULES_OF"]["behaviour_3"] == ("controller.manual",)
+
+
+@pytest.mark.parametrize("offset", [0.0, 3.0])
+@pytest.mark.parametrize("factor", [2.0, -2.0])
+@pytest.mark.parametrize("value", [0.0, -0.0])
+def test_printed_conversion_gives_zero_the_same_sign(
+    value: float, factor: float, offset: float
+) -> None:
+    """A conversion without an offset does not add one: -0.0 + 0.0 is 0.0."""
+    scale = ir.Scale(ir.Const(value), factor, offset)
+    state = State(ir.Program("empty", (), (), (), (), ()), 0, 0)
+    expected = evaluate_value(scale, state)
+    assert isinstance(expected, float)
+    printed = eval(scaled(repr(value), scale))
+    assert (printed, math.copysign(1.0, printed)) == (expected, math.copysign(1.0, expected))

@@ -17,6 +17,7 @@ from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.golden import Golden
+from tests.support.profiles import slow
 
 MODELS = Path(__file__).resolve().parents[2] / "safety_node/python/models"
 HEAD = 'use "robot.system" import Robot\ninput v = topic /speed.data\n'
@@ -153,7 +154,7 @@ def test_rules_with_errors_are_rejected() -> None:
 
 @pytest.mark.parametrize(
     ("name", "options"),
-    [("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],
+    [slow("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],
 )
 def test_files_pass_the_ament_linters(name: str, options: dict[str, str], tmp_path: Path) -> None:
     """uncrustify, cpplint and cppcheck with ament's settings accept all files, including C."""
