@@ -197,7 +197,7 @@ def test_rules_may_use_several_systems(tmp_path: Path) -> None:
     assert build(model, embedded_store()).program is not None
 
 
-def test_no_program_without_its_system() -> None:
+def test_rules_without_their_system_have_no_program() -> None:
     """A system that cannot be loaded is a finding of the loader, and has no further findings."""
     text = 'use "nowhere.system" import Nowhere entity e { r: topic /speed.data > 1; }'
     loaded = Repository().load_text("x.deros", text)

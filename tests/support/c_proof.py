@@ -124,7 +124,7 @@ class Analysis:
 
     @property
     def is_clean(self) -> bool:
-        """Whether it ended, and found none."""
+        """Whether the analysis ended without a finding."""
         return self.alarms == 0
 
 

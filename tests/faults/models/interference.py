@@ -1,4 +1,4 @@
-"""User code of an action: it does what a file says, once."""
+"""User code of an action: it executes the command in a file, once."""
 
 import os
 import signal

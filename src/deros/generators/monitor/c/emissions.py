@@ -30,7 +30,7 @@ _EVENTS = """\
 
 
 class Emissions:
-    """Prints what functions emit as terms: the value of all events, from the value before."""
+    """Prints the events that functions emit as terms: those after a call, from those before it."""
 
     def __init__(self, view: MonitorView) -> None:
         """Use the names of a layout."""

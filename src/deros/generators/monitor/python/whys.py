@@ -36,7 +36,7 @@ Key = TypeVar("Key")
 
 @dataclass(frozen=True, slots=True)
 class Why:
-    """A method that returns causes.
+    """A generated method that returns the causes of a rule or a behaviour.
 
     Attributes:
         method: its name, without the leading ``_``.

@@ -202,7 +202,7 @@ class _Emitter:
                 bound = f"{SYMBOLS[operator]} {integer(condition.bound_ns)}"
                 return all_of((Atom(f"m.{fields.came}"), Atom(f"m.now - m.{fields.base} {bound}")))
             case _:
-                raise AssertionError("no comparison and no question about messages")
+                raise AssertionError("no condition on values, known or age")
 
     def _compares(self, condition: Truth | Compare | Within, holds: bool) -> Logic:
         terms = [self._layout.terms[value] for value in compared(condition)]
