@@ -10,10 +10,14 @@ import pytest
 from tests.support.faults import PROMPT, Robot
 from tests.support.played import button, imu, load, scan, speed
 from tests.support.profiles import slow
+from tests.support.stalls import stalls
 
 pytestmark = pytest.mark.ros
 
 TILTED = math.radians(20.0)
+
+SILENCE = 0.5
+"""The timeouts of the inputs of ``faulty.deros``, in s."""
 
 
 @pytest.mark.slow
@@ -52,7 +56,12 @@ def test_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
     The lidar is a separate process: sending a scan must not delay the other sensors.
     """
     beams = robot.software.beams
-    with robot.safety_node(), robot.sensors() as sensors, robot.sensors() as lidar:
+    with (
+        robot.safety_node(),
+        robot.sensors() as sensors,
+        robot.sensors() as lidar,
+        stalls() as stalled,
+    ):
         sensors.drive()
         sensors.quiet("/scan")
         lidar.match("/scan")
@@ -64,7 +73,9 @@ def test_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
         # A single one might not arrive.
         lidar.send("/scan", scan(0.1, beams=beams), times=5, rate=5.0)
         robot.until_stopped(limit=PROMPT)
-        assert not robot.is_active("/halt"), "an active sensor was treated as silent"
+        # On a busy machine a sensor may be silent indeed, as the test itself is held up.
+        treated_as_silent = robot.is_active("/halt")
+        assert not treated_as_silent or stalled.longest > SILENCE / 2
 
 
 @pytest.mark.slow
