@@ -10,14 +10,10 @@ import pytest
 from tests.support.faults import PROMPT, Robot
 from tests.support.played import button, imu, load, scan, speed
 from tests.support.profiles import slow
-from tests.support.stalls import stalls
 
 pytestmark = pytest.mark.ros
 
 TILTED = math.radians(20.0)
-
-SILENCE = 0.5
-"""The timeouts of the inputs of ``faulty.deros``, in s."""
 
 
 @pytest.mark.slow
@@ -53,29 +49,28 @@ def test_violation_within_a_flood_stops_the_robot(robot: Robot) -> None:
 def test_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
     """A scan of at least a million beams is evaluated, and other inputs are monitored meanwhile.
 
-    The lidar is a separate process: sending a scan must not delay the other sensors.
+    The lidar is a separate process: sending a scan must not delay the other sensors. A scan is
+    larger than the largest receive buffer, so the kernel may drop the messages of the attitude
+    meanwhile, which are sent at best effort: then it is missing. The speed is sent reliably.
     """
     beams = robot.software.beams
     with (
-        robot.safety_node(),
+        robot.safety_node() as node,
         robot.sensors() as sensors,
         robot.sensors() as lidar,
-        stalls() as stalled,
     ):
         sensors.drive()
         sensors.quiet("/scan")
         lidar.match("/scan")
         robot.until_free()
-        sensors.quiet("/button")  # so that a halt would last
+        silences = node.output().count("speed.missing()")
         lidar.send("/scan", scan(5.0, beams=beams), times=5, rate=5.0)
         robot.until_alive()
         assert not robot.is_active("/stop")
         # A single one might not arrive.
         lidar.send("/scan", scan(0.1, beams=beams), times=5, rate=5.0)
         robot.until_stopped(limit=PROMPT)
-        # On a busy machine a sensor may be silent indeed, as the test itself is held up.
-        treated_as_silent = robot.is_active("/halt")
-        assert not treated_as_silent or stalled.longest > SILENCE / 2
+        assert node.output().count("speed.missing()") == silences, "an active sensor was silent"
 
 
 @pytest.mark.slow

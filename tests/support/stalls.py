@@ -20,13 +20,11 @@ class Stalls:
 
     Attributes:
         seconds: how much longer than usual the waits took, added up.
-        longest: how much longer than usual the longest wait took.
     """
 
     def __init__(self) -> None:
         """Start with no stall."""
         self.seconds = 0.0
-        self.longest = 0.0
 
     def measure(self, ended: threading.Event) -> None:
         """Measure until ``ended`` is set."""
@@ -34,9 +32,7 @@ class Stalls:
         while not ended.wait(_STEP_S):
             now = time.monotonic()
             if now - before > 2 * _STEP_S:
-                late = now - before - _STEP_S
-                self.seconds += late
-                self.longest = max(self.longest, late)
+                self.seconds += now - before - _STEP_S
             before = now
 
 
