@@ -1,4 +1,4 @@
-"""Build what a release would publish, and use it as somebody who has just installed it.
+"""Build the files of a release, and use them as after a fresh installation.
 
 The source distribution is built from this tree and the wheel from the source distribution. Both
 must hold every source file. The wheel is then installed into empty environments, with the lowest

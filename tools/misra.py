@@ -35,8 +35,10 @@ def main() -> int:
     for each in wrong:
         print(each)
     allowed = Counter(each.rule for each in found if each.is_allowed)
-    told = ", ".join(f"rule {rule} {count} times" for rule, count in sorted(allowed.items()))
-    print(f"{len(texts)} monitors, {len(wrong)} violations; declared deviations: {told or 'none'}")
+    reported = ", ".join(f"rule {rule} {count} times" for rule, count in sorted(allowed.items()))
+    print(
+        f"{len(texts)} monitors, {len(wrong)} violations; declared deviations: {reported or 'none'}"
+    )
     return 1 if wrong else 0
 
 

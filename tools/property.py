@@ -36,7 +36,7 @@ from tests.support.counterexamples import Pair, pairs
 from tests.support.strategies import KINDS, programs
 
 CHUNK = 200
-"""Pairs that a process draws before it tells how far it is."""
+"""Pairs that a process draws between two reports of progress."""
 
 FOCUSES: tuple[tuple[str, ...], ...] = (
     tuple(KINDS),

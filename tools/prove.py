@@ -111,8 +111,8 @@ def _prove(source: Path, name: str, options: argparse.Namespace) -> bool:
 def _analyse(source: Path, name: str) -> bool:
     """Look for run-time errors in one program, and tell how it went."""
     analysis = c_proof.analyse(source)
-    told = "not finished" if analysis.alarms is None else str(analysis.alarms)
-    Console().print(f"{name}: possible run-time errors: {told}", highlight=False)
+    reported = "not finished" if analysis.alarms is None else str(analysis.alarms)
+    Console().print(f"{name}: possible run-time errors: {reported}", highlight=False)
     return analysis.is_clean
 
 

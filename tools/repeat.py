@@ -51,8 +51,8 @@ def _round(title: str, log: Path, jobs: int, tests: Sequence[str]) -> bool:
     text = log.read_text(encoding="utf-8", errors="replace")
     counts = _COUNTED.findall(text)
     minutes, seconds = divmod(round(time.monotonic() - begun), 60)
-    told = counts[-1] if counts else f"pytest ended with {code}"
-    print(f"round {title}: {told}, {minutes} min {seconds} s", flush=True)
+    reported = counts[-1] if counts else f"pytest ended with {code}"
+    print(f"round {title}: {reported}, {minutes} min {seconds} s", flush=True)
     for test in _FAILED.findall(text):
         print(f"  {test}", flush=True)
     if code:

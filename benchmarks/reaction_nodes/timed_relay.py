@@ -29,7 +29,7 @@ class Lane:
     """One pair of topics with one timer.
 
     Args:
-        fired: what is told of each state goes there: nothing else is done after it is published.
+        fired: the record of each state is appended there, after it is published.
     """
 
     def __init__(

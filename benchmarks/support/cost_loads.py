@@ -85,7 +85,7 @@ class Talker:
             if not publisher.get_subscription_count()
         ]:
             if time.monotonic() > end:
-                raise TimeoutError(f"nobody has come to {', '.join(missing)}")
+                raise TimeoutError(f"no endpoint is connected to {', '.join(missing)}")
             watch()
             rclpy.spin_once(self._node, timeout_sec=0.02)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from support.processes import run
 
 TOPICS = ("imu", "odometry", "scan", "rear_scan", "stop", "slow", "go")
-"""What the safety node hears and says, without the leading slash."""
+"""The topics of the safety node, without the leading slash."""
 
 _DRIVER = """\
 node sensors : cost_sensors "Publishes what the robot senses"

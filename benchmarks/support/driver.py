@@ -86,7 +86,7 @@ class Channel:
         return True
 
     def is_met(self) -> bool:
-        """Tell whether there is somebody at the other ends."""
+        """Return whether all other endpoints are connected."""
         return bool(
             self._publisher.get_subscription_count() and self._subscription.get_publisher_count()
         )
@@ -130,7 +130,7 @@ class Driver:
         return channel
 
     def meet(self, seconds: float, watch: Callable[[], None]) -> None:
-        """Wait until there is somebody at the other end of everything; ``watch`` is called often.
+        """Wait until all endpoints are connected; ``watch`` is called often.
 
         Raises:
             TimeoutError: if there still is not after so many seconds.
@@ -138,7 +138,7 @@ class Driver:
         end = time.monotonic() + seconds
         while missing := self._missing():
             if time.monotonic() > end:
-                raise TimeoutError(f"nobody has come to {', '.join(missing)}")
+                raise TimeoutError(f"no endpoint is connected to {', '.join(missing)}")
             watch()
             self.spin_once(20_000_000)
 

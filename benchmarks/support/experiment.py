@@ -174,7 +174,7 @@ class Experiment:
     """All that is measured in one run.
 
     Args:
-        watch: told about once a second, when nothing is going on, how far the run has come.
+        watch: called about once a second, while nothing is measured, with the progress.
     """
 
     def __init__(

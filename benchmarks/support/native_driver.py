@@ -1,4 +1,4 @@
-"""The driver in C++ (``reaction_cpp/driver.cpp``), told what to do: a process of its own."""
+"""The driver in C++ (``reaction_cpp/driver.cpp``), controlled in a process of its own."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class NativeDriver:
         return sent
 
     def meet(self, seconds: float, watch: Callable[[], None]) -> None:
-        """Wait until there is somebody at the other end of everything; ``watch`` is called often.
+        """Wait until all endpoints are connected; ``watch`` is called often.
 
         Raises:
             TimeoutError: if there still is not after so many seconds.
@@ -92,7 +92,7 @@ class NativeDriver:
         end = time.monotonic() + seconds
         while missing := self._answer("meet", "20").split():
             if time.monotonic() > end:
-                raise TimeoutError(f"nobody has come to {', '.join(missing)}")
+                raise TimeoutError(f"no endpoint is connected to {', '.join(missing)}")
             watch()
 
     def spin_until(self, instant: int) -> None:

@@ -1,4 +1,4 @@
-"""One line that tells how far a benchmark has come, at hardly any cost."""
+"""One line that shows the progress of a benchmark, at hardly any cost."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from support.progress import Line
 from support.rclcpp_programs import build, rclcpp_environment, workshop
 from support.reaction_results import FASTEST, RCLCPP, SAFETY, USUAL, Run
 from support.reaction_rules import Lane, generate, timed_lanes
-from support.reaction_session import Wanted, carry_out, events_of, hear_out, lost, start_load
+from support.reaction_session import Wanted, carry_out, events_of, lost, receive_events, start_load
 from support.samples import Fired, Trigger
 
 INSTANCES = 4
@@ -66,7 +66,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             name: [sample for each in group for sample in each.samples]
             for name, group in at_once.items()
         }
-        told = hear_out(
+        reported = receive_events(
             driver, lambda: _triggers(driver, lanes), [*samples[SAFETY], *later[0].samples]
         )
         return Run(
@@ -75,7 +75,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             immediate=samples,
             timed=later[0].samples,
             floor=later[1].samples,
-            triggers=told,
+            triggers=reported,
             firings=[Fired(*each) for each in processes.end("timed_relay")],
             sleeps=[],
             lost=lost((*at_once[SAFETY], later[0])),
@@ -169,6 +169,6 @@ def _triggers(driver: NativeDriver, lanes: _Lanes) -> list[Trigger]:
     found = triggers(records[events_of(_TIMED_NODE)])
     for node, lane in zip(lanes.nodes, lanes.immediate[SAFETY], strict=True):
         # All of them name the lane of the rule that they share.
-        told = triggers(records[events_of(node)])
-        found += [replace(each, lane=lane.name) for each in told]
+        reported = triggers(records[events_of(node)])
+        found += [replace(each, lane=lane.name) for each in reported]
     return found

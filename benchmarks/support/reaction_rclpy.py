@@ -9,7 +9,7 @@ from support.experiment import Immediate, Timed
 from support.processes import Processes, own_domain
 from support.reaction_results import FASTEST, RCLPY, SAFETY, USUAL, Run
 from support.reaction_rules import Lane, generate, timed_lanes
-from support.reaction_session import Wanted, carry_out, events_of, hear_out, lost, start_load
+from support.reaction_session import Wanted, carry_out, events_of, lost, receive_events, start_load
 from support.samples import Fired
 
 _EVENTS = (events_of("immediate_safety_node"), events_of("timed_safety_node"))
@@ -43,7 +43,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             for lanes, resets in ((timed, True), (floor, False))
         ]
         stolen = carry_out("rclpy", driver, processes, list(at_once.values()), later)
-        told = hear_out(
+        reported = receive_events(
             driver,
             lambda: [each for topic in _EVENTS for each in triggers(driver.records[topic])],
             [*at_once[SAFETY].samples, *later[0].samples],
@@ -55,7 +55,7 @@ def measure(wanted: Wanted, folder: Path) -> Run:
             immediate={name: each.samples for name, each in at_once.items()},
             timed=later[0].samples,
             floor=later[1].samples,
-            triggers=told,
+            triggers=reported,
             firings=[Fired(*each) for each in processes.end("timed_relay")],
             sleeps=processes.end("sleeper"),
             lost=lost((at_once[SAFETY], later[0])),

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from support.samples import Fired, Sample, Told, Trigger, match
+from support.samples import Fired, ReportedSample, Sample, Trigger, match
 from support.summary import Summary, summarize
 
 
@@ -55,7 +55,7 @@ class Run:
         timed: the reactions of the safety node after a while.
         floor: those of the timed relay.
         triggers: what the safety nodes tell of their reactions.
-        firings: what the timed relay tells of its timers.
+        firings: the records of the timers of the timed relay.
         sleeps: how late a plain sleep ended, in ns.
         lost: how many reactions have not come.
         traffic: messages per second of the load that have come to their receiver.
@@ -119,13 +119,13 @@ class Results:
         self.durations = sorted({sample.seconds for sample in run.timed})
 
     @cached_property
-    def immediate_told(self) -> list[Told]:
-        """The immediate reactions with what the safety node tells of them."""
+    def immediate_reported(self) -> list[ReportedSample]:
+        """The immediate reactions with the events of the safety node about them."""
         return match(self.run.immediate[SAFETY], self.run.triggers)
 
     @cached_property
-    def timed_told(self) -> list[Told]:
-        """The timed reactions with what the safety node tells of them."""
+    def timed_reported(self) -> list[ReportedSample]:
+        """The timed reactions with the events of the safety node about them."""
         return match(self.run.timed, self.run.triggers)
 
     @cached_property
@@ -147,7 +147,7 @@ class Results:
         yield Row(section, "fastest relay", late[FASTEST], floor, None)
         yield _row(section, "usual relay", late[USUAL], floor)
         yield _row(section, "safety node", late[SAFETY], floor)
-        inside = [each.late for each in self.immediate_told]
+        inside = [each.late for each in self.immediate_reported]
         yield Row(section, "  of which inside it", inside, summarize(inside), None)
 
     def _timed_rows(self, seconds: float | None) -> Iterator[Row]:
@@ -164,7 +164,7 @@ class Results:
         yield Row(section, self.run.client.timer, began, timer, None)
         done = _row(section, "timed relay, published", [f.published - f.due for f in fired], timer)
         yield done
-        published = [t.late for t in self.timed_told if chosen(t.sample.seconds)]
+        published = [t.late for t in self.timed_reported if chosen(t.sample.seconds)]
         yield _row(section, "safety node, published", published, done.summary)
         relayed = [s.late for s in self.run.floor if chosen(s.seconds)]
         relay = summarize(relayed)
@@ -178,15 +178,15 @@ class Results:
     def early(self) -> int:
         """How many of the safety node's reactions came before their time, by a nanosecond."""
         samples = [*self.run.immediate[SAFETY], *self.run.timed]
-        told = [*self.immediate_told, *self.timed_told]
+        reported = [*self.immediate_reported, *self.timed_reported]
         early = {sample for sample in samples if sample.late < 0}
-        return len(early | {each.sample for each in told if each.is_early})
+        return len(early | {each.sample for each in reported if each.is_early})
 
     @property
-    def untold(self) -> int:
+    def unreported(self) -> int:
         """How many of the safety node's reactions have no event."""
         samples = len(self.run.immediate[SAFETY]) + len(self.run.timed)
-        return samples - len(self.immediate_told) - len(self.timed_told)
+        return samples - len(self.immediate_reported) - len(self.timed_reported)
 
     def bars(self) -> list[Bar]:
         """Hold the results against what is asked for."""
@@ -195,7 +195,7 @@ class Results:
         for what, number in (
             ("reactions that are early by a nanosecond or more", self.early),
             ("reactions that have not come", self.run.lost),
-            ("reactions without an event", self.untold),
+            ("reactions without an event", self.unreported),
         ):
             bars.append(Bar(what, f"{number} of {count}", "none", number == 0))
         return [replace(bar, what=f"{self.run.client.section}{bar.what}") for bar in bars]

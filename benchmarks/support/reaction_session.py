@@ -83,16 +83,16 @@ def carry_out(
         return stolen.percent()
 
 
-def hear_out(
-    driver: Driver, told: Callable[[], list[Trigger]], samples: Sequence[Sample]
+def receive_events(
+    driver: Driver, reported: Callable[[], list[Trigger]], samples: Sequence[Sample]
 ) -> list[Trigger]:
-    """Receive until the safety nodes have told of all reactions; return what they have told.
+    """Receive until the safety nodes have reported all reactions; return the triggers.
 
     They tell after they have acted, so the last of it comes after the last reaction. What has not
-    come within the time in which a reaction would count as lost, is not told.
+    come within the time in which a reaction would count as lost, is not reported.
     """
     end = time.monotonic_ns() + LIMIT_NS
-    while len(match(samples, triggers := told())) < len(samples):
+    while len(match(samples, triggers := reported())) < len(samples):
         if (now := time.monotonic_ns()) > end:
             break
         driver.spin_until(now + LISTEN_NS)

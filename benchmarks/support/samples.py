@@ -1,4 +1,4 @@
-"""Measured reactions, and what the safety node itself tells about them."""
+"""Measured reactions, and the events of the safety node about them."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Fired:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class ReportedSample:
     """A sample with the event that the safety node published about it."""
 
     sample: Sample
@@ -80,18 +80,18 @@ class Told:
         )
 
 
-def match(samples: Sequence[Sample], triggers: Iterable[Trigger]) -> list[Told]:
+def match(samples: Sequence[Sample], triggers: Iterable[Trigger]) -> list[ReportedSample]:
     """Join each sample with the trigger of its lane between its tilt and its answer.
 
-    A sample of which nothing is told is left out.
+    A sample without an event is left out.
     """
     by_lane: dict[str, list[Trigger]] = defaultdict(list)
     for trigger in sorted(triggers, key=lambda each: each.due):
         by_lane[trigger.lane].append(trigger)
-    told = []
+    reported = []
     for sample in samples:
         known = by_lane[sample.lane]
         position = bisect_left(known, sample.sent, key=lambda each: each.due)
         if position < len(known) and known[position].due <= sample.received:
-            told.append(Told(sample, known[position]))
-    return told
+            reported.append(ReportedSample(sample, known[position]))
+    return reported

@@ -1,7 +1,7 @@
 """What an engineer writes by hand for the rules of :mod:`support.throughput_rules`, for speed.
 
 Straight-line code, one function per topic, nothing general: the generated monitor is measured
-against it. It does the same job, with the same events: it heeds NaN, edges, intervals, timeouts,
+against it. It does the same job, with the same events: it handles NaN, edges, intervals, timeouts,
 late timers and backward clocks. Nobody writes a hundred rules like this.
 """
 

@@ -3,7 +3,7 @@
 Fourteen rules make a robot: four entities and thirteen behaviours, as section 7 of the paper counts
 them. More rules are more such robots, with other bounds, on the same topics, and what is left over
 are bounds of the speed, as the one rule is. The scanner's nearest obstacle comes as a number
-(``sensor_msgs.Range``): what arrays cost is no question of rules.
+(``sensor_msgs.Range``): the cost of arrays does not depend on rules.
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ class Meter:
     """Measures what is taken of a processor, from :meth:`start` on.
 
     Attributes:
-        counter: tells the time taken so far, in ns.
+        counter: returns the time taken so far, in ns.
     """
 
     counter: Callable[[], int]

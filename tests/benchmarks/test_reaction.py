@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from benchmarks.support.samples import Sample, Told, Trigger, match
+from benchmarks.support.samples import ReportedSample, Sample, Trigger, match
 from benchmarks.support.schedule import Schedule
 from benchmarks.support.summary import summarize
 from tests.support.cpp import BUILD_LIMIT, needs_rclcpp
@@ -62,7 +62,7 @@ def test_sample_is_matched_with_the_trigger_of_its_own_tilt() -> None:
     first, second = Sample("a", 0.0, 100, 200), Sample("a", 0.0, 300, 400)
     other = Sample("b", 0.0, 100, 200)
     trigger = Trigger("a", 350, 360)
-    assert match([first, second, other], [trigger]) == [Told(second, trigger)]
+    assert match([first, second, other], [trigger]) == [ReportedSample(second, trigger)]
 
 
 @pytest.mark.parametrize(
@@ -79,7 +79,7 @@ def test_one_nanosecond_too_early_is_early(
 ) -> None:
     """This applies to the rule, the publication and the receipt."""
     sample = Sample("a", 2.0, 100, received)
-    assert Told(sample, Trigger("a", due, published)).is_early is early
+    assert ReportedSample(sample, Trigger("a", due, published)).is_early is early
 
 
 SECTIONS = {"immediate rule", "for 0.4 sec", "for 2 sec", "for 4 sec", "all of them"}

@@ -1,4 +1,4 @@
-"""The node breaker in either language: a user's code that fails where and how it is told to."""
+"""The node breaker in either language: user code that fails where and how its parameters say."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ class PythonBreaker(Breaker):
         "error": 1,
         "exit": 3,
         "odd": -2,
-    }  # an interrupt that nobody catches, to Python
+    }  # an uncaught interrupt, to Python
     goes_on = ("error",)
 
     def __init__(self, workspace: Path) -> None:

@@ -34,7 +34,7 @@ _LIMIT = 300.0
 
 @functools.cache
 def frozen_program() -> Path:
-    """Return a deros that stays as it is while somebody works on deros; builds follow it, too."""
+    """Return a copy of deros that does not change during development; builds depend on it."""
     folder = Path(tempfile.mkdtemp(prefix="deros-builds-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     ignored = shutil.ignore_patterns("__pycache__", ".*")

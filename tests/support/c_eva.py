@@ -12,7 +12,7 @@ TABLES_CHECK = "tables_stand"
 """The function that looks at the constant tables."""
 
 _MOST = 64
-"""How many elements the arrays have that are handed in; their loops do not tell more apart."""
+"""Number of elements of the given arrays; more of them take the same paths through the loops."""
 
 
 def eva_program(view: MonitorView) -> str:

@@ -24,7 +24,7 @@ NEVER = 2**63 - 1
 
 @dataclass(frozen=True)
 class Known:
-    """What a monitor knows after a call, as far as both kinds of monitors tell it alike.
+    """The state of a monitor after a call, as far as both kinds of monitors report it.
 
     Attributes:
         verdicts: of each rule, with the time when it last became true or ceased to be.
@@ -85,7 +85,7 @@ class CMonitor:
         assert due == (NEVER if self.next_deadline is None else self.next_deadline)
 
     def reset(self, t_ns: int) -> bool:
-        """Reset every latched action that is active; tell whether none was refused."""
+        """Reset every latched action that is active; return whether none was refused."""
         if not self._view.has_latched:  # C has no such function then
             self.advance(t_ns)
             return True

@@ -85,8 +85,8 @@ theory frama_c_wp.memory.Memory
   remove prop separated_sym
 end
 """
-"""What Z3 is told: not these lemmas. They follow from what they are about, and of two addresses and
-a range each of them makes a fact of its own, of which a monitor's fields give millions.
+"""Options for Z3, which leave these lemmas out. They follow from the definitions, and each is
+instantiated for two addresses and a range: with the fields of a monitor, millions of times.
 """
 
 _PLAIN = "auto_config=false smt.mbqi=false smt.relevancy=0 smt.random_seed=42"
@@ -99,7 +99,7 @@ class Proof:
     Attributes:
         proved, all: how many there are.
         left: the names of those that are not proved.
-        complaints: what Frama-C says of things that it was not told, and so would assume.
+        complaints: warnings of Frama-C about missing facts, which it would assume.
         log: all that it has printed.
     """
 

@@ -81,11 +81,11 @@ class Original:
         }
 
     def key(self, mutant: Mutant) -> str:
-        """Return what tells whether a result still stands: all that the proof of a slip reads."""
+        """Return the key of a result: all that the proof of a mutation reads."""
         return self._key(mutant.function, mutant.source, mutant.before + mutant.after)
 
     def effort_key(self, function: str) -> str:
-        """Return what tells whether an effort still stands: all that the proof reads."""
+        """Return the key of an effort: all that the proof reads."""
         return self._key(function, self.text, "")
 
     def _key(self, name: str, source: str, body: str) -> str:
@@ -104,7 +104,7 @@ class Original:
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:20]
 
     def effort(self, function: str) -> Effort:
-        """Prove a function as it is, and tell what that took.
+        """Prove a function as it is, and return the effort.
 
         Raises:
             ValueError: it is not proved.
@@ -147,7 +147,7 @@ class Original:
         done = ""
         is_short = False
         for line in _lines(arguments, source, self._environment):
-            if "guaranteed RTE" in line:  # what is sure to fail is no goal
+            if "guaranteed RTE" in line:  # a certain failure is not a goal
                 return Found("a run-time error")
             left = _LEFT.match(line)
             if left and not _GOAL.match(line):
@@ -178,7 +178,7 @@ def _options(provers: str, steps: int = 0) -> list[str]:
 
 
 def _lines(arguments: Sequence[str], source: Path, environment: dict[str, str]) -> Iterator[str]:
-    """Yield what Frama-C prints; end it, and its provers, when nobody asks for more."""
+    """Yield the output of Frama-C; end it and its provers when the generator is closed."""
     command = c_proof.command([*arguments, source.name])
     with subprocess.Popen(
         command,

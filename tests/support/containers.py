@@ -62,7 +62,7 @@ class Container:
     def _component(self, verb: str, *arguments: str) -> tuple[int, str]:
         """Run a command as soon as it has discovered the container, and return code and output.
 
-        The peer hears what comes all the while.
+        The peer receives messages meanwhile.
         """
         command = ["ros2", "component", verb, "--no-daemon", "--spin-time", "1", *arguments]
         end = time.monotonic() + 2 * LIMIT
@@ -82,7 +82,7 @@ def running_container(
 
     Args:
         env: the environment, in which the components are found.
-        peer: hears when the container is there.
+        peer: waits for the container.
         kind: the name of the program.
     """
     name = f"lib/rclcpp_components/{kind}"

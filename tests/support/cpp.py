@@ -78,7 +78,7 @@ def colcon_build(packages: Path, *, testing: bool = False) -> Path:
     """Build the packages in a folder, warnings being errors, and return the install folder.
 
     The result is kept for a day under a name made from all that goes into it, so that tests, test
-    processes and runs share it; nobody may write there.
+    processes and runs share it; it must not be changed.
 
     Args:
         packages: the folder with the packages' sources; it stays as it is.

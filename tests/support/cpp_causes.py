@@ -1,4 +1,4 @@
-"""Many monitors in C with what the node in C++ tells of them, compiled into one library."""
+"""Many monitors in C with the causes that the node in C++ reports, compiled into one library."""
 
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ extern "C" std::size_t tell_{prefix}(const {prefix}_monitor * m, char * out, std
 
 
 class Told(Loaded):
-    """Monitors that tell why their rules are true, and their behaviours hold."""
+    """Monitors that report why their rules are true and their behaviours hold."""
 
     def __init__(self, units: Sequence[Unit], folder: Path) -> None:
-        """Compile the monitors, and what tells of them, in a folder of their own."""
+        """Compile the monitors and the reports of their causes in a folder of their own."""
         folder.mkdir(parents=True, exist_ok=True)
         for each in units:
             for name, text in each.texts.items():
@@ -65,7 +65,7 @@ class Told(Loaded):
         super().__init__(units, folder, "-O0", "told.o", "-lstdc++")
 
     def tell(self, number: int) -> str:
-        """Return what is told of the monitor that was begun last."""
+        """Return the causes of the monitor that was started last."""
         function = self._library[f"tell_{self.units[number].prefix}"]
         function.restype = ctypes.c_size_t
         out = ctypes.create_string_buffer(_ROOM)
@@ -74,10 +74,10 @@ class Told(Loaded):
 
 
 def compare(library: Told, number: int, pair: Pair) -> int:
-    """Drive the reference and a monitor with the same calls; they must tell the same causes.
+    """Drive the reference and a monitor with the same calls; they must report the same causes.
 
     Returns:
-        How many causes were told.
+        The number of causes reported.
 
     Raises:
         AssertionError: they do not.

@@ -309,7 +309,7 @@ class Robot:
     def start(
         self, module: str = NODE, parameters: Sequence[str] = (), name: str = "", **env: str
     ) -> Process:
-        """Start a node of the generated package; whoever starts it ends it.
+        """Start a node of the generated package; the caller ends it.
 
         Args:
             module: the program.

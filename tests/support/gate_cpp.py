@@ -68,7 +68,7 @@ _PLAYER = """
 #include <string>
 #include "wire.hpp"
 
-/// A gate that is told what happens to it, as bytes, and answers with what it publishes.
+/// A gate that reads its events as bytes, and answers with what it publishes.
 class Player
 {
 public:

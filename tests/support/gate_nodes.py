@@ -26,7 +26,7 @@ PACKAGE = "gates_safety"
 SAFETY_NODE = "gates_safety_node"
 GATE = "cmd_vel_gate"
 STILL = (0.0, 0.0, 0.0)
-"""What a drive is told that has to stand: forward, sideways, turning."""
+"""The command to a drive that must stop: forward, sideways, turning."""
 
 
 def write_gates(folder: Path, name: str = "gates") -> Path:
@@ -162,7 +162,7 @@ class World:
         """Be the safety node, once: its heartbeat, and what is active, which it says steadily.
 
         Should this process be held up for longer than a heartbeat may be missing, everything
-        counts as active until the gate is told otherwise again.
+        counts as active until the gate receives the next state.
         """
         self.beat()
         for publisher, state in self._said.items():
@@ -217,16 +217,16 @@ class World:
         self.peer.until(lambda: self.heard[-1][1] == last)
 
     def wish_for(self, seconds: float) -> list[tuple[float, float, float]]:
-        """Command a speed for a time, and return what the drive was told meanwhile."""
+        """Command a speed for a time, and return the commands that the drive received meanwhile."""
         before, end = len(self.heard), time.monotonic() + seconds
         self.wish_until(0.3, lambda: time.monotonic() > end)
         return [self.speeds(data) for _, data in self.heard[before:]]
 
     def assert_stands(self, seconds: float) -> None:
         """Command a speed for a time, and see that zeros come steadily, and nothing else."""
-        told = self.wish_for(seconds)
-        assert len(told) > 5
-        assert set(told) == {STILL}
+        received = self.wish_for(seconds)
+        assert len(received) > 5
+        assert set(received) == {STILL}
 
     def until_driving(self) -> None:
         """Command a speed until commands pass, for good."""
@@ -241,7 +241,7 @@ class World:
         self.wish_until(0.3, is_told)
 
     def silence(self, seconds: float) -> int:
-        """Return how many messages the gate publishes while nobody commands anything."""
+        """Return how many messages the gate publishes without a command."""
         before, end = len(self.heard), time.monotonic() + seconds
         self.peer.until(lambda: time.monotonic() > end)
         return len(self.heard) - before
@@ -314,7 +314,7 @@ class Stranger:
 
 
 class Drive:
-    """A robot that measures its speed and is told to move, all the time.
+    """A robot that continuously measures its speed and receives commands to move.
 
     Attributes:
         speed: what it measures, and publishes.
@@ -382,7 +382,7 @@ class Drive:
         """Let something happen, and return after how many seconds the gate commanded zero.
 
         By how much this process itself was late meanwhile, at the worst, does not count. After it
-        there are zeros only, as far as can be told in a quarter of a second.
+        only zeros follow, for at least a quarter of a second.
         """
         happened = time.time()
         self._lived, self._held_up = time.monotonic(), 0.0

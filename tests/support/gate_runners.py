@@ -1,4 +1,4 @@
-"""What runs gates, in each language: who is around a gate cannot tell which one it is."""
+"""Runners of gates in each language; they look the same to the other nodes."""
 
 from __future__ import annotations
 

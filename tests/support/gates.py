@@ -143,7 +143,7 @@ QUIET = (
     Happening(0, "heartbeat", counter=1),
     Happening(0, "heartbeat", counter=2),
 )
-"""What a gate hears of a safety node that has nothing to object to."""
+"""The states and heartbeat of a safety node without an active action."""
 
 CALLS = (
     *("command", "command", "command", "state", "state"),

@@ -1,4 +1,4 @@
-"""The managed node leaver in either language: a user's transitions that fail as they are told."""
+"""The managed node leaver in either language: user transitions that fail as parameters say."""
 
 from __future__ import annotations
 

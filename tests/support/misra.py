@@ -36,7 +36,7 @@ MANDATORY = frozenset(
         "22.6",
     ]
 )
-"""Rules of MISRA C:2012, with its first amendments, from which nobody may deviate."""
+"""Rules of MISRA C:2012, with its first amendments, from which no deviation is allowed."""
 
 ADVISORY = frozenset(
     [

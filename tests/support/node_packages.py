@@ -107,8 +107,8 @@ _PYTHON_EXECUTE_COUNT = """
     released = threading.Event()
 
     def execute_count(self, goal_handle: ServerGoalHandle) -> Fibonacci.Result:
-        # It blocks this thread, as a user's loop may. What a client hears of a goal before it knows
-        # that the goal was accepted is lost, so one feedback would not do.
+        # It blocks this thread, as a user's loop may. Feedback that arrives before the client knows
+        # that the goal was accepted is lost, so it is repeated.
         while not self.released.wait(0.02):
             goal_handle.publish_feedback(Fibonacci.Feedback(sequence=[0]))
         if goal_handle.request.order > 0:
@@ -252,8 +252,8 @@ _CPP_ON_RELEASE = """
 _CPP_EXECUTE_COUNT = """
   auto feedback = std::make_shared<test_msgs::action::Fibonacci::Feedback>();
   feedback->sequence = {0};
-  // It blocks this thread, as a user's loop may. What a client hears of a goal before it knows
-  // that the goal was accepted is lost, so one feedback would not do.
+  // It blocks this thread, as a user's loop may. Feedback that arrives before the client knows
+  // that the goal was accepted is lost, so it is repeated.
   auto released = released_.get_future();
   while (released.wait_for(std::chrono::milliseconds(20)) == std::future_status::timeout) {
     goal_handle.publish_feedback(feedback);

@@ -21,7 +21,7 @@ COMMANDER = {"/cmd_vel_nav": "geometry_msgs/msg/Twist"}
 TOPICS = {**SENSES, **COMMANDER}
 
 COMMAND = 0.4
-"""The speed, in m/s, that whoever drives the robot commands."""
+"""The commanded speed of the robot, in m/s."""
 
 
 def speed(value: float) -> Any:

@@ -11,7 +11,7 @@ LIMIT = 30.0
 """Seconds in which a process stops; one that is held up in the kernel may take a while."""
 
 _LOOK = 0.0005
-"""Seconds between two looks: of the stop of somebody else's child no event tells."""
+"""Polling period in s: no event reports that the child of another process has stopped."""
 
 
 def processes_with(text: str) -> list[int]:

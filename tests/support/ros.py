@@ -28,7 +28,7 @@ LIMIT = 30.0
 """Seconds after which an awaited event is taken not to come; discovery alone may need three."""
 
 _PIPE_BYTES = 1 << 20
-"""What a process may print before anybody reads it; most that Linux lets a user have."""
+"""Size of a pipe for the output of a process; the most that Linux allows a user."""
 
 _PORTS_FROM, _PORTS_EACH = 7400, 250
 """Where the ports of Fast DDS begin, and how many there are for each domain."""

@@ -1,4 +1,4 @@
-"""A process that plays sensors: it publishes serialized messages as it is told to on its input.
+"""A process that plays sensors: it publishes serialized messages as its input says.
 
     python sensor.py TOPIC=PACKAGE/msg/TYPE …
 
@@ -10,9 +10,9 @@ Each line of the input is a command in JSON, and is answered by one line when it
     {"send": TOPIC, "messages": [BASE64, …], "times": N, "rate": HZ}
                                                          publish them in turn, N messages in all
 
-It goes on playing while it waits for listeners: a sensor does not fall silent because somebody
-else is slow to be found. It knows nothing of what it publishes, so it can publish what no sensor
-should. It ends with its input. What is killed or frozen in a test is this process.
+It continues to publish while it waits for subscriptions: slow discovery does not silence a sensor.
+It does not interpret the messages, so it can publish invalid ones. It ends with its input. Tests
+kill or freeze this process.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ def messages(program: Program, *lines: str) -> tuple[TraceMessage, ...]:
 
 
 def happenings(events: list[Event]) -> tuple[Happening, ...]:
-    """Return what the timelines tell of events; steps of the clock are not among it."""
+    """Return events as timelines list them, without steps of the clock."""
     return tuple((e.t_ns, e.action, e.kind) for e in events if e.kind != "clock_step")
 
 

@@ -51,7 +51,7 @@ def main(source: str, target: str, broken: str, kept: str, times: str) -> None:
     executor = EventsExecutor()
     executor.add_node(node)
     while done < end:
-        if done < 1:  # whoever has heard it finds nothing new in the next
+        if done < 1:  # until the first answer: the node ignores repeated messages
             publisher.publish(messages[wanted])
         executor.spin_once(timeout_sec=0.1)
         if time.monotonic() - asked > (DISCOVERY_S if done < 1 else ANSWER_S):

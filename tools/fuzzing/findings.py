@@ -1,4 +1,4 @@
-"""Findings: what went wrong with which mutant, told apart by where it went wrong."""
+"""Findings: the failures of mutants, distinguished by where they occurred."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def limited(limits: Limits) -> Iterator[None]:
 def peak_mb() -> float:
     """Return the most memory that this process ever had.
 
-    What getrusage() tells begins with the memory of the process that started this one.
+    The peak that getrusage() returns includes the memory of the parent process before exec.
     """
     return _status_kb("VmHWM") / 1024
 

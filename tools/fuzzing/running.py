@@ -40,7 +40,7 @@ from tools.fuzzing.projects import Project
 _MESSAGES = 8
 
 
-class Wrong(AssertionError):  # noqa: N818 - a finding, told by this name
+class Wrong(AssertionError):  # noqa: N818 - findings are shown with this name
     """Something came out that must not: no exception of deros, but not what it promises either."""
 
 

@@ -66,7 +66,7 @@ def _take_over(bench: Bench) -> None:
     """Turn the switch to manual, and reset what is latched; again, if it is refused."""
     end = time.monotonic() + 40.0
     while time.monotonic() < end:
-        for mode in (1, 0):  # what is manual already is no event
+        for mode in (1, 0):  # a mode that does not change is not an event
             _switch_to(bench, mode)
         if bench.value("sent", SAFETY, MOTOR_STOP.name) is not False and not bench.reset():
             continue
@@ -81,7 +81,7 @@ def _reset_gate(bench: Bench) -> None:
     while not bench.reset(GATE):
         if time.monotonic() > end:
             raise NotReadyError("the gate did not let itself be reset")
-        time.sleep(0.2)  # it asks a person to try again, and nothing tells when
+        time.sleep(0.2)  # the answer asks to try again, and no event says when
 
 
 def _switch_to(bench: Bench, mode: int) -> None:

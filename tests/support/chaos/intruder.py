@@ -1,4 +1,4 @@
-"""A foreign process on the robot's network: it is there from the beginning, and speaks when told.
+"""A foreign process on the robot's network: it runs from the beginning and publishes on command.
 
     python intruder.py
 
@@ -7,8 +7,8 @@ that it reads then says where, what and how often, in JSON:
 
     {"topic": …, "type": "PACKAGE/TYPE", "latched": …, "rate": HZ, "messages": [BASE64, …]}
 
-It leaves the domain when it is told to end: one that was killed would be counted for as long as its
-lease lasts, and the next round with it.
+It leaves the domain on SIGTERM: a killed process would be counted until its lease expires, also in
+the next round.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from rclpy.signals import SignalHandlerOptions
 
 
 def main() -> None:
-    """Publish for ever, once told what."""
+    """Publish for ever what the command names."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     node = rclpy.create_node(f"intruder_{os.getpid()}")

@@ -31,7 +31,7 @@ from tests.support.chaos.record import Record
 from tests.support.chaos.schedule import FOREIGN
 
 _SHARED = frozenset(Link(name, domain) for name, domain in FOREIGN if domain == SAFETY)
-"""Links into a domain where somebody else may speak, too."""
+"""Links into a domain where foreign nodes may publish, too."""
 
 HISTORY = 50
 """Messages of a link that may be said again."""

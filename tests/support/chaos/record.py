@@ -36,7 +36,7 @@ class Record:
     """Seconds between two looks at the clock."""
 
     HELD_UP = 0.03
-    """Seconds by which a look may be late and nobody is held up."""
+    """Seconds after which a late tick of the recorder counts as a delay."""
 
     def __init__(self) -> None:
         """Begin with nothing."""

@@ -6,14 +6,14 @@ has *arrived*. That makes three duties, one for each part, and each movement of 
 be vouched for by a chain of fresh messages through all of them:
 
 * the safety node, while it beats, says that it stops the robot, from when a rule is known to be
-  broken until the reset; what it says of a rule while it does not beat, nobody may rely on;
+  broken until the reset; without a heartbeat, its states do not count;
 * the gate lets a command through while the heartbeat that has arrived counts on, the last state
   that has arrived is not a stop, and a command has arrived, each within its loss time; after a zero
   it lets nothing through before a zero command has arrived, and after a lost heartbeat nothing at
-  all, since nobody resets it within a round;
+  all, since it is not reset within a round;
 * the arbiter, the actuator's own part, moves the pedal while a command is fresh.
 
-What is latched, the engine's stop, outlives any restart, and nobody resets it within a round.
+The latched stop of the engine survives any restart, and is not reset within a round.
 
 Over all of it, whatever the parts say, stands the sum: with the links from the safety node to the
 actuator in order, a rule that stays broken has the pedal at zero within the loss times.
@@ -85,7 +85,7 @@ class Verdict:
         violations: what must not be.
         slowest: the longest time, in s, from a broken rule until the pedal was at zero.
         moved: whether the robot drove when the round began, or in it; else a round shows nothing.
-        timeline: what was said when, for whoever has to find the reason.
+        timeline: the messages with their times, to find the reason.
     """
 
     broken: list[Broken]
@@ -125,8 +125,8 @@ class Referee:
     """Reckons a round from its messages.
 
     Args:
-        messages: in order of time; those of before the round tell what was known at its beginning.
-        delays: when this side was held up, and for how long: by so much nobody else is late.
+        messages: in order of time; those before the round give the state at its beginning.
+        delays: when this process was delayed, and by how much; others are not blamed for that.
         begin: of the round, in s.
         end: of the round, in s.
         whole: whether no link between the safety node and the actuator was bad.

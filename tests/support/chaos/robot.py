@@ -112,7 +112,7 @@ class Part:
 
 
 def starve(pid: int) -> None:
-    """Leave a process what nobody else wants of the processors."""
+    """Give a process only the idle time of the processors."""
     _schedule(pid, os.SCHED_IDLE)
 
 

@@ -62,7 +62,7 @@ def _run(bench: Bench, schedule: Schedule, begin: float, open_faults: contextlib
 
 @contextlib.contextmanager
 def _closing(context: Any) -> Iterator[Any]:
-    """Enter a context; leave it at the end, unless somebody has left it before."""
+    """Enter a context; leave it at the end, unless it was left before."""
     once = _Once(context)
     try:
         yield once

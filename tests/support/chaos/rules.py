@@ -35,7 +35,7 @@ Values = dict[str, Any]
 
 
 def read(topic: str, data: bytes) -> Values:
-    """Return what a serialized message says, by short names; ``None`` is what it does not tell."""
+    """Return the fields of a serialized message by short names; an unknown one is ``None``."""
     from rclpy.serialization import deserialize_message
 
     message = deserialize_message(data, BY_NAME[topic].message_type())
