@@ -264,9 +264,10 @@ class Robot:
 
         When each was received counts, not when this process, which may be starved, looks at it.
         """
-        now = time.time()
+        now, held_up = time.time(), self.peer.held_up
         self.until(lambda: _since(now, self.beats) >= count)
         passed = [each.received for each in self.beats if each.received > now][count - 1] - now
+        passed -= self.peer.held_up - held_up
         assert passed < 0.1 * count + PROMPT, f"{count} heartbeats took {passed:.1f} s"
 
     def until_silent(self) -> None:
@@ -277,14 +278,15 @@ class Robot:
         Raises:
             AssertionError: if it does not fall silent, or has sent anything since.
         """
-        began = time.time()
+        began, held_up = time.time(), self.peer.held_up
         before = -1
         while (heard := len(self.beats) + len(self.states["/stop"])) != before:
             assert time.time() < began + LIMIT, "the safety node does not fall silent"
             before = heard
             self.spin(0.5)
-        sent = max(each.sent for each in (*self.beats, *self.states["/stop"]))
-        assert sent < began + PROMPT, f"it went on for {sent - began:.1f} s"
+        went_on = max(each.sent for each in (*self.beats, *self.states["/stop"])) - began
+        went_on -= self.peer.held_up - held_up
+        assert went_on < PROMPT, f"it went on for {went_on:.1f} s"
 
     def spin(self, seconds: float) -> None:
         """Listen for a time in which something must *not* happen."""
