@@ -128,15 +128,13 @@ def scan_nearest(
         return None
     least = float(np.fmin.reduce(measured))  # not NaN, if any is not
     if least == -math.inf:  # too near to measure (REP 117)
-        return range_min
+        return range_min + 0.0  # which makes 0.0 of -0.0
     if not least >= range_min:  # invalid, as may be others
         valid = measured[measured >= range_min]
         if not valid.size:
             return None
         least = float(valid.min())
-    if least == 0.0:  # the first of the zeros, of which one may be negative
-        least = float(measured[measured == 0.0][0])
-    return least if least <= range_max else math.inf
+    return least + 0.0 if least <= range_max else math.inf
 ''',
     "scan_usable": '''\
 def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
@@ -276,9 +274,9 @@ static double beam(
   }
   const bool inside = (offset <= (width + 1e-6)) || (offset >= (turn - 1e-6));
   if (inside && (measured == -INFINITY)) {  /* too near to measure (REP 117) */
-    distance = range_min;
+    distance = range_min + 0.0;  /* which makes 0.0 of -0.0 */
   } else if (inside && (measured >= range_min)) {
-    distance = (measured > range_max) ? INFINITY : measured;
+    distance = (measured > range_max) ? INFINITY : (measured + 0.0);
   } else {
     /* beside the sector, or invalid */
   }

@@ -125,16 +125,18 @@ def nearest(
     A beam that is NaN or shorter than ``range_min`` is invalid. As REP 117 has it, minus infinity
     is an object too near to measure, and counts as ``range_min``; infinity, and what lies beyond
     ``range_max``, means that nothing is there. Unknown when the sector holds no valid beam.
+
+    A distance of zero has no sign: several beams may have it, and none of them comes first.
     """
     width = end - start if end >= start else end - start + FULL_TURN
     shortest: float | None = None
     for index, measured in enumerate(ranges):
         if measured == -math.inf:
-            distance = range_min
+            distance = range_min + 0.0
         elif not measured >= range_min:
             continue
         else:
-            distance = measured if measured <= range_max else math.inf
+            distance = measured + 0.0 if measured <= range_max else math.inf
         offset = (angle_min + index * angle_increment - start) % FULL_TURN
         inside = offset <= width + BEARING_TOLERANCE or offset >= FULL_TURN - BEARING_TOLERANCE
         if inside and (shortest is None or distance < shortest):

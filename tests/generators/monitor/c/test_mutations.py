@@ -64,7 +64,7 @@ SLIPS = {
     "a rate keeps its first value": (r"^  \*last = value;", ""),
     "minimum and maximum are swapped": (r"values\[i\] < found", "values[i] > found"),
     "the last element is skipped": (r"i < count;", "(i + 1U) < count;"),
-    "a short range is invalid": (r"distance = range_min;", "distance = NAN;"),
+    "a short range is invalid": (r"distance = range_min \+ 0\.0;", "distance = NAN;"),
     "a missing element counts": (r"if \(\w+_given\b", "if (true"),
     "a string is compared by its length": (r"same = \(text\[i\] == expected\[i\]\);", ""),
     "waiting for inputs without a timeout": (r"waiting = true;", "waiting = false;"),

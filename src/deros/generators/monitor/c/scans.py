@@ -48,9 +48,9 @@ _PREDICATES = (
     (
         f"formula_of_beam(double r, {_BEAM}, {_SECTOR}) = \\exists double past; "
         f"is_fmod(past, {of('sub', 'bearing', 'start')}, {_TURN}) && "
-        f"({_INSIDE} && {_TOO_NEAR} ==> same(r, range_min)) && "
+        f"({_INSIDE} && {_TOO_NEAR} ==> same(r, {of('add', 'range_min', ZERO)})) && "
         f"({_INSIDE} && !{_TOO_NEAR} && {_VALID} && {_BEYOND} ==> same(r, {INFINITY})) && "
-        f"({_INSIDE} && !{_TOO_NEAR} && {_VALID} && !{_BEYOND} ==> same(r, measured)) && "
+        f"({_INSIDE} && !{_TOO_NEAR} && {_VALID} && !{_BEYOND} ==> same(r, {of('add', 'measured', ZERO)})) && "
         f"(!({_INSIDE} && ({_TOO_NEAR} || {_VALID})) ==> \\is_NaN(r))"
     ),
     (
