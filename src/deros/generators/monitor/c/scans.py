@@ -50,7 +50,8 @@ _PREDICATES = (
         f"is_fmod(past, {of('sub', 'bearing', 'start')}, {_TURN}) && "
         f"({_INSIDE} && {_TOO_NEAR} ==> same(r, {of('add', 'range_min', ZERO)})) && "
         f"({_INSIDE} && !{_TOO_NEAR} && {_VALID} && {_BEYOND} ==> same(r, {INFINITY})) && "
-        f"({_INSIDE} && !{_TOO_NEAR} && {_VALID} && !{_BEYOND} ==> same(r, {of('add', 'measured', ZERO)})) && "
+        f"({_INSIDE} && !{_TOO_NEAR} && {_VALID} && !{_BEYOND} ==> "
+        f"same(r, {of('add', 'measured', ZERO)})) && "
         f"(!({_INSIDE} && ({_TOO_NEAR} || {_VALID})) ==> \\is_NaN(r))"
     ),
     (
