@@ -391,10 +391,19 @@ class Robot:
         """
         assert self._prober is not None
         (self.folder / "interference").write_text(how, encoding="ascii")
-        self._speeds.clear()
-        self._prober.play("/speed", speed(RUNAWAY))
-        self.until(lambda: RUNAWAY in [each.value for each in self._speeds])
+        self._play_speed(RUNAWAY)
         self._prober.play("/speed", speed(0.1))
+
+    def _play_speed(self, value: float) -> None:
+        """Play a speed until it is received; messages of earlier plays may still be on their way.
+
+        Raises:
+            AssertionError: if it does not come.
+        """
+        assert self._prober is not None
+        began = time.time()
+        self._prober.play("/speed", speed(value))
+        self.until(lambda: value in [each.value for each in self._speeds if each.sent >= began])
 
     def let_go_on(self) -> None:
         """Let code that waits go on."""
@@ -407,9 +416,7 @@ class Robot:
             AssertionError: if the stop is missed.
         """
         assert self._prober is not None
-        self._speeds.clear()
-        self._prober.play("/speed", speed(VIOLATION))
-        self.until(lambda: VIOLATION in [each.value for each in self._speeds])
+        self._play_speed(VIOLATION)
         self.until_stopped(limit=PROMPT)
         self._prober.play("/speed", speed(0.1))
         self.until(lambda: self._speeds[-1].value == 0.1)
