@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import pytest
@@ -11,6 +10,7 @@ from deros.diagnostics import Diagnostic
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.validators.check import check
+from tests.support.work import calls
 
 NODES = {
     "source.rnd": "node source : demo publishes topic out : std_msgs.Float64\n",
@@ -114,23 +114,20 @@ def _fleet(nodes: int, wrong: int) -> str:
 
 
 @pytest.mark.parametrize("wrong", [0, 400])
-def test_check_time_is_linear(tmp_path: Path, wrong: int) -> None:
-    """Four times the nodes, sound or misspelt, take about four times as long."""
+def test_work_of_a_check_is_linear(tmp_path: Path, wrong: int) -> None:
+    """Four times the nodes, sound or misspelt, are about four times the work."""
 
-    def seconds(nodes: int) -> float:
+    def work(nodes: int) -> int:
         path = tmp_path / "fleet.system"
         path.write_text(_fleet(nodes, wrong * nodes // 400))
         for name, text in NODES.items():
             (tmp_path / name).write_text(text)
         repository = Repository()
         named = [repository.load(path)]
-        start = time.process_time()
-        check(named, repository, InterfaceStore((), prefixes=()))
-        return time.process_time() - start
+        return calls(lambda: check(named, repository, InterfaceStore((), prefixes=())))
 
-    seconds(100)
-    small = min(seconds(300) for _ in range(2))
-    assert min(seconds(1200) for _ in range(2)) < 8 * small + 0.05
+    work(100)  # what is done once
+    assert work(1200) < 5 * work(300)
 
 
 def test_misspelt_topics_get_a_hint_among_hundreds(tmp_path: Path) -> None:
