@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 
 from deros import codes
@@ -218,6 +216,10 @@ def test_findings_beyond_the_limit_are_counted() -> None:
     assert "9950" in rest.message
 
 
+MOST_CALLS = 8_000_000
+"""Some seconds of work: a slow machine makes a million calls in one."""
+
+
 @pytest.mark.parametrize(
     ("name", "text"),
     [
@@ -233,11 +235,11 @@ def test_findings_beyond_the_limit_are_counted() -> None:
         ("a.deros", "}" * 20_000),
     ],
 )  # fmt: skip
-def test_hostile_files_load_in_bounded_time(name: str, text: str) -> None:
+def test_work_of_hostile_files_is_bounded(name: str, text: str) -> None:
     """Reading ends within seconds, however many errors there are and however deep."""
-    before = time.process_time()
-    assert _load(name, text).diagnostics
-    assert time.process_time() - before < 5
+    found: list[Diagnostic] = []
+    assert calls(lambda: found.extend(_load(name, text).diagnostics)) < MOST_CALLS
+    assert found
 
 
 def test_work_of_recovery_is_linear() -> None:
