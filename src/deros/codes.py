@@ -311,6 +311,7 @@ WRAPPING_NOT_AN_ANGLE = _declare(
     366, "wrapping-not-an-angle", "field annotated as wrapping that is not an angle"
 )
 RATE_OF_ARRIVALS = _declare(367, "rate-of-arrivals", "rate computed from arrival times", _W)
+RULE_CYCLE = _declare(368, "rule-cycle", "rule that depends on itself")
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

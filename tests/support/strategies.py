@@ -199,7 +199,7 @@ class _Drawing:
     fors: int = 0
     states: int = 0
     behaviours: int = 0
-    rules: int = 0
+    rules: list[ir.Rule] = field(default_factory=list)
     actions: int = 0
     triggered_by: dict[int, list[int]] = field(default_factory=dict)
 
@@ -402,17 +402,26 @@ class _Drawing:
     # Rules, behaviours, actions -------------------------------------------------------------------
 
     def rule(self) -> ir.Rule:
-        index = self.rules
-        condition = self.condition(self.draw(st.integers(0, 3)), self.atom)
-        inputs = tuple(sorted(walk.inputs_read(condition, self.leaves)))
+        index = len(self.rules)
+        condition = self.condition(self.draw(st.integers(0, 3)), self.atom_or_rule)
+        named = walk.with_named(condition, self.rules)
+        read = (walk.inputs_read(each, self.leaves) for each in named)
+        inputs = tuple(sorted(set().union(*read)))
         timed = all(self.inputs[each].timeout_ns is not None for each in inputs)
         if inputs and timed and self.draw(st.booleans()):
             condition = ir.Failsafe(condition, inputs)
-        self.rules += 1
-        return ir.Rule(index, "entity", f"rule_{index}", condition, span(10 + index))
+        rule = ir.Rule(index, "entity", f"rule_{index}", condition, span(10 + index))
+        self.rules.append(rule)
+        return rule
+
+    def atom_or_rule(self) -> ir.Condition:
+        """Draw a condition on an input, or an earlier rule."""
+        if self.rules and self.draw(st.integers(0, 3)) == 0:
+            return self.reference()
+        return self.atom()
 
     def reference(self) -> ir.Condition:
-        return ir.RuleRef(self.draw(st.integers(0, self.rules - 1)))
+        return ir.RuleRef(self.draw(st.integers(0, len(self.rules) - 1)))
 
     def behaviour(self, depth: int, parent: int | None) -> ir.Behaviour:
         index = self.behaviours

@@ -69,7 +69,7 @@ def happenings(events: list[Event]) -> tuple[Happening, ...]:
 
 
 def load(file: str) -> list[Timeline]:
-    """Return the timelines of a file: ``timelines.json``, the given ones, or ``more.json``."""
+    """Return the timelines of a file; those of ``timelines.json`` are the given ones."""
     return [_timeline(each) for each in json.loads((DIRECTORY / file).read_text())]
 
 
@@ -91,4 +91,4 @@ def _ns(seconds: str) -> int:
 
 
 GIVEN = load("timelines.json")
-ALL = [*GIVEN, *load("more.json")]
+ALL = [*GIVEN, *load("more.json"), *load("named_rules.json")]

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 from deros import codes
 from deros.diagnostics import Diagnostic, has_errors
-from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels import rules
 from deros.metamodels.common import Name
@@ -21,6 +20,7 @@ from deros.monitor.comparisons import Comparisons
 from deros.monitor.conditions import Conditions
 from deros.monitor.gate_resolution import GateResolver
 from deros.monitor.resolved import AppliedFunction, ResolvedComparison
+from deros.monitor.rule_names import RuleNames, WrittenRule
 from deros.monitor.scope import Scope
 from deros.monitor.terms import Terms
 from deros.monitor.topics import SystemTopics
@@ -68,19 +68,24 @@ class _Builder:
     def __init__(self, program: rules.Rules, store: InterfaceStore) -> None:
         self._program = program
         self.scope = Scope(program, store)
-        self.terms = terms = Terms(self.scope, [each.name.text for each in program.entities])
+        rules_of = {
+            each.name.text: [rule.name.text for rule in each.rules] for each in program.entities
+        }
+        self.terms = terms = Terms(self.scope, rules_of)
         for name in self.scope.constants:
             terms.constant(name)
         self.comparisons = Comparisons(self.scope, terms)
         self._conditions = Conditions(self.scope, self.comparisons)
         self._actions = Actions(self.scope, terms, program.actions)
         self._gates = GateResolver(self.scope, terms, self._actions)
-        self._rule_index: dict[str, dict[str, int]] = {}
+        self._rule_index: dict[int, int] = {}
+        self._built: dict[int, ir.Rule] = {}
         self._behaviours = 0
 
     def build(self) -> ir.Program:
         """Build rules, then behaviours, in the order in which the monitor evaluates them."""
         self.scope.check_names(_declared(self._program))
+        self._names = RuleNames(self.scope, self._program.entities)
         built_rules = tuple(self._rules())
         self._name_behaviours()
         behaviours = tuple(
@@ -102,56 +107,41 @@ class _Builder:
     # Rules --------------------------------------------------------------------------------------
 
     def _rules(self) -> Iterator[ir.Rule]:
-        entities = self._program.entities
-        self.scope.check_duplicates((each.name for each in entities), "entity '{}'")
-        index = 0
-        for entity in entities:
-            name = entity.name.text
-            self.scope.check_duplicates((each.name for each in entity.rules), f"rule '{name}.{{}}'")
-            known = self._rule_index.setdefault(name, {})
-            for rule in entity.rules:
-                known.setdefault(rule.name.text, index)
-                condition = self._condition(rule)
-                if condition is not None:
-                    yield ir.Rule(index, name, rule.name.text, condition, rule.span)
-                index += 1
+        for index, number in enumerate(self._names.in_order()):
+            self._rule_index[number] = index
+            written = self._names.written[number]
+            condition = self._condition(written)
+            if condition is not None:
+                rule = written.rule
+                built = ir.Rule(index, written.entity, rule.name.text, condition, rule.span)
+                self._built[index] = built
+                yield built
 
-    def _condition(self, rule: rules.Rule) -> ir.Condition | None:
-        condition = self._conditions.of_rule(rule.condition)
+    def _condition(self, written: WrittenRule) -> ir.Condition | None:
+        rule, entity = written.rule, written.entity
+        condition = self._conditions.of_rule(
+            rule.condition,
+            lambda term: self._names.is_reference(term, entity),
+            lambda term: self._verdict(term, entity),
+        )
         if condition is None or not rule.failsafe:
             return condition
-        inputs = tuple(sorted(walk.inputs_read(condition, self.scope.leaves)))
+        inputs: set[int] = set()
+        for each in walk.with_named(condition, self._built):
+            inputs |= walk.inputs_read(each, self.scope.leaves)
         if not inputs:
             return condition  # it is never unknown
         timed = True
-        for index in inputs:
+        for index in sorted(inputs):
             owner = self.scope.used_inputs[index]
             without = f"'{owner.name}' has no timeout, so no silence of it makes the rule unknown"
             timed &= self.terms.has_timeout(owner, without, rule.name.span)
-        return ir.Failsafe(condition, inputs) if timed else None
+        return ir.Failsafe(condition, tuple(sorted(inputs))) if timed else None
 
-    def _verdict(self, term: rules.NamePath) -> ir.RuleRef | None:
-        """Resolve ``entity.rule``."""
-        name = term.name.text
-        known = self._rule_index.get(name)
-        if known is None:
-            owners = [
-                f"{entity}.{name}"
-                for entity in self._rule_index
-                if name in self._rule_index[entity]
-            ]
-            hint = did_you_mean(owners or near(name, self._rule_index))
-            self.scope.fault(codes.UNKNOWN_NAME, f"no entity '{name}'", term.name.span, hint)
-            return None
-        rule = str(term.path[0]) if term.path else ""
-        if len(term.path) == 1 and rule in known:
-            return ir.RuleRef(known[rule])
-        hint = did_you_mean(f"{name}.{each}" for each in near(rule, known) or list(known)[:3])
-        message = f"entity '{name}' has no rule '{'.'.join(map(str, term.path))}'"
-        if not term.path:
-            message = f"'{name}' is an entity, its rules are the conditions"
-        self.scope.fault(codes.UNKNOWN_NAME, message, term.span, hint)
-        return None
+    def _verdict(self, term: rules.NamePath, entity: str = "") -> ir.RuleRef | None:
+        """Resolve the name of a rule; without ``entity`` only ``entity.rule``."""
+        number = self._names.find(term, entity)
+        return None if number is None else ir.RuleRef(self._rule_index.get(number, -1))
 
     # Behaviours ---------------------------------------------------------------------------------
 

@@ -40,6 +40,8 @@ from deros.monitor.wordings import constant
 
 _LONGEST_TEXT = 40
 _MORE = " …"
+_LEVELS = 2
+"""From so many rules below one another on, a cause names a rule without that rule's causes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +58,11 @@ class Say:
 
 @dataclass(frozen=True, slots=True)
 class SayRule:
-    """A cause, where a rule is true, or (``holds`` false) is false: a ``head``, and why it is."""
+    """A cause, where a rule is true, or (``holds`` false) is false: a ``head``, and why it is.
+
+    Where rules name rules that name rules, the innermost are named without their own causes
+    (:func:`plan_of_rule`): otherwise the text could double with each rule in between.
+    """
 
     rule: int
     holds: bool
@@ -106,8 +112,7 @@ def causes_of_rule(
     program: Program, index: int, holds: bool, state: State, t_ns: int
 ) -> tuple[str, ...]:
     """Return why a rule is true, or false, as of its last evaluation."""
-    plan = plan_of(program, program.rules[index].condition, holds)
-    return tuple(_tell(program, plan, state, t_ns))
+    return tuple(_tell(program, plan_of_rule(program, index, holds), state, t_ns))
 
 
 def causes_of_behaviour(
@@ -126,11 +131,30 @@ def plan_of_behaviour(program: Program, behaviour: Behaviour) -> Plan:
     return _all_of([plan_of(program, each.condition, True) for each in around])
 
 
+def plan_of_rule(program: Program, index: int, holds: bool) -> Plan:
+    """Return the plan of a rule's causes; they go through no more than two further rules."""
+    condition = program.rules[index].condition
+    shortened = {rule for rule in _named(condition) if _has_levels(program, rule, _LEVELS)}
+    return plan_of(program, condition, holds, shortened=frozenset(shortened))
+
+
+def _has_levels(program: Program, index: int, levels: int) -> bool:
+    """Return whether so many rules stand below one another below a rule."""
+    if not levels:
+        return True
+    named = _named(program.rules[index].condition)
+    return any(_has_levels(program, each, levels - 1) for each in named)
+
+
+def _named(condition: Condition) -> set[int]:
+    return {part.rule for part in walk.parts(condition) if isinstance(part, RuleRef)}
+
+
 def negated_rules(program: Program) -> frozenset[int]:
     """Return the rules whose falsehood is a cause in some plan."""
     found: set[int] = set()
     plans = [plan_of_behaviour(program, each) for each in walk.behaviours(program)]
-    plans += [plan_of(program, each.condition, True) for each in program.rules]
+    plans += [plan_of_rule(program, each.index, True) for each in program.rules]
     while plans:
         match plans.pop():
             case AllOf(parts=parts) | AnyOf(parts=parts):
@@ -139,11 +163,17 @@ def negated_rules(program: Program) -> frozenset[int]:
                 plans.append(part)
             case SayRule(rule=rule, holds=False) if rule not in found:
                 found.add(rule)
-                plans.append(plan_of(program, program.rules[rule].condition, False))
+                plans.append(plan_of_rule(program, rule, False))
     return frozenset(found)
 
 
-def plan_of(program: Program, condition: Condition, holds: bool, suffix: str = "") -> Plan:
+def plan_of(
+    program: Program,
+    condition: Condition,
+    holds: bool,
+    suffix: str = "",
+    shortened: frozenset[int] = frozenset(),
+) -> Plan:
     """Return the plan of the causes of a condition that is true or, if not ``holds``, false.
 
     Args:
@@ -151,35 +181,43 @@ def plan_of(program: Program, condition: Condition, holds: bool, suffix: str = "
         condition: the condition.
         holds: whether it is true.
         suffix: what follows each cause: for how long.
+        shortened: the rules that are named without their causes.
     """
     match condition:
         case Not():
-            return plan_of(program, condition.operand, not holds, suffix)
+            return plan_of(program, condition.operand, not holds, suffix, shortened)
         case And() | Or():
-            plans = [plan_of(program, each, holds, suffix) for each in condition.operands]
+            plans = [
+                plan_of(program, each, holds, suffix, shortened) for each in condition.operands
+            ]
             return _all_of(plans) if isinstance(condition, And) is holds else _any_of(plans)
         case For():
-            return _plan_of_interval(program, condition, holds, suffix)
+            return _plan_of_interval(program, condition, holds, suffix, shortened)
         case Failsafe():
-            part = plan_of(program, condition.operand, holds, suffix)
-            return OrUnknown(part, terms(condition.operand)) if holds else part
+            part = plan_of(program, condition.operand, holds, suffix, shortened)
+            return OrUnknown(part, terms(program, condition.operand)) if holds else part
         case RuleRef():
             name = program.rules[condition.rule].full_name
-            return SayRule(condition.rule, holds, f"{'' if holds else 'not '}{name}{suffix}: ")
+            head = f"{'' if holds else 'not '}{name}{suffix}"
+            if condition.rule in shortened:
+                return Say(condition, holds, (head,))
+            return SayRule(condition.rule, holds, f"{head}: ")
         case _:
             pieces = [*_pieces(program, condition, holds), suffix]
             return Say(condition, holds, tuple(_joined(pieces)))
 
 
-def _plan_of_interval(program: Program, condition: For, holds: bool, suffix: str) -> Plan:
+def _plan_of_interval(
+    program: Program, condition: For, holds: bool, suffix: str, shortened: frozenset[int]
+) -> Plan:
     """Return the plan of an interval; nested ones add the same amount of text at each level."""
     duration = condition.wording or seconds_text(condition.duration_ns)
     is_deep = suffix.count(" for ") > 1 or suffix.endswith(_MORE)
     further = f" for {duration}{_MORE if is_deep else suffix}"
     if holds:
-        whole = plan_of(program, condition.operand, True, further)
+        whole = plan_of(program, condition.operand, True, further, shortened)
         return During(condition, True, whole) if condition.duration_ns else whole
-    operand = plan_of(program, condition.operand, False, suffix)
+    operand = plan_of(program, condition.operand, False, suffix, shortened)
     if not condition.duration_ns:
         return operand
     if any(isinstance(part, For) for part in walk.parts(condition.operand)):
@@ -187,7 +225,8 @@ def _plan_of_interval(program: Program, condition: For, holds: bool, suffix: str
         shown = f"{written[:_LONGEST_TEXT]}{_MORE if len(written) > _LONGEST_TEXT else ''}"
         short: Plan = Say(Truth(Const(True)), True, (f"not yet {shown}{suffix}",))
     else:
-        short = plan_of(program, condition.operand, True, f" for less than {duration}{suffix}")
+        less = f" for less than {duration}{suffix}"
+        short = plan_of(program, condition.operand, True, less, shortened)
     return _any_of([During(condition, False, short), operand])
 
 

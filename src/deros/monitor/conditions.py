@@ -22,9 +22,27 @@ class Conditions:
         self._comparisons = comparisons
         self._durations = 0
 
-    def of_rule(self, condition: rules.Condition) -> ir.Condition | None:
-        """Return the condition of an entity's rule."""
-        return self._build(condition, self._comparisons.build)
+    def of_rule(
+        self,
+        condition: rules.Condition,
+        is_rule: Callable[[rules.NamePath], bool],
+        verdict: Callable[[rules.NamePath], ir.RuleRef | None],
+    ) -> ir.Condition | None:
+        """Return the condition of an entity's rule.
+
+        Args:
+            condition: as written.
+            is_rule: returns whether a name that stands alone is that of a rule.
+            verdict: resolves such a name.
+        """
+
+        def leaf(each: _Leaf) -> ir.Condition | None:
+            match each:
+                case rules.Truth(operand=rules.NamePath() as name) if is_rule(name):
+                    return verdict(name)
+            return self._comparisons.build(each)
+
+        return self._build(condition, leaf)
 
     def of_behaviour(
         self, condition: rules.Condition, verdict: Callable[[rules.NamePath], ir.RuleRef | None]

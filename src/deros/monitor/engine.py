@@ -86,7 +86,7 @@ class Engine:
         conditions = tuple(walk.conditions(program))
         self._fors = [each for each in conditions if isinstance(each, For)]
         self._ages = [each for each in conditions if isinstance(each, Age)]
-        values = walk.values(conditions)
+        values = dict.fromkeys(walk.values(conditions))
         self._functions = [each for each in values if isinstance(each, Apply)]
         behaviours = tuple(walk.behaviours(program))
         self._state = State(program, start_ns, len(behaviours), grace_ns)

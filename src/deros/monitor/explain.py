@@ -22,7 +22,8 @@ class RuleState(NamedTuple):
         value: ``None`` when it is not true and something that it reads is unknown.
         since: when it last became true or ceased to be, in nanoseconds; the start, or the last
             backward step of the clock, if it did not since.
-        reads: each term that it reads, with its value; ``None`` is unknown, an age is in seconds.
+        reads: each term that it, or a rule that it names, reads, with its value; ``None`` is
+            unknown, an age is in seconds.
         causes: while it is true, the parts of its condition that make it so, with their values.
     """
 
@@ -60,7 +61,8 @@ def explain(program: Program, state: State, t_ns: int) -> Explanation:
 
 def _explain_rule(program: Program, rule: Rule, state: State, t_ns: int) -> RuleState:
     reads = tuple(
-        (term_name(program, term), term_value(term, state, t_ns)) for term in terms(rule.condition)
+        (term_name(program, term), term_value(term, state, t_ns))
+        for term in terms(program, rule.condition)
     )
     value: bool | None = state.verdicts[rule.index] is True
     if not value and any(each is None for _, each in reads):

@@ -262,7 +262,11 @@ class Failsafe:
 
 @dataclass(frozen=True, slots=True)
 class RuleRef:
-    """The verdict of an entity's rule, in the condition of a behaviour."""
+    """The verdict of an entity's rule at the same event, in the condition of a behaviour or rule.
+
+    Of a failsafe rule it is what behaviours see: true where its condition is unknown. A rule names
+    only rules with smaller indices.
+    """
 
     rule: int
 

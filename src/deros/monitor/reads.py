@@ -34,14 +34,18 @@ def strip_comments(text: str) -> str:
     return " ".join(_COMMENT.sub(" ", text).split())
 
 
-def terms(condition: Condition) -> tuple[Term, ...]:
-    """Return what a condition reads, in the order written, each once."""
+def terms(program: Program, condition: Condition) -> tuple[Term, ...]:
+    """Return what a condition reads, in the order written, each once.
+
+    Before it comes what the rules read that it names, directly or not.
+    """
     found: dict[Term, None] = {}
-    for part in walk.parts(condition):
-        if isinstance(part, Missing | Unknown | Age):
-            found[plain_term(part)] = None
-        else:
-            found.update(dict.fromkeys(walk.terminals(part)))
+    for each in walk.with_named(condition, program.rules):
+        for part in walk.parts(each):
+            if isinstance(part, Missing | Unknown | Age):
+                found[plain_term(part)] = None
+            else:
+                found.update(dict.fromkeys(walk.terminals(part)))
     return tuple(found)
 
 

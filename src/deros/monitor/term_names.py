@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
+from deros.interfaces.names import near
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor.resolved import (
     AgeOf,
@@ -38,6 +41,18 @@ def describe(found: Resolved) -> str:
             return "an age"
         case MissingOf() | UnknownOf():
             return "a condition"
+
+
+def rules_called(name: str, rules_of: Mapping[str, Iterable[str]]) -> list[str]:
+    """Return the rules, as ``entity.rule``, that have a name or one that nearly matches.
+
+    ``rules_of`` has the names of each entity's rules.
+    """
+    everyone = dict.fromkeys(rule for known in rules_of.values() for rule in known)
+    meant = [name] if name in everyone else near(name, everyone)
+    return [
+        f"{entity}.{rule}" for entity, known in rules_of.items() for rule in known if rule in meant
+    ]
 
 
 def _short(kind: FieldType) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from deros import codes
@@ -41,7 +41,7 @@ from deros.monitor.resolved import (
     is_written_whole,
 )
 from deros.monitor.scope import Scope
-from deros.monitor.term_names import counted, describe
+from deros.monitor.term_names import counted, describe, rules_called
 
 _NOTHING = frozenset({"none", "null", "nil", "nan", "undefined"})
 _RESULT_TYPES = {Result.FLOAT: FieldType("float64"), Result.INTEGER: FieldType("uint64")}
@@ -50,10 +50,10 @@ _RESULT_TYPES = {Result.FLOAT: FieldType("float64"), Result.INTEGER: FieldType("
 class Terms:
     """Resolves terms within a scope. ``None`` means that a fault has been reported."""
 
-    def __init__(self, scope: Scope, entities: Iterable[str] = ()) -> None:
-        """Resolve in a scope; the names of entities are for hints."""
+    def __init__(self, scope: Scope, rules_of: Mapping[str, Sequence[str]]) -> None:
+        """Resolve in a scope; the rules of each entity are for hints."""
         self._scope = scope
-        self._entities = frozenset(entities)
+        self._rules_of = rules_of
         self._constants: dict[str, Resolved | None] = {}
         self._open_constants: set[str] = set()
         self._constant_depth = 0
@@ -129,11 +129,10 @@ class Terms:
             for constant in own:
                 if constant.name == name:
                     return MessageConstant(constant)
-        hint = did_you_mean(
-            near(name, [*self._scope.constants, *self._scope.inputs, *(each.name for each in own)])
-        )
-        if name in self._entities:
-            hint = "the rules of entities are combined in the conditions of behaviours"
+        names = [*self._scope.constants, *self._scope.inputs, *(each.name for each in own)]
+        hint = did_you_mean(near(name, names) or rules_called(name, self._rules_of))
+        if name in self._rules_of:
+            hint = "a rule is not compared: it stands alone in a condition, or after 'not'"
         fix = None
         if name.lower() in ("true", "false"):
             hint, fix = f"write '{name.lower()}'", Fix(term.name.span, name.lower())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from deros.monitor.ir import (
     Age,
@@ -18,6 +18,8 @@ from deros.monitor.ir import (
     Or,
     Program,
     Read,
+    Rule,
+    RuleRef,
     Scale,
     Truth,
     Unknown,
@@ -74,6 +76,30 @@ def parts(condition: Condition) -> Iterator[Condition]:
     yield condition
 
 
+def with_named(condition: Condition, rules: Mapping[int, Rule] | Sequence[Rule]) -> list[Condition]:
+    """Return the conditions of the rules that a condition names, directly or not, and then itself.
+
+    Each rule is there once, after those that it names itself.
+    """
+    return [*(rules[index].condition for index in named_rules(condition, rules)), condition]
+
+
+def named_rules(condition: Condition, rules: Mapping[int, Rule] | Sequence[Rule]) -> list[int]:
+    """Return the rules that a condition names, directly or not, in the order of evaluation.
+
+    A rule that is not among the ``rules`` is left out.
+    """
+    known = rules.keys() if isinstance(rules, Mapping) else range(len(rules))
+    found: set[int] = set()
+    open_ = [condition]
+    while open_:
+        for part in parts(open_.pop()):
+            if isinstance(part, RuleRef) and part.rule in known and part.rule not in found:
+                found.add(part.rule)
+                open_.append(rules[part.rule].condition)
+    return sorted(found)
+
+
 def values(conditions: Iterable[Condition]) -> Iterator[ValueExpression]:
     """Yield every value expression in the given conditions, arguments before functions."""
     for condition in conditions:
@@ -114,7 +140,10 @@ def leaves(value: ValueExpression) -> Iterator[int]:
 
 
 def inputs_read(condition: Condition, leaves: Sequence[Leaf]) -> set[int]:
-    """Return the inputs whose values or ages a condition reads: those that can make it unknown."""
+    """Return the inputs whose values or ages a condition reads: those that can make it unknown.
+
+    What the rules read that it names is not among them; see :func:`with_named`.
+    """
     asked = [part for part in parts(condition) if not isinstance(part, Unknown)]
     found = {part.input for part in asked if isinstance(part, Age)}
     for value in values(asked):

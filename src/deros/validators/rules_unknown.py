@@ -13,9 +13,10 @@ from deros.monitor import ir, walk
 from deros.monitor.build import BuildResult
 from deros.monitor.functions import FUNCTIONS, Argument
 from deros.monitor.resolved import AppliedFunction
-from deros.validators.rules_walk import behaviours_of, rules_of
+from deros.validators.rules_walk import RulesByName, behaviours_of, rules_of
 
 _Key = tuple[str, tuple[ir.ValueExpression, ...]]
+_Verdicts = dict[int, tuple[bool, bool]]  # by rule: surely not false, surely not true
 
 
 def check_unknown(written: rules.Rules, result: BuildResult) -> Iterator[Diagnostic]:
@@ -32,16 +33,19 @@ def check_unknown(written: rules.Rules, result: BuildResult) -> Iterator[Diagnos
 
 @dataclass(frozen=True, slots=True)
 class _Used:
-    """The rules that behaviours depend on.
+    """The rules that behaviours depend on, by themselves or by other rules.
 
     Attributes:
         rules: of any behaviour.
         firm: the indices of those of behaviours that cannot be disabled, by themselves or with one
             around them.
+        exposed: the indices of those that a behaviour can see while they are unknown: not only
+            through failsafe rules.
     """
 
     rules: list[ir.Rule]
     firm: frozenset[int]
+    exposed: frozenset[int]
 
 
 def _used(program: ir.Program) -> _Used:
@@ -56,7 +60,15 @@ def _used(program: ir.Program) -> _Used:
                 used.add(part.rule)
                 if behaviour.index not in optional:
                     firm.add(part.rule)
-    return _Used([program.rules[each] for each in sorted(used)], frozenset(firm))
+    exposed = set(used)
+    for rule in reversed(program.rules):  # a rule comes after those that it names
+        named = {part.rule for part in walk.parts(rule.condition) if isinstance(part, ir.RuleRef)}
+        used |= named if rule.index in used else set()
+        firm |= named if rule.index in firm else set()
+        is_failsafe = isinstance(rule.condition, ir.Failsafe)
+        exposed |= named if rule.index in exposed and not is_failsafe else set()
+    rules_used = [program.rules[each] for each in sorted(used)]
+    return _Used(rules_used, frozenset(firm), frozenset(exposed))
 
 
 # Functions that are unknown of known messages ---------------------------------------------------
@@ -71,11 +83,11 @@ def _unnoticed(
     everywhere: set[_Key] = set()
     firmly: set[_Key] = set()
     for rule in used.rules:
-        keys = set(_noticed(rule.condition))
+        keys = set(_noticed(program, rule.condition))
         everywhere |= keys
         firmly |= keys if rule.index in used.firm else set()
     for rule in used.rules:
-        if isinstance(rule.condition, ir.Failsafe):
+        if isinstance(rule.condition, ir.Failsafe) or rule.index not in used.exposed:
             continue
         noticed = firmly if rule.index in used.firm else everywhere
         reported: set[_Key] = set()
@@ -140,36 +152,51 @@ def _key(function: ir.Apply) -> _Key:
     return name, function.arguments
 
 
-def _noticed(condition: ir.Condition) -> Iterator[_Key]:
+def _noticed(program: ir.Program, condition: ir.Condition) -> Iterator[_Key]:
     """Yield the functions for which a rule detects that they are unknown."""
-    for part in walk.parts(condition):
-        for value in walk.values([part]):
-            if not isinstance(value, ir.Apply):
-                continue
-            key = _key(value)
-            failsafe = isinstance(condition, ir.Failsafe)
-            if isinstance(part, ir.Unknown) or (failsafe and _while_unknown(condition, key)[0]):
-                yield key
+    for value in walk.values(p for p in walk.parts(condition) if isinstance(p, ir.Unknown)):
+        if isinstance(value, ir.Apply):
+            yield _key(value)
+    if not isinstance(condition, ir.Failsafe):
+        return
+    named = walk.named_rules(condition, program.rules)
+    wholes = [*(program.rules[index].condition for index in named), condition]
+    parts = (part for whole in wholes for part in walk.parts(whole))
+    for value in walk.values(part for part in parts if not isinstance(part, ir.Unknown)):
+        if not isinstance(value, ir.Apply):
+            continue
+        key = _key(value)
+        verdicts: _Verdicts = {}
+        for index, whole in zip(named, wholes, strict=False):
+            not_false, not_true = _while_unknown(whole, key, verdicts)
+            verdicts[index] = (not_false, not_true and not isinstance(whole, ir.Failsafe))
+        if _while_unknown(condition, key, verdicts)[0]:
+            yield key
 
 
-def _while_unknown(condition: ir.Condition, key: _Key) -> tuple[bool, bool]:
-    """Return whether a condition is surely not false, and not true, while a function is unknown."""
+def _while_unknown(condition: ir.Condition, key: _Key, verdicts: _Verdicts) -> tuple[bool, bool]:
+    """Return whether a condition is surely not false, and not true, while a function is unknown.
+
+    ``verdicts`` has the same of the rules that it names.
+    """
     match condition:
         case ir.Not():
-            not_false, not_true = _while_unknown(condition.operand, key)
+            not_false, not_true = _while_unknown(condition.operand, key, verdicts)
             return not_true, not_false
         case ir.And() | ir.Or():
-            every = [_while_unknown(each, key) for each in condition.operands]
+            every = [_while_unknown(each, key, verdicts) for each in condition.operands]
             none_false = [not_false for not_false, _ in every]
             none_true = [not_true for _, not_true in every]
             if isinstance(condition, ir.And):
                 return all(none_false), any(none_true)
             return any(none_false), all(none_true)
         case ir.For():
-            not_false, not_true = _while_unknown(condition.operand, key)
+            not_false, not_true = _while_unknown(condition.operand, key, verdicts)
             return not_false and not_true, not_true  # true for too short a time is false
         case ir.Failsafe():
-            return _while_unknown(condition.operand, key)
+            return _while_unknown(condition.operand, key, verdicts)
+        case ir.RuleRef():
+            return verdicts[condition.rule]
         case ir.Unknown():
             return False, False
         case _:
@@ -236,12 +263,13 @@ def _negated(written: rules.Rules, program: ir.Program) -> Iterator[Diagnostic]:
     failsafe = {
         each.full_name: each for each in program.rules if isinstance(each.condition, ir.Failsafe)
     }
+    names = RulesByName(written)
     both = zip(behaviours_of(written), walk.behaviours(program), strict=True)
     for source, behaviour in both:
         run = [program.actions[index] for index in sorted(_actions(behaviour) - resets)]
         acts = [f"'{each.name}'" for each in run if each.name != "log_state"]
-        for term in _under_not(source.condition, negated=False) if acts else ():
-            rule = failsafe.get(f"{term.name}.{term.path[0]}")
+        for term, full_name in _under_not(names, source.condition) if acts else ():
+            rule = failsafe.get(full_name)
             if rule is not None:
                 yield report(
                     codes.FAILSAFE_NEGATED,
@@ -261,25 +289,50 @@ def _actions(behaviour: ir.Behaviour) -> set[int]:
     return found
 
 
-def _under_not(condition: rules.Condition, *, negated: bool) -> Iterator[rules.NamePath]:
-    """Yield the rules under an odd number of ``not``."""
+def _under_not(
+    names: RulesByName, condition: rules.Condition
+) -> Iterator[tuple[rules.NamePath, str]]:
+    """Yield the rules that a behaviour depends on under an odd number of ``not``.
+
+    Each is where the behaviour names it, or where a rule on which it depends does, with its full
+    name.
+    """
+    seen: set[tuple[str, bool]] = set()
+    open_ = [("", condition, False)]
+    while open_:
+        entity, asked, negated = open_.pop(0)
+        for term, is_negated in _signed(asked, negated):
+            full_name = names.full_name(term, entity)
+            if full_name is None:
+                continue
+            if is_negated:
+                yield term, full_name
+            if (full_name, is_negated) not in seen:
+                seen.add((full_name, is_negated))
+                owner, rule = names[full_name]
+                open_.append((owner, rule.condition, is_negated))
+
+
+def _signed(condition: rules.Condition, negated: bool) -> Iterator[tuple[rules.NamePath, bool]]:
+    """Yield the names that stand alone, each with whether it is negated."""
     match condition:
-        case rules.Truth(operand=rules.NamePath() as term) if negated:
-            yield term
+        case rules.Truth(operand=rules.NamePath() as term):
+            yield term, negated
         case rules.Not(operand=operand):
-            yield from _under_not(operand, negated=not negated)
+            yield from _signed(operand, not negated)
         case rules.For(operand=operand):
-            yield from _under_not(operand, negated=negated)
+            yield from _signed(operand, negated)
         case rules.And(operands=operands) | rules.Or(operands=operands):
             for operand in operands:
-                yield from _under_not(operand, negated=negated)
+                yield from _signed(operand, negated)
         case _:
             pass
 
 
 def _without_effect(written: rules.Rules, program: ir.Program) -> Iterator[Diagnostic]:
-    for built, (full_name, rule) in zip(program.rules, rules_of(written), strict=True):
-        if rule.failsafe and not isinstance(built.condition, ir.Failsafe):
+    failsafe = {each.full_name for each in program.rules if isinstance(each.condition, ir.Failsafe)}
+    for full_name, rule in rules_of(written):
+        if rule.failsafe and full_name not in failsafe:
             message = f"'{full_name}' is never unknown, so 'failsafe' changes nothing"
             hint = "a failsafe rule reads the value of an input; missing() and unknown() do not"
             yield report(codes.FAILSAFE_WITHOUT_EFFECT, message, rule.name.span, hint)

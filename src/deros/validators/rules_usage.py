@@ -7,7 +7,13 @@ from collections.abc import Iterable, Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.metamodels.rules import ActionCall, GateLimit, NamePath, Rules, Term
-from deros.validators.rules_walk import all_terms, behaviours_of, rules_of, terms_of
+from deros.validators.rules_walk import (
+    RulesByName,
+    all_terms,
+    behaviours_of,
+    rules_of,
+    terms_of,
+)
 
 
 def check_usage(rules: Rules) -> Iterator[Diagnostic]:
@@ -54,12 +60,14 @@ def _limits(rules: Rules) -> Iterator[GateLimit]:
 
 
 def _unused_rules(rules: Rules) -> Iterator[Diagnostic]:
-    used = {
-        f"{term.name}.{term.path[0]}"
-        for behaviour in behaviours_of(rules)
-        for term in terms_of(behaviour.condition)
-        if isinstance(term, NamePath) and term.path
-    }
+    by_name = RulesByName(rules)
+    used: set[str] = set()
+    open_ = [name for each in behaviours_of(rules) for _, name in by_name.named_by(each.condition)]
+    while open_:
+        name = open_.pop()
+        if name not in used:
+            used.add(name)
+            open_ += [inner for _, inner in by_name.named_by_rule(name)]
     for full_name, rule in rules_of(rules):
         if full_name not in used:
             message = f"no behaviour depends on rule '{full_name}'"

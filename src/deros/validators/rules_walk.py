@@ -13,6 +13,7 @@ from deros.metamodels.rules import (
     Condition,
     For,
     Membership,
+    NamePath,
     Negative,
     Not,
     Or,
@@ -21,6 +22,7 @@ from deros.metamodels.rules import (
     Term,
     TopicPath,
 )
+from deros.monitor.rule_names import names_alone
 
 
 def rules_of(rules: Rules) -> Iterator[tuple[str, Rule]]:
@@ -41,6 +43,49 @@ def behaviours_of(rules: Rules) -> Iterator[Behaviour]:
 
     for behaviour in rules.behaviours:
         yield from descend(behaviour)
+
+
+class RulesByName:
+    """The rules of all entities by their full names, and what the names of rules refer to."""
+
+    def __init__(self, rules: Rules) -> None:
+        """Take the first of the rules that have one name."""
+        self._taken = {each.name.text for each in rules.inputs}
+        self._taken |= {each.name.text for each in rules.constants}
+        self._rules: dict[str, tuple[str, Rule]] = {}
+        for entity in rules.entities:
+            for rule in entity.rules:
+                full_name = f"{entity.name}.{rule.name}"
+                self._rules.setdefault(full_name, (entity.name.text, rule))
+
+    def __getitem__(self, full_name: str) -> tuple[str, Rule]:
+        """Return the entity and the rule of a full name."""
+        return self._rules[full_name]
+
+    def named_by(self, condition: Condition, entity: str = "") -> Iterator[tuple[NamePath, str]]:
+        """Yield the names of rules in a condition, each with the full name that it stands for.
+
+        Args:
+            condition: of a behaviour or a rule.
+            entity: that of the rule; empty for a behaviour.
+        """
+        for term in names_alone(condition):
+            full_name = self.full_name(term, entity)
+            if full_name is not None:
+                yield term, full_name
+
+    def named_by_rule(self, full_name: str) -> Iterator[tuple[NamePath, str]]:
+        """Yield the same of the condition of a rule."""
+        entity, rule = self[full_name]
+        yield from self.named_by(rule.condition, entity)
+
+    def full_name(self, term: NamePath, entity: str = "") -> str | None:
+        """Return the full name of the rule that a name alone refers to, if it does."""
+        if entity and term.name.text in self._taken:
+            return None
+        written = ".".join(map(str, (term.name, *term.path)))
+        found = written if term.path else f"{entity}.{written}"
+        return found if found in self._rules else None
 
 
 def terms_of(condition: Condition) -> Iterator[Term]:

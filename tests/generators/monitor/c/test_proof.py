@@ -165,6 +165,33 @@ def test_contracts_of_rates_are_proved(tmp_path: Path) -> None:
     assert proof.is_complete
 
 
+NAMED = """
+input v = topic /speed.data timeout 1 sec
+input f = topic /flag.data timeout 1 sec
+entity e {
+  failsafe danger: (fast for 0.5 sec) and not calm;
+  fast: v > 1;
+  calm: fast and f;
+}
+action stop reset_by free;
+action free;
+if e.danger then { stop; };
+if not e.calm then { free; };
+"""
+
+
+@pytest.mark.slow
+@needs_frama_c
+def test_contracts_of_rules_that_name_rules_are_proved(tmp_path: Path) -> None:
+    """A verdict is what the rule means of the verdicts that it names, after each message too."""
+    source = c_proof.write(rules.program(NAMED), tmp_path)
+    judging = [each for each in c_proof.functions_of(source) if "judge" in each]
+    assert len(judging) == 6
+    proof = c_proof.prove(source, (*judging, "evaluate", "after_speed", "after_flag"))
+    assert proof.left == ()
+    assert proof.is_complete
+
+
 @needs_frama_c
 @pytest.mark.slow
 @pytest.mark.parametrize("slip", SLIPS)

@@ -37,7 +37,7 @@ const max_speed = 0.5 m/s
 input speed = topic /odom.twist.twist.linear.x timeout 0.5 sec
 input attitude = topic /imu.orientation timeout 0.1 sec
 input turn = topic /imu.angular_velocity
-input mode = topic /mode.data
+input mode = topic /mode.data timeout 1 sec
 input enabled = topic /flag.data
 input scan = topic /scan
 entity drive {
@@ -66,6 +66,11 @@ behaviour tilt: if body.tilted for 0.4 sec then {
 if body.near or body.turning or drive.silent or drive.jerky then { stop; };
 if controller.manual then { ok; };
 if doubt.blind or doubt.hidden then { stop; };
+entity summary {
+  failsafe pressing: (danger for 0.5 sec) and not controller.manual and mode = 2;
+  danger: drive.too_fast or doubt.hidden;
+}
+if summary.pressing then { motor_stop; };
 """
 
 

@@ -321,12 +321,13 @@ def _messages(program: Program, layout: Layout) -> Iterator[MessageView]:
 
 
 def inputs_of(program: Program, condition: Condition) -> set[int]:
-    """Return the inputs that a rule's condition depends on."""
+    """Return the inputs that a rule's condition depends on, also by the rules that it names."""
     found: set[int] = set()
-    for part in walk.parts(condition):
-        if isinstance(part, Missing | Unknown | Age):
-            found.add(part.input)
-        found |= {input_of(program, value) for value in compared(part)}
+    for each in walk.with_named(condition, program.rules):
+        for part in walk.parts(each):
+            if isinstance(part, Missing | Unknown | Age):
+                found.add(part.input)
+            found |= {input_of(program, value) for value in compared(part)}
     return found
 
 

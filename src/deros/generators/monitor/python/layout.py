@@ -14,6 +14,7 @@ from deros.monitor.ir import (
     Age,
     Apply,
     Condition,
+    Failsafe,
     For,
     Not,
     Program,
@@ -214,7 +215,7 @@ def _slot(program: Program, value: ValueExpression, names: UniqueNames) -> Slot:
 
 
 def _three_valued(program: Program) -> set[int]:
-    """Return the rules whose falsehood a behaviour or a reset depends on."""
+    """Return the rules whose falsehood a behaviour, a reset or another rule depends on."""
     found: set[int] = set()
     refusing = walk.refusing(program)
 
@@ -226,10 +227,14 @@ def _three_valued(program: Program) -> set[int]:
                 ask(operand, for_falsehood, for_truth)
             case For(operand=operand):
                 ask(operand, True, for_falsehood)
+            case Failsafe(operand=operand):
+                ask(operand, True, True)
             case _:
                 for operand in getattr(condition, "operands", ()):
                     ask(operand, for_truth, for_falsehood)
 
     for behaviour in walk.behaviours(program):
         ask(behaviour.condition, True, behaviour.index in refusing)
+    for rule in reversed(program.rules):  # a rule comes after those that it names
+        ask(rule.condition, True, rule.index in found)
     return found

@@ -29,7 +29,7 @@ def rule_state_lines(program: Program, layout: Layout) -> list[str]:
     for rule in program.rules:
         reads = [
             f"({term_name(program, term)!r}, {value_text(term, layout)})"
-            for term in terms(rule.condition)
+            for term in terms(program, rule.condition)
         ]
         arguments = [
             repr(rule.full_name),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros.generators.monitor.python.conditions import Conditions
@@ -9,7 +10,17 @@ from deros.generators.monitor.python.layout import Layout, input_of
 from deros.generators.text.logic import lay_out
 from deros.generators.text.provenance import comment
 from deros.monitor import walk
-from deros.monitor.ir import Age, Condition, Failsafe, For, Missing, Program, Rule, Unknown
+from deros.monitor.ir import (
+    Age,
+    Condition,
+    Failsafe,
+    For,
+    Missing,
+    Program,
+    Rule,
+    RuleRef,
+    Unknown,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +46,11 @@ class Judge:
 
 
 def judges(program: Program, layout: Layout) -> tuple[Judge, ...]:
-    """Return the methods for all rules, in the order of their first rules."""
+    """Return the methods for all rules: those of fewer topics first, then as written.
+
+    A rule depends on all topics of a rule that it names: it is evaluated in the same method or in
+    one of more topics, and either way later.
+    """
     groups: dict[tuple[str, ...], list[Rule]] = {}
     for rule in program.rules:
         groups.setdefault(_topics(program, rule.condition), []).append(rule)
@@ -45,7 +60,7 @@ def judges(program: Program, layout: Layout) -> tuple[Judge, ...]:
             topics,
             tuple(_lines(program, layout, rules)),
         )
-        for topics, rules in groups.items()
+        for topics, rules in sorted(groups.items(), key=lambda group: len(group[0]))
     )
 
 
@@ -60,11 +75,13 @@ def _topics(program: Program, condition: Condition) -> tuple[str, ...]:
 
 
 def _inputs(program: Program, condition: Condition) -> set[int]:
+    """Return the inputs that a condition depends on, also by the rules that it names."""
     found: set[int] = set()
-    for part in walk.parts(condition):
-        if isinstance(part, Missing | Unknown | Age):
-            found.add(part.input)
-        found |= {input_of(program, value) for value in walk.terminals(part)}
+    for each in walk.with_named(condition, program.rules):
+        for part in walk.parts(each):
+            if isinstance(part, Missing | Unknown | Age):
+                found.add(part.input)
+            found |= {input_of(program, value) for value in walk.terminals(part)}
     return found
 
 
@@ -72,12 +89,22 @@ def _lines(program: Program, layout: Layout, rules: list[Rule]) -> list[str]:
     conditions = Conditions(program, layout)
     lines = [f"        {name} = self._{name}" for name in _remembered(layout, rules)]
     lines.append("        changed = False")
+    loaded: set[str] = set()
     for rule in rules:
         lines.append("")
         lines += comment(8, f"Rule {rule.full_name}", rule.span)
+        named = [name for name in _named(layout, rule.condition) if name not in loaded]
+        lines += [f"        {name} = self._{name}" for name in named]
+        loaded.update(named)
         lines += interval_lines(conditions, layout, rule.condition)
         lines += _verdict(conditions, layout, rule)
     return lines
+
+
+def _named(layout: Layout, condition: Condition) -> Iterator[str]:
+    """Yield the verdicts that a condition asks for; what has them is evaluated before it."""
+    found = (part.rule for part in walk.parts(condition) if isinstance(part, RuleRef))
+    yield from dict.fromkeys(layout.verdicts[rule] for rule in found)
 
 
 def _remembered(layout: Layout, rules: list[Rule]) -> list[str]:

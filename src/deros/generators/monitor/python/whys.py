@@ -22,8 +22,8 @@ from deros.monitor.causes import (
     Plan,
     Say,
     SayRule,
-    plan_of,
     plan_of_behaviour,
+    plan_of_rule,
 )
 from deros.monitor.ir import Program
 from deros.monitor.reads import term_name
@@ -55,7 +55,7 @@ def whys(program: Program, layout: Layout) -> Iterator[Why]:
     for rule in program.rules:
         for methods, holds in ((layout.why, True), (layout.why_not, False)):
             if rule.index in methods:
-                lines = emitter.body(plan_of(program, rule.condition, holds))
+                lines = emitter.body(plan_of_rule(program, rule.index, holds))
                 subject = f"{rule.full_name} is {str(holds).lower()}"
                 yield Why(methods[rule.index], subject, tuple(lines))
     for behaviour in walk.behaviours(program):

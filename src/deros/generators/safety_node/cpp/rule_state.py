@@ -24,7 +24,7 @@ def _arguments(program: Program, layout: Layout, rule: Rule) -> Iterator[Express
     yield Text(strip_comments(rule.span.text))
     yield f"m.{layout.verdicts[rule.index]} == {layout.macro}_TRUE"
     yield f"m.{layout.turned[rule.index]}"
-    for term in terms(rule.condition):
+    for term in terms(program, rule.condition):
         yield reading(program, layout, term)
 
 

@@ -29,8 +29,8 @@ from deros.monitor.causes import (
     Say,
     SayRule,
     negated_rules,
-    plan_of,
     plan_of_behaviour,
+    plan_of_rule,
 )
 from deros.monitor.ir import (
     OPPOSITE,
@@ -40,6 +40,7 @@ from deros.monitor.ir import (
     Const,
     Missing,
     Program,
+    RuleRef,
     Truth,
     Unknown,
     Within,
@@ -86,7 +87,7 @@ def cause_functions(program: Program, layout: Layout) -> Iterator[CauseFunction]
     negated = negated_rules(program)
     for rule in program.rules:
         for holds in (True, False) if rule.index in negated else (True,):
-            plan = plan_of(program, rule.condition, holds)
+            plan = plan_of_rule(program, rule.index, holds)
             subject = f"{rule.full_name} is {str(holds).lower()}"
             yield CauseFunction(why_rule(layout, rule.index, holds), subject, emitter.body(plan))
     for behaviour in walk.behaviours(program):
@@ -201,8 +202,11 @@ class _Emitter:
                 operator = condition.operator if holds else OPPOSITE[condition.operator]
                 bound = f"{SYMBOLS[operator]} {integer(condition.bound_ns)}"
                 return all_of((Atom(f"m.{fields.came}"), Atom(f"m.now - m.{fields.base} {bound}")))
+            case RuleRef():
+                verdict = f"m.{self._layout.verdicts[condition.rule]}"
+                return Atom(f"{verdict} == {self._layout.macro}_{str(holds).upper()}")
             case _:
-                raise AssertionError("no condition on values, known or age")
+                raise AssertionError("no condition of a single cause")
 
     def _compares(self, condition: Truth | Compare | Within, holds: bool) -> Logic:
         terms = [self._layout.terms[value] for value in compared(condition)]
