@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from deros.monitor import walk
 from deros.monitor.causes import causes_of_behaviour, causes_of_rule
 from deros.monitor.ir import Program, Rule, Scalar
-from deros.monitor.reads import strip_comments, term_name, term_value, terms
+from deros.monitor.reads import Term, strip_comments, term_name, term_value, terms_of_rules
 from deros.monitor.state import State
 
 
@@ -50,7 +50,9 @@ class Explanation(NamedTuple):
 
 def explain(program: Program, state: State, t_ns: int) -> Explanation:
     """Return the verdicts and causes as of the last event."""
-    rules = tuple(_explain_rule(program, rule, state, t_ns) for rule in program.rules)
+    rules = tuple(
+        _explain_rule(program, rule, read, state, t_ns) for rule, read in terms_of_rules(program)
+    )
     causes = {
         each.name: causes_of_behaviour(program, each, state, t_ns)
         for each in walk.behaviours(program)
@@ -59,11 +61,10 @@ def explain(program: Program, state: State, t_ns: int) -> Explanation:
     return Explanation(rules, causes)
 
 
-def _explain_rule(program: Program, rule: Rule, state: State, t_ns: int) -> RuleState:
-    reads = tuple(
-        (term_name(program, term), term_value(term, state, t_ns))
-        for term in terms(program, rule.condition)
-    )
+def _explain_rule(
+    program: Program, rule: Rule, read: Sequence[Term], state: State, t_ns: int
+) -> RuleState:
+    reads = tuple((term_name(program, each), term_value(each, state, t_ns)) for each in read)
     value: bool | None = state.verdicts[rule.index] is True
     if not value and any(each is None for _, each in reads):
         value = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping
 
 from deros.interfaces.durations import seconds_text
 from deros.monitor import walk
@@ -16,6 +17,8 @@ from deros.monitor.ir import (
     Missing,
     Program,
     Read,
+    Rule,
+    RuleRef,
     Scalar,
     Scale,
     Unknown,
@@ -37,14 +40,31 @@ def strip_comments(text: str) -> str:
 def terms(program: Program, condition: Condition) -> tuple[Term, ...]:
     """Return what a condition reads, in the order written, each once.
 
-    Before it comes what the rules read that it names, directly or not.
+    In the place of a rule is what that rule reads.
     """
+    known: dict[int, tuple[Term, ...]] = {}
+    for index in walk.named_rules(condition, program.rules):
+        known[index] = _terms(program.rules[index].condition, known)
+    return _terms(condition, known)
+
+
+def terms_of_rules(program: Program) -> Iterator[tuple[Rule, tuple[Term, ...]]]:
+    """Yield every rule with what it reads; see :func:`terms`."""
+    known: dict[int, tuple[Term, ...]] = {}
+    for rule in program.rules:
+        known[rule.index] = _terms(rule.condition, known)
+        yield rule, known[rule.index]
+
+
+def _terms(condition: Condition, known: Mapping[int, tuple[Term, ...]]) -> tuple[Term, ...]:
     found: dict[Term, None] = {}
-    for each in walk.with_named(condition, program.rules):
-        for part in walk.parts(each):
-            if isinstance(part, Missing | Unknown | Age):
+    for part in walk.parts(condition):
+        match part:
+            case Missing() | Unknown() | Age():
                 found[plain_term(part)] = None
-            else:
+            case RuleRef(rule=rule):
+                found.update(dict.fromkeys(known[rule]))
+            case _:
                 found.update(dict.fromkeys(walk.terminals(part)))
     return tuple(found)
 

@@ -15,7 +15,7 @@ from deros.generators.monitor.c.unsupported import refuse_unsupported
 from deros.generators.text.c import comment
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
-from deros.monitor.ir import Age, Condition, For, Missing, Program, Unknown
+from deros.monitor.ir import Age, For, Missing, Program, RuleRef, Unknown
 from deros.monitor.memories import SAMPLES
 
 
@@ -308,27 +308,29 @@ def ends(program: Program, layout: Layout) -> Iterator[End]:
 
 
 def _messages(program: Program, layout: Layout) -> Iterator[MessageView]:
+    inputs = inputs_of_rules(program)
     for handler in handlers(program, layout):
-        rules = tuple(
-            rule.index
-            for rule in program.rules
-            if inputs_of(program, rule.condition) & set(handler.inputs)
-        )
+        taken = set(handler.inputs)
+        rules = tuple(rule.index for rule in program.rules if inputs[rule.index] & taken)
         judges = tuple(layout.judges[index] for index in rules)
         after = handler.observer.replace("observe", "after", 1) if judges else ""
         judge = handler.observer.replace("observe", "judge_by", 1) if judges else ""
         yield MessageView(handler, rules, judges, judges[0] if len(judges) == 1 else judge, after)
 
 
-def inputs_of(program: Program, condition: Condition) -> set[int]:
-    """Return the inputs that a rule's condition depends on, also by the rules that it names."""
-    found: set[int] = set()
-    for each in walk.with_named(condition, program.rules):
-        for part in walk.parts(each):
+def inputs_of_rules(program: Program) -> list[set[int]]:
+    """Return the inputs that each rule depends on, those of the rules that it names included."""
+    inputs: list[set[int]] = []
+    for rule in program.rules:
+        found: set[int] = set()
+        for part in walk.parts(rule.condition):
             if isinstance(part, Missing | Unknown | Age):
                 found.add(part.input)
+            elif isinstance(part, RuleRef):
+                found |= inputs[part.rule]
             found |= {input_of(program, value) for value in compared(part)}
-    return found
+        inputs.append(found)
+    return inputs
 
 
 def _actions(program: Program, layout: Layout, places: Sites) -> Iterator[ActionView]:

@@ -9,7 +9,7 @@ from deros.generators.text.logic import Atom, all_of, any_of, lay_out
 from deros.generators.text.python import lay_out_call
 from deros.monitor import walk
 from deros.monitor.ir import Age, Missing, Program, RuleRef, Unknown
-from deros.monitor.reads import Term, strip_comments, term_name, terms
+from deros.monitor.reads import Term, strip_comments, term_name, terms_of_rules
 
 
 def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -26,11 +26,8 @@ def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
 def rule_state_lines(program: Program, layout: Layout) -> list[str]:
     """Return the items of the tuple that ``explain()`` returns, one call per rule."""
     lines: list[str] = []
-    for rule in program.rules:
-        reads = [
-            f"({term_name(program, term)!r}, {value_text(term, layout)})"
-            for term in terms(program, rule.condition)
-        ]
+    for rule, read in terms_of_rules(program):
+        reads = [f"({term_name(program, each)!r}, {value_text(each, layout)})" for each in read]
         arguments = [
             repr(rule.full_name),
             str(rule.span.line),

@@ -52,8 +52,10 @@ def judges(program: Program, layout: Layout) -> tuple[Judge, ...]:
     one of more topics, and either way later.
     """
     groups: dict[tuple[str, ...], list[Rule]] = {}
+    inputs: dict[int, set[int]] = {}
     for rule in program.rules:
-        groups.setdefault(_topics(program, rule.condition), []).append(rule)
+        inputs[rule.index] = _inputs(program, rule.condition, inputs)
+        groups.setdefault(_topics(program, inputs[rule.index]), []).append(rule)
     return tuple(
         Judge(
             layout.names.new("judge", *_joined(topics)),
@@ -69,19 +71,20 @@ def _joined(topics: tuple[str, ...]) -> list[str]:
     return " and ".join(topics).split() if len(topics) <= 3 else ["several"]
 
 
-def _topics(program: Program, condition: Condition) -> tuple[str, ...]:
-    found = {program.inputs[index].topic for index in _inputs(program, condition)}
+def _topics(program: Program, inputs: set[int]) -> tuple[str, ...]:
+    found = {program.inputs[index].topic for index in inputs}
     return tuple(topic for topic in program.topics if topic in found)
 
 
-def _inputs(program: Program, condition: Condition) -> set[int]:
-    """Return the inputs that a condition depends on, also by the rules that it names."""
+def _inputs(program: Program, condition: Condition, of_rules: dict[int, set[int]]) -> set[int]:
+    """Return the inputs that a condition depends on, those of the rules that it names included."""
     found: set[int] = set()
-    for each in walk.with_named(condition, program.rules):
-        for part in walk.parts(each):
-            if isinstance(part, Missing | Unknown | Age):
-                found.add(part.input)
-            found |= {input_of(program, value) for value in walk.terminals(part)}
+    for part in walk.parts(condition):
+        if isinstance(part, Missing | Unknown | Age):
+            found.add(part.input)
+        elif isinstance(part, RuleRef):
+            found |= of_rules[part.rule]
+        found |= {input_of(program, value) for value in walk.terminals(part)}
     return found
 
 

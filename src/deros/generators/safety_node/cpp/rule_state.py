@@ -8,24 +8,26 @@ from deros.generators.monitor.c.interface import Layout, known_of
 from deros.generators.monitor.c.interface import Term as Field
 from deros.generators.text.cpp import Call, Expression, Text, cpp_double, cpp_string
 from deros.monitor.ir import Age, Missing, Program, Rule, Scale, Unknown
-from deros.monitor.reads import Term, strip_comments, term_name, terms
+from deros.monitor.reads import Term, strip_comments, term_name, terms_of_rules
 from deros.monitor.wordings import quoted
 
 
 def rule_states(program: Program, layout: Layout) -> Iterator[Expression]:
     """Yield the expression of the state of each rule; the monitor's struct is ``m``."""
-    for rule in program.rules:
-        yield Call("runtime::rule_state", tuple(_arguments(program, layout, rule)))
+    for rule, read in terms_of_rules(program):
+        yield Call("runtime::rule_state", tuple(_arguments(program, layout, rule, read)))
 
 
-def _arguments(program: Program, layout: Layout, rule: Rule) -> Iterator[Expression]:
+def _arguments(
+    program: Program, layout: Layout, rule: Rule, read: Iterable[Term]
+) -> Iterator[Expression]:
     yield cpp_string(rule.full_name)
     yield str(rule.span.line)
     yield Text(strip_comments(rule.span.text))
     yield f"m.{layout.verdicts[rule.index]} == {layout.macro}_TRUE"
     yield f"m.{layout.turned[rule.index]}"
-    for term in terms(program, rule.condition):
-        yield reading(program, layout, term)
+    for each in read:
+        yield reading(program, layout, each)
 
 
 def reading(program: Program, layout: Layout, term: Term) -> Expression:
