@@ -197,6 +197,7 @@ class _Drawing:
     inputs: list[ir.Input] = field(default_factory=list)
     leaves: list[ir.Leaf] = field(default_factory=list)
     fors: int = 0
+    sinces: int = 0
     states: int = 0
     behaviours: int = 0
     rules: list[ir.Rule] = field(default_factory=list)
@@ -309,7 +310,7 @@ class _Drawing:
     # Conditions -----------------------------------------------------------------------------------
 
     def condition(self, depth: int, atom: Callable[[], ir.Condition]) -> ir.Condition:
-        choices = ("atom", "atom", "not", "and", "or", "for")
+        choices = ("atom", "atom", "not", "and", "or", "for", "since")
         choice = "atom" if depth == 0 else self.draw(st.sampled_from(choices))
         if choice == "atom":
             return atom()
@@ -319,6 +320,10 @@ class _Drawing:
             operand = self.condition(depth - 1, atom)
             self.fors += 1
             return ir.For(self.fors - 1, operand, self.draw(durations), span(50))
+        if choice == "since":
+            operand, cause = self.condition(depth - 1, atom), self.condition(depth - 1, atom)
+            self.sinces += 1
+            return ir.Since(self.sinces - 1, operand, cause, span(51))
         size = self.draw(st.integers(2, 3))
         operands = tuple(self.condition(depth - 1, atom) for _ in range(size))
         return ir.And(operands) if choice == "and" else ir.Or(operands)

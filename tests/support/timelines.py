@@ -91,4 +91,7 @@ def _ns(seconds: str) -> int:
 
 
 GIVEN = load("timelines.json")
-ALL = [*GIVEN, *load("more.json"), *load("named_rules.json")]
+ALL = [
+    *GIVEN,
+    *(each for file in ("more", "named_rules", "since") for each in load(f"{file}.json")),
+]

@@ -40,6 +40,7 @@ from deros.metamodels.rules import (
     Or,
     Rule,
     Rules,
+    Since,
     String,
     Term,
     TopicPath,
@@ -269,6 +270,8 @@ class RulesConverter(Converter):
 
     def _condition(self, found: Any) -> Condition:
         operand = self._disjunction(found.operand)
+        if found.cause is not None:
+            return Since(operand, self._disjunction(found.cause), self.span(found))
         if found.duration is None:
             return operand
         return For(operand, self._number(found.duration), self.span(found))

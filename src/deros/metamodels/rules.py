@@ -159,7 +159,16 @@ class For:
     span: Span = field(compare=False, repr=False)
 
 
-Condition = Comparison | Membership | Truth | Not | And | Or | For
+@dataclass(frozen=True, slots=True)
+class Since:
+    """``operand since cause``: it holds from the cause on, as long as the operand does."""
+
+    operand: Condition
+    cause: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+Condition = Comparison | Membership | Truth | Not | And | Or | For | Since
 
 
 # Declarations -----------------------------------------------------------------------------------

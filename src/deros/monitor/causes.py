@@ -28,6 +28,7 @@ from deros.monitor.ir import (
     Program,
     RuleRef,
     Scale,
+    Since,
     Truth,
     Unknown,
     ValueExpression,
@@ -193,6 +194,8 @@ def plan_of(
             return _all_of(plans) if isinstance(condition, And) is holds else _any_of(plans)
         case For():
             return _plan_of_interval(program, condition, holds, suffix, shortened)
+        case Since():
+            return _plan_of_since(program, condition, holds, suffix, shortened)
         case Failsafe():
             part = plan_of(program, condition.operand, holds, suffix, shortened)
             return OrUnknown(part, terms(program, condition.operand)) if holds else part
@@ -221,13 +224,28 @@ def _plan_of_interval(
     if not condition.duration_ns:
         return operand
     if any(isinstance(part, For) for part in walk.parts(condition.operand)):
-        written = strip_comments(condition.span.text)
-        shown = f"{written[:_LONGEST_TEXT]}{_MORE if len(written) > _LONGEST_TEXT else ''}"
+        shown = _shortened(strip_comments(condition.span.text))
         short: Plan = Say(Truth(Const(True)), True, (f"not yet {shown}{suffix}",))
     else:
         less = f" for less than {duration}{suffix}"
         short = plan_of(program, condition.operand, True, less, shortened)
     return _any_of([During(condition, False, short), operand])
+
+
+def _plan_of_since(
+    program: Program, condition: Since, holds: bool, suffix: str, shortened: frozenset[int]
+) -> Plan:
+    """Return the plan of both sides; the operand has the cause, as written, behind it."""
+    cause = plan_of(program, condition.cause, holds, suffix, shortened)
+    is_deep = " since " in suffix or suffix.endswith(_MORE)
+    further = _MORE if is_deep else f" since {_shortened(condition.wording)}{suffix}"
+    behind = further if holds else suffix
+    operand = plan_of(program, condition.operand, holds, behind, shortened)
+    return _any_of([cause, operand])
+
+
+def _shortened(text: str) -> str:
+    return f"{text[:_LONGEST_TEXT]}{_MORE if len(text) > _LONGEST_TEXT else ''}"
 
 
 def _all_of(plans: list[Plan]) -> Plan:

@@ -8,6 +8,7 @@ from deros import codes
 from deros.metamodels import rules
 from deros.monitor import ir
 from deros.monitor.comparisons import Comparisons
+from deros.monitor.reads import strip_comments
 from deros.monitor.scope import Scope
 
 _Leaf = rules.Comparison | rules.Membership | rules.Truth
@@ -21,6 +22,7 @@ class Conditions:
         self._scope = scope
         self._comparisons = comparisons
         self._durations = 0
+        self._sinces = 0
 
     def of_rule(
         self,
@@ -82,5 +84,14 @@ class Conditions:
                 self._durations += 1
                 written = " ".join(condition.duration.span.text.split())
                 return ir.For(self._durations - 1, inner, duration_ns, condition.span, written)
+            case rules.Since():
+                inner, cause = (
+                    self._build(each, leaf) for each in (condition.operand, condition.cause)
+                )
+                if inner is None or cause is None:
+                    return None
+                self._sinces += 1
+                written = strip_comments(condition.cause.span.text)
+                return ir.Since(self._sinces - 1, inner, cause, condition.span, written)
             case _:
                 return leaf(condition)

@@ -26,6 +26,7 @@ from deros.monitor.ir import (
     Read,
     RuleRef,
     Scale,
+    Since,
     Truth,
     Unknown,
     ValueExpression,
@@ -111,6 +112,8 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             return _any(verdicts)
         case For():
             return _lasting(condition, state, t_ns)
+        case Since():
+            return _since(condition, state, t_ns)
         case Failsafe():
             verdict = evaluate_condition(condition.operand, state, t_ns)
             awaited = any(state.inputs[index].awaited for index in condition.inputs)
@@ -149,6 +152,15 @@ def _any(verdicts: list[Verdict]) -> Verdict:
     if True in verdicts:
         return True
     return None if None in verdicts else False
+
+
+def _since(condition: Since, state: State, t_ns: int) -> Verdict:
+    operand = evaluate_condition(condition.operand, state, t_ns)
+    cause = evaluate_condition(condition.cause, state, t_ns)
+    before = state.kept.get(condition.index, False)
+    verdict = _any([cause, conjunction((operand, before))])
+    state.kept[condition.index] = verdict
+    return verdict
 
 
 def _lasting(condition: For, state: State, t_ns: int) -> Verdict:

@@ -249,6 +249,21 @@ class For:
 
 
 @dataclass(frozen=True, slots=True)
+class Since:
+    """``cause or (operand and before)``, where *before* is its own verdict at the last event.
+
+    At the start, and after a backward step of the clock, *before* is false. An event that changes
+    neither the cause nor the operand does not change it.
+    """
+
+    index: int  # its place among all Since of the program, in the order they are evaluated
+    operand: Condition
+    cause: Condition
+    span: Span = field(compare=False, repr=False)
+    wording: str = field(default="", compare=False, repr=False)  # the cause, as written
+
+
+@dataclass(frozen=True, slots=True)
 class Failsafe:
     """The condition of a rule that counts as true where it is unknown.
 
@@ -272,7 +287,19 @@ class RuleRef:
 
 
 Condition = (
-    Truth | Compare | Within | Missing | Unknown | Age | Not | And | Or | For | Failsafe | RuleRef
+    Truth
+    | Compare
+    | Within
+    | Missing
+    | Unknown
+    | Age
+    | Not
+    | And
+    | Or
+    | For
+    | Since
+    | Failsafe
+    | RuleRef
 )
 
 

@@ -165,5 +165,8 @@ def names_alone(condition: rules.Condition) -> Iterator[rules.NamePath]:
         case rules.And(operands=operands) | rules.Or(operands=operands):
             for operand in operands:
                 yield from names_alone(operand)
+        case rules.Since(operand=operand, cause=cause):
+            yield from names_alone(operand)
+            yield from names_alone(cause)
         case _:
             pass

@@ -45,6 +45,7 @@ class State:
         inputs: of each input.
         memories: of each function with a ``state`` number.
         since: of each ``For``, since when its operand has been true without a break.
+        kept: of each ``Since``, its verdict as of the last event; false before the first.
         verdicts: of each rule, as of the last event.
         turned_ns: of each rule, when it last became true or ceased to be; the start, or the last
             step of the clock, if it did not since.
@@ -70,6 +71,7 @@ class State:
         self.inputs = [InputState(t_ns + grace_ns) for _ in self._program.inputs]
         self.memories: dict[int, Memory] = {}
         self.since: dict[int, int] = {}
+        self.kept: dict[int, Verdict] = {}
 
     def make_unknown(self, index: int) -> None:
         """Make one input unknown; its age and its timeout are not values and continue."""

@@ -21,6 +21,7 @@ from deros.monitor.ir import (
     Rule,
     RuleRef,
     Scale,
+    Since,
     Truth,
     Unknown,
     ValueExpression,
@@ -71,6 +72,9 @@ def parts(condition: Condition) -> Iterator[Condition]:
         case And(operands=operands) | Or(operands=operands):
             for operand in operands:
                 yield from parts(operand)
+        case Since(operand=operand, cause=cause):
+            yield from parts(operand)
+            yield from parts(cause)
         case _:
             pass
     yield condition

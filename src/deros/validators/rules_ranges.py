@@ -22,6 +22,7 @@ from deros.metamodels.rules import (
     Number,
     Or,
     Rules,
+    Since,
     Term,
 )
 from deros.monitor.bounds import Ends
@@ -89,6 +90,9 @@ class _Ranges:
                 return self._together(condition)
             case For():
                 self.solve(condition.operand)
+            case Since():
+                self.solve(condition.operand)
+                self.solve(condition.cause)
         return None
 
     def _alone(self, condition: Comparison | Membership) -> _Solution | None:

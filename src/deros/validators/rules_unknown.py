@@ -193,6 +193,8 @@ def _while_unknown(condition: ir.Condition, key: _Key, verdicts: _Verdicts) -> t
         case ir.For():
             not_false, not_true = _while_unknown(condition.operand, key, verdicts)
             return not_false and not_true, not_true  # true for too short a time is false
+        case ir.Since():  # it may be false, or true, from before
+            return False, False
         case ir.Failsafe():
             return _while_unknown(condition.operand, key, verdicts)
         case ir.RuleRef():
@@ -325,6 +327,9 @@ def _signed(condition: rules.Condition, negated: bool) -> Iterator[tuple[rules.N
         case rules.And(operands=operands) | rules.Or(operands=operands):
             for operand in operands:
                 yield from _signed(operand, negated)
+        case rules.Since(operand=operand, cause=cause):
+            yield from _signed(operand, negated)
+            yield from _signed(cause, negated)
         case _:
             pass
 

@@ -19,6 +19,7 @@ from deros.metamodels.rules import (
     Or,
     Rule,
     Rules,
+    Since,
     Term,
     TopicPath,
 )
@@ -103,6 +104,9 @@ def terms_of(condition: Condition) -> Iterator[Term]:
                 yield from terms_of(operand)
         case Not() | For():
             yield from terms_of(condition.operand)
+        case Since():
+            yield from terms_of(condition.operand)
+            yield from terms_of(condition.cause)
         case _:
             yield condition.operand
 

@@ -192,6 +192,34 @@ def test_contracts_of_rules_that_name_rules_are_proved(tmp_path: Path) -> None:
     assert proof.is_complete
 
 
+SINCE = """
+input v = topic /speed.data timeout 1 sec
+input f = topic /flag.data timeout 1 sec
+entity e {
+  high: v >= 1 since v > 2;
+  failsafe unanswered: (not f since high) for 1 sec;
+}
+action stop reset_by free;
+action free;
+if e.unanswered then { stop; };
+if not e.high since e.unanswered then { free; };
+"""
+
+
+@pytest.mark.slow
+@needs_frama_c
+def test_contracts_of_since_are_proved(tmp_path: Path) -> None:
+    """Its verdict follows from its parts and the one before, and no event without news changes it."""
+    source = c_proof.write(rules.program(SINCE), tmp_path)
+    functions = [
+        each for each in c_proof.functions_of(source) if re.match("judge|behave|after|restart", each)
+    ]
+    assert len(functions) == 9
+    proof = c_proof.prove(source, (*functions, "act", "evaluate", "step_back"))
+    assert proof.left == ()
+    assert proof.is_complete
+
+
 @needs_frama_c
 @pytest.mark.slow
 @pytest.mark.parametrize("slip", SLIPS)

@@ -7,6 +7,7 @@ instead, and the two are proved to agree.
 
 from __future__ import annotations
 
+from deros.generators.monitor.c.contracts import iff
 from deros.generators.monitor.c.expressions import SYMBOLS, known_of
 from deros.generators.monitor.c.layout import Layout, compared
 from deros.generators.monitor.c.literals import number
@@ -23,6 +24,7 @@ from deros.monitor.ir import (
     Operator,
     Or,
     RuleRef,
+    Since,
     Truth,
     Unknown,
     ValueExpression,
@@ -79,11 +81,32 @@ class AcslSemantics:
                 return _joined(word, [self._is(each, truth) for each in condition.operands])
             case For():
                 return self._interval(condition, truth)
+            case Since():
+                return f"m->{self._layout.kept[condition.index]} == {self._verdict(truth)}"
             case Failsafe():
                 return self._failsafe(condition) if truth else self.false(condition.operand)
             case RuleRef():
-                verdict, name = self._layout.verdicts[condition.rule], "TRUE" if truth else "FALSE"
-                return f"m->{verdict} == {self._layout.macro}_{name}"
+                return f"m->{self._layout.verdicts[condition.rule]} == {self._verdict(truth)}"
+
+    def _verdict(self, truth: bool) -> str:
+        return f"{self._layout.macro}_{'TRUE' if truth else 'FALSE'}"
+
+    def keeps(self, condition: Since, before: str) -> list[str]:
+        """Return what the verdict of a ``since`` is worth, given the expression of that before."""
+        kept = f"m->{self._layout.kept[condition.index]}"
+        results = []
+        for truth in (True, False):
+            verdict = self._verdict(truth)
+            cause = self._is(condition.cause, truth)
+            operand = f"({self._is(condition.operand, truth)})"
+            was = f"{before} == {verdict}"
+            meant = (
+                f"({cause}) || ({operand} && {was})"
+                if truth
+                else f"({cause}) && ({operand} || {was})"
+            )
+            results.append(iff(f"{kept} == {verdict}", f"({meant})"))
+        return results
 
     def _interval(self, condition: For, truth: bool) -> str:
         operand = self._is(condition.operand, truth)

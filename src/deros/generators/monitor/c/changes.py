@@ -12,7 +12,7 @@ from deros.generators.monitor.c.acsl_terms import constant
 from deros.generators.monitor.c.contracts import all_of, any_of, iff
 from deros.generators.monitor.c.predicates import Predicates, predicate
 from deros.generators.monitor.c.view import Forget, MonitorView, Timeout
-from deros.monitor.ir import For, Rule
+from deros.monitor.ir import For, Rule, Since
 
 
 class Changes:
@@ -39,7 +39,8 @@ class Changes:
         rules = self._view.program.rules
         yield "verdicts_dated", [self.turned(rule) for rule in rules]
         fors = self._predicates.all_fors()
-        yield "intervals_run_on", list(self.run_on(fors)) if fors else []
+        kept = [each for one in self._predicates.all_sinces() for each in self.kept(one)]
+        yield "intervals_run_on", [*(self.run_on(fors) if fors else []), *kept]
         yield "states_done", self.states_done()
         yield "emission_done", self.emission_done()
         yield "nothing_done", self.nothing_done()
@@ -75,6 +76,11 @@ class Changes:
             due = f"\\min({due}, {begins})"
         yield all_of(kept)
         yield f"m->due == {due}"
+
+    def kept(self, condition: Since) -> list[str]:
+        """Return that the verdict of a ``since`` follows from its parts and the one before."""
+        before = f"\\old(m->{self._layout.kept[condition.index]})"
+        return self._predicates.semantics.keeps(condition, before)
 
     def changed(self, names: Iterable[str]) -> str:
         """Return that one of the named fields is another than before."""
@@ -127,6 +133,8 @@ class Changes:
         sinces = self._layout.since.values()
         new = self._inputs_as_new("m->now")
         new += [f"(m->{since} == {unset} || m->{since} == m->now)" for since in sinces]
+        for each in self._predicates.all_sinces():
+            new += self._predicates.semantics.keeps(each, macro("FALSE"))
         kind = f"{macro('CLOCK_STEP')}, {macro('SITE_NONE')}"
         step = f"after(\\old(emitted), m->owner, m->now, {kind})"
         emitted = f"emitted == {self._emissions.by_event(step)}"
@@ -135,8 +143,9 @@ class Changes:
     def as_new(self, start: str) -> list[str]:
         """Return the state of inputs, times and intervals after a restart."""
         unset = self._macro("UNSET")
-        sinces = [f"m->{name} == {unset}" for name in self._layout.since.values()]
-        return [*self._inputs_as_new(start), *sinces] or ["\\true"]
+        memories = [f"m->{name} == {unset}" for name in self._layout.since.values()]
+        memories += [f"m->{name} == {self._macro('FALSE')}" for name in self._layout.kept.values()]
+        return [*self._inputs_as_new(start), *memories] or ["\\true"]
 
     def _inputs_as_new(self, start: str) -> list[str]:
         """Return the state of inputs and times after a restart."""
@@ -201,7 +210,7 @@ class Changes:
     def _judged(self) -> list[str]:
         """Return the fields that change when all rules are evaluated."""
         layout = self._layout
-        tables = (layout.verdicts, layout.turned, layout.since)
+        tables = (layout.verdicts, layout.turned, layout.since, layout.kept)
         names = [each for table in tables for each in table.values()]
         return ["started", *names, *self.acted_upon(), "due"]
 

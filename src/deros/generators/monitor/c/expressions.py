@@ -27,6 +27,7 @@ from deros.monitor.ir import (
     Read,
     RuleRef,
     Scale,
+    Since,
     Truth,
     Unknown,
     ValueExpression,
@@ -87,6 +88,8 @@ class Conditions:
             case For():
                 timed = condition.index in self._layout.since
                 return self.interval(condition) if timed else self.verdict(condition.operand)
+            case Since():
+                return f"m->{self._layout.kept[condition.index]}"
             case Failsafe():
                 return self._failsafe(condition)
             case RuleRef():

@@ -26,6 +26,7 @@ from deros.monitor.ir import (
     Program,
     Read,
     Scale,
+    Since,
     Truth,
     Unknown,
     ValueExpression,
@@ -160,6 +161,7 @@ class Layout:
     forgets: dict[int, str] = field(default_factory=dict)
     expires: dict[int, str] = field(default_factory=dict)
     since: dict[int, str] = field(default_factory=dict)
+    kept: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
     turned: dict[int, str] = field(default_factory=dict)
     judges: dict[int, str] = field(default_factory=dict)
@@ -428,6 +430,8 @@ def _name_intervals(condition: Condition, layout: Layout, *words: str) -> None:
     for part in walk.parts(condition):
         if isinstance(part, For) and part.duration_ns > 0:
             layout.since[part.index] = layout.names.new(*words, "since")
+        elif isinstance(part, Since):
+            layout.kept[part.index] = layout.names.new(*words, "kept")
 
 
 def _name_actions(program: Program, layout: Layout) -> None:

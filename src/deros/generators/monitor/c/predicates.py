@@ -12,7 +12,7 @@ from deros.generators.monitor.c.view import MonitorView
 from deros.generators.text.c import LINE_LENGTH
 from deros.generators.text.document import Line, concat, fill, nest, render_lines
 from deros.monitor import walk
-from deros.monitor.ir import Behaviour, Condition, For, Rule
+from deros.monitor.ir import Behaviour, Condition, For, Rule, Since
 
 
 class Predicates:
@@ -41,6 +41,10 @@ class Predicates:
             if isinstance(part, For) and part.index in self._layout.since
         ]
 
+    def sinces(self, condition: Condition) -> list[Since]:
+        """Return the parts of a condition whose verdicts are remembered."""
+        return [part for part in walk.parts(condition) if isinstance(part, Since)]
+
     def declarations(self) -> str:
         """Return the predicates that say what the rules mean, and what a sane monitor is.
 
@@ -68,6 +72,13 @@ class Predicates:
         conditions = [each.condition for each in program.rules]
         conditions += [each.condition for each in walk.behaviours(program)]
         return [part for each in conditions for part in self.fors(each)]
+
+    def all_sinces(self) -> list[Since]:
+        """Return the same of their remembered verdicts."""
+        program = self._view.program
+        conditions = [each.condition for each in program.rules]
+        conditions += [each.condition for each in walk.behaviours(program)]
+        return [part for each in conditions for part in self.sinces(each)]
 
     def end(self, t: str) -> str:
         """Return that an instant is one at which a timeout or an interval ends, or never comes."""
@@ -179,12 +190,18 @@ class Predicates:
         name = self._layout.verdicts[rule.index]
         return [
             *map(self._runs, self.fors(rule.condition)),
+            *self._kept(rule.condition),
             iff(f"m->{name} == {self.macro('TRUE')}", self.semantics.true(rule.condition)),
             iff(f"m->{name} == {self.macro('FALSE')}", self.semantics.false(rule.condition)),
         ]
 
     def _runs(self, condition: For) -> str:
         return iff(self.semantics.runs(condition), self.semantics.true(condition.operand))
+
+    def _kept(self, condition: Condition) -> Iterator[str]:
+        """Yield that another event without news would change no ``since``."""
+        for each in self.sinces(condition):
+            yield from self.semantics.keeps(each, f"m->{self._layout.kept[each.index]}")
 
     def acted(self, behaviour: Behaviour) -> list[str]:
         """Return what a behaviour's condition is worth, with all that encloses it."""
@@ -202,6 +219,7 @@ class Predicates:
         condition = f"m->{self._layout.conditions[behaviour.index]}"
         return [
             *map(self._runs, self.fors(behaviour.condition)),
+            *self._kept(behaviour.condition),
             iff(f"{condition} == {true}", all_of(holds)),
             iff(f"{condition} == {false}", any_of(fails)),
         ]

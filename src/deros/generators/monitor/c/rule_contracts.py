@@ -43,16 +43,15 @@ class RuleContracts:
     def judge(self, rule: Rule) -> Contract:
         """Return that a rule's verdict is what the rule means, and whether it has changed."""
         name = self._layout.verdicts[rule.index]
-        fors = self._predicates.fors(rule.condition)
         contract = Contract(["\\valid(m)"])
         contract.requires.append(self._ranges(self._read(rule.condition)))
-        changed = self._with_fors([name, self._layout.turned[rule.index]], fors)
+        changed = [name, self._layout.turned[rule.index], *self._memories([rule.condition])]
         contract.assigns += [f"m->{each}" for each in changed]
         contract.ensures += self._predicates.ranges([name])
         contract.ensures.append(all_of(self._predicates.judged(rule)))
         contract.ensures.append(iff("\\result != 0", f"m->{name} != \\old(m->{name})"))
         contract.ensures.append(self._changes.turned(rule))
-        self._with_own_intervals(contract, fors)
+        self._with_memories(contract, [rule.condition])
         return contract
 
     def judge_by(self, message: MessageView) -> Contract:
@@ -71,15 +70,16 @@ class RuleContracts:
         """Return that some rules are evaluated; all is written out, as for :meth:`act`."""
         names = [self._layout.verdicts[each.index] for each in rules]
         turned = [self._layout.turned[each.index] for each in rules]
-        fors = [each for rule in rules for each in self._predicates.fors(rule.condition)]
+        conditions = [each.condition for each in rules]
         contract = Contract(["\\valid(m)"], ["*m"])
         read = [name for rule in rules for name in self._read(rule.condition)]
         contract.requires.append(self._ranges(read))
-        contract.ensures.append(self._changes.kept_but(self._with_fors([*names, *turned], fors)))
+        changed = [*names, *turned, *self._memories(conditions)]
+        contract.ensures.append(self._changes.kept_but(changed))
         contract.ensures.append(all_of(self._predicates.ranges(names)))
         contract.ensures += [all_of(self._predicates.judged(rule)) for rule in rules]
         contract.ensures.append(all_of(map(self._changes.turned, rules)))
-        self._with_own_intervals(contract, fors)
+        self._with_memories(contract, conditions)
         return contract
 
     def settle(self, action: Action) -> Contract:
@@ -103,10 +103,10 @@ class RuleContracts:
     def behave(self, behaviour: Behaviour) -> Contract:
         """Return the contract of the function that runs a behaviour, and those nested in it."""
         group = self.emissions.closure(behaviour)
-        fors = [each for one in group for each in self._predicates.fors(one.condition)]
+        conditions = [each.condition for each in group]
         changed = [self._layout.conditions[each.index] for each in group] + self._touched(group)
         contract = Contract(["\\valid(m)"], [*(f"m->{name}" for name in changed), "emitted"])
-        contract.assigns += [f"m->{name}" for name in self._with_fors([], fors)]
+        contract.assigns += [f"m->{name}" for name in self._memories(conditions)]
         read = [name for each in group for name in self._read(each.condition)]
         contract.requires.append(self._ranges([*read, *self._guards(group), *changed]))
         contract.ensures += self._predicates.ranges(changed)
@@ -115,7 +115,7 @@ class RuleContracts:
         contract.ensures.append(
             f"emitted == {self.emissions.by_behaviour(behaviour, chr(92) + 'old(emitted)')}"
         )
-        self._with_own_intervals(contract, fors)
+        self._with_memories(contract, conditions)
         return contract
 
     def act(self) -> Contract:
@@ -123,8 +123,8 @@ class RuleContracts:
 
         All is written out: of what it changes field by field, no predicate is seen to hold.
         """
-        fors = [part for each in self._behaviours for part in self._predicates.fors(each.condition)]
-        changed = self._with_fors(self._changes.acted_upon(), fors)
+        conditions = [each.condition for each in self._behaviours]
+        changed = [*self._changes.acted_upon(), *self._memories(conditions)]
         contract = Contract(["\\valid(m)"], list(ALL))
         read = [name for each in self._behaviours for name in self._read(each.condition)]
         read += [*self._guards(self._behaviours), *self._changes.acted_upon()]
@@ -134,7 +134,7 @@ class RuleContracts:
         contract.ensures.append(all_of(self._predicates.ranges(self._changes.acted_upon())))
         contract.ensures += self._acted()
         contract.ensures += self._changes.latched_kept()
-        self._with_own_intervals(contract, fors)
+        self._with_memories(contract, conditions)
         contract.cases |= {"change": "changed != 0", "none": "changed == 0"}
         done = [*self._changes.states_done(), *self._changes.emission_done()]
         contract.of_case["change"] = done
@@ -164,24 +164,32 @@ class RuleContracts:
         """Return the fields that a condition reads, those of its intervals among them."""
         semantics = self._predicates.semantics
         text = f"m->now {semantics.true(condition)} {semantics.false(condition)}"
-        return [*_FIELD.findall(text), *self._sinces(self._predicates.fors(condition))]
+        for each in self._predicates.sinces(condition):
+            kept = f"m->{self._layout.kept[each.index]}"
+            text += " ".join(semantics.keeps(each, kept))
+        return [*_FIELD.findall(text), *self._starts(self._predicates.fors(condition))]
 
     def _ranges(self, names: Iterable[str]) -> str:
         """Return that fields are in range, each once."""
         return all_of(self._predicates.ranges(dict.fromkeys(names)))
 
-    def _with_own_intervals(self, contract: Contract, fors: Sequence[For]) -> None:
-        """Add the changes of the intervals of a condition, and of the next deadline.
+    def _with_memories(self, contract: Contract, conditions: Sequence[Condition]) -> None:
+        """Add the changes of what conditions remember, and of the next deadline.
 
-        They begin now, continue or are cleared, and stay in range and in time.
+        Intervals begin now, continue or are cleared, and stay in range and in time.
         """
-        sinces = self._sinces(fors)
-        if sinces:
-            in_time = self._predicates.ends_in_time("m->due", sinces)
+        fors = [part for each in conditions for part in self._predicates.fors(each)]
+        if fors:
+            starts = self._starts(fors)
+            in_time = self._predicates.ends_in_time("m->due", starts)
             contract.requires += in_time
-            contract.ensures += [*self._predicates.ranges(sinces), *in_time]
+            contract.ensures += [*self._predicates.ranges(starts), *in_time]
             contract.ensures += self._changes.run_on(fors)
             contract.ensures += EARLIER_DEADLINE
+        for each in conditions:
+            for part in self._predicates.sinces(each):
+                contract.ensures += self._predicates.ranges([self._layout.kept[part.index]])
+                contract.ensures += self._changes.kept(part)
 
     def _guards(self, group: Iterable[Behaviour]) -> Iterator[str]:
         """Yield the fields beside its condition by which a behaviour holds."""
@@ -209,11 +217,17 @@ class RuleContracts:
                 if rises:
                     yield f"m->{name} == ({' || '.join(rises)} ? 1 : \\old(m->{name}))"
 
-    def _with_fors(self, names: Iterable[str], fors: Sequence[For]) -> list[str]:
-        """Return fields, and those that intervals change."""
-        return [*names, *self._sinces(fors), *(["due"] if fors else [])]
+    def _memories(self, conditions: Iterable[Condition]) -> list[str]:
+        """Return the fields that conditions remember something in, and what they schedule."""
+        found: list[str] = []
+        for each in conditions:
+            fors = self._predicates.fors(each)
+            sinces = self._predicates.sinces(each)
+            found += [*self._starts(fors), *(self._layout.kept[part.index] for part in sinces)]
+            found += ["due"] if fors else []
+        return list(dict.fromkeys(found))
 
-    def _sinces(self, fors: Iterable[For]) -> list[str]:
+    def _starts(self, fors: Iterable[For]) -> list[str]:
         return [self._layout.since[each.index] for each in fors]
 
 

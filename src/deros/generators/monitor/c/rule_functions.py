@@ -11,7 +11,7 @@ from deros.generators.monitor.c.literals import integer
 from deros.generators.text.c import Call, comment, lay_out, lay_out_if
 from deros.generators.text.provenance import header
 from deros.monitor import walk
-from deros.monitor.ir import Action, Behaviour, Condition, For, Program, Rule, Trigger
+from deros.monitor.ir import Action, Behaviour, Condition, For, Program, Rule, Since, Trigger
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +84,11 @@ def _intervals(conditions: Conditions, layout: Layout, condition: Condition) -> 
             call = Call("lasting", (operand, duration, "m->now", f"&m->{since}", "&m->due"))
             name = conditions.interval(part)
             yield from lay_out(2, f"const {layout.prefix}_verdict {name} = ", call)
+        elif isinstance(part, Since):
+            kept = f"m->{layout.kept[part.index]}"
+            lasts = Call("both", (conditions.verdict(part.operand), kept))
+            result = Call("either", (conditions.verdict(part.cause), lasts))
+            yield from lay_out(2, f"{kept} = ", result)
 
 
 def behave(program: Program, layout: Layout, behaviour: Behaviour, places: Sites) -> Function:

@@ -34,6 +34,7 @@ from deros.monitor.ir import (
     RuleRef,
     Scalar,
     Scale,
+    Since,
     Truth,
     Unknown,
     ValueExpression,
@@ -72,6 +73,8 @@ class Conditions:
                 return any_of(self.true(each) for each in condition.operands)
             case For():
                 return Atom(f"t >= {self._layout.dues[condition.index]}")
+            case Since():
+                return Atom(self._layout.kept[condition.index])
             case Failsafe():
                 unknown = [NoneOf(self.false(condition.operand))]
                 expected = [self._is_not_awaited(index) for index in condition.inputs]
@@ -104,6 +107,8 @@ class Conditions:
             case For():
                 waiting = Atom(f"t < {self._layout.dues[condition.index]} < NEVER")
                 return any_of((waiting, self.false(condition.operand)))
+            case Since():
+                return Atom(f"{self._layout.kept[condition.index]} is False")
             case Failsafe():
                 return self.false(condition.operand)
             case RuleRef():

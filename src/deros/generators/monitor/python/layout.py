@@ -20,6 +20,7 @@ from deros.monitor.ir import (
     Program,
     Read,
     RuleRef,
+    Since,
     Unknown,
     ValueExpression,
 )
@@ -55,6 +56,7 @@ class Layout:
         known: of an input whose unknown() is asked for, whether it has a value.
         counted: of an input that an ``age()`` asks for, when its last counted message came.
         dues: of each ``For``, when it becomes true.
+        kept: of each ``Since``, its verdict.
         verdicts: of each rule.
         since: of each rule, when it last became true or ceased to be.
         three_valued: the rules whose falsehood matters, not only their truth.
@@ -78,6 +80,7 @@ class Layout:
     known: dict[int, str] = field(default_factory=dict)
     counted: dict[int, str] = field(default_factory=dict)
     dues: dict[int, str] = field(default_factory=dict)
+    kept: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
     since: dict[int, str] = field(default_factory=dict)
     three_valued: frozenset[int] = frozenset()
@@ -150,14 +153,18 @@ def _name_verdicts(program: Program, layout: Layout) -> None:
     for rule in program.rules:
         layout.verdicts[rule.index] = layout.names.new(rule.entity, rule.name)
         layout.since[rule.index] = layout.names.new(rule.entity, rule.name, "since")
-        for part in walk.parts(rule.condition):
-            if isinstance(part, For):
-                layout.dues[part.index] = layout.names.new(rule.entity, rule.name, "due")
+        _name_memories(rule.condition, layout, rule.entity, rule.name)
     for behaviour in walk.behaviours(program):
         layout.holds[behaviour.index] = layout.names.new(behaviour.name)
-        for part in walk.parts(behaviour.condition):
-            if isinstance(part, For):
-                layout.dues[part.index] = layout.names.new(behaviour.name, "due")
+        _name_memories(behaviour.condition, layout, behaviour.name)
+
+
+def _name_memories(condition: Condition, layout: Layout, *words: str) -> None:
+    for part in walk.parts(condition):
+        if isinstance(part, For):
+            layout.dues[part.index] = layout.names.new(*words, "due")
+        elif isinstance(part, Since):
+            layout.kept[part.index] = layout.names.new(*words, "kept")
 
 
 def _name_actions(program: Program, layout: Layout) -> None:
@@ -229,6 +236,9 @@ def _three_valued(program: Program) -> set[int]:
                 ask(operand, True, for_falsehood)
             case Failsafe(operand=operand):
                 ask(operand, True, True)
+            case Since(operand=operand, cause=cause):
+                ask(operand, True, True)
+                ask(cause, True, True)
             case _:
                 for operand in getattr(condition, "operands", ()):
                     ask(operand, for_truth, for_falsehood)

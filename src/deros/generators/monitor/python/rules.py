@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deros.generators.monitor.python.conditions import Conditions
 from deros.generators.monitor.python.layout import Layout, input_of
-from deros.generators.text.logic import lay_out
+from deros.generators.text.logic import Atom, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment
 from deros.monitor import walk
 from deros.monitor.ir import (
@@ -19,6 +19,7 @@ from deros.monitor.ir import (
     Program,
     Rule,
     RuleRef,
+    Since,
     Unknown,
 )
 
@@ -137,10 +138,12 @@ def _awaited(layout: Layout, index: int) -> tuple[str, str]:
 
 
 def interval_lines(conditions: Conditions, layout: Layout, condition: Condition) -> list[str]:
-    """Return the statements that start and clear the intervals of a condition, inner ones first."""
+    """Return the statements that update what a condition remembers, inner parts first."""
     lines: list[str] = []
     for part in walk.parts(condition):
-        if isinstance(part, For):
+        if isinstance(part, Since):
+            lines += _kept_lines(conditions, layout, part)
+        elif isinstance(part, For):
             due = layout.dues[part.index]
             lines += [
                 f"        {due} = self._{due}",
@@ -154,6 +157,22 @@ def interval_lines(conditions: Conditions, layout: Layout, condition: Condition)
                 f"            {due} = self._{due} = NEVER",
             ]
     return lines
+
+
+def _kept_lines(conditions: Conditions, layout: Layout, part: Since) -> list[str]:
+    """Return the statements that compute the verdict of a ``since`` from the one before."""
+    kept = layout.kept[part.index]
+    lasts = all_of((conditions.true(part.operand), Atom(kept)))
+    ends = any_of((conditions.false(part.operand), Atom(f"{kept} is False")))
+    return [
+        f"        {kept} = self._{kept}",
+        *lay_out(8, "if ", any_of((conditions.true(part.cause), lasts)), ":"),
+        f"            {kept} = self._{kept} = True",
+        *lay_out(8, "elif ", all_of((conditions.false(part.cause), ends)), ":"),
+        f"            {kept} = self._{kept} = False",
+        "        else:",
+        f"            {kept} = self._{kept} = None",
+    ]
 
 
 def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:

@@ -225,6 +225,7 @@ def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tu
 def _restarted(layout: Layout) -> tuple[tuple[str, str], ...]:
     pairs = [(name, "NAN") for name in layout.counted.values()]
     pairs += [(name, "NEVER") for name in layout.dues.values()]
+    pairs += [(name, "False") for name in layout.kept.values()]
     pairs += [(name, "t") for name in layout.since.values()]
     return tuple(pairs)
 
@@ -273,6 +274,9 @@ def _known_at_start(program: Program, layout: Layout) -> bool:
     state = State(program, 0, len(layout.holds))
     for rule in program.rules:
         verdict = evaluate_condition(rule.condition, state, 0)
+        state.verdicts[rule.index] = verdict
         if verdict or state.since or (verdict is False and rule.index in layout.three_valued):
             return True
-    return False
+    for behaviour in walk.behaviours(program):
+        evaluate_condition(behaviour.condition, state, 0)
+    return any(verdict is not False for verdict in state.kept.values())
