@@ -113,11 +113,11 @@ def _parts(condition: ir.Condition) -> list[ir.Condition]:
 
 def _inlined(written: ir.Program) -> ir.Program:
     """Return a program whose rules name no rules."""
-    fors = 0
+    fors = sinces = 0
     conditions: list[ir.Condition] = []
 
     def inline(condition: ir.Condition) -> ir.Condition:
-        nonlocal fors
+        nonlocal fors, sinces
         match condition:
             case ir.RuleRef(rule=rule):
                 return inline(conditions[rule])
@@ -125,6 +125,10 @@ def _inlined(written: ir.Program) -> ir.Program:
                 operand = inline(condition.operand)
                 fors += 1
                 return replace(condition, index=fors - 1, operand=operand)
+            case ir.Since():
+                operand, cause = inline(condition.operand), inline(condition.cause)
+                sinces += 1
+                return replace(condition, index=sinces - 1, operand=operand, cause=cause)
             case ir.Not() | ir.Failsafe():
                 return replace(condition, operand=inline(condition.operand))
             case ir.And() | ir.Or():
@@ -149,6 +153,10 @@ def _inlined(written: ir.Program) -> ir.Program:
             case ir.For():
                 shift = condition.index + 10_000  # none of the numbers above
                 return replace(condition, index=shift, operand=shifted(condition.operand))
+            case ir.Since():
+                operand, cause = shifted(condition.operand), shifted(condition.cause)
+                shift = condition.index + 10_000
+                return replace(condition, index=shift, operand=operand, cause=cause)
             case ir.Not():
                 return replace(condition, operand=shifted(condition.operand))
             case ir.And() | ir.Or():

@@ -212,7 +212,9 @@ def test_contracts_of_since_are_proved(tmp_path: Path) -> None:
     """Its verdict follows from its parts and the one before, and no event without news changes it."""
     source = c_proof.write(rules.program(SINCE), tmp_path)
     functions = [
-        each for each in c_proof.functions_of(source) if re.match("judge|behave|after|restart", each)
+        each
+        for each in c_proof.functions_of(source)
+        if re.match("judge|behave|after|restart", each)
     ]
     assert len(functions) == 9
     proof = c_proof.prove(source, (*functions, "act", "evaluate", "step_back"))
