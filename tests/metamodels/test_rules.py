@@ -27,6 +27,7 @@ from deros.metamodels.rules import (
     Number,
     Or,
     Rules,
+    Since,
     String,
     Term,
     TopicPath,
@@ -57,6 +58,8 @@ def _words(found: Condition | Term) -> str:
             return f"(not {_words(found.operand)})"
         case For():
             return f"({_words(found.operand)} for {_words(found.duration)})"
+        case Since():
+            return f"({_words(found.operand)} since {_words(found.cause)})"
         case Truth():
             return _words(found.operand)
         case Comparison():
@@ -93,6 +96,11 @@ def _words(found: Condition | Term) -> str:
         ("not a > 5", "(not (a > 5))"),
         ("a and b or c and d for 2 sec", "(((a and b) or (c and d)) for 2 sec)"),
         ("(a > 5 for 1 sec) and b", "(((a > 5) for 1 sec) and b)"),
+        ("a >= 1 since a > 2", "((a >= 1) since (a > 2))"),
+        ("a or b since c and d", "((a or b) since (c and d))"),
+        ("(not a since b) for 1 sec", "(((not a) since b) for 1 sec)"),
+        ("since since since", "(since since since)"),
+        ("a > since", "(a > since)"),
         ("a == 5", "(a = 5)"),
         ("a != 5", "(a != 5)"),
         ("a <= 5 and b >= 4", "((a <= 5) and (b >= 4))"),

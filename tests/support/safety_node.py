@@ -131,7 +131,7 @@ def node(request: pytest.FixtureRequest, tmp_path: Path) -> Software:
 
 @pytest.fixture
 def start(node: Software, ros_env: dict[str, str]) -> Start:
-    """Give a function that runs the node."""
+    """Return the function that starts the node of this test."""
     return starting(node, ros_env)
 
 

@@ -103,7 +103,7 @@ class MessageReader:
     def _resolve(self, kind: InterfaceType | str, key: str) -> MessageDefinition:
         definition = self._store.message(kind) if isinstance(kind, InterfaceType) else None
         if definition is None:
-            raise DataError(key, f"the definition of {kind} is not to be found", unknown=True)
+            raise DataError(key, f"{kind} has no definition here", unknown=True)
         return definition
 
     def _field(
@@ -260,5 +260,5 @@ def _steps(key: str, whole: str) -> list[str | int]:
         steps.append(match[1] if match[1] else int(match[2]))
         end = match.end()
     if end != len(key) or not steps or not isinstance(steps[0], str):
-        raise DataError(whole, f"'{whole}' is no path of a field", unknown=True)
+        raise DataError(whole, f"'{whole}' is not the path of a field", unknown=True)
     return steps

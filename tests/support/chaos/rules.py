@@ -125,7 +125,7 @@ class _Switch:
 
 
 def broken_rules(messages: Sequence[Message], end: float) -> list[Broken]:
-    """Return when which rule was broken, by what had arrived at the safety node until ``end``.
+    """Return which rules were broken, and when, by what the safety node received before ``end``.
 
     Args:
         messages: of any places, in order of time.

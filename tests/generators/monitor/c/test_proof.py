@@ -209,7 +209,7 @@ if not e.high since e.unanswered then { free; };
 @pytest.mark.slow
 @needs_frama_c
 def test_contracts_of_since_are_proved(tmp_path: Path) -> None:
-    """Its verdict follows from its parts and the one before, and no event without news changes it."""
+    """Its verdict follows from its parts and the one before; no event without news changes it."""
     source = c_proof.write(rules.program(SINCE), tmp_path)
     functions = [
         each

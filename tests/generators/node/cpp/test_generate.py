@@ -250,7 +250,7 @@ def test_long_names_pass_the_linters(tmp_path: Path) -> None:
 @settings(max_examples=scaled(25))
 @given(description=st.text(max_size=200), default=st.text(max_size=40))
 def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
-    """Whatever a text contains, XML parses, and code outside comments and literals is unchanged."""
+    """Any text leaves XML well-formed, and code outside comments and literals as it is."""
     model = node_of('node a : b parameters name x : string = "" publishes topic y : std_msgs.Bool')
     (parameter,), (port,) = model.parameters, model.ports
 

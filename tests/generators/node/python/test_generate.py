@@ -180,7 +180,7 @@ def test_ros_reads_every_parameter_file(parameters: str, tmp_path: Path) -> None
 @settings(max_examples=scaled(25))
 @given(description=st.text(max_size=200), default=st.text(max_size=40))
 def test_any_text_gives_well_formed_files(description: str, default: str) -> None:
-    """Whatever a text contains, Python compiles, XML parses, and YAML gives the default back."""
+    """With any text in the model, Python compiles, XML parses, and YAML keeps the default."""
     model = node_of('node a : b parameters name x : string = "" publishes topic y : std_msgs.Bool')
     (parameter,), (port,) = model.parameters, model.ports
     model = replace(

@@ -24,7 +24,7 @@ class Gate(Protocol):
 
 
 class HeartbeatGate(Gate, Protocol):
-    """The same of a gate with a line about the heartbeat."""
+    """The logic of a gate that has a line about the heartbeat."""
 
     def on_heartbeat(self, t: int, counter: int) -> None:
         """Handle a heartbeat of the safety node."""
