@@ -99,6 +99,8 @@ class _Writer:
                 return " or ".join(f"({self.condition(each)})" for each in condition.operands)
             case ir.For():
                 return f"({self.condition(condition.operand)}) for {condition.duration_ns} ns"
+            case ir.Once():
+                return f"({self.condition(condition.operand)}) within {condition.duration_ns} ns"
             case ir.Since():
                 operand, cause = self.condition(condition.operand), self.condition(condition.cause)
                 return f"(({operand}) since ({cause}))"

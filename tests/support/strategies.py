@@ -198,6 +198,7 @@ class _Drawing:
     leaves: list[ir.Leaf] = field(default_factory=list)
     fors: int = 0
     sinces: int = 0
+    onces: int = 0
     states: int = 0
     behaviours: int = 0
     rules: list[ir.Rule] = field(default_factory=list)
@@ -310,7 +311,7 @@ class _Drawing:
     # Conditions -----------------------------------------------------------------------------------
 
     def condition(self, depth: int, atom: Callable[[], ir.Condition]) -> ir.Condition:
-        choices = ("atom", "atom", "not", "and", "or", "for", "since")
+        choices = ("atom", "atom", "not", "and", "or", "for", "since", "within")
         choice = "atom" if depth == 0 else self.draw(st.sampled_from(choices))
         if choice == "atom":
             return atom()
@@ -320,6 +321,10 @@ class _Drawing:
             operand = self.condition(depth - 1, atom)
             self.fors += 1
             return ir.For(self.fors - 1, operand, self.draw(durations), span(50))
+        if choice == "within":
+            operand = self.condition(depth - 1, atom)
+            self.onces += 1
+            return ir.Once(self.onces - 1, operand, self.draw(durations), span(52))
         if choice == "since":
             operand, cause = self.condition(depth - 1, atom), self.condition(depth - 1, atom)
             self.sinces += 1

@@ -37,6 +37,7 @@ from deros.metamodels.rules import (
     Negative,
     Not,
     Number,
+    Once,
     Or,
     Rule,
     Rules,
@@ -270,6 +271,8 @@ class RulesConverter(Converter):
 
     def _condition(self, found: Any) -> Condition:
         operand = self._disjunction(found.operand)
+        if found.within is not None:
+            return Once(operand, self._number(found.within), self.span(found))
         if found.cause is not None:
             return Since(operand, self._disjunction(found.cause), self.span(found))
         if found.duration is None:

@@ -168,7 +168,16 @@ class Since:
     span: Span = field(compare=False, repr=False)
 
 
-Condition = Comparison | Membership | Truth | Not | And | Or | For | Since
+@dataclass(frozen=True, slots=True)
+class Once:
+    """``operand within DURATION``: the operand holds, or did so less than the duration ago."""
+
+    operand: Condition
+    duration: Number
+    span: Span = field(compare=False, repr=False)
+
+
+Condition = Comparison | Membership | Truth | Not | And | Or | For | Since | Once
 
 
 # Declarations -----------------------------------------------------------------------------------

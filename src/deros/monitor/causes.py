@@ -24,6 +24,7 @@ from deros.monitor.ir import (
     For,
     Missing,
     Not,
+    Once,
     Or,
     Program,
     RuleRef,
@@ -194,6 +195,12 @@ def plan_of(
             return _all_of(plans) if isinstance(condition, And) is holds else _any_of(plans)
         case For():
             return _plan_of_interval(program, condition, holds, suffix, shortened)
+        case Once() if holds:  # the values that made it true may be gone
+            return Say(
+                condition, True, (f"{_shortened(strip_comments(condition.span.text))}{suffix}",)
+            )
+        case Once():
+            return plan_of(program, condition.operand, False, suffix, shortened)
         case Since():
             return _plan_of_since(program, condition, holds, suffix, shortened)
         case Failsafe():

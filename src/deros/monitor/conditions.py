@@ -22,6 +22,7 @@ class Conditions:
         self._scope = scope
         self._comparisons = comparisons
         self._durations = 0
+        self._onces = 0
         self._sinces = 0
 
     def of_rule(
@@ -84,6 +85,14 @@ class Conditions:
                 self._durations += 1
                 written = " ".join(condition.duration.span.text.split())
                 return ir.For(self._durations - 1, inner, duration_ns, condition.span, written)
+            case rules.Once():
+                inner = self._build(condition.operand, leaf)
+                duration_ns = self._scope.duration_ns(condition.duration)
+                if inner is None or duration_ns is None:
+                    return None
+                self._onces += 1
+                written = " ".join(condition.duration.span.text.split())
+                return ir.Once(self._onces - 1, inner, duration_ns, condition.span, written)
             case rules.Since():
                 inner, cause = (
                     self._build(each, leaf) for each in (condition.operand, condition.cause)

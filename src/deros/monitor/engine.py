@@ -26,7 +26,7 @@ from deros.monitor import walk
 from deros.monitor.evaluate import conjunction, evaluate_condition, evaluate_value, is_nan
 from deros.monitor.explain import Explanation, explain
 from deros.monitor.functions import FUNCTIONS
-from deros.monitor.ir import Age, Apply, Behaviour, For, Input, Program, Scalar, Trigger
+from deros.monitor.ir import Age, Apply, Behaviour, For, Input, Once, Program, Scalar, Trigger
 from deros.monitor.state import LeafValue, State, Verdict
 
 EventKind = Literal["trigger", "reset", "refused", "clock_step"]
@@ -85,6 +85,7 @@ class Engine:
         self._now_ns = start_ns
         conditions = tuple(walk.conditions(program))
         self._fors = [each for each in conditions if isinstance(each, For)]
+        self._onces = [each for each in conditions if isinstance(each, Once)]
         self._ages = [each for each in conditions if isinstance(each, Age)]
         values = dict.fromkeys(walk.values(conditions))
         self._functions = [each for each in values if isinstance(each, Apply)]
@@ -181,6 +182,10 @@ class Engine:
             for each in self._fors
             if each.index in self._state.since
         ]
+        for once in self._onces:
+            ceased_ns = self._state.ceased.get(once.index)
+            if ceased_ns is not None:
+                ends.append(ceased_ns + once.duration_ns)
         for age in self._ages:
             counted_ns = self._state.inputs[age.input].counted_ns
             if counted_ns is not None:

@@ -21,6 +21,7 @@ from deros.monitor.ir import (
     For,
     Missing,
     Not,
+    Once,
     Operator,
     Or,
     Read,
@@ -112,6 +113,8 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             return _any(verdicts)
         case For():
             return _lasting(condition, state, t_ns)
+        case Once():
+            return _once(condition, state, t_ns)
         case Since():
             return _since(condition, state, t_ns)
         case Failsafe():
@@ -152,6 +155,20 @@ def _any(verdicts: list[Verdict]) -> Verdict:
     if True in verdicts:
         return True
     return None if None in verdicts else False
+
+
+def _once(condition: Once, state: State, t_ns: int) -> Verdict:
+    verdict = evaluate_condition(condition.operand, state, t_ns)
+    if verdict is True:
+        state.ceased[condition.index] = None
+        return True
+    if condition.index in state.ceased:
+        ceased_ns = state.ceased[condition.index]
+        if ceased_ns is None:
+            ceased_ns = state.ceased[condition.index] = t_ns
+        if t_ns - ceased_ns < condition.duration_ns:
+            return True
+    return verdict
 
 
 def _since(condition: Since, state: State, t_ns: int) -> Verdict:

@@ -249,6 +249,20 @@ class For:
 
 
 @dataclass(frozen=True, slots=True)
+class Once:
+    """True while the operand is, and until ``duration_ns`` after the event at which it ceased to be.
+
+    At that very instant, by a deadline, it is false or unknown as the operand is.
+    """
+
+    index: int  # its place among all Once of the program, in the order they are evaluated
+    operand: Condition
+    duration_ns: int
+    span: Span = field(compare=False, repr=False)
+    wording: str = field(default="", compare=False, repr=False)  # the duration, as written
+
+
+@dataclass(frozen=True, slots=True)
 class Since:
     """``cause or (operand and before)``, where *before* is its own verdict at the last event.
 
@@ -297,6 +311,7 @@ Condition = (
     | And
     | Or
     | For
+    | Once
     | Since
     | Failsafe
     | RuleRef

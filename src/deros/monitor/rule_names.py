@@ -160,8 +160,8 @@ def names_alone(condition: rules.Condition) -> Iterator[rules.NamePath]:
     match condition:
         case rules.Truth(operand=rules.NamePath() as term):
             yield term
-        case rules.Not(operand=operand) | rules.For(operand=operand):
-            yield from names_alone(operand)
+        case rules.Not() | rules.For() | rules.Once():
+            yield from names_alone(condition.operand)
         case rules.And(operands=operands) | rules.Or(operands=operands):
             for operand in operands:
                 yield from names_alone(operand)

@@ -45,6 +45,7 @@ class State:
         inputs: of each input.
         memories: of each function with a ``state`` number.
         since: of each ``For``, since when its operand has been true without a break.
+        ceased: of each ``Once``, when its operand ceased to be true; ``None`` while it is true.
         kept: of each ``Since``, its verdict as of the last event; false before the first.
         verdicts: of each rule, as of the last event.
         turned_ns: of each rule, when it last became true or ceased to be; the start, or the last
@@ -71,6 +72,7 @@ class State:
         self.inputs = [InputState(t_ns + grace_ns) for _ in self._program.inputs]
         self.memories: dict[int, Memory] = {}
         self.since: dict[int, int] = {}
+        self.ceased: dict[int, int | None] = {}
         self.kept: dict[int, Verdict] = {}
 
     def make_unknown(self, index: int) -> None:

@@ -15,6 +15,7 @@ from deros.monitor.ir import (
     For,
     Leaf,
     Not,
+    Once,
     Or,
     Program,
     Read,
@@ -67,8 +68,8 @@ def conditions(program: Program) -> Iterator[Condition]:
 def parts(condition: Condition) -> Iterator[Condition]:
     """Yield a condition's operands, theirs first, and then the condition itself."""
     match condition:
-        case Not(operand=operand) | For(operand=operand) | Failsafe(operand=operand):
-            yield from parts(operand)
+        case Not() | For() | Once() | Failsafe():
+            yield from parts(condition.operand)
         case And(operands=operands) | Or(operands=operands):
             for operand in operands:
                 yield from parts(operand)

@@ -20,6 +20,7 @@ from deros.metamodels.rules import (
     Negative,
     Not,
     Number,
+    Once,
     Or,
     Rules,
     Since,
@@ -88,7 +89,7 @@ class _Ranges:
                 return _Solution(found.comparison, found.possible & found.values.complement())
             case And() | Or():
                 return self._together(condition)
-            case For():
+            case For() | Once():
                 self.solve(condition.operand)
             case Since():
                 self.solve(condition.operand)

@@ -193,6 +193,8 @@ def _while_unknown(condition: ir.Condition, key: _Key, verdicts: _Verdicts) -> t
         case ir.For():
             not_false, not_true = _while_unknown(condition.operand, key, verdicts)
             return not_false and not_true, not_true  # true for too short a time is false
+        case ir.Once():  # it may be true from before
+            return _while_unknown(condition.operand, key, verdicts)[0], False
         case ir.Since():  # it may be false, or true, from before
             return False, False
         case ir.Failsafe():
@@ -322,8 +324,8 @@ def _signed(condition: rules.Condition, negated: bool) -> Iterator[tuple[rules.N
             yield term, negated
         case rules.Not(operand=operand):
             yield from _signed(operand, not negated)
-        case rules.For(operand=operand):
-            yield from _signed(operand, negated)
+        case rules.For() | rules.Once():
+            yield from _signed(condition.operand, negated)
         case rules.And(operands=operands) | rules.Or(operands=operands):
             for operand in operands:
                 yield from _signed(operand, negated)

@@ -16,6 +16,7 @@ from deros.metamodels.rules import (
     NamePath,
     Negative,
     Not,
+    Once,
     Or,
     Rule,
     Rules,
@@ -102,7 +103,7 @@ def terms_of(condition: Condition) -> Iterator[Term]:
         case And() | Or():
             for operand in condition.operands:
                 yield from terms_of(operand)
-        case Not() | For():
+        case Not() | For() | Once():
             yield from terms_of(condition.operand)
         case Since():
             yield from terms_of(condition.operand)

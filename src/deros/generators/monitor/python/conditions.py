@@ -27,6 +27,7 @@ from deros.monitor.ir import (
     For,
     Missing,
     Not,
+    Once,
     Operator,
     Or,
     Program,
@@ -73,6 +74,8 @@ class Conditions:
                 return any_of(self.true(each) for each in condition.operands)
             case For():
                 return Atom(f"t >= {self._layout.dues[condition.index]}")
+            case Once():
+                return Atom(f"t < {self._layout.untils[condition.index]}")
             case Since():
                 return Atom(self._layout.kept[condition.index])
             case Failsafe():
@@ -107,6 +110,9 @@ class Conditions:
             case For():
                 waiting = Atom(f"t < {self._layout.dues[condition.index]} < NEVER")
                 return any_of((waiting, self.false(condition.operand)))
+            case Once():
+                over = Atom(f"t >= {self._layout.untils[condition.index]}")
+                return all_of((over, self.false(condition.operand)))
             case Since():
                 return Atom(f"{self._layout.kept[condition.index]} is False")
             case Failsafe():

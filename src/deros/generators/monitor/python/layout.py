@@ -17,6 +17,7 @@ from deros.monitor.ir import (
     Failsafe,
     For,
     Not,
+    Once,
     Program,
     Read,
     RuleRef,
@@ -56,6 +57,7 @@ class Layout:
         known: of an input whose unknown() is asked for, whether it has a value.
         counted: of an input that an ``age()`` asks for, when its last counted message came.
         dues: of each ``For``, when it becomes true.
+        untils: of each ``Once``, until when it is true.
         kept: of each ``Since``, its verdict.
         verdicts: of each rule.
         since: of each rule, when it last became true or ceased to be.
@@ -80,6 +82,7 @@ class Layout:
     known: dict[int, str] = field(default_factory=dict)
     counted: dict[int, str] = field(default_factory=dict)
     dues: dict[int, str] = field(default_factory=dict)
+    untils: dict[int, str] = field(default_factory=dict)
     kept: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
     since: dict[int, str] = field(default_factory=dict)
@@ -163,6 +166,8 @@ def _name_memories(condition: Condition, layout: Layout, *words: str) -> None:
     for part in walk.parts(condition):
         if isinstance(part, For):
             layout.dues[part.index] = layout.names.new(*words, "due")
+        elif isinstance(part, Once):
+            layout.untils[part.index] = layout.names.new(*words, "until")
         elif isinstance(part, Since):
             layout.kept[part.index] = layout.names.new(*words, "kept")
 
@@ -232,7 +237,7 @@ def _three_valued(program: Program) -> set[int]:
                 found.add(rule)
             case Not(operand=operand):
                 ask(operand, for_falsehood, for_truth)
-            case For(operand=operand):
+            case For(operand=operand) | Once(operand=operand):
                 ask(operand, True, for_falsehood)
             case Failsafe(operand=operand):
                 ask(operand, True, True)

@@ -16,6 +16,7 @@ from deros.monitor.ir import (
     Failsafe,
     For,
     Missing,
+    Once,
     Program,
     Rule,
     RuleRef,
@@ -143,6 +144,17 @@ def interval_lines(conditions: Conditions, layout: Layout, condition: Condition)
     for part in walk.parts(condition):
         if isinstance(part, Since):
             lines += _kept_lines(conditions, layout, part)
+        elif isinstance(part, Once):
+            until = layout.untils[part.index]
+            lines += [
+                f"        {until} = self._{until}",
+                *lay_out(8, "if ", conditions.true(part.operand), ":"),
+                f"            {until} = self._{until} = NEVER",
+                f"        elif {until} is NEVER:",
+                f"            {until} = self._{until} = t + {part.duration_ns:_}",
+                f"            if {until} < self._due:",
+                f"                self._due = {until}",
+            ]
         elif isinstance(part, For):
             due = layout.dues[part.index]
             lines += [

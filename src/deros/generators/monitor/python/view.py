@@ -225,6 +225,7 @@ def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tu
 def _restarted(layout: Layout) -> tuple[tuple[str, str], ...]:
     pairs = [(name, "NAN") for name in layout.counted.values()]
     pairs += [(name, "NEVER") for name in layout.dues.values()]
+    pairs += [(name, "0") for name in layout.untils.values()]
     pairs += [(name, "False") for name in layout.kept.values()]
     pairs += [(name, "t") for name in layout.since.values()]
     return tuple(pairs)
@@ -262,7 +263,7 @@ def _timeouts(program: Program, layout: Layout) -> tuple[Timeout, ...]:
 
 
 def _ends(program: Program, layout: Layout) -> tuple[str, ...]:
-    ends = [f"self._{name}" for name in layout.dues.values()]
+    ends = [f"self._{name}" for name in (*layout.dues.values(), *layout.untils.values())]
     for condition in walk.conditions(program):
         if isinstance(condition, Age):
             counted = layout.counted[condition.input]

@@ -80,6 +80,7 @@ class _Emitter:
             known=_of_self(layout.known),
             counted=_of_self(layout.counted),
             dues=_of_self(layout.dues),
+            untils=_of_self(layout.untils),
             kept=_of_self(layout.kept),
             verdicts=_of_self(layout.verdicts),
         )
