@@ -196,9 +196,8 @@ def plan_of(
         case For():
             return _plan_of_interval(program, condition, holds, suffix, shortened)
         case Once() if holds:  # the values that made it true may be gone
-            return Say(
-                condition, True, (f"{_shortened(strip_comments(condition.span.text))}{suffix}",)
-            )
+            written = _shortened(strip_comments(condition.span.text))
+            return Say(condition, True, (f"{written}{suffix}",))
         case Once():
             return plan_of(program, condition.operand, False, suffix, shortened)
         case Since():

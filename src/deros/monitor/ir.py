@@ -250,9 +250,9 @@ class For:
 
 @dataclass(frozen=True, slots=True)
 class Once:
-    """True while the operand is, and until ``duration_ns`` after the event at which it ceased to be.
+    """True while the operand is, and for ``duration_ns`` from the event at which it ceased to be.
 
-    At that very instant, by a deadline, it is false or unknown as the operand is.
+    When they are over, by a deadline, it is false or unknown as the operand is.
     """
 
     index: int  # its place among all Once of the program, in the order they are evaluated

@@ -21,6 +21,7 @@ from deros.monitor.ir import (
     For,
     Missing,
     Not,
+    Once,
     Operator,
     Or,
     RuleRef,
@@ -81,6 +82,8 @@ class AcslSemantics:
                 return _joined(word, [self._is(each, truth) for each in condition.operands])
             case For():
                 return self._interval(condition, truth)
+            case Once():
+                return self._once(condition, truth)
             case Since():
                 return f"m->{self._layout.kept[condition.index]} == {self._verdict(truth)}"
             case Failsafe():
@@ -90,6 +93,21 @@ class AcslSemantics:
 
     def _verdict(self, truth: bool) -> str:
         return f"{self._layout.macro}_{'TRUE' if truth else 'FALSE'}"
+
+    def _once(self, condition: Once, truth: bool) -> str:
+        operand = self._is(condition.operand, truth)
+        if condition.index not in self._layout.until:
+            return operand
+        recent = f"m->now < m->{self._layout.until[condition.index]}"
+        return f"({recent})" if truth else f"(!({recent}) && {operand})"
+
+    def until(self, condition: Once, before: str) -> str:
+        """Return until when a ``within`` is true, given the expression of that before."""
+        never = f"{self._layout.macro}_NEVER"
+        end = f"m->now + {condition.duration_ns}"
+        ceased = f"({before} == {never} ? {end} : {before})"
+        until = f"m->{self._layout.until[condition.index]}"
+        return f"{until} == ({self.true(condition.operand)} ? {never} : {ceased})"
 
     def keeps(self, condition: Since, before: str) -> list[str]:
         """Return what the verdict of a ``since`` is worth, given the expression of that before."""

@@ -12,7 +12,7 @@ from deros.generators.monitor.c.acsl_terms import constant
 from deros.generators.monitor.c.contracts import all_of, any_of, iff
 from deros.generators.monitor.c.predicates import Predicates, predicate
 from deros.generators.monitor.c.view import Forget, MonitorView, Timeout
-from deros.monitor.ir import For, Rule, Since
+from deros.monitor.ir import For, Once, Rule, Since
 
 
 class Changes:
@@ -38,9 +38,9 @@ class Changes:
         """Yield the predicates."""
         rules = self._view.program.rules
         yield "verdicts_dated", [self.turned(rule) for rule in rules]
-        fors = self._predicates.all_fors()
+        fors, onces = self._predicates.all_fors(), self._predicates.all_onces()
         kept = [each for one in self._predicates.all_sinces() for each in self.kept(one)]
-        yield "intervals_run_on", [*(self.run_on(fors) if fors else []), *kept]
+        yield "intervals_run_on", [*(self.run_on(fors, onces) if fors or onces else []), *kept]
         yield "states_done", self.states_done()
         yield "emission_done", self.emission_done()
         yield "nothing_done", self.nothing_done()
@@ -62,7 +62,7 @@ class Changes:
         )
         return f"m->{turned} == ({turns} ? m->now : \\old(m->{turned}))"
 
-    def run_on(self, fors: Iterable[For]) -> Iterator[str]:
+    def run_on(self, fors: Iterable[For], onces: Iterable[Once]) -> Iterator[str]:
         """Yield that intervals begin now or continue, and that the next deadline is not later."""
         unset, due = self._macro("UNSET"), "\\old(m->due)"
         kept = []
@@ -74,6 +74,13 @@ class Changes:
             end = f"m->now + {each.duration_ns}"
             begins = f"({was} == {unset} && m->{since} != {unset} ? {end} : {self._macro('NEVER')})"
             due = f"\\min({due}, {begins})"
+        never = self._macro("NEVER")
+        for once in onces:
+            until = self._layout.until[once.index]
+            was = f"\\old(m->{until})"
+            kept.append(f"({self._predicates.semantics.until(once, was)})")
+            ceases = f"({was} == {never} && m->{until} != {never} ? m->{until} : {never})"
+            due = f"\\min({due}, {ceases})"
         yield all_of(kept)
         yield f"m->due == {due}"
 
@@ -133,6 +140,8 @@ class Changes:
         sinces = self._layout.since.values()
         new = self._inputs_as_new("m->now")
         new += [f"(m->{since} == {unset} || m->{since} == m->now)" for since in sinces]
+        for once in self._predicates.all_onces():
+            new.append(f"({self._predicates.semantics.until(once, '0')})")
         for each in self._predicates.all_sinces():
             new += self._predicates.semantics.keeps(each, macro("FALSE"))
         kind = f"{macro('CLOCK_STEP')}, {macro('SITE_NONE')}"
@@ -144,6 +153,7 @@ class Changes:
         """Return the state of inputs, times and intervals after a restart."""
         unset = self._macro("UNSET")
         memories = [f"m->{name} == {unset}" for name in self._layout.since.values()]
+        memories += [f"m->{name} == 0" for name in self._layout.until.values()]
         memories += [f"m->{name} == {self._macro('FALSE')}" for name in self._layout.kept.values()]
         return [*self._inputs_as_new(start), *memories] or ["\\true"]
 
@@ -210,7 +220,7 @@ class Changes:
     def _judged(self) -> list[str]:
         """Return the fields that change when all rules are evaluated."""
         layout = self._layout
-        tables = (layout.verdicts, layout.turned, layout.since, layout.kept)
+        tables = (layout.verdicts, layout.turned, layout.since, layout.until, layout.kept)
         names = [each for table in tables for each in table.values()]
         return ["started", *names, *self.acted_upon(), "due"]
 

@@ -21,6 +21,7 @@ from deros.monitor.ir import (
     For,
     Missing,
     Not,
+    Once,
     Operator,
     Or,
     Program,
@@ -52,9 +53,13 @@ class Conditions:
         self._program = program
         self._layout = layout
         self._intervals: dict[int, str] = {}
+        self._onces: dict[int, str] = {}
 
-    def interval(self, condition: For) -> str:
+    def interval(self, condition: For | Once) -> str:
         """Return the local constant that holds an interval's verdict."""
+        if isinstance(condition, Once):
+            number = len(self._onces) + 1
+            return self._onces.setdefault(condition.index, f"within_{number}")
         number = len(self._intervals) + 1
         return self._intervals.setdefault(condition.index, f"for_{number}")
 
@@ -87,6 +92,9 @@ class Conditions:
                 return self._nested("either", condition.operands)
             case For():
                 timed = condition.index in self._layout.since
+                return self.interval(condition) if timed else self.verdict(condition.operand)
+            case Once():
+                timed = condition.index in self._layout.until
                 return self.interval(condition) if timed else self.verdict(condition.operand)
             case Since():
                 return f"m->{self._layout.kept[condition.index]}"

@@ -173,6 +173,33 @@ static @_verdict lasting(
 }
 """
 
+_RECENT = """\
+/* 'within': true while the operand is, and until *until, so long after it has ceased to be. */
+/*@ requires \\valid(until) && \\valid(due) && \\separated(until, due);
+    requires is_verdict(operand) && 0 <= now <= $_LATEST && 0 < duration <= $_LATEST;
+    assigns *until, *due;
+    ensures operand == $_TRUE ==> *until == $_NEVER;
+    ensures operand != $_TRUE && \\old(*until) == $_NEVER ==> *until == now + duration;
+    ensures operand != $_TRUE && \\old(*until) != $_NEVER ==> *until == \\old(*until);
+    ensures \\result == (now < *until ? $_TRUE : operand);
+    ensures operand != $_TRUE && \\old(*until) == $_NEVER
+      ==> *due == \\min(\\old(*due), now + duration);
+    ensures operand == $_TRUE || \\old(*until) != $_NEVER ==> *due == \\old(*due); */
+static @_verdict recent(
+  @_verdict operand, int64_t duration, int64_t now, int64_t *until, int64_t *due)
+{
+  if (operand == $_TRUE) {
+    *until = $_NEVER;
+  } else if (*until == $_NEVER) {
+    *until = now + duration;
+    *due = earlier(*due, *until);
+  } else {
+    /* it has ceased before */
+  }
+  return (now < *until) ? $_TRUE : operand;
+}
+"""
+
 _PUT = """\
 /* Stores a value; returns whether it has changed, or another one had. */
 /*@ requires \\valid(place);
@@ -309,6 +336,7 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     yield "either", _EITHER
     yield "failsafe", _FAILSAFE
     yield "lasting", _LASTING
+    yield "recent", _RECENT
     yield "turned", _TURNED
 
 

@@ -22,6 +22,7 @@ from deros.monitor.ir import (
     Const,
     Failsafe,
     For,
+    Once,
     Operator,
     Program,
     Read,
@@ -161,6 +162,7 @@ class Layout:
     forgets: dict[int, str] = field(default_factory=dict)
     expires: dict[int, str] = field(default_factory=dict)
     since: dict[int, str] = field(default_factory=dict)
+    until: dict[int, str] = field(default_factory=dict)
     kept: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
     turned: dict[int, str] = field(default_factory=dict)
@@ -430,6 +432,8 @@ def _name_intervals(condition: Condition, layout: Layout, *words: str) -> None:
     for part in walk.parts(condition):
         if isinstance(part, For) and part.duration_ns > 0:
             layout.since[part.index] = layout.names.new(*words, "since")
+        elif isinstance(part, Once) and part.duration_ns > 0:
+            layout.until[part.index] = layout.names.new(*words, "until")
         elif isinstance(part, Since):
             layout.kept[part.index] = layout.names.new(*words, "kept")
 

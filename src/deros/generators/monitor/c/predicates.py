@@ -12,7 +12,7 @@ from deros.generators.monitor.c.view import MonitorView
 from deros.generators.text.c import LINE_LENGTH
 from deros.generators.text.document import Line, concat, fill, nest, render_lines
 from deros.monitor import walk
-from deros.monitor.ir import Behaviour, Condition, For, Rule, Since
+from deros.monitor.ir import Behaviour, Condition, For, Once, Rule, Since
 
 
 class Predicates:
@@ -39,6 +39,14 @@ class Predicates:
             part
             for part in walk.parts(condition)
             if isinstance(part, For) and part.index in self._layout.since
+        ]
+
+    def onces(self, condition: Condition) -> list[Once]:
+        """Return the same of a condition's ``within``."""
+        return [
+            part
+            for part in walk.parts(condition)
+            if isinstance(part, Once) and part.index in self._layout.until
         ]
 
     def sinces(self, condition: Condition) -> list[Since]:
@@ -72,6 +80,13 @@ class Predicates:
         conditions = [each.condition for each in program.rules]
         conditions += [each.condition for each in walk.behaviours(program)]
         return [part for each in conditions for part in self.fors(each)]
+
+    def all_onces(self) -> list[Once]:
+        """Return the same of all ``within``."""
+        program = self._view.program
+        conditions = [each.condition for each in program.rules]
+        conditions += [each.condition for each in walk.behaviours(program)]
+        return [part for each in conditions for part in self.onces(each)]
 
     def all_sinces(self) -> list[Since]:
         """Return the same of their remembered verdicts."""
@@ -137,6 +152,7 @@ class Predicates:
         """Return what each of the named fields is in."""
         latest, unset = self.macro("LATEST"), self.macro("UNSET")
         sinces = set(self._layout.since.values())
+        untils = set(self._layout.until.values())
         free = {term.name for term in self._layout.terms.values()} | {"due"}
         free |= set(self._layout.turned.values())
         times = {each.forgotten_t for each in self._layout.memories.values()}
@@ -148,6 +164,8 @@ class Predicates:
             kind = self._types[name]
             if name in sinces:
                 found.append(f"(m->{name} == {unset} || 0 <= m->{name} <= m->now)")
+            elif name in untils:
+                found.append(f"0 <= m->{name}")
             elif kind == "bool":
                 found.append(f"(m->{name} == 0 || m->{name} == 1)")
             elif kind.endswith("_verdict"):
@@ -199,7 +217,11 @@ class Predicates:
         return iff(self.semantics.runs(condition), self.semantics.true(condition.operand))
 
     def _kept(self, condition: Condition) -> Iterator[str]:
-        """Yield that another event without news would change no ``since``."""
+        """Yield that another event without news would change no ``within`` and no ``since``."""
+        never = self.macro("NEVER")
+        for once in self.onces(condition):
+            until = f"m->{self._layout.until[once.index]}"
+            yield iff(f"{until} == {never}", self.semantics.true(once.operand))
         for each in self.sinces(condition):
             yield from self.semantics.keeps(each, f"m->{self._layout.kept[each.index]}")
 

@@ -167,6 +167,8 @@ class RuleContracts:
         for each in self._predicates.sinces(condition):
             kept = f"m->{self._layout.kept[each.index]}"
             text += " ".join(semantics.keeps(each, kept))
+        for once in self._predicates.onces(condition):
+            text += semantics.until(once, f"m->{self._layout.until[once.index]}")
         return [*_FIELD.findall(text), *self._starts(self._predicates.fors(condition))]
 
     def _ranges(self, names: Iterable[str]) -> str:
@@ -179,12 +181,13 @@ class RuleContracts:
         Intervals begin now, continue or are cleared, and stay in range and in time.
         """
         fors = [part for each in conditions for part in self._predicates.fors(each)]
-        if fors:
-            starts = self._starts(fors)
+        onces = [part for each in conditions for part in self._predicates.onces(each)]
+        if fors or onces:
+            starts = [*self._starts(fors), *(self._layout.until[each.index] for each in onces)]
             in_time = self._predicates.ends_in_time("m->due", starts)
             contract.requires += in_time
             contract.ensures += [*self._predicates.ranges(starts), *in_time]
-            contract.ensures += self._changes.run_on(fors)
+            contract.ensures += self._changes.run_on(fors, onces)
             contract.ensures += EARLIER_DEADLINE
         for each in conditions:
             for part in self._predicates.sinces(each):
@@ -221,10 +224,11 @@ class RuleContracts:
         """Return the fields that conditions remember something in, and what they schedule."""
         found: list[str] = []
         for each in conditions:
-            fors = self._predicates.fors(each)
-            sinces = self._predicates.sinces(each)
-            found += [*self._starts(fors), *(self._layout.kept[part.index] for part in sinces)]
-            found += ["due"] if fors else []
+            fors, onces = self._predicates.fors(each), self._predicates.onces(each)
+            found += self._starts(fors)
+            found += [self._layout.until[part.index] for part in onces]
+            found += [self._layout.kept[part.index] for part in self._predicates.sinces(each)]
+            found += ["due"] if fors or onces else []
         return list(dict.fromkeys(found))
 
     def _starts(self, fors: Iterable[For]) -> list[str]:

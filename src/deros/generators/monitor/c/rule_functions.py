@@ -11,7 +11,7 @@ from deros.generators.monitor.c.literals import integer
 from deros.generators.text.c import Call, comment, lay_out, lay_out_if
 from deros.generators.text.provenance import header
 from deros.monitor import walk
-from deros.monitor.ir import Action, Behaviour, Condition, For, Program, Rule, Since, Trigger
+from deros.monitor.ir import Action, Behaviour, Condition, For, Once, Program, Rule, Since, Trigger
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +82,13 @@ def _intervals(conditions: Conditions, layout: Layout, condition: Condition) -> 
             operand = conditions.verdict(part.operand)
             duration = integer(part.duration_ns)
             call = Call("lasting", (operand, duration, "m->now", f"&m->{since}", "&m->due"))
+            name = conditions.interval(part)
+            yield from lay_out(2, f"const {layout.prefix}_verdict {name} = ", call)
+        elif isinstance(part, Once) and part.index in layout.until:
+            place = f"&m->{layout.until[part.index]}"
+            duration = integer(part.duration_ns)
+            operand = conditions.verdict(part.operand)
+            call = Call("recent", (operand, duration, "m->now", place, "&m->due"))
             name = conditions.interval(part)
             yield from lay_out(2, f"const {layout.prefix}_verdict {name} = ", call)
         elif isinstance(part, Since):

@@ -84,6 +84,8 @@ def _verdict_fields(program: Program, layout: Layout) -> Iterator[Field]:
         yield Field("int64_t ", layout.turned[rule.index], what, 8, "", "m->now")
     for name in layout.since.values():
         yield Field("int64_t ", name, "since when its operand has been true", 8, "", unset)
+    for name in layout.until.values():
+        yield Field("int64_t ", name, "until when a within is true", 8, "", "0")
     for name in layout.kept.values():
         yield Field(verdict, name, "a since, as of the last event", 4, "", f"{layout.macro}_FALSE")
     for name in layout.conditions.values():

@@ -297,6 +297,8 @@ def ends(program: Program, layout: Layout) -> Iterator[End]:
         if isinstance(condition, For) and condition.index in layout.since:
             since = layout.since[condition.index]
             yield End(f"m->{since} != {layout.macro}_UNSET", since, condition.duration_ns)
+    for name in layout.until.values():
+        yield End(f"m->{name} != {layout.macro}_NEVER", name, 0)
     found: dict[End, None] = {}
     for condition in walk.conditions(program):
         if isinstance(condition, Age):

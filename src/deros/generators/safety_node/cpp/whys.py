@@ -39,6 +39,7 @@ from deros.monitor.ir import (
     Condition,
     Const,
     Missing,
+    Once,
     Program,
     RuleRef,
     Truth,
@@ -202,6 +203,9 @@ class _Emitter:
                 operator = condition.operator if holds else OPPOSITE[condition.operator]
                 bound = f"{SYMBOLS[operator]} {integer(condition.bound_ns)}"
                 return all_of((Atom(f"m.{fields.came}"), Atom(f"m.now - m.{fields.base} {bound}")))
+            case Once():
+                recent = Atom(f"m.now < m.{self._layout.until[condition.index]}")
+                return recent if holds else NoneOf(recent)
             case RuleRef():
                 verdict = f"m.{self._layout.verdicts[condition.rule]}"
                 return Atom(f"{verdict} == {self._layout.macro}_{str(holds).upper()}")
