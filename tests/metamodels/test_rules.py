@@ -25,6 +25,7 @@ from deros.metamodels.rules import (
     Negative,
     Not,
     Number,
+    Once,
     Or,
     Rules,
     Since,
@@ -58,6 +59,8 @@ def _words(found: Condition | Term) -> str:
             return f"(not {_words(found.operand)})"
         case For():
             return f"({_words(found.operand)} for {_words(found.duration)})"
+        case Once():
+            return f"({_words(found.operand)} within {_words(found.duration)})"
         case Since():
             return f"({_words(found.operand)} since {_words(found.cause)})"
         case Truth():
@@ -101,6 +104,8 @@ def _words(found: Condition | Term) -> str:
         ("(not a since b) for 1 sec", "(((not a) since b) for 1 sec)"),
         ("since since since", "(since since since)"),
         ("a > since", "(a > since)"),
+        ("a and b within 2 sec", "((a and b) within 2 sec)"),
+        ("(a > 3 within 1 sec) since within", "(((a > 3) within 1 sec) since within)"),
         ("a == 5", "(a = 5)"),
         ("a != 5", "(a != 5)"),
         ("a <= 5 and b >= 4", "((a <= 5) and (b >= 4))"),

@@ -113,11 +113,11 @@ def _parts(condition: ir.Condition) -> list[ir.Condition]:
 
 def _inlined(written: ir.Program) -> ir.Program:
     """Return a program whose rules name no rules."""
-    fors = sinces = 0
+    fors = onces = sinces = 0
     conditions: list[ir.Condition] = []
 
     def inline(condition: ir.Condition) -> ir.Condition:
-        nonlocal fors, sinces
+        nonlocal fors, onces, sinces
         match condition:
             case ir.RuleRef(rule=rule):
                 return inline(conditions[rule])
@@ -125,6 +125,10 @@ def _inlined(written: ir.Program) -> ir.Program:
                 operand = inline(condition.operand)
                 fors += 1
                 return replace(condition, index=fors - 1, operand=operand)
+            case ir.Once():
+                operand = inline(condition.operand)
+                onces += 1
+                return replace(condition, index=onces - 1, operand=operand)
             case ir.Since():
                 operand, cause = inline(condition.operand), inline(condition.cause)
                 sinces += 1
@@ -150,7 +154,7 @@ def _inlined(written: ir.Program) -> ir.Program:
 
     def shifted(condition: ir.Condition) -> ir.Condition:
         match condition:
-            case ir.For():
+            case ir.For() | ir.Once():
                 shift = condition.index + 10_000  # none of the numbers above
                 return replace(condition, index=shift, operand=shifted(condition.operand))
             case ir.Since():

@@ -96,6 +96,7 @@ entity doubt {
   failsafe hidden: (attitude.tilt() > 20 deg and state = "automatic") for 0.2 sec;
   failsafe absent: elbow.rate() > 3 or state.missing();
   lasting: (enabled since mode = 3) or not (hidden since absent);
+  recent: (mode = 3 within 2 sec) or (not absent within 0.5 sec);
 }
 if drive.too_fast and controller.auto then { stop; log_state("too fast: don't ünd so"); };
 behaviour tilt: if body.tilted for 0.4 sec then {
@@ -111,6 +112,7 @@ then { beep(-9000000000, "", false, -1.5e-3); };
 if controller.manual or controller.overflowing then { ok; };
 if doubt.blind or doubt.hidden and not doubt.absent then { horn; };
 if doubt.lasting since controller.manual then { horn; };
+if doubt.recent within 1 sec then { horn; };
 gate /nav -> /cmd : geometry_msgs.Twist rate 20 Hz { stop: zero; lost heartbeat for 0.3 sec: zero; }
 """
 

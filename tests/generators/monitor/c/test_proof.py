@@ -222,6 +222,36 @@ def test_contracts_of_since_are_proved(tmp_path: Path) -> None:
     assert proof.is_complete
 
 
+WITHIN = """
+input v = topic /speed.data timeout 1 sec
+input f = topic /flag.data timeout 1 sec
+entity e {
+  moved: v > 1 within 2 sec;
+  failsafe both: (moved and f within 0.5 sec) for 1 sec;
+}
+action stop reset_by free;
+action free;
+if e.both then { stop; };
+if not e.moved within 3 sec then { free; };
+"""
+
+
+@pytest.mark.slow
+@needs_frama_c
+def test_contracts_of_within_are_proved(tmp_path: Path) -> None:
+    """It ends by a deadline, so long after the event at which its operand ceased to be true."""
+    source = c_proof.write(rules.program(WITHIN), tmp_path)
+    functions = [
+        each
+        for each in c_proof.functions_of(source)
+        if re.match("judge|behave|after|restart|recent|earliest", each)
+    ]
+    assert len(functions) == 11
+    proof = c_proof.prove(source, (*functions, "act", "evaluate", "step_back"))
+    assert proof.left == ()
+    assert proof.is_complete
+
+
 @needs_frama_c
 @pytest.mark.slow
 @pytest.mark.parametrize("slip", SLIPS)
