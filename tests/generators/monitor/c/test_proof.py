@@ -187,7 +187,7 @@ def test_contracts_of_rules_that_name_rules_are_proved(tmp_path: Path) -> None:
     source = c_proof.write(rules.program(NAMED), tmp_path)
     judging = [each for each in c_proof.functions_of(source) if "judge" in each]
     assert len(judging) == 6
-    proof = c_proof.prove(source, (*judging, "evaluate", "after_speed", "after_flag"))
+    proof = c_proof.prove(source, (*judging, "evaluate", "after_v", "after_f"))
     assert proof.left == ()
     assert proof.is_complete
 
