@@ -14,6 +14,7 @@ from deros.metamodels.rules import (
     Action,
     ActionCall,
     And,
+    Arithmetic,
     Behaviour,
     Boolean,
     Call,
@@ -79,6 +80,8 @@ def _words(found: Condition | Term) -> str:
             return repr(found.value)
         case Negative():
             return f"-{_words(found.operand)}"
+        case Arithmetic():
+            return f"({_words(found.left)} {found.operator} {_words(found.right)})"
         case NamePath():
             return ".".join(map(str, (found.name, *found.path)))
         case TopicPath():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 from deros.monitor import ir
 from deros.monitor.functions import FUNCTIONS, Argument
@@ -129,6 +130,9 @@ class _Writer:
                 pairs = zip(constants, units, strict=True)
                 arguments = ", ".join(f"{each.value} {unit}".strip() for each, unit in pairs)
                 return f"{subject}.{value.function}({arguments})"
+            case ir.Compute():
+                operands = dict(zip(value.names, map(self.value, value.operands), strict=True))
+                return re.sub(r"\bx\d+\b", lambda name: operands[name[0]], value.wording)
             case ir.Scale():
                 raise ValueError("a scaled value has no text of its own")
 

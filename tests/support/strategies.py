@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor import ir, walk
+from deros.monitor.formulas import parse
 from deros.monitor.functions import FUNCTIONS, WRITTEN, Argument
 from deros.monitor.state import LeafValue
 
@@ -297,6 +298,51 @@ class _Drawing:
         self.states += 1
         return ir.Apply(function, arguments, index, self.states - 1)
 
+    def operand(self, index: int) -> ir.Read | ir.Apply:
+        """Draw a number of one input in its own unit."""
+        value = self.number(index)
+        while isinstance(value, ir.Scale):
+            value = value.operand
+        assert isinstance(value, ir.Read | ir.Apply)
+        return value
+
+    def arithmetic(self) -> ir.Compute:
+        """Draw arithmetic on numbers of any inputs; its wording is that of rules."""
+        operands: dict[ir.Read | ir.Apply, str] = {}
+        for _ in range(self.draw(st.integers(1, 3))):
+            value = self.operand(self.draw(st.sampled_from(self.numeric())))
+            operands.setdefault(value, f"x{len(operands) + 1}")
+        formula, written = self.part(self.draw(st.integers(1, 3)), list(operands.values()))
+        return ir.Compute(parse(formula), tuple(operands), f"({written})")
+
+    def part(self, depth: int, names: list[str]) -> tuple[str, str]:
+        """Draw a part of a formula, and how rules write it."""
+        if depth == 0:
+            text = self.draw(st.sampled_from((*names, *names, *map(repr, NUMBERS))))
+            return text, text
+        (a, left), (c, factor) = (self.part(depth - 1, names) for _ in range(2))
+        b, right = c, factor
+        if self.writable:  # with units: of what is read, products and quotients always fit
+            b = right = repr(self.draw(st.sampled_from(NUMBERS)))
+        of_angles = (
+            [] if self.writable else [(f"{name}({a})", "") for name in ("sin", "cos", "tan")]
+        )
+        choices = [
+            (f"({a} + {b})", f"({left} + {right})"),
+            (f"({a} - {b})", f"({left} - {right})"),
+            (f"({a} * {c})", f"({left} * {factor})"),
+            (f"({a} / {c})", f"({left} / {factor})"),
+            (f"-({a})", f"(-({left}))"),
+            (f"sqrt({a})", f"sqrt({left})"),
+            (f"({a} if {a} > 0.0 else 0.0 - {a})", f"abs({left})"),
+            (_chosen(a, "<", b), f"min({left}, {right})"),
+            (_chosen(a, ">", b), f"max({left}, {right})"),
+            (f"sqrt({a} * {a} + {b} * {b})", f"hypot({left}, {right})"),
+            (f"atan2({a}, {b})", f"atan2({left}, {right})"),
+            *of_angles,
+        ]
+        return choices[self.draw(st.integers(0, len(choices) - 1))]
+
     def numeric(self) -> list[int]:
         none = ("boolean", "text", "texts", "first")
         return [n for n, kind in enumerate(self.kinds) if kind not in none]
@@ -304,7 +350,10 @@ class _Drawing:
     def bound(self) -> ir.ValueExpression:
         """Draw what a number is compared with."""
         inputs = self.numeric()
-        if inputs and not self.writable and self.draw(st.integers(0, 5)) == 0:
+        choice = self.draw(st.integers(0, 9)) if inputs and not self.writable else 9
+        if choice == 0:
+            return self.arithmetic()
+        if choice == 1:
             return self.number(self.draw(st.sampled_from(inputs)))
         return ir.Const(self.draw(st.sampled_from((*NUMBERS, 1, 2))))
 
@@ -360,7 +409,8 @@ class _Drawing:
                 operator = self.draw(st.sampled_from(("=", "!=")))
                 return ir.Compare(read, operator, ir.Const(self.draw(texts)))
         if choice < 6:
-            left, right = self.number(index), self.bound()
+            computes = self.draw(st.integers(0, 3)) == 0
+            left, right = self.arithmetic() if computes else self.number(index), self.bound()
             sides = (right, left) if choice == 3 else (left, right)
             return ir.Compare(sides[0], self.draw(operators), sides[1])
         closed = self.draw(st.tuples(st.booleans(), st.booleans()))
@@ -461,6 +511,12 @@ class _Drawing:
         )
 
 
+def _chosen(first: str, relation: str, second: str) -> str:
+    """Return the formula of the lesser or greater of two numbers."""
+    other = f"({second} if {second} {relation}= {first} else unknown)"
+    return f"({first} if {first} {relation} {second} else {other})"
+
+
 input_names = st.sampled_from(("speed", "in", "t", "x_2", "/odom.twist"))
 orders = st.sampled_from(("<", "<=", ">", ">="))
 operators = st.sampled_from(("=", "!=", "<", "<=", ">", ">="))
@@ -494,7 +550,8 @@ def _as_built(program: ir.Program) -> ir.Program:
     """Return a program as the compiler builds it of its text.
 
     It has no unread fields of whole messages and no timeouts of unused inputs, and a NaN in an
-    array that is only counted is ignored. All three change what happens.
+    array that is only counted is ignored, unless it is asked whether the input is missing. All
+    three change what happens.
     """
     conditions = tuple(walk.conditions(program))
     values = walk.values(conditions)
@@ -514,6 +571,10 @@ def _as_built(program: ir.Program) -> ir.Program:
         if isinstance(term, ir.Read) and program.leaves[term.leaf].type.is_array
     ]
     matters = {leaf for leaf, nan_is_unknown in arrays if nan_is_unknown}
+    for condition in conditions:
+        match condition:
+            case ir.Missing(input=index) | ir.Age(input=index) | ir.Unknown(index, operand=None):
+                matters.update(program.inputs[index].leaves if program.inputs[index].path else ())
     counted = {leaf for leaf, _ in arrays} - matters
     leaves = tuple(
         replace(leaf, nan_is_unknown=leaf.nan_is_unknown and leaf.index not in counted)

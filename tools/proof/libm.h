@@ -11,6 +11,9 @@
       predicate is_sqrt(double y, double x);
       predicate is_fmod(double z, double x, double y);
       predicate is_remainder(double z, double x, double y);
+      predicate is_sin(double y, double x);
+      predicate is_cos(double y, double x);
+      predicate is_tan(double y, double x);
       predicate is_asin(double y, double x);
       predicate is_atan2(double z, double y, double x);
     } */
@@ -18,6 +21,12 @@
 extern double fabs(double x);
 /*@ assigns \nothing; ensures is_sqrt(\result, x); */
 extern double sqrt(double x);
+/*@ assigns \nothing; ensures is_sin(\result, x); */
+extern double sin(double x);
+/*@ assigns \nothing; ensures is_cos(\result, x); */
+extern double cos(double x);
+/*@ assigns \nothing; ensures is_tan(\result, x); */
+extern double tan(double x);
 /*@ assigns \nothing; ensures is_atan2(\result, y, x); */
 extern double atan2(double y, double x);
 /*@ assigns \nothing; ensures is_asin(\result, x); */

@@ -14,7 +14,7 @@ import json
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
@@ -237,6 +237,45 @@ class _Parser:
 
 
 _ONE = Unit("1", (), Fraction(1))
+
+
+def product(left: Unit, right: Unit) -> Unit | None:
+    """Return the unit of a product; ``None`` if its factor would fill the memory."""
+    return _named(_combine(left, right, 1), f"{left}*{_grouped(right)}")
+
+
+def quotient(left: Unit, right: Unit) -> Unit | None:
+    """Return the unit of a quotient; ``None`` if its factor would fill the memory."""
+    return _named(_combine(left, right, -1), f"{left}/{_grouped(right)}")
+
+
+def root(unit: Unit) -> Unit:
+    """Return the unit of the square root of a number in base units of the dimension of ``unit``."""
+    exponents = tuple((base, power / 2) for base, power in unit.exponents)
+    return Unit(_in_bases(exponents), exponents, Fraction(1))
+
+
+def without_angles(unit: Unit) -> Unit:
+    """Return a unit in which a radian is the plain number 1."""
+    kept = tuple((base, power) for base, power in unit.exponents if base != "rad")
+    return replace(unit, exponents=kept)
+
+
+def _grouped(unit: Unit) -> str:
+    return f"({unit})" if re.search(r"[*/]", unit.text) else unit.text
+
+
+def _named(unit: Unit | None, text: str) -> Unit | None:
+    """Return a computed unit with a text: that of its dimension where it is one of base units."""
+    if unit is None:
+        return None
+    return replace(unit, text=_in_bases(unit.exponents) if unit.factor == 1 else text)
+
+
+def _in_bases(exponents: Exponents) -> str:
+    above = [_power(base, power) for base, power in exponents if power > 0]
+    below = [_power(base, -power) for base, power in exponents if power < 0]
+    return "/".join(["*".join(above) or "1", *below])
 
 
 def _combine(left: Unit, right: Unit, exponent: int) -> Unit | None:

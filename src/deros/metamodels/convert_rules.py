@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from deros import codes
 from deros.diagnostics import SourceFile, Span
-from deros.metamodels.common import Name
-from deros.metamodels.convert import Converter, Sections
+from deros.metamodels.convert import Sections
 from deros.metamodels.convert_system import unknown
+from deros.metamodels.convert_terms import TermConverter
 from deros.metamodels.languages import ROSSYSTEM
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.metamodels.rules import (
@@ -20,8 +19,6 @@ from deros.metamodels.rules import (
     And,
     Behaviour,
     Binding,
-    Boolean,
-    Call,
     Comparison,
     ComparisonOperator,
     Condition,
@@ -33,18 +30,12 @@ from deros.metamodels.rules import (
     GateLine,
     Input,
     Membership,
-    NamePath,
-    Negative,
     Not,
-    Number,
     Once,
     Or,
     Rule,
     Rules,
     Since,
-    String,
-    Term,
-    TopicPath,
     Truth,
     UnitDefinition,
     Use,
@@ -53,11 +44,9 @@ from deros.metamodels.scoping import FileIndex
 
 if TYPE_CHECKING:
     from deros.metamodels.load import Loading
-    from deros.metamodels.matching import Token
     from deros.metamodels.scoping import Reference
     from deros.metamodels.system import System
 
-_STEP = re.compile(r"[A-Za-z_]\w*|\d+")
 _ATTRIBUTES = {
     "Binding": "publishes",
     "ResetBy": "reset_by",
@@ -83,7 +72,7 @@ def load_rules(loading: Loading) -> Rules:
     return result
 
 
-class RulesConverter(Converter):
+class RulesConverter(TermConverter):
     """Converts one DeRoS program; each ``use`` statement has its own index."""
 
     def __init__(self, source: SourceFile, indexes: Mapping[int, FileIndex]) -> None:
@@ -104,7 +93,9 @@ class RulesConverter(Converter):
             "Behaviour": self._behaviour,
             "Gate": self._gate,
         }
-        for statement in map(self._named_behaviour, model.statements):
+        statements = [self._named_behaviour(each) for each in model.statements]
+        self.declare(statements)
+        for statement in statements:
             kind = type(statement).__name__
             groups.setdefault(kind, []).append(convert[kind](statement))
         return Rules(
@@ -302,6 +293,8 @@ class RulesConverter(Converter):
             return self._condition(found.condition)
         left = self._term(found.left)
         span = self.span(found)
+        if found.interval is None and found.operator is None:
+            return Truth(left, left.span)
         if found.interval is not None:
             interval = found.interval
             return Membership(
@@ -314,66 +307,5 @@ class RulesConverter(Converter):
                 span,
                 self.span(interval),
             )
-        if found.operator is None:
-            return Truth(left, span)
         operator = "=" if found.operator == "==" else str(found.operator)
         return Comparison(left, cast(ComparisonOperator, operator), self._term(found.right), span)
-
-    # Terms ------------------------------------------------------------------------------------
-
-    def _terms(self, found: Any) -> tuple[Term, ...]:
-        return tuple(map(self._term, found))
-
-    def _term(self, found: Any) -> Term:
-        kind = type(found).__name__
-        if kind == "Quantity":
-            return self._number(found)
-        if kind == "Literal":
-            text: Token = found.text
-            if text[0] == '"':
-                return String(self.text(text), self.token_span(text))
-            return Boolean(text == "true", self.token_span(text))
-        if kind == "Negative":
-            return Negative(self._term(found.operand), self.span(found))
-        if kind == "TopicTerm":
-            return self._calls(self._topic_path(found), found)
-        return self._calls(self._named(found), found)
-
-    def _number(self, found: Any) -> Number:
-        return Number(
-            self.decimal(found.value),
-            self.span(found),
-            self.unit(found.unit),
-            None if found.unit is None else self.token_span(found.unit),
-        )
-
-    def _named(self, found: Any) -> Term:
-        name = self.name(found.name)
-        if found.arguments is not None:
-            arguments = self._terms(found.arguments.arguments)
-            end: int = found.arguments._tx_position_end
-            return Call(name, None, arguments, Span(self.source, name.span.start, end))
-        return NamePath(name, *self._path(name, found))
-
-    def _topic_path(self, found: Any) -> TopicPath:
-        name = self.name(found.topic)
-        path, span = self._path(name, found)
-        return TopicPath(name, path, Span(self.source, found._tx_position, span.end))
-
-    def _path(self, name: Name, found: Any) -> tuple[tuple[str | int, ...], Span]:
-        """Return the steps after a name, and the span of the whole path."""
-        if found.path is None:
-            return (), name.span
-        steps = _STEP.findall(found.path)
-        span = Span(self.source, name.span.start, found.path.end)
-        return tuple(int(step) if step.isdecimal() else step for step in steps), span
-
-    def _calls(self, term: Term, found: Any) -> Term:
-        if len(found.calls) > MAX_DEPTH:
-            self.diagnostics.append(too_deep(self.span(found)))
-            return term
-        for call in found.calls:
-            span = Span(self.source, term.span.start, call._tx_position_end)
-            arguments = self._terms(call.arguments.arguments)
-            term = Call(self.name(call.function), term, arguments, span)
-        return term

@@ -14,6 +14,7 @@ from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import Name
 from deros.metamodels.system import System
 
+ArithmeticOperator = Literal["+", "-", "*", "/"]
 ComparisonOperator = Literal["=", "!=", "<", "<=", ">", ">="]
 
 
@@ -69,7 +70,7 @@ class NamePath:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """``TERM.function(arguments)``; ``toRad(10 deg)`` has no ``receiver``."""
+    """``TERM.function(arguments)``; ``toRad(10 deg)`` and ``max(a, b)`` have no ``receiver``."""
 
     function: Name
     receiver: Term | None
@@ -79,13 +80,24 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class Negative:
-    """``-constant``."""
+    """``-term``."""
 
     operand: Term
     span: Span = field(compare=False, repr=False)
 
 
-Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """``left + right``, and so on; operators that bind alike are applied from left to right."""
+
+    operator: ArithmeticOperator
+    left: Term
+    right: Term
+    span: Span = field(compare=False, repr=False)
+    operator_span: Span = field(compare=False, repr=False)
+
+
+Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative | Arithmetic
 
 
 # Conditions -------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.types import FieldType
 from deros.metamodels import rules
 from deros.monitor import ir
+from deros.monitor.arithmetic import scaled
 from deros.monitor.bounds import Bounds, bounds_of, exact, integer_bound, rounded
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.resolved import (
@@ -239,6 +240,8 @@ class Comparisons:
         factor, offset = self._scope.units.factor(value.unit, wanted.unit)
         if (factor, offset) == (1.0, 0.0):
             return value.expression
+        if isinstance(value.expression, ir.Compute):
+            return scaled(value.expression, factor, offset)
         return ir.Scale(value.expression, factor, offset)
 
     def _note(

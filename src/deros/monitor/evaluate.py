@@ -9,12 +9,14 @@ import operator
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
+from deros.monitor.function_forms import strict
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import (
     Age,
     And,
     Apply,
     Compare,
+    Compute,
     Condition,
     Const,
     Failsafe,
@@ -67,6 +69,10 @@ def evaluate_value(value: ValueExpression, state: State) -> Any:
         case Scale():
             operand = evaluate_value(value.operand, state)
             result = None if operand is None else _scaled(operand, value)
+        case Compute():
+            operands = [evaluate_value(each, state) for each in value.operands]
+            unknown = any(each is None for each in operands)
+            result = None if unknown else strict(value.formula, value.names, *operands)
     return None if not isinstance(result, Iterable) and is_nan(result) else result
 
 

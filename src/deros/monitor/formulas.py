@@ -2,8 +2,8 @@
 
 A formula is written in the syntax of Python: assignments, one a line, and an expression as the last
 line. There are numbers, names, ``+ - * /``, comparisons, ``and``, ``or``, ``not``, ``a if c else
-b`` and calls of ``sqrt``, ``asin``, ``atan2``, ``remainder``, ``known``, ``double`` and of the
-formulas in :data:`SHARED`. Every name is assigned once. ``unknown`` and ``inf`` are constants.
+b`` and calls of the functions in :data:`CALLS` and of the formulas in :data:`SHARED`. Every name is
+assigned once. ``unknown`` and ``inf`` are constants.
 
 Numbers are IEEE doubles, and NaN is *unknown*: no comparison with it is true, and arithmetic hands
 it on. A formula has a value for all arguments: the parser guards each operation that is not defined
@@ -121,6 +121,9 @@ class Formula:
 
 CALLS: Mapping[str, int] = {
     "sqrt": 1,
+    "sin": 1,
+    "cos": 1,
+    "tan": 1,
     "asin": 1,
     "atan2": 2,
     "remainder": 2,
@@ -185,7 +188,7 @@ def _expression(node: ast.expr) -> Expression:
             return Negation(_expression(operand))
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _ARITHMETIC:
             found = Binary(_ARITHMETIC[type(op)], _expression(left), _expression(right))
-            return _guarded_division(found)
+            return guarded_division(found)
         case ast.BoolOp(op=op, values=values):
             word: Literal["and", "or"] = "and" if isinstance(op, ast.And) else "or"
             return Logical(word, tuple(map(_expression, values)))
@@ -194,7 +197,7 @@ def _expression(node: ast.expr) -> Expression:
         case ast.IfExp(test=test, body=body, orelse=orelse):
             return Choice(_expression(test), _expression(body), _expression(orelse))
         case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
-            return _call(name, tuple(map(_expression, arguments)))
+            return guarded_call(name, tuple(map(_expression, arguments)))
     raise ValueError(f"a formula cannot say {ast.unparse(node)!r}")
 
 
@@ -206,7 +209,12 @@ def _comparison(operands: list[ast.expr], ops: list[ast.cmpop]) -> Expression:
     return relations[0] if len(relations) == 1 else Logical("and", relations)
 
 
-def _call(name: str, arguments: tuple[Expression, ...]) -> Expression:
+def guarded_call(name: str, arguments: tuple[Expression, ...]) -> Expression:
+    """Return a call of a function; unknown where the function is not defined.
+
+    Raises:
+        ValueError: there is no such function, or it takes another number of arguments.
+    """
     taken = CALLS.get(name, 1 if name in SHARED else 0)
     if not taken or len(arguments) != taken:
         raise ValueError(f"a formula cannot call {name}() with {len(arguments)} arguments")
@@ -219,18 +227,21 @@ def _call(name: str, arguments: tuple[Expression, ...]) -> Expression:
         case "asin" if not (isinstance(first, Call) and first.function == "clamped"):
             inside = (Relation(">=", first, Number(-1.0)), Relation("<=", first, one))
             return Choice(Logical("and", inside), found, UNKNOWN)
+        case "sin" | "cos" | "tan":
+            return Choice(Logical("and", _is_finite(first)), found, UNKNOWN)
         case "remainder":
-            finite = (
-                Relation(">", first, Number(-math.inf)),
-                Relation("<", first, Number(math.inf)),
-            )
             turn = arguments[1]
             known = () if _is_other_than_zero(turn) else (Relation("!=", turn, zero),)
-            return Choice(Logical("and", (*finite, *known)), found, UNKNOWN)
+            return Choice(Logical("and", (*_is_finite(first), *known)), found, UNKNOWN)
     return found
 
 
-def _guarded_division(found: Binary) -> Expression:
+def _is_finite(value: Expression) -> tuple[Relation, Relation]:
+    return Relation(">", value, Number(-math.inf)), Relation("<", value, Number(math.inf))
+
+
+def guarded_division(found: Binary) -> Expression:
+    """Return an operation; a quotient, such that it is unknown where its divisor is zero."""
     if found.operator != "/" or _is_other_than_zero(found.right):
         return found
     return Choice(Relation("!=", found.right, Number(0.0)), found, UNKNOWN)
@@ -283,6 +294,34 @@ def calls(formula: Formula) -> tuple[str, ...]:
     return tuple(dict.fromkeys(each.function for each in found))
 
 
+def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
+    """Return a formula with some of its names replaced."""
+
+    def new(value: Expression) -> Expression:
+        match value:
+            case Number():
+                return value
+            case Name():
+                return Name(names.get(value.name, value.name))
+            case Negative():
+                return Negative(new(value.operand))
+            case Binary():
+                return Binary(value.operator, new(value.left), new(value.right))
+            case Call():
+                return Call(value.function, tuple(map(new, value.arguments)))
+            case Relation():
+                return Relation(value.operator, new(value.left), new(value.right))
+            case Logical():
+                return Logical(value.operator, tuple(map(new, value.operands)))
+            case Negation():
+                return Negation(new(value.operand))
+            case Choice():
+                return Choice(new(value.condition), new(value.then), new(value.otherwise))
+
+    assignments = ((names.get(name, name), new(value)) for name, value in formula.assignments)
+    return Formula(tuple(assignments), new(formula.result))
+
+
 # Interpreting -----------------------------------------------------------------------------------
 
 _OPERATORS: Mapping[str, Callable[[float, float], float]] = {
@@ -301,6 +340,9 @@ _TESTS: Mapping[str, Callable[[float, float], bool]] = {
 }
 _MATHEMATICS: Mapping[str, Callable[..., float]] = {
     "sqrt": math.sqrt,
+    "sin": math.sin,
+    "cos": math.cos,
+    "tan": math.tan,
     "asin": math.asin,
     "atan2": math.atan2,
     "remainder": math.remainder,

@@ -13,6 +13,7 @@ from typing import Literal
 
 from deros.diagnostics import Span
 from deros.interfaces.types import FieldType, InterfaceType
+from deros.monitor.formulas import Formula
 
 Operator = Literal["=", "!=", "<", "<=", ">", ">="]
 Scalar = bool | int | float | str
@@ -124,7 +125,25 @@ class Scale:
     offset: float = 0.0
 
 
-ValueExpression = Const | Read | Apply | Scale
+@dataclass(frozen=True, slots=True)
+class Compute:
+    """Arithmetic on numbers, which may come from several inputs: a formula of doubles.
+
+    ``operands`` are its names ``x1``, ``x2`` and so on, each rounded to a double. It is unknown
+    where one of them is, and where the formula has no value, as a quotient with the divisor zero.
+    """
+
+    formula: Formula
+    operands: tuple[Read | Apply, ...]
+    wording: str = field(default="", compare=False, repr=False)  # as written
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the operands in the formula."""
+        return tuple(f"x{number}" for number, _ in enumerate(self.operands, 1))
+
+
+ValueExpression = Const | Read | Apply | Scale | Compute
 
 
 # Conditions -------------------------------------------------------------------------------------

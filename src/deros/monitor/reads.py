@@ -12,6 +12,7 @@ from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import (
     Age,
     Apply,
+    Compute,
     Condition,
     Const,
     Missing,
@@ -28,8 +29,11 @@ from deros.monitor.state import State
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
-Term = Read | Apply | Missing | Unknown | Age
-"""What a rule reads: a field, a function of fields, or a question about messages as such."""
+Term = Read | Apply | Compute | Missing | Unknown | Age
+"""What a rule reads: a field, a function of fields, or a question about messages as such.
+
+Causes show the value of arithmetic, too; among what a rule reads its operands stand in its place.
+"""
 
 
 def strip_comments(text: str) -> str:
@@ -89,6 +93,8 @@ def term_name(program: Program, term: Term) -> str:
             return _field_name(program, term)
         case Apply():
             return _function_name(program, term)
+        case Compute():
+            return term.wording
 
 
 def term_value(term: Term, state: State, t_ns: int) -> Scalar | None:
@@ -99,7 +105,7 @@ def term_value(term: Term, state: State, t_ns: int) -> Scalar | None:
         case Age():
             counted_ns = state.inputs[term.input].counted_ns
             return None if counted_ns is None else (t_ns - counted_ns) / 1e9
-        case Read() | Apply():
+        case Read() | Apply() | Compute():
             value: Scalar | None = evaluate_value(term, state)
             return value
 

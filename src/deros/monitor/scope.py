@@ -49,6 +49,7 @@ class Scope:
         self.systems_known = all(
             use.system is not None for use in program.uses
         ) and not program.source.mentions_lost("use")
+        self.nesting = 0  # of the present term, in other terms and in constants
         self.untold = False  # whether a name means nothing, and it is the loader that has said why
         self._uses = program.uses
         systems = [use.system for use in program.uses if use.system]

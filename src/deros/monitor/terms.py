@@ -14,6 +14,7 @@ from deros.interfaces.units import Unit
 from deros.metamodels import rules
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.monitor import ir, shapes
+from deros.monitor.arithmetic import ArithmeticTerm, is_arithmetic
 from deros.monitor.bearings import check_sector
 from deros.monitor.bounds import Ends, bounds_of_change, type_bounds
 from deros.monitor.functions import (
@@ -56,7 +57,6 @@ class Terms:
         self._rules_of = rules_of
         self._constants: dict[str, Resolved | None] = {}
         self._open_constants: set[str] = set()
-        self._constant_depth = 0
         self._states = 0
         self.functions: list[AppliedFunction] = []
         """The functions of messages and arrays, as they were met."""
@@ -70,6 +70,12 @@ class Terms:
                 return self._number(term)
             case rules.Boolean() | rules.String():
                 return Plain(term.value)
+            case rules.Arithmetic():
+                return ArithmeticTerm(self._scope, self.resolve).value(term)
+            case rules.Call() if is_arithmetic(term):
+                return ArithmeticTerm(self._scope, self.resolve).value(term)
+            case rules.Negative() if self._is_read(term.operand):
+                return ArithmeticTerm(self._scope, self.resolve).value(term)
             case rules.Negative():
                 return self._negative(term, message)
             case rules.TopicPath():
@@ -93,6 +99,17 @@ class Terms:
             and term.name.text not in self._scope.inputs
         )
 
+    def _is_read(self, term: rules.Term) -> bool:
+        """Return whether a term is read from a topic, or is a function of such a term."""
+        match term:
+            case rules.TopicPath() | rules.Call(receiver=rules.TopicPath() | rules.NamePath()):
+                return True
+            case rules.Call(receiver=rules.Call() as receiver):
+                return self._is_read(receiver)
+            case rules.NamePath():
+                return term.name.text in self._scope.inputs
+        return is_arithmetic(term)
+
     # Constants ----------------------------------------------------------------------------------
 
     def _number(self, number: rules.Number) -> Quantity | None:
@@ -108,7 +125,7 @@ class Terms:
         if isinstance(operand, Quantity):
             return Quantity(-operand.value, operand.unit, operand.shown_in, operand.whole)
         if operand is not None:
-            wrong = f"'-' stands before numbers and constants only, not '{term.operand.span.text}'"
+            wrong = f"'-' stands before numbers only, not '{term.operand.span.text}'"
             self._scope.fault(codes.WRONG_OPERAND, wrong, term.span)
         return None
 
@@ -152,13 +169,13 @@ class Terms:
                 self._scope.fault(codes.UNKNOWN_NAME, message, declared.value.span)
                 return None
             self._open_constants.add(name)
-            if self._constant_depth > MAX_DEPTH:
+            if self._scope.nesting > MAX_DEPTH:
                 self._scope.diagnostics.append(too_deep(declared.value.span))
                 self._constants[name] = None
                 return None
-            self._constant_depth += 1
+            self._scope.nesting += 1
             found = self.resolve(declared.value)
-            self._constant_depth -= 1
+            self._scope.nesting -= 1
             if found is not None and not isinstance(found, (Quantity, Plain)):
                 message = f"constant '{name}' is no number, boolean or text"
                 hint = f"'input {name} = ...' names a value read from a topic"

@@ -10,6 +10,7 @@ from deros.monitor.ir import (
     Apply,
     Behaviour,
     Compare,
+    Compute,
     Condition,
     Failsafe,
     For,
@@ -132,6 +133,9 @@ def terms(value: ValueExpression) -> Iterator[ValueExpression]:
                 yield from terms(argument)
         case Scale(operand=operand):
             yield from terms(operand)
+        case Compute(operands=operands):
+            for operand in operands:
+                yield from terms(operand)
         case _:
             pass
     yield value
@@ -160,12 +164,28 @@ def inputs_read(condition: Condition, leaves: Sequence[Leaf]) -> set[int]:
 
 
 def terminals(condition: Condition) -> list[Read | Apply]:
-    """Return the leaves and outermost functions that a condition itself (no part) compares."""
+    """Return the leaves and outermost functions that a condition itself (no part) compares.
+
+    Those that arithmetic has as operands are among them.
+    """
     found: list[Read | Apply] = []
+    for value in compared(condition):
+        found += value.operands if isinstance(value, Compute) else [value]
+    return found
+
+
+def computed(condition: Condition) -> list[Compute]:
+    """Return the arithmetic that a condition itself (no part) compares."""
+    return [value for value in compared(condition) if isinstance(value, Compute)]
+
+
+def compared(condition: Condition) -> list[Read | Apply | Compute]:
+    """Return what a condition itself (no part) compares, without constants and units."""
+    found: list[Read | Apply | Compute] = []
     for name in ("operand", "left", "right", "lower", "upper"):
         value = getattr(condition, name, None)
         while isinstance(value, Scale):
             value = value.operand
-        if isinstance(value, Read | Apply):
+        if isinstance(value, Read | Apply | Compute):
             found.append(value)
     return found

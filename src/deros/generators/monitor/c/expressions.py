@@ -15,6 +15,7 @@ from deros.monitor.ir import (
     And,
     Apply,
     Compare,
+    Compute,
     Condition,
     Const,
     Failsafe,
@@ -234,6 +235,8 @@ def expression(value: ValueExpression, program: Program, arguments: Arguments) -
             operand = as_double(value.operand, program, arguments)
             scaled = f"({operand} * {number(value.factor)})"
             return f"({scaled} + {number(value.offset)})" if value.offset else scaled
+        case Compute():
+            raise AssertionError("arithmetic is computed of the fields that hold its operands")
         case Apply():
             if value in arguments.computed:
                 return arguments.computed[value]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from deros.generators.monitor.c.computed import computed_functions
 from deros.generators.monitor.c.expressions import (
     Arguments,
     Conditions,
@@ -18,6 +19,7 @@ from deros.generators.monitor.c.names import new_names
 from deros.generators.text.c import (
     Call,
     Expression,
+    Infix,
     comment,
     lay_out,
     lay_out_if,
@@ -28,7 +30,7 @@ from deros.interfaces.types import FLOAT_TYPES, STRING_TYPES
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
 from deros.monitor.functions import FUNCTIONS, Argument
-from deros.monitor.ir import Age, Apply, Input, Leaf, Program, Read, Scale, ValueExpression
+from deros.monitor.ir import Age, Apply, Compute, Input, Leaf, Program, Read, Scale, ValueExpression
 
 
 @dataclass(frozen=True, slots=True)
@@ -303,6 +305,8 @@ class _Writer:
             yield from _news(known, "true")
         for term in terms:
             yield from self._value(term)
+        for arithmetic, term in self._layout.computed_of(each.index).items():
+            yield from self._computed(arithmetic, term)
         conditions = Conditions(self._program, self._layout)
         for condition, finding in self._layout.findings.items():
             if each.index in finding.inputs:
@@ -350,6 +354,16 @@ class _Writer:
         if not isinstance(term.value, Read):
             yield from _news(term.known, self._is_known(term))
 
+    def _computed(self, value: Compute, term: Term) -> Iterator[str]:
+        """Yield the statements that compute arithmetic with the operands that are stored."""
+        operands = [self._layout.terms[each] for each in value.operands]
+        texts = tuple(f"{_cast(each)}m->{each.name}" for each in operands)
+        call = Call(computed_functions(self._program)[value].name, texts)
+        yield from lay_out(2, f"m->{term.name} = ", call)
+        flags = dict.fromkeys(f"m->{each.known}" for each in operands)
+        known = Infix("&&", (*flags, f"is_number(m->{term.name})"))
+        yield from _news(term.known, known)
+
     def _is_known(self, term: Term) -> str:
         if term.type == "double":
             return f"is_number(m->{term.name})"
@@ -388,6 +402,10 @@ class _Writer:
             for value in walk.values(walk.conditions(self._program))
             if isinstance(value, Apply) and value.input == each.index
         ]
+
+
+def _cast(term: Term) -> str:
+    return "" if term.type == "double" else "(double)"
 
 
 _PUT = {"bool": "truth", "int64_t": "integer", "uint64_t": "unsigned", "uint32_t": "text"}

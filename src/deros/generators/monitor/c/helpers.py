@@ -10,7 +10,9 @@ from collections.abc import Iterable, Iterator
 
 from deros.generators.monitor.c import quantities, scans, windows
 from deros.generators.monitor.c.acsl_formulas import loop_contract, loop_invariants, step_contract
-from deros.generators.monitor.c.formulas import printed, shared_texts
+from deros.generators.monitor.c.computed import computed_functions
+from deros.generators.monitor.c.contracts import wrapped
+from deros.generators.monitor.c.formulas import formula_text, printed, shared_texts
 from deros.generators.monitor.c.layout import ELEMENTS
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor.formulas import SHARED
@@ -320,6 +322,10 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     yield "rate_over", windows.RATE_OVER + C["rate_over"]
     for row, base in quantities.loops_of(program):
         yield f"{row.c_name}_{base}", _of_array(row, base)
+    for each in computed_functions(program).values():
+        text = formula_text(each.name, each.parameters, each.formula)
+        said = "\n".join(wrapped(f"/* {each.wording.replace('*/', '* /')} */"))
+        yield each.name, f"{said}\n{quantities.contract(each.name, each.parameters)}{text}"
     yield "beam", scans.BEAM + C["beam"]
     yield (
         "nearest",

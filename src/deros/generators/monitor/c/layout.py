@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from deros import codes
 from deros.diagnostics import Span, report
 from deros.generators.api.protocol import GenerationError
+from deros.generators.monitor.c.computed import computed_functions
 from deros.generators.monitor.c.names import new_names, prefix_of
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, STRING_TYPES, FieldType
@@ -18,6 +19,7 @@ from deros.monitor.ir import (
     Age,
     Apply,
     Compare,
+    Compute,
     Condition,
     Const,
     Failsafe,
@@ -49,12 +51,13 @@ ELEMENTS = {
 class Term:
     """A value that conditions read, as the struct keeps it: ``name``, and whether it is ``known``.
 
+    ``inputs`` are those that it is read from: one, or those of the operands of arithmetic.
     ``type`` is ``double``, ``int64_t``, ``uint64_t``, ``bool``, or ``uint32_t`` for a text, which
     is kept as its place (from 1) among the ``texts`` that the rules compare it with, else 0.
     """
 
     value: ValueExpression
-    input: int
+    inputs: frozenset[int]
     name: str
     known: str
     type: str
@@ -179,8 +182,20 @@ class Layout:
         return self.prefix.upper()
 
     def terms_of(self, index: int) -> list[Term]:
-        """Return the terms that belong to one input."""
-        return [term for term in self.terms.values() if term.input == index]
+        """Return the terms that belong to one input; arithmetic belongs to none."""
+        return [
+            term
+            for value, term in self.terms.items()
+            if index in term.inputs and not isinstance(value, Compute)
+        ]
+
+    def computed_of(self, index: int) -> dict[Compute, Term]:
+        """Return the arithmetic that has operands of an input."""
+        return {
+            value: term
+            for value, term in self.terms.items()
+            if index in term.inputs and isinstance(value, Compute)
+        }
 
     def memories_of(self, index: int) -> dict[Apply, Memory]:
         """Return what the functions of one input remember."""
@@ -197,6 +212,8 @@ def lay_out(program: Program) -> Layout:
     _name_inputs(program, layout)
     for condition, span in rule_parts(program):
         for value in compared(condition):
+            for operand in value.operands if isinstance(value, Compute) else ():
+                _name_term(program, operand, layout, span)
             _name_term(program, value, layout, span)
     for value in walk.values(walk.conditions(program)):
         if isinstance(value, Apply) and value.state is not None and value not in layout.memories:
@@ -238,15 +255,17 @@ def compared(condition: Condition) -> list[ValueExpression]:
     return [value for value in found if not isinstance(value, Const)]
 
 
-def input_of(program: Program, value: ValueExpression) -> int:
-    """Return the input that a value is read from."""
+def inputs_of(program: Program, value: ValueExpression) -> frozenset[int]:
+    """Return the inputs that a value is read from."""
     match value:
         case Apply():
-            return value.input
+            return frozenset({value.input})
         case Scale():
-            return input_of(program, value.operand)
+            return inputs_of(program, value.operand)
         case Read():
-            return program.leaves[value.leaf].input
+            return frozenset({program.leaves[value.leaf].input})
+        case Compute():
+            return frozenset().union(*(inputs_of(program, each) for each in value.operands))
         case Const():
             raise AssertionError("a constant is read from no input")
 
@@ -256,7 +275,7 @@ def type_of(program: Program, value: ValueExpression) -> str:
     match value:
         case Const():
             return _type_of_constant(value.value)
-        case Scale():
+        case Scale() | Compute():
             return "double"
         case Read():
             return c_type(program.leaves[value.leaf].type)
@@ -298,12 +317,9 @@ def rule_parts(program: Program) -> Iterator[tuple[Condition, Span]]:
 
 def _name_inputs(program: Program, layout: Layout) -> None:
     asked = {each.input for each in walk.conditions(program) if isinstance(each, Age)}
-    read = {
-        input_of(program, value)
-        for condition in walk.conditions(program)
-        for value in compared(condition)
-        if isinstance(value, Read)
-    }
+    sides = [value for each in walk.conditions(program) for value in compared(each)]
+    sides += [each for value in sides if isinstance(value, Compute) for each in value.operands]
+    read = {program.leaves[value.leaf].input for value in sides if isinstance(value, Read)}
     read |= {
         each.input
         for each in walk.conditions(program)
@@ -336,15 +352,16 @@ def _awaited(program: Program) -> set[int]:
 def _name_term(program: Program, value: ValueExpression, layout: Layout, span: Span) -> None:
     if value in layout.terms:
         return
-    index = input_of(program, value)
-    fields = layout.inputs[index]
+    inputs = inputs_of(program, value)
     kind = type_of(program, value)
     name = layout.names.new(*_words(program, value))
-    plain = isinstance(value, Read)
-    known = fields.known if plain else layout.names.new(name, "known")
+    if isinstance(value, Read):
+        known = layout.inputs[program.leaves[value.leaf].input].known
+    else:
+        known = layout.names.new(name, "known")
     texts = _texts(program, value, span) if kind == "text" else ()
     kind = "uint32_t" if kind == "text" else kind
-    layout.terms[value] = Term(value, index, name, known, kind, texts)
+    layout.terms[value] = Term(value, inputs, name, known, kind, texts)
 
 
 _WORDS: dict[Operator, str] = {
@@ -371,7 +388,7 @@ def _name_finding(condition: Condition, layout: Layout) -> None:
             words = [*_side(left, layout), _WORDS[operator], *_side(right, layout)]
         case _:
             return
-    inputs = frozenset(term.input for term in terms)
+    inputs: frozenset[int] = frozenset().union(*(term.inputs for term in terms))
     layout.findings[condition] = Finding(layout.names.new(*words), terms, inputs)
 
 
@@ -388,6 +405,8 @@ def _words(program: Program, value: ValueExpression) -> list[str | int]:
     match value:
         case Scale():
             return [*_words(program, value.operand), "scaled"]
+        case Compute():
+            return [computed_functions(program)[value].name.replace("compute", "computed")]
         case Apply():
             return [program.inputs[value.input].name, value.function]
         case Read():

@@ -14,9 +14,10 @@ from deros.generators.monitor.c.changes import (
     VERDICTS_DATED,
     Changes,
 )
+from deros.generators.monitor.c.computed import computed_functions
 from deros.generators.monitor.c.contracts import Contract, all_of, iff
 from deros.generators.monitor.c.handlers import Handler, Parameter
-from deros.generators.monitor.c.layout import Finding
+from deros.generators.monitor.c.layout import Finding, Term
 from deros.generators.monitor.c.predicates import SOUND, Predicates
 from deros.generators.monitor.c.quantities import is_value
 from deros.generators.monitor.c.rule_contracts import EARLIER_DEADLINE, RuleContracts
@@ -110,7 +111,14 @@ class MessageContracts:
         """Return the fields that hold what a message says."""
         terms = [term for index in handler.inputs for term in self._layout.terms_of(index)]
         found = [each.name for _, each in self._findings(handler.inputs)]
-        return [*(term.name for term in terms), *found]
+        return [*(term.name for term in terms), *self._computed(handler), *found]
+
+    def _computed(self, handler: Handler) -> dict[str, Term]:
+        """Return the arithmetic that reads what a message says, by the names of the fields."""
+        terms = [
+            term for index in handler.inputs for term in self._layout.computed_of(index).values()
+        ]
+        return {term.name: term for term in terms}
 
     def _findings(self, inputs: tuple[int, ...]) -> list[tuple[Condition, Finding]]:
         return [
@@ -131,7 +139,7 @@ class MessageContracts:
         bases = [name for each in fields for name in (each.base, each.came) if name]
         flags = [each.missing for each in fields if each.missing]
         flags += [each.known for each in fields if each.known]
-        flags += [term.known for term in terms]
+        flags += [term.known for term in (*terms, *self._computed(handler).values())]
         stored = self._stored(handler)
         changed = [*bases, *dict.fromkeys(flags), *stored]
         changed += [name for each in memories for name in each.numbers]
@@ -203,6 +211,15 @@ class MessageContracts:
         for memory in self._layout.memories_of(each.index).values():
             if memory.last_t:
                 yield f"m->{memory.last_t} == m->now"
+        for value, term in self._layout.computed_of(each.index).items():
+            operands = [self._layout.terms[operand] for operand in value.operands]
+            name = computed_functions(self._program)[value].name
+            texts = (
+                f"{'' if each.type == 'double' else '(double)'}m->{each.name}" for each in operands
+            )
+            yield f"is_{name}({', '.join([f'm->{term.name}', *texts])})"
+            known = [f"m->{flag} != 0" for flag in dict.fromkeys(each.known for each in operands)]
+            yield iff(f"m->{term.known} != 0", all_of([*known, f"!\\is_NaN(m->{term.name})"]))
         for condition, finding in self._findings((each.index,)):
             yield iff(f"m->{finding.name} != 0", self._predicates.semantics.holds(condition))
         if len(handler.inputs) == 1:
@@ -258,7 +275,11 @@ class MessageContracts:
         forgotten = [name for forget in self._forgets(each) for name in forget.changed]
         names = [fields.base, fields.came, fields.missing]
         names += [term.name for term in self._layout.terms_of(each.index)]
-        names += [finding.name for _, finding in self._findings((each.index,))]
+        # What another input of the message has a part in, too, is another if that one counts.
+        others = set(handler.inputs) - {each.index}
+        parts: list[Term | Finding] = [*self._layout.computed_of(each.index).values()]
+        parts += [finding for _, finding in self._findings((each.index,))]
+        names += [part.name for part in parts if others.isdisjoint(part.inputs)]
         for memory in self._layout.memories_of(each.index).values():
             names += memory.numbers
         kept = [name for name in names if name and name not in forgotten]

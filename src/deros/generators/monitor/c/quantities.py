@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from deros.generators.monitor.c.acsl_formulas import called_by, formula_predicate, loop_declarations
 from deros.generators.monitor.c.acsl_terms import constant, of
+from deros.generators.monitor.c.computed import computed_functions
 from deros.generators.monitor.c.contracts import wrapped
 from deros.generators.monitor.c.layout import ELEMENTS
 from deros.monitor import walk
@@ -48,6 +49,10 @@ def _used(program: Program) -> dict[str, tuple[tuple[str, ...], Formula]]:
         if row.argument is Argument.QUATERNION:
             found["length_of"] = LENGTH_OF
         found[row.c_name] = own
+    for each in computed_functions(program).values():
+        for name in called_by(each.formula):
+            found[name] = SHARED[name]
+        found[each.name] = (each.parameters, each.formula)
     return found
 
 

@@ -20,7 +20,7 @@ _CONTRACT = re.compile(
 )
 """A function with a contract above it, from the comment to the brace."""
 
-_OF_LIBM = re.compile(r"\b(?:NAN|INFINITY|fabs|sqrt|atan2|asin|fmod|remainder)\b")
+_OF_LIBM = re.compile(r"\b(?:NAN|INFINITY|fabs|sqrt|sin|cos|tan|atan2|asin|fmod|remainder)\b")
 
 
 def render_monitor(program: Program) -> dict[str, str]:

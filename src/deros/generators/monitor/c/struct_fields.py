@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros.generators.monitor.c.layout import Layout
-from deros.monitor.ir import Program
+from deros.monitor.ir import Program, Read
 from deros.monitor.memories import SAMPLES
 
 WINDOW_SIZE = 16 * SAMPLES + 16
@@ -59,7 +59,7 @@ def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
         size = {"bool": 1, "uint32_t": 4}.get(term.type, 8)
         initial = {"bool": "false", "uint32_t": "0U", "double": "0.0"}.get(term.type, "0")
         yield Field(f"{term.type} ", term.name, "as of the last message", size, initial)
-        if term.known != layout.inputs[term.input].known:
+        if not isinstance(term.value, Read):
             yield Field("bool ", term.known, "whether it is known", 1, "false")
     for finding in layout.findings.values():
         yield Field("bool ", finding.name, "how values compare", 1, "false")

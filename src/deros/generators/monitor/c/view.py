@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros.generators.monitor.c.handlers import Handler, handlers
-from deros.generators.monitor.c.layout import Layout, compared, input_of, lay_out
+from deros.generators.monitor.c.layout import Layout, compared, inputs_of, lay_out
 from deros.generators.monitor.c.literals import integer, literal, number
 from deros.generators.monitor.c.rule_functions import Function, Sites, behave, judge, settle, sites
 from deros.generators.monitor.c.struct_fields import Field, struct_fields
@@ -271,7 +271,8 @@ def monitor_view(program: Program) -> MonitorView:
 
 def _forgets(program: Program, layout: Layout) -> Iterator[Forget]:
     for index, function in layout.forgets.items():
-        known = dict.fromkeys(term.known for term in layout.terms_of(index))
+        terms = [*layout.terms_of(index), *layout.computed_of(index).values()]
+        known = dict.fromkeys(term.known for term in terms)
         if layout.inputs[index].known:
             known[layout.inputs[index].known] = None
         memories = layout.memories_of(index).values()
@@ -330,7 +331,8 @@ def inputs_of_rules(program: Program) -> list[set[int]]:
                 found.add(part.input)
             elif isinstance(part, RuleRef):
                 found |= inputs[part.rule]
-            found |= {input_of(program, value) for value in compared(part)}
+            for value in compared(part):
+                found |= inputs_of(program, value)
         inputs.append(found)
     return inputs
 

@@ -21,6 +21,7 @@ from deros.monitor.ir import (
     And,
     Apply,
     Compare,
+    Compute,
     Condition,
     Const,
     Failsafe,
@@ -218,7 +219,7 @@ class Conditions:
         match value:
             case Const():
                 return not isinstance(value.value, bool | str)
-            case Scale():
+            case Scale() | Compute():
                 return True
             case Apply():
                 return FUNCTIONS[value.function].result is not Result.BOOLEAN

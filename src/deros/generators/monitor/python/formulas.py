@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from itertools import takewhile
 
+from deros.generators.monitor.computed import ComputedFunction
 from deros.generators.text.python import LINE_LENGTH, lay_out_call
 from deros.monitor.formulas import (
     SHARED,
@@ -123,6 +124,13 @@ def printed(row: Function) -> tuple[str, ...]:
             _function(function_name(row), row.variables, formula, _says(row)),
         )
     return ()
+
+
+def printed_computed(function: ComputedFunction) -> tuple[str, ...]:
+    """Return the definition of a function of arithmetic, those that it needs first."""
+    says = f"Return {function.wording}; NaN is unknown."
+    text = _function(function.name, function.parameters, function.formula, says)
+    return (*_shared(function.formula), text)
 
 
 def is_printed(row: Function) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deros.generators.monitor.python.conditions import literal, scaled
 from deros.generators.monitor.python.formulas import function_name, is_printed
-from deros.generators.monitor.python.layout import Layout, input_of
+from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.monitor.python.rules import Judge
 from deros.generators.text.document import LINE, SOFTLINE, concat, group, join, nest, render_lines
@@ -19,7 +19,18 @@ from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
 from deros.monitor.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
-from deros.monitor.ir import Age, Apply, Const, Input, Leaf, Program, Read, Scale, ValueExpression
+from deros.monitor.ir import (
+    Age,
+    Apply,
+    Compute,
+    Const,
+    Input,
+    Leaf,
+    Program,
+    Read,
+    Scale,
+    ValueExpression,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,14 +285,27 @@ class _Writer:
         slots = [
             (f"self._{slot.name}", self._local(value))
             for value, slot in layout.values.items()
-            if input_of(self._program, value) == index
+            if not isinstance(value, Compute) and index in inputs_of(self._program, value)
         ]
         if index in layout.known:
             slots.append((f"self._{layout.known[index]}", "True"))
         if each.timeout_ns is not None:
             statements += self._heard(each, each.timeout_ns, bool(slots))
         lines = [f"{' ' * indent}{statement}" for statement in statements]
-        return lines + self._news(slots, indent)
+        return lines + self._news(slots, self._computed(index, indent), indent)
+
+    def _computed(self, index: int, indent: int) -> list[str]:
+        """Return the statements that compute arithmetic anew that reads an input."""
+        lines: list[str] = []
+        for value, function in self._layout.computed.items():
+            if index in inputs_of(self._program, value):
+                operands = [
+                    self._as_float(each, f"self._{self._layout.values[each].name}")
+                    for each in value.operands
+                ]
+                name = self._layout.values[value].name
+                lines += lay_out_call(indent, f"self._{name} = {function.name}(", operands)
+        return lines
 
     def _heard(self, each: Input, timeout_ns: int, has_values: bool) -> list[str]:
         """Return the statements that restart the timeout."""
@@ -298,10 +322,12 @@ class _Writer:
             return [*lines, f"    {_FRESH}"]
         return [*lines, "else:", "    return"] if self._tells_news else lines
 
-    def _news(self, slots: Sequence[tuple[str, str]], indent: int) -> list[str]:
-        """Return the statements that store the values if they differ."""
+    def _news(
+        self, slots: Sequence[tuple[str, str]], computed: Sequence[str], indent: int
+    ) -> list[str]:
+        """Return the statements that store the values if they differ, and compute with them."""
         blank = " " * indent
-        stores = [f"{blank}{attribute} = {local}" for attribute, local in slots]
+        stores = [*(f"{blank}{attribute} = {local}" for attribute, local in slots), *computed]
         if not slots or not self._tells_news:
             return stores
         if self._counts_news:
@@ -345,6 +371,8 @@ class _Writer:
                 return scaled(self._value(value.operand), value)
             case Apply():
                 return self._locals[value]
+            case Compute():
+                raise AssertionError("arithmetic is no argument of a function")
 
 
 def needed_texts(function: Apply) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from deros.generators.monitor.computed import ComputedFunction, computed_functions
 from deros.generators.monitor.python.formulas import printed
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.text.unique_names import UniqueNames
@@ -13,6 +14,7 @@ from deros.monitor.functions import FUNCTIONS, Function, Result
 from deros.monitor.ir import (
     Age,
     Apply,
+    Compute,
     Condition,
     Failsafe,
     For,
@@ -46,6 +48,7 @@ class Layout:
     Attributes:
         names: of them all, and of the methods.
         values: what the conditions read of the inputs' messages, and every function of them.
+        computed: of arithmetic, which is among the values, the function that computes it.
         remembered: of a function with a step, what it remembers beside its result, by the name in
             the step, and under ``last_t`` the time of the last message if the step asks for it.
         memories: of a function whose memory is an object, that object.
@@ -74,6 +77,7 @@ class Layout:
 
     names: UniqueNames
     values: dict[ValueExpression, Slot] = field(default_factory=dict)
+    computed: dict[Compute, ComputedFunction] = field(default_factory=dict)
     remembered: dict[Apply, dict[str, str]] = field(default_factory=dict)
     memories: dict[Apply, str] = field(default_factory=dict)
     heard: dict[int, str] = field(default_factory=dict)
@@ -105,12 +109,15 @@ def lay_out_memory(program: Program) -> Layout:
         refusing=walk.refusing(program),
     )
     conditions = tuple(walk.conditions(program))
-    for value in walk.values(conditions):
-        if isinstance(value, Apply):
-            _name_value(program, value, layout)
+    for each in walk.values(conditions):
+        if isinstance(each, Apply):
+            _name_value(program, each, layout)
     for condition in conditions:
-        for value in walk.terminals(condition):
-            _name_value(program, value, layout)
+        for terminal in walk.terminals(condition):
+            _name_value(program, terminal, layout)
+    layout.computed.update(computed_functions(program, "_compute", RESERVED))
+    for number, value in enumerate(layout.computed, 1):
+        layout.values[value] = Slot(layout.names.new("computed", number), "NAN")
     _name_inputs(program, layout)
     _name_verdicts(program, layout)
     _name_actions(program, layout)
@@ -120,15 +127,17 @@ def lay_out_memory(program: Program) -> Layout:
 
 def slots_of(layout: Layout, program: Program, index: int) -> list[Slot]:
     """Return the slots that hold values of one input."""
-    return [slot for value, slot in layout.values.items() if input_of(program, value) == index]
+    return [slot for value, slot in layout.values.items() if index in inputs_of(program, value)]
 
 
-def input_of(program: Program, value: ValueExpression) -> int:
-    """Return the input that a leaf or a function belongs to."""
+def inputs_of(program: Program, value: ValueExpression) -> set[int]:
+    """Return the inputs that a leaf, a function or arithmetic reads."""
     if isinstance(value, Apply):
-        return value.input
+        return {value.input}
+    if isinstance(value, Compute):
+        return {index for each in value.operands for index in inputs_of(program, each)}
     assert isinstance(value, Read)
-    return program.leaves[value.leaf].input
+    return {program.leaves[value.leaf].input}
 
 
 def _name_inputs(program: Program, layout: Layout) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros.generators.monitor.python.conditions import Conditions
-from deros.generators.monitor.python.layout import Layout, input_of
+from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.text.logic import Atom, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment
 from deros.monitor import walk
@@ -86,7 +86,8 @@ def _inputs(program: Program, condition: Condition, of_rules: dict[int, set[int]
             found.add(part.input)
         elif isinstance(part, RuleRef):
             found |= of_rules[part.rule]
-        found |= {input_of(program, value) for value in walk.terminals(part)}
+        for value in walk.terminals(part):
+            found |= inputs_of(program, value)
     return found
 
 
@@ -128,7 +129,7 @@ def _remembered(layout: Layout, rules: list[Rule]) -> list[str]:
             elif isinstance(part, Failsafe):
                 for index in part.inputs:
                     names.update(dict.fromkeys(_awaited(layout, index)))
-            for value in walk.terminals(part):
+            for value in walk.compared(part):
                 names[layout.values[value].name] = None
     return list(names)
 

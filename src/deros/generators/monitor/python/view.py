@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deros.generators.monitor.functions import refuse_unknown
 from deros.generators.monitor.python.behaviours import act_lines, latched_lines
-from deros.generators.monitor.python.formulas import class_name, printed
+from deros.generators.monitor.python.formulas import class_name, printed, printed_computed
 from deros.generators.monitor.python.handlers import Handler, handlers, needed_texts
 from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory, slots_of
 from deros.generators.monitor.python.rule_state import rule_state_lines, rules_of, waiting_lines
@@ -194,6 +194,8 @@ def _function_texts(layout: Layout) -> tuple[str, ...]:
             for name in needed_texts(value):
                 texts[PYTHON[name]] = None
             texts.update(dict.fromkeys(printed(row)))
+    for function in layout.computed.values():
+        texts.update(dict.fromkeys(printed_computed(function)))
     return tuple(each for each in texts if each)
 
 
