@@ -494,7 +494,8 @@ def _as_built(program: ir.Program) -> ir.Program:
     """Return a program as the compiler builds it of its text.
 
     It has no unread fields of whole messages and no timeouts of unused inputs, and a NaN in an
-    array that is only counted is ignored. All three change what happens.
+    array that is only counted is ignored, unless it is asked whether the input is missing. All
+    three change what happens.
     """
     conditions = tuple(walk.conditions(program))
     values = walk.values(conditions)
@@ -514,6 +515,10 @@ def _as_built(program: ir.Program) -> ir.Program:
         if isinstance(term, ir.Read) and program.leaves[term.leaf].type.is_array
     ]
     matters = {leaf for leaf, nan_is_unknown in arrays if nan_is_unknown}
+    for condition in conditions:
+        match condition:
+            case ir.Missing(input=index) | ir.Age(input=index) | ir.Unknown(index, operand=None):
+                matters.update(program.inputs[index].leaves if program.inputs[index].path else ())
     counted = {leaf for leaf, _ in arrays} - matters
     leaves = tuple(
         replace(leaf, nan_is_unknown=leaf.nan_is_unknown and leaf.index not in counted)
