@@ -178,7 +178,7 @@ def test_float32_values_are_rounded() -> None:
         ('{"t": NaN, "topic": "/speed"}', "DRS502", "is no time"),
         (line("/speed", {"date": 1}), "DRS503", "std_msgs/msg/Float64 has no field 'date'"),
         (line("/speed", {"data.x": 1}), "DRS503", "it has no fields"),
-        (line("/speed", {"": 1}), "DRS503", "no path"),
+        (line("/speed", {"": 1}), "DRS503", "not the path of a field"),
         (line("/scan", {"ranges.x": 1}), "DRS503", "lacks the index"),
         (line("/scan", {"ranges[999999999]": 1}), "DRS503", "beyond the end"),
         (line("/imu", {"angular_velocity_covariance[9]": 1}), "DRS503", "beyond the end"),
