@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from hypothesis import strategies as st
 from deros.diagnostics import Span
 from deros.generators.monitor.python.interface import render_monitor
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor import ir
+from deros.monitor import formulas, ir
 from tests.support import monitors
 from tests.support.strategies import Start, Step, span, starts, traces
 
@@ -102,11 +103,14 @@ def _decoded(value: Any) -> Any:
             return span(held["line"])
         case "dict" | "list" | "frozenset" as name:
             return {"dict": dict, "list": list, "frozenset": frozenset}[name](held["items"])
+        case "Number" if math.isnan(held["value"]):  # of which there is one, as NaN equals nothing
+            return formulas.UNKNOWN
         case name:
             return _CLASSES[name](**held)
 
 
 _CLASSES: dict[str, Any] = {
+    **{name: each for name, each in vars(formulas).items() if is_dataclass(each)},
     **{name: each for name, each in vars(ir).items() if is_dataclass(each)},
     **{each.__name__: each for each in (Pair, Start, Step, FieldType, InterfaceType)},
 }

@@ -7,6 +7,7 @@ of the clock coincide often, and comparisons meet their bounds.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
@@ -313,7 +314,14 @@ class _Drawing:
             value = self.operand(self.draw(st.sampled_from(self.numeric())))
             operands.setdefault(value, f"x{len(operands) + 1}")
         formula, written = self.part(self.draw(st.integers(1, 3)), list(operands.values()))
-        return ir.Compute(parse(formula), tuple(operands), f"({written})")
+        if not re.search(r"\bx\d\b", formula):
+            formula, written = f"(x1 + {formula})", f"(x1 + {written})"
+        used = [each for each, name in operands.items() if re.search(rf"\b{name}\b", formula)]
+        new = {operands[each]: f"x{number}" for number, each in enumerate(used, 1)}
+        formula, written = (
+            re.sub(r"\bx\d\b", lambda name: new[name[0]], each) for each in (formula, written)
+        )
+        return ir.Compute(parse(formula), tuple(used), f"({written})")
 
     def part(self, depth: int, names: list[str]) -> tuple[str, str]:
         """Draw a part of a formula, and how rules write it."""
@@ -324,22 +332,21 @@ class _Drawing:
         b, right = c, factor
         if self.writable:  # with units: of what is read, products and quotients always fit
             b = right = repr(self.draw(st.sampled_from(NUMBERS)))
-        of_angles = (
-            [] if self.writable else [(f"{name}({a})", "") for name in ("sin", "cos", "tan")]
-        )
+            c = factor = self.draw(st.sampled_from(names))
+        functions = () if self.writable else ("sqrt", "sin", "cos", "tan")
         choices = [
             (f"({a} + {b})", f"({left} + {right})"),
             (f"({a} - {b})", f"({left} - {right})"),
             (f"({a} * {c})", f"({left} * {factor})"),
             (f"({a} / {c})", f"({left} / {factor})"),
             (f"-({a})", f"(-({left}))"),
-            (f"sqrt({a})", f"sqrt({left})"),
+            (f"sqrt({a} * {a})", f"sqrt({left} * {left})"),
             (f"({a} if {a} > 0.0 else 0.0 - {a})", f"abs({left})"),
             (_chosen(a, "<", b), f"min({left}, {right})"),
             (_chosen(a, ">", b), f"max({left}, {right})"),
             (f"sqrt({a} * {a} + {b} * {b})", f"hypot({left}, {right})"),
             (f"atan2({a}, {b})", f"atan2({left}, {right})"),
-            *of_angles,
+            *((f"{name}({a})", "") for name in functions),
         ]
         return choices[self.draw(st.integers(0, len(choices) - 1))]
 

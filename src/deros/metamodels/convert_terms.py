@@ -117,24 +117,22 @@ class TermConverter(Converter):
         if not isinstance(number, Number) or number.unit_span is None:
             return
         text = number.unit_span.text
-        if self._declared.isdisjoint(_STEP.findall(text)) or self._is_unit(text):
+        places = [each for each in _UNIT_OPERATOR.finditer(text) if each["name"] in self._declared]
+        if not places or self._is_unit(text):
             return
-        for found in reversed(list(_UNIT_OPERATOR.finditer(text))):
-            if found["name"] in self._declared and self._is_unit(text[: found.start()]):
-                start = number.unit_span.start
-                end = start + found.start()
-                unit = text[: found.start()]
-                span = Span(self.source, number.span.start, end)
-                shorter = Number(number.value, span, unit, Span(self.source, start, end))
-                operands[-1] = _Operand(operands[-1].operator, shorter, span)
-                for rest in _UNIT_OPERATOR.finditer(text, found.start()):
-                    operator, name = (
-                        _token(rest[group], start + rest.start(group))
-                        for group in ("operator", "name")
-                    )
-                    path = NamePath(self.name(name), (), self.token_span(name))
-                    operands.append(_Operand(operator, path, path.span))
-                return
+        units = [each for each in places if self._is_unit(text[: each.start()])]
+        first = units[-1] if units else places[0]
+        start, length = number.unit_span.start, first.start()
+        span = Span(self.source, number.span.start, start + length)
+        unit_span = Span(self.source, start, start + length)
+        shorter = Number(number.value, span, text[:length], unit_span)
+        operands[-1] = _Operand(operands[-1].operator, shorter, span)
+        for each in _UNIT_OPERATOR.finditer(text, length):
+            operator, name = (
+                _token(each[group], start + each.start(group)) for group in ("operator", "name")
+            )
+            path = NamePath(self.name(name), (), self.token_span(name))
+            operands.append(_Operand(operator, path, path.span))
 
     def _factor(self, found: Any) -> Term:
         kind = type(found).__name__

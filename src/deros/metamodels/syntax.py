@@ -38,6 +38,7 @@ _WORDS = {
     "FieldPath": "a field",
     "Path": "a field",
     "FieldSeparator": "','",
+    "ArithmeticOperator": "an operator",
     "Operator": "a comparison",
     "IntervalOpening": "'[' or '('",
     "IntervalClosing": "']' or ')'",

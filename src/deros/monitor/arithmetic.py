@@ -24,54 +24,11 @@ from deros.monitor import formulas, intervals, ir
 from deros.monitor.bounds import rounded
 from deros.monitor.formulas import UNKNOWN, Binary, Choice, Expression, Formula, Name, Relation
 from deros.monitor.intervals import Interval
+from deros.monitor.operations import CALLS, is_arithmetic
 from deros.monitor.reads import strip_comments
 from deros.monitor.resolved import AgeOf, DeclaredInput, Quantity, Resolved, Value, family
 from deros.monitor.scope import Scope
 from deros.monitor.term_names import describe
-
-CALLS = {
-    "sqrt": (1, 1),
-    "sin": (1, 1),
-    "cos": (1, 1),
-    "tan": (1, 1),
-    "abs": (1, 1),
-    "atan2": (2, 2),
-    "hypot": (2, 3),
-    "min": (2, 8),
-    "max": (2, 8),
-}
-"""The functions of arithmetic, with the least and the greatest number of their operands."""
-
-
-def is_arithmetic(term: rules.Term) -> bool:
-    """Return whether a term is an operation or a function of arithmetic; not ``-constant``."""
-    match term:
-        case rules.Arithmetic():
-            return True
-        case rules.Call(receiver=None, function=function):
-            return function.text in CALLS
-        case rules.Negative(operand=operand):
-            return is_arithmetic(operand)
-    return False
-
-
-def usage_table() -> str:
-    """Return the table of the documentation: how each operation is written, and what it gives."""
-    rows = [f"| {usage} | {on} | {gives} |" for usage, on, gives in _USAGE]
-    return "\n".join(["| operation | of | value |", "|---|---|---|", *rows])
-
-
-_USAGE = (
-    ("`a + b`, `a - b`", "numbers of one dimension", "in the unit of `a`"),
-    ("`a * b`", "two numbers", "a product of the units; a radian beside a length is 1"),
-    ("`a / b`", "two numbers", "unknown where `b` is zero"),
-    ("`-a`, `abs(a)`", "a number", "in its unit"),
-    ("`sqrt(a)`", "a number", "unknown below zero"),
-    ("`min(a, b, …)`, `max(a, b, …)`", "2 to 8 numbers of one dimension", "in the unit of `a`"),
-    ("`hypot(a, b)`, `hypot(a, b, c)`", "numbers of one dimension", "the length of that vector"),
-    ("`sin(a)`, `cos(a)`, `tan(a)`", "an angle; a plain number is in rad", "a plain number"),
-    ("`atan2(y, x)`", "two numbers of one dimension", "the bearing of that point, in rad"),
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +71,8 @@ class ArithmeticTerm:
         self._operands: dict[ir.Read | ir.Apply, str] = {}
         self._inputs: list[DeclaredInput] = []
         self._assigned: dict[str, Expression] = {}
+        self.unknown_while = ""
+        """What makes it unknown while its operands are known, if something can."""
         self._one, self._radian = scope.units.parse("1"), scope.units.parse("rad")
 
     def value(self, term: rules.Term) -> Value | Quantity | None:
@@ -245,6 +204,8 @@ class ArithmeticTerm:
         if left.constant is not None and right.constant is not None:
             plain = left.plain and right.plain
             return _constant(left.constant / right.constant, unit, term.span, plain)
+        if right.interval[0] <= 0.0 <= right.interval[1]:
+            self.unknown_while = f"'{right.span.text}' is zero"
         divided = Binary("/", self._part(left), self._named(right))
         ends = intervals.divided(left.interval, right.interval)
         return _Number(formulas.guarded_division(divided), unit, ends, term.span)
@@ -319,6 +280,11 @@ class ArithmeticTerm:
 
     def _root(self, call: rules.Call, operand: _Number) -> _Number:
         self._refuse_offsets(operand)
+        if operand.interval[1] < 0.0:
+            message = f"'{call.span.text}' has no value: '{operand.span.text}' is below zero"
+            raise self._fault(codes.WRONG_OPERAND, message, call.span)
+        if operand.interval[0] < 0.0:
+            self.unknown_while = f"'{operand.span.text}' is below zero"
         unit = operand.unit
         if unit is not None:
             operand = self._converted(operand, replace(unit, factor=Fraction(1)))

@@ -135,7 +135,7 @@ class _Builder:
         for index in sorted(inputs):
             owner = self.scope.used_inputs[index]
             without = f"'{owner.name}' has no timeout, so no silence of it makes the rule unknown"
-            timed &= self.terms.has_timeout(owner, without, rule.name.span)
+            timed &= self.terms.of_functions.has_timeout(owner, without, rule.name.span)
         return ir.Failsafe(condition, tuple(sorted(inputs))) if timed else None
 
     def _verdict(self, term: rules.NamePath, entity: str = "") -> ir.RuleRef | None:

@@ -14,6 +14,7 @@ from deros.metamodels import rules
 from deros.monitor import ir
 from deros.monitor.arithmetic import scaled
 from deros.monitor.bounds import Bounds, bounds_of, exact, integer_bound, rounded
+from deros.monitor.function_terms import compatible
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.resolved import (
     AgeOf,
@@ -191,7 +192,7 @@ class Comparisons:
         unit = found.shown_in if isinstance(found, Quantity) else found.unit
         if unit is None or value.unit is None:
             return True
-        return self._terms.compatible(unit, value.unit, term)
+        return compatible(self._scope, unit, value.unit, term)
 
     def _with_number(
         self,

@@ -25,6 +25,7 @@ from deros.monitor import ir
 from deros.monitor.actions import Actions
 from deros.monitor.bounds import as_float32, rounded, type_bounds
 from deros.monitor.commands import LAYOUT, QUATERNION, TIME
+from deros.monitor.function_terms import compatible
 from deros.monitor.resolved import MessageConstant, Quantity
 from deros.monitor.scope import Scope
 from deros.monitor.terms import Terms
@@ -215,7 +216,7 @@ class GateResolver:
         wanted = unit or common or lower.shown_in or upper.shown_in
         for end, term in ((lower, limit.lower), (upper, limit.upper)):
             given = end.shown_in
-            if given and wanted and not self._terms.compatible(given, wanted, term):
+            if given and wanted and not compatible(self._scope, given, wanted, term):
                 return None
         least, greatest = lower.in_unit(wanted), upper.in_unit(wanted)
         if not self._is_limit(limit, field.type, least, greatest):

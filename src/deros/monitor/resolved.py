@@ -169,17 +169,19 @@ class ResolvedComparison:
 
 @dataclass(frozen=True, slots=True)
 class AppliedFunction:
-    """A function of a message or of an array, where it is written.
+    """A function of a message or of an array, or arithmetic, where it is written.
 
     Attributes:
         expression: what the monitor computes.
         type: of what it is applied to.
-        span: of the whole call.
+        span: of the whole.
+        unknown_while: of arithmetic, what makes it unknown while its operands are known.
     """
 
-    expression: ir.Apply
+    expression: ir.Apply | ir.Compute
     type: FieldType
     span: Span = field(compare=False, repr=False)
+    unknown_while: str = ""
 
 
 def family(kind: FieldType) -> str:

@@ -8,7 +8,16 @@ from dataclasses import dataclass, field
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.interfaces.fields import format_path
-from deros.metamodels.rules import Call, Input, NamePath, Negative, Rules, Term, TopicPath
+from deros.metamodels.rules import (
+    Arithmetic,
+    Call,
+    Input,
+    NamePath,
+    Negative,
+    Rules,
+    Term,
+    TopicPath,
+)
 from deros.monitor.functions import WRITTEN, Argument
 from deros.validators.rules_walk import rules_of, terms_of
 
@@ -60,6 +69,12 @@ def _values_read(term: Term) -> Iterator[NamePath | TopicPath]:
             yield term
         case Negative():
             yield from _values_read(term.operand)
+        case Arithmetic():
+            yield from _values_read(term.left)
+            yield from _values_read(term.right)
+        case Call(receiver=None):
+            for argument in term.arguments:
+                yield from _values_read(argument)
         case Call() if term.receiver is not None and not _asks_for_messages(term):
             yield from _values_read(term.receiver)
         case _:

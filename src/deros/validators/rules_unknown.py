@@ -16,6 +16,7 @@ from deros.monitor.resolved import AppliedFunction
 from deros.validators.rules_walk import RulesByName, behaviours_of, rules_of
 
 _Key = tuple[str, tuple[ir.ValueExpression, ...]]
+_Function = ir.Apply | ir.Compute
 _Verdicts = dict[int, tuple[bool, bool]]  # by rule: surely not false, surely not true
 
 
@@ -92,20 +93,25 @@ def _unnoticed(
         noticed = firmly if rule.index in used.firm else everywhere
         reported: set[_Key] = set()
         read = [part for part in walk.parts(rule.condition) if not isinstance(part, ir.Unknown)]
-        asked = {_key(each) for each in walk.values(read) if isinstance(each, ir.Apply)}
+        asked = {_key(each) for each in walk.values(read) if isinstance(each, _Function)}
         first, end = (bisect_left(starts, place) for place in (rule.span.start, rule.span.end))
         for each in fallible[first:end]:
             key = _key(each.expression)
             if key not in asked or key in noticed or key in reported:
                 continue
             reported.add(key)
-            owner = program.inputs[each.expression.input]
+            hint = f"write 'failsafe {rule.name}: …'"
+            related: tuple[Related, ...] = ()
+            if isinstance(each.expression, ir.Apply):
+                hint += f", or use '{each.span.text}.unknown()' in a rule"
+                owner = program.inputs[each.expression.input]
+                related = (Related(owner.span, "its messages still arrive: it is not missing"),)
             yield report(
                 codes.UNHANDLED_UNKNOWN,
                 f"'{rule.full_name}' is unknown while {_reason(each)}, and no rule reacts to that",
                 each.span,
-                f"write 'failsafe {rule.name}: …', or use '{each.span.text}.unknown()' in a rule",
-                (Related(owner.span, "its messages still arrive: it is not missing"),),
+                hint,
+                related,
             )
 
 
@@ -115,6 +121,8 @@ def _start(function: AppliedFunction) -> int:
 
 def _is_fallible(function: AppliedFunction) -> bool:
     """Return whether a function can be unknown for a valid message."""
+    if isinstance(function.expression, ir.Compute):
+        return bool(function.unknown_while)
     match FUNCTIONS[function.expression.function].argument:
         case Argument.QUATERNION | Argument.SCAN:
             return True
@@ -125,6 +133,8 @@ def _is_fallible(function: AppliedFunction) -> bool:
 
 
 def _reason(function: AppliedFunction) -> str:
+    if isinstance(function.expression, ir.Compute):
+        return function.unknown_while
     match FUNCTIONS[function.expression.function].argument:
         case Argument.QUATERNION:
             return "the quaternion has length zero"
@@ -141,8 +151,10 @@ def _header(function: ir.Apply) -> tuple[ir.ValueExpression, ...]:
     return function.arguments[2:] if FUNCTIONS[function.function].over_span else ()
 
 
-def _key(function: ir.Apply) -> _Key:
+def _key(function: _Function) -> _Key:
     """Return a key that is equal for functions that are unknown for the same messages."""
+    if isinstance(function, ir.Compute):
+        return "arithmetic", (function,)
     if _header(function):
         return "stamps", _header(function)
     argument = FUNCTIONS[function.function].argument
@@ -163,7 +175,7 @@ def _noticed(program: ir.Program, condition: ir.Condition) -> Iterator[_Key]:
     wholes = [*(program.rules[index].condition for index in named), condition]
     parts = (part for whole in wholes for part in walk.parts(whole))
     for value in walk.values(part for part in parts if not isinstance(part, ir.Unknown)):
-        if not isinstance(value, ir.Apply):
+        if not isinstance(value, _Function):
             continue
         key = _key(value)
         verdicts: _Verdicts = {}
@@ -205,7 +217,7 @@ def _while_unknown(condition: ir.Condition, key: _Key, verdicts: _Verdicts) -> t
             return False, False
         case _:
             read = walk.values([condition])
-            surely = any(_key(each) == key for each in read if isinstance(each, ir.Apply))
+            surely = any(_key(each) == key for each in read if isinstance(each, _Function))
             return surely, surely
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from deros.metamodels.common import Name
 from deros.metamodels.rules import (
     And,
+    Arithmetic,
     Behaviour,
     Call,
     Comparison,
@@ -129,6 +130,9 @@ def all_terms(term: Term) -> Iterator[Term]:
     match term:
         case Negative():
             yield from all_terms(term.operand)
+        case Arithmetic():
+            yield from all_terms(term.left)
+            yield from all_terms(term.right)
         case Call():
             for inner in (term.receiver, *term.arguments):
                 if inner is not None:

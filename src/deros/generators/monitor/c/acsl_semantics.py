@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from deros.generators.monitor.c.contracts import iff
 from deros.generators.monitor.c.expressions import SYMBOLS, known_of
-from deros.generators.monitor.c.layout import Layout, compared
+from deros.generators.monitor.c.layout import Layout
 from deros.generators.monitor.c.literals import number
+from deros.generators.monitor.c.value_types import compared
 from deros.monitor.ir import (
     Age,
     And,

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from deros.generators.monitor.c.layout import Layout, compared, type_of
+from deros.generators.monitor.c.layout import Layout
 from deros.generators.monitor.c.literals import integer, literal, number
+from deros.generators.monitor.c.value_types import compared, type_of
 from deros.generators.text.c import Call, Expression, Infix
 from deros.monitor.evaluate import COMPARE
 from deros.monitor.functions import FUNCTIONS, Argument, Result

@@ -14,8 +14,9 @@ from deros.generators.monitor.c.expressions import (
     present,
 )
 from deros.generators.monitor.c.helpers import helper_names
-from deros.generators.monitor.c.layout import ELEMENTS, InputFields, Layout, Term, c_type
+from deros.generators.monitor.c.layout import InputFields, Layout, Term
 from deros.generators.monitor.c.names import new_names
+from deros.generators.monitor.c.value_types import ELEMENTS, c_type
 from deros.generators.text.c import (
     Call,
     Expression,

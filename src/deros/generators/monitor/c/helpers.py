@@ -13,7 +13,7 @@ from deros.generators.monitor.c.acsl_formulas import loop_contract, loop_invaria
 from deros.generators.monitor.c.computed import computed_functions
 from deros.generators.monitor.c.contracts import wrapped
 from deros.generators.monitor.c.formulas import formula_text, printed, shared_texts
-from deros.generators.monitor.c.layout import ELEMENTS
+from deros.generators.monitor.c.value_types import ELEMENTS
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor.formulas import SHARED
 from deros.monitor.function_forms import LENGTH_OF

@@ -11,7 +11,7 @@ from deros.generators.monitor.c.acsl_formulas import called_by, formula_predicat
 from deros.generators.monitor.c.acsl_terms import constant, of
 from deros.generators.monitor.c.computed import computed_functions
 from deros.generators.monitor.c.contracts import wrapped
-from deros.generators.monitor.c.layout import ELEMENTS
+from deros.generators.monitor.c.value_types import ELEMENTS
 from deros.monitor import walk
 from deros.monitor.formulas import SHARED, Formula
 from deros.monitor.function_forms import LENGTH_OF

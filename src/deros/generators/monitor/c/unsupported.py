@@ -9,7 +9,8 @@ from deros import codes
 from deros.diagnostics import Span, report
 from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.formulas import printed
-from deros.generators.monitor.c.layout import compared, rule_parts, type_of
+from deros.generators.monitor.c.layout import rule_parts
+from deros.generators.monitor.c.value_types import compared, type_of
 from deros.generators.monitor.functions import refuse_unknown
 from deros.interfaces.durations import LATEST_NS
 from deros.monitor import walk

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros.generators.monitor.c.handlers import Handler, handlers
-from deros.generators.monitor.c.layout import Layout, compared, inputs_of, lay_out
+from deros.generators.monitor.c.layout import Layout, lay_out
 from deros.generators.monitor.c.literals import integer, literal, number
 from deros.generators.monitor.c.rule_functions import Function, Sites, behave, judge, settle, sites
 from deros.generators.monitor.c.struct_fields import Field, struct_fields
 from deros.generators.monitor.c.unsupported import refuse_unsupported
+from deros.generators.monitor.c.value_types import compared, inputs_of
 from deros.generators.text.c import comment
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
