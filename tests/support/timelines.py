@@ -93,5 +93,9 @@ def _ns(seconds: str) -> int:
 GIVEN = load("timelines.json")
 ALL = [
     *GIVEN,
-    *(each for file in ("more", "named_rules", "since", "within") for each in load(f"{file}.json")),
+    *(
+        each
+        for file in ("more", "named_rules", "since", "within", "arithmetic")
+        for each in load(f"{file}.json")
+    ),
 ]

@@ -252,7 +252,12 @@ def quotient(left: Unit, right: Unit) -> Unit | None:
 def root(unit: Unit) -> Unit:
     """Return the unit of the square root of a number in base units of the dimension of ``unit``."""
     exponents = tuple((base, power / 2) for base, power in unit.exponents)
-    return Unit(_in_bases(exponents), exponents, Fraction(1))
+    return in_bases(replace(unit, exponents=exponents))
+
+
+def in_bases(unit: Unit) -> Unit:
+    """Return the unit of the same dimension that is made of base units (SI, and the radian)."""
+    return Unit(_in_bases(unit.exponents), unit.exponents, Fraction(1))
 
 
 def without_angles(unit: Unit) -> Unit:

@@ -185,6 +185,7 @@ class ArithmeticTerm:
         return _Number(expression, unit, ends, term.span)
 
     def _product(self, left: _Number, right: _Number, term: rules.Arithmetic) -> _Number:
+        left, right = self._factors(left, right)
         unit = self._combined(units.product, left, right, term)
         if left.constant is not None and right.constant is not None:
             plain = left.plain and right.plain
@@ -200,6 +201,7 @@ class ArithmeticTerm:
         if right.constant == 0:
             message = f"'{term.span.text}' has no value: it divides by zero"
             raise self._fault(codes.WRONG_OPERAND, message, term.operator_span)
+        left, right = self._factors(left, right)
         unit = self._combined(units.quotient, left, right, term)
         if left.constant is not None and right.constant is not None:
             plain = left.plain and right.plain
@@ -301,6 +303,8 @@ class ArithmeticTerm:
             return numbers
         first, unit = known[0], known[0].unit
         assert unit is not None
+        if any(each.unit is None for each in numbers):
+            unit = units.in_bases(unit)
         for each in known:
             assert each.unit is not None
             if not self._scope.units.compatible(each.unit, unit):
@@ -334,6 +338,15 @@ class ArithmeticTerm:
             interval = intervals.added(interval, (shift, shift))
         return replace(number, expression=expression, unit=unit, interval=interval)
 
+    def _factors(self, left: _Number, right: _Number) -> tuple[_Number, _Number]:
+        """Return two factors; beside one whose unit is not known, the other is in base units."""
+        self._refuse_offsets(left, right)
+        if left.unit is None and right.unit is not None:
+            return left, self._converted(right, units.in_bases(right.unit))
+        if right.unit is None and left.unit is not None:
+            return self._converted(left, units.in_bases(left.unit)), right
+        return left, right
+
     def _combined(
         self,
         combine: Callable[[Unit, Unit], Unit | None],
@@ -342,7 +355,6 @@ class ArithmeticTerm:
         term: rules.Arithmetic,
     ) -> Unit | None:
         """Return the unit of a product or quotient; a radian beside a length is 1."""
-        self._refuse_offsets(left, right)
         if left.unit is None or right.unit is None:
             return None
         found = combine(left.unit, right.unit)

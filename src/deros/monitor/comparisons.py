@@ -10,6 +10,7 @@ from deros import codes
 from deros.diagnostics import Span
 from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.types import FieldType
+from deros.interfaces.units import Unit, in_bases
 from deros.metamodels import rules
 from deros.monitor import ir
 from deros.monitor.arithmetic import scaled
@@ -153,7 +154,7 @@ class Comparisons:
         if isinstance(constant, Quantity):
             if not self._is_number(value, left) or not self._convertible(constant, value, right):
                 return None
-            number = constant.in_unit(value.unit)
+            number = constant.in_unit(_unit_of(value, constant))
             return self._with_number(node, value, operator, number, constant)
         scalar: ir.Scalar
         if isinstance(constant, Plain):
@@ -236,9 +237,10 @@ class Comparisons:
 
     def _scaled(self, value: Value, wanted: Value) -> ir.ValueExpression:
         """Return the value converted to the unit of ``wanted``."""
-        if value.unit is None or wanted.unit is None:
+        source, target = _unit_of(value, wanted), _unit_of(wanted, value)
+        if source is None or target is None:
             return value.expression
-        factor, offset = self._scope.units.factor(value.unit, wanted.unit)
+        factor, offset = self._scope.units.factor(source, target)
         if (factor, offset) == (1.0, 0.0):
             return value.expression
         if isinstance(value.expression, ir.Compute):
@@ -289,7 +291,7 @@ class Comparisons:
         if not all(fit):
             return None
         if isinstance(lower, Quantity) and isinstance(upper, Quantity):
-            least, greatest = lower.in_unit(operand.unit), upper.in_unit(operand.unit)
+            least, greatest = (each.in_unit(_unit_of(operand, each)) for each in (lower, upper))
             if self._is_empty(node, least, greatest):
                 return None
         within = self._within(node, operand, lower, upper)
@@ -337,7 +339,7 @@ class Comparisons:
         if isinstance(end, Value):
             return self._scaled(end, operand), closed
         assert isinstance(end, Quantity)
-        number = end.in_unit(operand.unit)
+        number = end.in_unit(_unit_of(operand, end))
         if not operand.is_integer:
             return ir.Const(rounded(number)), closed
         if number.denominator == 1:
@@ -417,6 +419,13 @@ class Comparisons:
             self._scope.fault(codes.INCOMPATIBLE_UNITS, message, span)
             return None
         return self._scope.nanoseconds(bound.in_unit(second), span)
+
+
+def _unit_of(value: Value, other: Value | Quantity) -> Unit | None:
+    """Return the unit of a value; if it is not known, arithmetic has base units."""
+    if value.unit is None and other.unit is not None and isinstance(value.expression, ir.Compute):
+        return in_bases(other.unit)
+    return value.unit
 
 
 def _brackets(node: rules.Membership) -> str:
