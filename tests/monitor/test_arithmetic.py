@@ -153,7 +153,9 @@ def test_operand_without_a_known_unit_is_in_base_units() -> None:
     found = rule("m * 2 > 5 cm").rules[0].condition
     assert isinstance(found, ir.Compare)
     assert found.right == ir.Const(0.05)
-    found = rule("m * 2 in [5 cm, 1 km]").rules[0].condition
+    found = rule("m * 2 in [5 cm, 1 km] and x / 2 not in [1 in, 2 in]").rules[0].condition
+    assert isinstance(found, ir.And)
+    found = found.operands[0]
     assert isinstance(found, ir.Within)
     assert (found.lower, found.upper) == (ir.Const(0.05), ir.Const(1000.0))
     found = rule("x * 100 / 1 m > m * 1 deg").rules[0].condition
