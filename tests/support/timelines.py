@@ -95,7 +95,7 @@ ALL = [
     *GIVEN,
     *(
         each
-        for file in ("more", "named_rules", "since", "within", "arithmetic")
+        for file in ("more", "named_rules", "since", "within", "arithmetic", "previous")
         for each in load(f"{file}.json")
     ),
 ]

@@ -230,7 +230,8 @@ class Comparisons:
         if not self._convertible(right, left, node.right):
             return None
         if kind == "number":
-            equality = operator in _EQUALITY
+            # A value and the one before it are not computed: nothing is rounded.
+            equality = operator in _EQUALITY and not _is_previous(left, right)
             self._note(node, left, None, equality, is_float(right.type), (operator, right))
         shown = wording(operator, left, right)
         return ir.Compare(left.expression, operator, self._scaled(right, left), shown)
@@ -426,6 +427,15 @@ def _unit_of(value: Value, other: Value | Quantity) -> Unit | None:
     if value.unit is None and other.unit is not None and isinstance(value.expression, ir.Compute):
         return in_bases(other.unit)
     return value.unit
+
+
+def _is_previous(*values: Value) -> bool:
+    """Return whether one of two values is the other at the message before."""
+    first, second = (each.expression for each in values)
+    return any(
+        isinstance(one, ir.Apply) and one.function == "previous" and one.arguments[0] == other
+        for one, other in ((first, second), (second, first))
+    )
 
 
 def _brackets(node: rules.Membership) -> str:

@@ -220,6 +220,23 @@ change
         c=texts.C["rate"],
     ),
     Function(
+        "previous",
+        Argument.NUMBER,
+        Result.FLOAT,
+        UnitRule.SAME,
+        usage="x.previous()",
+        gives="its value at the message before; unknown until there are two",
+        step=step(
+            """
+former = last
+last = value
+former
+""",
+            Remembered("last", "the value before"),
+        ),
+        bounds_from=lambda operand: operand,
+    ),
+    Function(
         "unwrapped",
         Argument.NUMBER,
         Result.FLOAT,
