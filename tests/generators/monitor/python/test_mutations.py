@@ -54,6 +54,28 @@ SLIPS = {
     "a missing input stays missing": (r"_silent = self\._\w+_missing = False", "_silent = False"),
     "the geometry of a scan is kept": (r"scan_beams\(len\(ranges\), ", "scan_beams(4, "),
     "the change of a rule has no time": (r"^( {12,})self\._\w+_since = t$", r"\g<1>pass"),
+    "within ends too late": (r"t < (\w+_until):", r"t <= \1:"),
+    "the end of a within is no deadline": (r"if (\w+_until) < self\._due:", "if False:"),
+    "a within restarts at every event": (r"elif \w+_until is NEVER:", "else:"),
+    "a within survives a clock step": (
+        r"^        self\.(_\w+_until) = 0$",
+        r"        self.\1 = getattr(self, '\1', 0)",
+    ),
+    "since forgets its cause": (r"(\w+_kept) = self\._\w+_kept = True", r"\1 = True"),
+    "a since survives a clock step": (
+        r"^        self\.(_\w+_kept) = False$",
+        r"        self.\1 = getattr(self, '\1', False)",
+    ),
+    "arithmetic is of what was before": (
+        r"^( +)self\._computed_\d+ = _compute_\d+\(.*\)$",
+        r"\1pass",
+    ),
+    "a quotient by zero is infinite": (r" != 0\.0 else math\.nan", " != 0.0 else math.inf"),
+    "arithmetic is known without its operands": (
+        r"^        self\.(_computed_\d+) = NAN$",
+        r"        self.\1 = getattr(self, '\1', NAN)",
+    ),
+    "the previous value is the present one": (r"former = self\.last", "former = value"),
     "rates use the wrong time": (r"t - self\._(\w+_last_t)", r"t + self._\1"),
 }
 """Mutations by name: a pattern of the generated text, and its replacement."""
