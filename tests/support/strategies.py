@@ -310,12 +310,14 @@ class _Drawing:
     def arithmetic(self) -> ir.Compute:
         """Draw arithmetic on numbers of any inputs; its wording is that of rules."""
         operands: dict[ir.Read | ir.Apply, str] = {}
-        for _ in range(self.draw(st.integers(1, 3))):
-            value = self.operand(self.draw(st.sampled_from(self.numeric())))
-            operands.setdefault(value, f"x{len(operands) + 1}")
-        formula, written = self.part(self.draw(st.integers(1, 3)), list(operands.values()))
-        if not re.search(r"\bx\d\b", formula):
-            formula, written = f"(x1 + {formula})", f"(x1 + {written})"
+        numeric = self.numeric()
+        for index in (*numeric[:2], self.draw(st.sampled_from(numeric))):
+            operands.setdefault(self.operand(index), f"x{len(operands) + 1}")
+        formula, written = self.part(self.draw(st.integers(0, 3)), list(operands.values()))
+        for name in operands.values():  # as a product, which has a unit whatever the units are
+            is_used = re.search(rf"\b{name}\b", formula) is not None
+            if not is_used and (name == "x1" or self.draw(st.booleans())):
+                formula, written = f"({name} * {formula})", f"({name} * {written})"
         used = [each for each, name in operands.items() if re.search(rf"\b{name}\b", formula)]
         new = {operands[each]: f"x{number}" for number, each in enumerate(used, 1)}
         formula, written = (

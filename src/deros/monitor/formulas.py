@@ -283,8 +283,13 @@ def _parts(value: Expression) -> Iterator[Expression]:
 
 def has_choices(formula: Formula) -> bool:
     """Return whether a formula asks for a condition, and so might not hand on what is unknown."""
+    return choices(formula) > 0
+
+
+def choices(formula: Formula) -> int:
+    """Return how many choices a formula has."""
     values = [value for _, value in formula.assignments] + [formula.result]
-    return any(isinstance(each, Choice) for value in values for each in _parts(value))
+    return sum(isinstance(each, Choice) for value in values for each in _parts(value))
 
 
 def calls(formula: Formula) -> tuple[str, ...]:

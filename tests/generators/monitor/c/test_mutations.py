@@ -70,8 +70,8 @@ SLIPS = {
     "a since survives a clock step": (r"^  m->\w+_kept = [A-Z0-9_]+_FALSE;", ""),
     "arithmetic is of what was before": (r"^ +m->computed_\d+ = .*;$", ""),
     "arithmetic is known without an operand": (
-        r"m->\w+_known && is_number\(m->c",
-        "is_number(m->c",
+        r"(?:m->\w+_known && )+is_number\(m->computed",
+        "is_number(m->computed",
     ),
     "a quotient by zero is infinite": (r" != 0\.0\) \? (.*) : NAN", r" != 0.0) ? \1 : INFINITY"),
     "the previous value is the present one": (r"former = \*last;", "former = value;"),

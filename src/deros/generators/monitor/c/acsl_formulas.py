@@ -29,6 +29,7 @@ from deros.monitor.formulas import (
     Number,
     Relation,
     calls,
+    choices,
 )
 from deros.monitor.function_forms import COUNT, ELAPSED, ELEMENT, FIRST, Loop, Step
 from deros.monitor.functions import Function
@@ -117,6 +118,31 @@ class Relations:
                 return f"!\\is_NaN({self._term(operand, named)})"
         raise AssertionError(f"{value} is not a condition")
 
+    def is_arithmetic(self, result: str, formula: Formula) -> str:
+        """Return the same as :meth:`is_formula`, by cases where a value depends on a condition.
+
+        What exists, a prover has to find; what is named, it has. The text doubles with each choice.
+        """
+        if not formula.assignments:
+            return self.is_result(result, formula.result)
+        (name, value), *rest = formula.assignments
+        fresh = self.names[name] = self.variable(name)
+        return self._bound(fresh, value, result, Formula(tuple(rest), formula.result))
+
+    def _bound(self, name: str, value: Expression, result: str, rest: Formula) -> str:
+        """Return the rest of a formula with a name for a value."""
+        match value:
+            case Choice():
+                condition = self._condition(value.condition, [])
+                then, otherwise = (
+                    self._bound(name, each, result, rest) for each in (value.then, value.otherwise)
+                )
+                return f"({condition} ==> {then}) && (!({condition}) ==> {otherwise})"
+            case Call():
+                found = f"{self.is_result(name, value)} && {self.is_arithmetic(result, rest)}"
+                return f"(\\exists double {name}; {found})"
+        return f"(\\let {name} = {self._term(value, [])}; {self.is_arithmetic(result, rest)})"
+
     def is_formula(self, result: str, formula: Formula) -> str:
         """Return that ``result`` is the value of a formula, its assignments named before."""
         named = []
@@ -144,6 +170,19 @@ def _constant(value: float) -> str:
 
 
 # Functions of one message -----------------------------------------------------------------------
+
+
+_MOST_CHOICES = 4
+"""How many choices a formula may have for its cases to be written out."""
+
+
+def arithmetic_predicate(parameters: tuple[str, ...], formula: Formula) -> tuple[str, str]:
+    """Return the parameters of the predicate that states arithmetic of rules, and its body."""
+    relations = Relations({}, frozenset({*parameters, *formula.names}) - _assigned(formula))
+    declared = ", ".join(f"double {each}" for each in ("r", *parameters))
+    if choices(formula) > _MOST_CHOICES:
+        return formula_predicate(parameters, formula)
+    return declared, relations.is_arithmetic("r", formula)
 
 
 def formula_predicate(parameters: tuple[str, ...], formula: Formula) -> tuple[str, str]:

@@ -7,7 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from deros.generators.monitor.c.acsl_formulas import called_by, formula_predicate, loop_declarations
+from deros.generators.monitor.c.acsl_formulas import (
+    arithmetic_predicate,
+    called_by,
+    formula_predicate,
+    loop_declarations,
+)
 from deros.generators.monitor.c.acsl_terms import constant, of
 from deros.generators.monitor.c.computed import computed_functions
 from deros.generators.monitor.c.contracts import wrapped
@@ -52,7 +57,6 @@ def _used(program: Program) -> dict[str, tuple[tuple[str, ...], Formula]]:
     for each in computed_functions(program).values():
         for name in called_by(each.formula):
             found[name] = SHARED[name]
-        found[each.name] = (each.parameters, each.formula)
     return found
 
 
@@ -81,6 +85,8 @@ def declarations(program: Program) -> str:
     """Return the predicates of the functions that a program calls."""
     lines: list[str] = []
     used = {name: formula_predicate(*each) for name, each in _used(program).items()}
+    for function in computed_functions(program).values():
+        used[function.name] = arithmetic_predicate(function.parameters, function.formula)
     if used:
         said = (
             "/* is_f(r, ...) holds if r is what the function f gives; formula_of_f() says how. */"
