@@ -91,6 +91,12 @@ entity controller {
   overflowing: counters.max() > 18446744073709551614 or counters.count() = 0;
   same: ticks = ticks;
 }
+entity way {
+  stopping: speed * speed / (2 * 0.7 m/s^2) >= scan.nearest(-20 deg, 20 deg) - 0.3 m;
+  jumping: abs(speed - speed.previous()) > 0.4 m/s or max(level, mode, 2) - ticks > 2.5;
+  leaning: hypot(speed, sqrt(2 * 9.81 m/s^2 * abs(height))) in (0.5, 2 m/s)
+    and sin(attitude.yaw()) / mode < 0.5;
+}
 entity doubt {
   blind: scan.nearest(-30 deg, 30 deg).unknown() or not speed.unknown() and attitude.unknown();
   failsafe hidden: (attitude.tilt() > 20 deg and state = "automatic") for 0.2 sec;
@@ -112,6 +118,7 @@ then { beep(-9000000000, "", false, -1.5e-3); };
 if controller.manual or controller.overflowing then { ok; };
 if doubt.blind or doubt.hidden and not doubt.absent then { horn; };
 if doubt.lasting since controller.manual then { horn; };
+if way.stopping or way.jumping or way.leaning then { horn; };
 if doubt.recent within 1 sec then { horn; };
 gate /nav -> /cmd : geometry_msgs.Twist rate 20 Hz { stop: zero; lost heartbeat for 0.3 sec: zero; }
 """

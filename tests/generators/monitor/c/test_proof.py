@@ -252,6 +252,34 @@ def test_contracts_of_within_are_proved(tmp_path: Path) -> None:
     assert proof.is_complete
 
 
+ARITHMETIC = """
+input v = topic /speed.data timeout 1 sec
+input m = topic /mode.data timeout 1 sec
+entity e {
+  r: v * v / (2 * m) > abs(v - v.previous());
+  failsafe s: max(v, m, 0.5) > sqrt(v + 1) and sin(v) < 0.5;
+}
+action stop;
+if e.r and e.s then { stop; };
+"""
+
+
+@pytest.mark.slow
+@needs_frama_c
+def test_contracts_of_arithmetic_are_proved(tmp_path: Path) -> None:
+    """It is what its formula says, of operands of two topics, and known while all of them are."""
+    source = c_proof.write(rules.program(ARITHMETIC), tmp_path)
+    functions = [
+        each
+        for each in c_proof.functions_of(source)
+        if re.match("compute|previous|forget|judge|observe_m", each)
+    ]
+    assert len(functions) == 14
+    proof = c_proof.prove(source, functions)
+    assert proof.left == ()
+    assert proof.is_complete
+
+
 @needs_frama_c
 @pytest.mark.slow
 @pytest.mark.parametrize("slip", SLIPS)

@@ -141,7 +141,7 @@ def test_diagnostics_show_rules_actions_and_values(start: Start, robot: Robot) -
         assert action.values["since"].endswith(" s ago")
         assert robot.status("action beep").message == "run 1 times"
         assert robot.status("body.tilted").level == STALE
-        assert robot.status().message == "watching 9 rules"
+        assert robot.status().message == "watching 10 rules"
         robot.drive(0.1)
         robot.peer.until(lambda: robot.status("drive.fast").level == OK)
 
