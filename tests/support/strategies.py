@@ -340,7 +340,7 @@ class _Drawing:
             (f"({a} + {b})", f"({left} + {right})"),
             (f"({a} - {b})", f"({left} - {right})"),
             (f"({a} * {c})", f"({left} * {factor})"),
-            (f"({a} / {c})", f"({left} / {factor})"),
+            *[(f"({a} / {c})", f"({left} / {factor})")] * 3,  # the divisor is to be zero at times
             (f"-({a})", f"(-({left}))"),
             (f"sqrt({a} * {a})", f"sqrt({left} * {left})"),
             (f"({a} if {a} > 0.0 else 0.0 - {a})", f"abs({left})"),

@@ -96,11 +96,11 @@ def comment(indent: int, title: str, span: Span, text: str | None = None) -> lis
     for line in (span.text if text is None else text).splitlines():
         printable = "".join(c if c.isprintable() else " " for c in line).strip()
         if printable:
-            lines += [further, paragraph(_harmless(printable), "", " *     ", longest)]
+            lines += [further, paragraph(harmless(printable), "", " *     ", longest)]
     document = group(head, *lines, Line(" ", after=" "), "*/")
     return render_lines(document, LINE_LENGTH, indent)
 
 
-def _harmless(text: str) -> str:
+def harmless(text: str) -> str:
     """Return a text that neither ends a comment, begins one, nor continues its line."""
     return text.replace("*/", "* /").replace("/*", "/ *").replace("//", "/ /").replace("??", "? ?")

@@ -73,7 +73,7 @@ SLIPS = {
         r"(?:m->\w+_known && )+is_number\(m->computed",
         "is_number(m->computed",
     ),
-    "a quotient by zero is infinite": (r" != 0\.0\) \? (.*) : NAN", r" != 0.0) ? \1 : INFINITY"),
+    "a quotient by zero is infinite": (r" == 0\.0\) \? NAN", " == 0.0) ? INFINITY"),
     "the previous value is the present one": (r"former = \*last;", "former = value;"),
     "minimum and maximum are swapped": (r"values\[i\] < found", "values[i] > found"),
     "the last element is skipped": (r"i < count;", "(i + 1U) < count;"),

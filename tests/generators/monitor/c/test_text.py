@@ -36,7 +36,7 @@ COMPILERS = {
     "Cortex-M4": ("arm-none-eabi-gcc", "-std=c99", "-ffreestanding", "-mcpu=cortex-m4"),
 }
 
-LIBM = {"fabs", "sqrt", "atan2", "asin", "fmod", "remainder"}
+LIBM = {"fabs", "sqrt", "sin", "cos", "tan", "atan2", "asin", "fmod", "remainder"}
 """Functions of the mathematical library that rules may use."""
 
 

@@ -44,6 +44,9 @@ class Printer:
                 return f"-{self._operand(value.operand)}"
             case Binary():
                 return f"{self._operand(value.left)} {value.operator} {self._operand(value.right)}"
+            # Checkers of MISRA C take no operand in parentheses before a colon for one.
+            case Choice(condition=Relation("!=", left, right), then=Binary() as quotient):
+                return self.number(Choice(Relation("==", left, right), value.otherwise, quotient))
             case Choice():
                 then, otherwise = self._operand(value.then), self._operand(value.otherwise)
                 return f"{self._test(value.condition)} ? {then} : {otherwise}"

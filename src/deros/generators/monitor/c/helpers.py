@@ -14,6 +14,7 @@ from deros.generators.monitor.c.computed import computed_functions
 from deros.generators.monitor.c.contracts import wrapped
 from deros.generators.monitor.c.formulas import formula_text, printed, shared_texts
 from deros.generators.monitor.c.value_types import ELEMENTS
+from deros.generators.text.c import harmless
 from deros.interfaces.types import FLOAT_TYPES
 from deros.monitor.formulas import SHARED
 from deros.monitor.function_forms import LENGTH_OF
@@ -324,7 +325,7 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
         yield f"{row.c_name}_{base}", _of_array(row, base)
     for each in computed_functions(program).values():
         text = formula_text(each.name, each.parameters, each.formula)
-        said = "\n".join(wrapped(f"/* {each.wording.replace('*/', '* /')} */"))
+        said = "\n".join(wrapped(f"/* {harmless(each.wording)} */"))
         yield each.name, f"{said}\n{quantities.contract(each.name, each.parameters)}{text}"
     yield "beam", scans.BEAM + C["beam"]
     yield (

@@ -9,6 +9,7 @@ from deros.generators.text.document import HARDLINE, concat, fill, nest, render_
 from deros.generators.text.prose import paragraph
 
 _TRAILING_COMMENT = re.compile(r"( *)(\S.*[;{])  (/\*.*\*/)")
+_OPERATOR = re.compile(r" (?=(?:[?:]|&&|\|\||[-+*/]) )")
 _LITERAL = re.compile(r'"((?:\\.|[^"\\])*)"')
 _CHARACTERS = re.compile(r"(?:\\[0-7]{3}|\\.|[^\\]){1,80}")
 
@@ -48,6 +49,10 @@ def _code(line: str) -> list[str]:
         end, items = _items(line, start)
         if len(items) > 1:
             return _filled(line[:start], items, line[end:])
+    if '"' not in line:
+        blank = " " * (len(line) - len(line.lstrip()))
+        parts = _OPERATOR.split(line.lstrip())
+        return render_lines(concat(blank, nest(f"{blank}  ", fill(parts))), LINE_LENGTH)
     return [line]
 
 
