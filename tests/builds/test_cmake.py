@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import shutil
 import subprocess
 from pathlib import Path
@@ -302,3 +303,36 @@ def test_firmware_links_to_the_monitor(folder: Path, tool: str) -> None:
     project.built("--target", "clean")
     assert not (project.build_folder / "safety/robot_monitor/robot_monitor.h").exists()
     assert project.generated() == 1
+
+
+FUSED = {"x86_64": ["-mfma"], "aarch64": []}
+"""By processor, the options with which a compiler may fuse a product and a sum."""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(platform.machine() not in FUSED, reason="no known fused instructions")
+@pytest.mark.skipif(shutil.which("objdump") is None, reason="no objdump")
+def test_products_and_sums_are_not_fused(folder: Path) -> None:
+    """Each operation of a rule is rounded, whatever the compiler may do by default."""
+    options = ["-O2", *FUSED[platform.machine()]]
+    rules = folder / "my models/robot.deros"
+    replace(rules, "speed.abs() > max_speed", "speed * speed + speed * 2 sec * 1 m/s^2 > 3 m^2/s^2")
+    project = Project(
+        folder,
+        GENERATORS[0],
+        HEAD.format("C") + 'deros_add_monitor(safe MODEL "my models/robot.deros")\n',
+    )
+    done = project.configure(f"-DCMAKE_C_FLAGS={' '.join(options)}")
+    assert done.returncode == 0, done.stdout
+    project.built()
+    (compiled,) = project.build_folder.rglob("robot_monitor.c.o")
+    assert "fmadd" not in _disassembled(compiled)
+    (source,) = project.build_folder.rglob("robot_monitor.c")
+    fused = folder / "fused.o"
+    subprocess.run(["cc", *options, "-c", str(source), "-o", str(fused)], check=True)
+    assert "fmadd" in _disassembled(fused), "this compiler fuses nothing"
+
+
+def _disassembled(path: Path) -> str:
+    command = ["objdump", "--disassemble", str(path)]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout

@@ -114,6 +114,9 @@ function(deros_add_monitor target)
   add_dependencies(${target} ${target}_generated)
   target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${arg_OUTPUT_DIRECTORY}>")
   target_compile_features(${target} PUBLIC c_std_99)
+  # Rules are computed alike on every processor: a fused multiply-add would round once, not twice.
+  target_compile_options(${target} PRIVATE
+    "$<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>")
   set_target_properties(${target} PROPERTIES LINKER_LANGUAGE C)
   if(NOT MSVC) # there, the functions of math.h are in the library that every program has
     target_link_libraries(${target} PUBLIC m)
