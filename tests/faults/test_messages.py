@@ -10,10 +10,12 @@ import pytest
 from tests.support.faults import PROMPT, Robot
 from tests.support.played import button, imu, load, scan, speed
 from tests.support.profiles import slow
+from tests.support.stalls import stalls
 
 pytestmark = pytest.mark.ros
 
 TILTED = math.radians(20.0)
+SPEED_TIMEOUT = 0.5  # of the rules of these tests
 
 
 @pytest.mark.slow
@@ -51,26 +53,31 @@ def test_message_of_ten_megabytes_blocks_nothing(robot: Robot) -> None:
 
     The lidar is a separate process: sending a scan must not delay the other sensors. A scan is
     larger than the largest receive buffer, so the kernel may drop the messages of the attitude
-    meanwhile, which are sent at best effort: then it is missing. The speed is sent reliably.
+    meanwhile, which are sent at best effort: then it is missing. The speed is sent reliably. Where
+    the machine holds sensors or node up for half of its timeout, its silence tells nothing.
     """
     beams = robot.software.beams
     with (
         robot.safety_node() as node,
         robot.sensors() as sensors,
         robot.sensors() as lidar,
+        stalls() as held,
     ):
         sensors.drive()
         sensors.quiet("/scan")
         lidar.match("/scan")
         robot.until_free()
         silences = node.output().count("speed.missing()")
+        before = held.seconds + sensors.waited()
         lidar.send("/scan", scan(5.0, beams=beams), times=5, rate=5.0)
         robot.until_alive()
         assert not robot.is_active("/stop")
         # A single one might not arrive.
         lidar.send("/scan", scan(0.1, beams=beams), times=5, rate=5.0)
         robot.until_stopped(limit=PROMPT)
-        assert node.output().count("speed.missing()") == silences, "an active sensor was silent"
+        held_up = held.seconds + sensors.waited() - before
+        is_silent = node.output().count("speed.missing()") > silences
+        assert not is_silent or held_up > SPEED_TIMEOUT / 2, "an active sensor was silent"
 
 
 @pytest.mark.slow

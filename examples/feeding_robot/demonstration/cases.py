@@ -32,6 +32,12 @@ PLC_TIMEOUT = 0.5
 BEATS = 8
 """Heartbeats, ten a second, in which an input is found missing that the node never heard."""
 
+ATTEMPTS = 5
+"""How often a robot is prepared that is stopped meanwhile."""
+
+SIGNS_OF_LIFE = 3
+"""Signs of life of the mission after which a command of it has come that was sent after a reset."""
+
 MARGIN = 1.0
 """How long, in s, a case without a reaction is watched once a wrong one would have been due."""
 
@@ -81,7 +87,26 @@ class Case:
 
 
 def prepare(stage: Stage, driving: bool) -> None:
-    """Bring the robot into a clean state: automatic mode, engine on, nothing in the way."""
+    """Bring the robot into a clean state: automatic mode, engine on, nothing in the way.
+
+    Where a busy machine holds a node up meanwhile, the robot is stopped as for a lost sensor. Then
+    the operator begins anew, as on the field.
+    """
+    for _ in range(ATTEMPTS):
+        _prepare(stage, driving)
+        if not driving:
+            return
+        stage.watch(lambda: _drives(stage.state) or _is_stopped(stage.state), 60.0)
+        if _drives(stage.state):
+            return
+    raise OverdueError(f"prepared the robot {ATTEMPTS} times, and the mission did not drive")
+
+
+def _is_stopped(state: RobotState) -> bool:
+    return state.stop is True or state.motor_stop is True or state.engine_running is False
+
+
+def _prepare(stage: Stage, driving: bool) -> None:
     stage.forget(heartbeat=None)
     stage.obstacle(math.inf)
     stage.hold_pedal(math.nan)
@@ -96,15 +121,27 @@ def prepare(stage: Stage, driving: bool) -> None:
     _reset_actions(stage)
     if driving:
         _reset_gate(stage)
-    stage.turn_key(True)
-    stage.wait("the engine to run", lambda s: s.engine_running is True)
-    stage.turn_key(False)
+    _start_engine(stage)
     stage.order(driving)
     stage.switch_mode(AUTOMATIC)
     stage.wait("automatic mode", lambda s: s.mode == AUTOMATIC)
-    if driving:
-        # In manual mode the mission has commanded zero, which the gate waits for after its reset.
-        stage.wait("the mission to drive", _drives, 60.0)
+
+
+def _start_engine(stage: Stage) -> None:
+    """Turn the key, again where the PLC has turned the engine off: it had no sign of life yet.
+
+    At the start the nodes have yet to find each other. In automatic mode the key does nothing.
+    """
+
+    def is_off() -> bool:
+        return stage.state.engine_running is False
+
+    while True:
+        stage.turn_key(True)
+        stage.wait("the engine to run", lambda s: s.engine_running is True)
+        stage.turn_key(False)
+        if not stage.watch(is_off, 2 * PLC_TIMEOUT):
+            return
 
 
 def _knows_its_inputs(state: RobotState) -> bool:
@@ -146,9 +183,23 @@ def _reset_gate(stage: Stage) -> None:
     patience_ends = time.monotonic() + 60.0
     while time.monotonic() < patience_ends:
         if stage.reset("gate"):
+            _await_zero_commands(stage)
             return
         stage.watch(lambda: False, 0.5)
     raise OverdueError("the gate did not let itself be reset")
+
+
+def _await_zero_commands(stage: Stage) -> None:
+    """Wait until the mission has commanded zero, for which the gate waits after a reset.
+
+    With each sign of life it sends a command. One may have been on its way before the reset.
+    """
+
+    def is_another(before: int | None, state: RobotState) -> bool:
+        return state.controller_keep_alive != before
+
+    for _ in range(SIGNS_OF_LIFE):
+        stage.wait("a command", partial(is_another, stage.state.controller_keep_alive))
 
 
 def _is_reset(state: RobotState) -> bool:
