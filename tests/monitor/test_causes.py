@@ -149,6 +149,16 @@ def test_for_is_shown_when_it_is_due(monitor: Monitor) -> None:
 
 
 @monitors
+def test_within_shows_its_text_or_for_no_time_its_operand(monitor: Monitor) -> None:
+    """The values that made it true may be gone, unless it is true at this instant alone."""
+    driver = Driver(monitor, rule("(u > 1 within 100 ms) or (u > 1 within 0 sec)"))
+    driver.send(100, "/odom", x=3.0)
+    assert driver.causes() == ("u > 1 within 100 ms", "u 3.0 > 1")
+    driver.send(150, "/odom", x=0.5)
+    assert driver.causes() == ("u > 1 within 100 ms",)
+
+
+@monitors
 def test_negated_for_shows_a_short_or_false_operand(monitor: Monitor) -> None:
     """Its operand has not lasted long enough, or is false."""
     driver = Driver(monitor, rule("f and not (u > 1 for 0.5 sec)"))

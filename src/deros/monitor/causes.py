@@ -195,11 +195,11 @@ def plan_of(
             return _all_of(plans) if isinstance(condition, And) is holds else _any_of(plans)
         case For():
             return _plan_of_interval(program, condition, holds, suffix, shortened)
-        case Once() if holds:  # the values that made it true may be gone
+        case Once() if holds and condition.duration_ns:  # what made it true may be gone
             written = _shortened(strip_comments(condition.span.text))
             return Say(condition, True, (f"{written}{suffix}",))
         case Once():
-            return plan_of(program, condition.operand, False, suffix, shortened)
+            return plan_of(program, condition.operand, holds, suffix, shortened)
         case Since():
             return _plan_of_since(program, condition, holds, suffix, shortened)
         case Failsafe():

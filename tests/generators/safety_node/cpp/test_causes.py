@@ -60,6 +60,7 @@ def test_causes_use_the_words_of_the_rules(tmp_path: Path) -> None:
       fast: u > 5 km/h for 0 sec;
       named: n = "a{b}'c\\"" or n != "auto";
       ill: s = ERROR and not (u <= limit);
+      now: u > 1 within 0 sec;
     }
     behaviour b: if e.fast then { stop; };
     """
@@ -74,5 +75,6 @@ def test_causes_use_the_words_of_the_rules(tmp_path: Path) -> None:
         "e.fasttrue\tu 3.0 m/s > 5 km/h for 0 sec",
         'e.namedtrue\tn = "a{b}\'c""\tn "a{b}\'c"" != "auto"',
         "e.illtrue\ts = ERROR\tu 3.0 > 2.5",
+        "e.nowtrue\tu 3.0 > 1",
         "0\te.fast: u 3.0 m/s > 5 km/h for 0 sec",
     ]
