@@ -313,7 +313,7 @@ class _Drawing:
         numeric = self.numeric()
         for index in (*numeric[:2], self.draw(st.sampled_from(numeric))):
             operands.setdefault(self.operand(index), f"x{len(operands) + 1}")
-        formula, written = self.part(self.draw(st.integers(0, 3)), list(operands.values()))
+        formula, written = self.part(self.draw(st.integers(1, 3)), list(operands.values()))
         for name in operands.values():  # as a product, which has a unit whatever the units are
             is_used = re.search(rf"\b{name}\b", formula) is not None
             if not is_used and (name == "x1" or self.draw(st.booleans())):
@@ -418,7 +418,7 @@ class _Drawing:
                 operator = self.draw(st.sampled_from(("=", "!=")))
                 return ir.Compare(read, operator, ir.Const(self.draw(texts)))
         if choice < 6:
-            computes = self.draw(st.integers(0, 3)) == 0
+            computes = self.draw(st.integers(0, 2)) == 0
             left, right = self.arithmetic() if computes else self.number(index), self.bound()
             sides = (right, left) if choice == 3 else (left, right)
             return ir.Compare(sides[0], self.draw(operators), sides[1])

@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from deros.monitor import walk
+from deros.monitor.ir import Compute, Program
 from tests.support import c_monitors, c_pairs
 from tests.support.c_harness import Unit, unit
 from tests.support.c_library import Loaded, needs_c
@@ -103,8 +105,16 @@ def drawn() -> tuple[c_pairs.Case, ...]:
         c_pairs.cases(kinds, PROGRAMS, 3, first=100 * number)[::-1]  # later ones are larger
         for number, kinds in enumerate(c_pairs.FOCUSES.values())
     ]
+    divided = 100 * len(c_pairs.FOCUSES)
+    chosen.append(c_pairs.cases(("number",), PROGRAMS, 3, first=divided, accept=_divides))
     mixed = itertools.zip_longest(*chosen)
     return tuple(case for row in mixed for case in row if case is not None)
+
+
+def _divides(program: Program) -> bool:
+    """Return whether a program has a quotient, of which too few are drawn among all else."""
+    values = walk.values(walk.conditions(program))
+    return any("/" in value.wording for value in values if isinstance(value, Compute))
 
 
 def mutated(slip: str, rendered: Unit) -> Unit | None:
