@@ -1,4 +1,8 @@
-"""Golden files: generated text under ``tests/golden``, refreshed by ``pytest --refresh-golden``."""
+"""Golden files: generated text under ``tests/golden``, refreshed by ``pytest --refresh-golden``.
+
+Copies of the runtime are not among them: a package's ``runtime_files.txt`` lists those that it
+carries, and each is compared with the file that it is a copy of.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +13,15 @@ from pathlib import Path
 
 import pytest
 
-from deros.generators.api.protocol import Files, Owner
+from deros.generators.api.protocol import File, Files, Owner
 from deros.generators.output.banner import with_banner
 from deros.generators.output.writer import write
+from tests.support.golden_runtime import assert_copies, is_copy
 
 GOLDEN = Path(__file__).resolve().parent.parent / "golden"
+
+
+RUNTIME_FILES = "runtime_files.txt"
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,24 +29,38 @@ class Golden:
     """Compares generated files with those kept, or keeps the generated ones."""
 
     refresh: bool
+    root: Path = GOLDEN
 
     def check(self, name: str, files: Files) -> None:
         """Hold ``files`` against ``tests/golden/<name>``, as the writer would put them there."""
-        folder = GOLDEN / name
+        folder = self.root / name
+        reviewed = _reviewed(files)
         if self.refresh:
             shutil.rmtree(folder, ignore_errors=True)
-            write(files, folder)
+            write(reviewed, folder)
         kept = {
             path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8")
             for path in folder.rglob("*")
             if path.is_file()
         }
-        assert sorted(kept) == sorted(files)
-        for path, file in files.items():
+        assert sorted(kept) == sorted(reviewed)
+        for path, file in reviewed.items():
             assert os.access(folder / path, os.X_OK) >= file.executable, path
             generated = file.owner is Owner.GENERATOR
             text = with_banner(path, file.text) if generated else file.text
             assert text == kept[path], f"{path}: refresh with pytest --refresh-golden"
+
+
+def _reviewed(files: Files) -> Files:
+    """Return the files to read: the list of the runtime's copies in place of the copies."""
+    assert_copies(files)
+    copies = [path for path in files if is_copy(path)]
+    if not copies:
+        return files
+    assert RUNTIME_FILES not in files
+    listed = File("".join(f"{path}\n" for path in sorted(copies)))
+    rest = {path: file for path, file in files.items() if path not in copies}
+    return {**rest, RUNTIME_FILES: listed}
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -17,6 +17,7 @@ from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.golden import Golden
+from tests.support.golden_runtime import is_copy
 from tests.support.profiles import slow
 
 MODELS = Path(__file__).resolve().parents[2] / "safety_node/python/models"
@@ -41,7 +42,7 @@ def files_of_text(text: str) -> Files:
 
 @pytest.mark.parametrize("name", ["every_thing", "two_rules"])
 def test_files_match_golden(name: str, golden: Golden) -> None:
-    """Node, description, messages, metadata and actions match the reviewed text.
+    """Node, description, messages, metadata, actions and the list of the runtime's files match.
 
     Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
@@ -50,7 +51,8 @@ def test_files_match_golden(name: str, golden: Golden) -> None:
     files = {
         path: file
         for path, file in files_of(name).items()
-        if Path(path).suffix in (".cpp", ".hpp", ".rnd") and Path(path).stem in stems
+        if is_copy(path)
+        or (Path(path).suffix in (".cpp", ".hpp", ".rnd") and Path(path).stem in stems)
     }
     golden.check(f"safety_cpp/{name}", files)
 

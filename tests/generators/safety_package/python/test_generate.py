@@ -17,6 +17,7 @@ from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
 from tests.support.golden import Golden
+from tests.support.golden_runtime import is_copy
 from tests.support.lint import assert_lint_clean
 
 MODELS = Path(__file__).resolve().parents[2] / "safety_node/python/models"
@@ -42,7 +43,7 @@ def files_of(name: str, **options: str) -> Files:
 
 @pytest.mark.parametrize("name", ["every_thing", "two_rules"])
 def test_files_match_golden(name: str, golden: Golden) -> None:
-    """Node, description and actions match the reviewed text.
+    """Node, description, actions and the list of the runtime's files match the reviewed text.
 
     Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
@@ -50,6 +51,7 @@ def test_files_match_golden(name: str, golden: Golden) -> None:
     own = {"rule_metadata.py", *(f"{name}_safety_node{end}" for end in ends)}
     files = {path: file for path, file in files_of(name).items() if Path(path).name in own}
     assert len(files) == len(own)
+    files |= {path: file for path, file in files_of(name).items() if is_copy(path)}
     golden.check(f"safety_python/{name}", files)
 
 

@@ -1,0 +1,173 @@
+"""The golden files themselves: a fault in what they leave out is found, and none is stale."""
+
+from __future__ import annotations
+
+import ast
+import itertools
+import runpy
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from deros.generators.api.protocol import Context, File, Files, Owner
+from deros.generators.builtin import rosnode_cpp, rosnode_python, rossystem_script
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.metamodels.node import NodeType
+from tests.support.golden import GOLDEN, RUNTIME_FILES, Golden
+from tests.support.golden_runtime import is_copy, without_modules
+from tests.support.systems import CONTEXT, EVERYTHING, load
+
+TESTS = GOLDEN.parent
+VALVE = TESTS / "generators/node/python/models/valve.rnd"
+HEADER = "process/include/process/runtime/managed_node.hpp"
+SOURCE = "process/src/runtime/qos_report.cpp"
+MODULE = "process/process/qos_report.py"
+
+
+def packages() -> Files:
+    """Return the packages of a node in both languages, with their copies of the runtime."""
+    context = Context(InterfaceStore(), Repository())
+    model = context.repository.load(VALVE).model
+    assert isinstance(model, NodeType)
+    return {**rosnode_cpp(model, context), **rosnode_python(model, context)}
+
+
+FAULTS: dict[str, tuple[str, str, str]] = {
+    "a line": (SOURCE, "return", "return  "),
+    "the end": (MODULE, "\n", ""),
+    "the guard": (HEADER, "PROCESS__RUNTIME__MANAGED", "DEROS_RUNTIME_CPP__MANAGED"),
+    "the namespace": (SOURCE, "namespace process::runtime", "namespace deros_runtime_cpp"),
+    "an include": (SOURCE, '"process/runtime/qos', '"deros_runtime_cpp/qos'),
+    "another part": (MODULE, "qos", "managed"),
+}
+"""A file, and what its text has in place of which part of it."""
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Golden:
+    """Keep the packages without a fault."""
+    root = tmp_path_factory.mktemp("golden")
+    Golden(refresh=True, root=root).check("valve", packages())
+    return Golden(refresh=False, root=root)
+
+
+def test_copies_are_listed_and_not_kept(kept: Golden) -> None:
+    """The folder has the list of the copies, and none of them."""
+    kept.check("valve", packages())
+    folder = kept.root / "valve"
+    listed = (folder / RUNTIME_FILES).read_text(encoding="utf-8").split()
+    assert {HEADER, SOURCE, MODULE} <= set(listed)
+    assert not [path for path in listed if (folder / path).exists()]
+
+
+@pytest.mark.parametrize("refresh", [False, True])
+@pytest.mark.parametrize("fault", FAULTS)
+def test_copy_with_a_fault_is_found(
+    fault: str, refresh: bool, kept: Golden, tmp_path: Path
+) -> None:
+    """Nor can a refresh accept it."""
+    path, old, new = FAULTS[fault]
+    files = packages()
+    text = files[path].text
+    faulty = replace(files[path], text=new.join(text.rsplit(old, 1)))
+    assert faulty.text != text
+    golden = Golden(True, tmp_path) if refresh else kept
+    with pytest.raises(AssertionError, match=Path(path).name):
+        golden.check("valve", {**files, path: faulty})
+
+
+@pytest.mark.parametrize("changed", [{"owner": Owner.USER}, {"executable": True}])
+def test_copy_that_is_written_in_another_way_is_found(
+    changed: dict[str, Any], kept: Golden
+) -> None:
+    """It belongs to the generator, and is not a program."""
+    files = packages()
+    with pytest.raises(AssertionError, match=Path(MODULE).name):
+        kept.check("valve", {**files, MODULE: replace(files[MODULE], **changed)})
+
+
+@pytest.mark.parametrize("path", [HEADER, SOURCE, MODULE])
+def test_missing_copy_is_found(path: str, kept: Golden) -> None:
+    """The package would lack a part that its node needs."""
+    files = packages()
+    del files[path]  # type: ignore[attr-defined]
+    with pytest.raises(AssertionError, match=RUNTIME_FILES):
+        kept.check("valve", files)
+
+
+@pytest.mark.parametrize(
+    ("path", "source"),
+    [
+        ("process/src/runtime/text.cpp", "cpp/src/text.cpp"),
+        ("process/process/waker.py", "python/deros_runtime/waker.py"),
+    ],
+)
+def test_additional_copy_is_found(path: str, source: str, kept: Golden) -> None:
+    """Whether it is a true copy or not."""
+    text = Path("src/deros/generators/runtime", source).read_text(encoding="utf-8")
+    text = text.replace('"deros_runtime_cpp/', '"process/runtime/')
+    text = text.replace("namespace deros_runtime_cpp", "namespace process::runtime")
+    with pytest.raises(AssertionError, match=RUNTIME_FILES):
+        kept.check("valve", {**packages(), path: File(text)})
+    with pytest.raises(AssertionError, match=Path(path).name):
+        kept.check("valve", {**packages(), path: File(text + "\n")})
+
+
+def test_file_beside_the_copies_is_no_copy(kept: Golden) -> None:
+    """What the runtime does not have is compared with a golden file, which there is not."""
+    path = "process/src/runtime/another.cpp"
+    assert not is_copy(path)
+    with pytest.raises(AssertionError, match="another"):
+        kept.check("valve", {**packages(), path: File("")})
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("def main(", "def run("),
+        ("signal.SIGKILL", "signal.SIGTERM"),
+        ("\n# Finds the programs of packages", "\nimport os\n# Finds the programs of packages"),
+    ],
+)
+def test_other_code_in_a_script_is_found(old: str, new: str) -> None:
+    """Whatever differs from the modules stays in the text that is compared."""
+    (file,) = rossystem_script(load(EVERYTHING), CONTEXT).values()
+    changed = file.text.replace(old, new)
+    assert changed != file.text
+    assert without_modules(changed) != without_modules(file.text)
+
+
+# Stale files --------------------------------------------------------------------------------------
+
+
+def test_each_golden_file_matches_golden_tests() -> None:
+    """Some test compares each file; those of a test that is gone would never change again."""
+    compared = set(itertools.chain.from_iterable(map(_compared, sorted(TESTS.rglob("test_*.py")))))
+    assert compared
+    stale = [
+        path.relative_to(GOLDEN).as_posix()
+        for path in sorted(GOLDEN.rglob("*"))
+        if path.is_file()
+        and not compared & {p.as_posix() for p in path.relative_to(GOLDEN).parents}
+    ]
+    assert stale == [], "delete these golden files"
+
+
+def _compared(path: Path) -> Iterator[str]:
+    """Yield the names that the tests of a module call ``golden.check`` with."""
+    text = path.read_text(encoding="utf-8")
+    if path == Path(__file__) or "golden.check(" not in text:
+        return
+    module = runpy.run_path(str(path), run_name=path.stem)
+    for function in (item for item in ast.parse(text).body if isinstance(item, ast.FunctionDef)):
+        marks = getattr(module[function.name], "pytestmark", ())
+        given = {mark.args[0]: mark.args[1] for mark in marks if mark.name == "parametrize"}
+        for call in ast.walk(function):
+            if isinstance(call, ast.Call) and ast.unparse(call.func) == "golden.check":
+                code = compile(ast.Expression(call.args[0]), str(path), "eval")
+                for values in itertools.product(*given.values()):
+                    yield eval(code, module, dict(zip(given, values, strict=True)))
