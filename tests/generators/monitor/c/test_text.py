@@ -12,7 +12,7 @@ from typing import get_args
 
 import pytest
 
-from deros.generators.api.protocol import File, GenerationError
+from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.deviations import DEVIATIONS
 from deros.generators.monitor.c.interface import render_monitor
 from deros.monitor import walk
@@ -20,7 +20,6 @@ from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import Apply, Condition, Program
 from tests.support import c_pairs, misra
 from tests.support.c_everything import RULES, built, everything, examples
-from tests.support.golden import Golden
 from tests.support.profiles import slow
 
 PROGRAMS = {each.name: each for each in (everything(), *examples())}
@@ -213,13 +212,3 @@ def test_test_program_has_every_construct() -> None:
     computed = (row for row in FUNCTIONS.values() if row.evaluate or row.is_stateful or row.formula)
     assert called == {row.name for row in computed}
     assert {type(each) for each in conditions} == set(get_args(Condition))
-
-
-def test_files_match_golden(golden: Golden) -> None:
-    """The code of a program with every construct matches the reviewed one.
-
-    Its contracts are longer than anybody reads; ``test_contracts.py`` has those of small programs.
-    """
-    texts = render_monitor(everything())
-    files = {name: File(text) for name, text in texts.items() if "_contracts" not in name}
-    golden.check("monitor_c", files)

@@ -1,0 +1,39 @@
+/* input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: v > 2; } action stop; if e.r for 1 sec then { stop; }; if e.r since e.s then { stop; }; if not e.r within 1 sec then { stop; }; */
+
+static void behave_behaviour_3(small_monitor *m)
+{
+  const small_verdict within_1 = recent(
+    negated(m->e_r),
+    INT64_C(1000000000),
+    m->now,
+    &m->behaviour_3_until,
+    &m->due);
+  const small_verdict condition = within_1;
+  const bool held = (m->behaviour_3_condition == SMALL_TRUE);
+  const bool rises = (condition == SMALL_TRUE) && (!held);
+  m->behaviour_3_condition = condition;
+  if (rises) {
+    small_emit(m->owner, m->now, SMALL_TRIGGER, 2U);  /* stop */
+  }
+}
+
+static void behave_behaviour_2(small_monitor *m)
+{
+  m->behaviour_2_kept = either(m->e_s, both(m->e_r, m->behaviour_2_kept));
+  const small_verdict condition = m->behaviour_2_kept;
+  /* 4 lines of reset_by */
+    small_emit(m->owner, m->now, SMALL_TRIGGER, 1U);  /* stop */
+  }
+}
+
+static void behave_behaviour_1(small_monitor *m)
+{
+  const small_verdict for_1 = lasting(
+    m->e_r,
+    INT64_C(1000000000),
+    m->now,
+    &m->behaviour_1_since,
+    &m->due);
+  const small_verdict condition = for_1;
+  /* 6 lines of smallest */
+}
