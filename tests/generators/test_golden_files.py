@@ -18,6 +18,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from tests.support.golden import GOLDEN, RUNTIME_FILES, Golden
+from tests.support.golden_alike import differences, forms
 from tests.support.golden_runtime import is_copy, without_modules
 from tests.support.systems import CONTEXT, EVERYTHING, load
 
@@ -139,6 +140,27 @@ def test_other_code_in_a_script_is_found(old: str, new: str) -> None:
     changed = file.text.replace(old, new)
     assert changed != file.text
     assert without_modules(changed) != without_modules(file.text)
+
+
+def test_difference_from_another_file_shows_every_change() -> None:
+    """Names that differ do not; a file that is unlike the other one stays as it is."""
+    lines = "\n".join(f"line {number} of a_node" for number in range(20))
+    others = {"a/a_node.cpp": File(f"{lines}\n")}
+    renamed = lines.replace("a_node", "b_node")
+    names = {"a/": "b/", **forms("a_node", "b_node")}
+
+    def kept(text: str, owner: Owner = Owner.GENERATOR) -> dict[str, str]:
+        made = differences({"b/b_node.cpp": File(text, owner)}, others, names)
+        return {path: "".join(file.text.splitlines(True)[1:]) for path, file in made.items()}
+
+    assert kept(f"{renamed}\n") == {"b/b_node.cpp.diff": ""}
+    changed = renamed.replace("line 7 of b_node", "line 7 of a_node")
+    shown = " line 6 of b_node\n-line 7 of b_node\n+line 7 of a_node\n line 8 of b_node\n"
+    assert kept(f"{changed}\n") == {"b/b_node.cpp.diff": f"@@\n{shown}"}
+    assert kept(renamed) != kept(f"{renamed}\n")
+    assert list(kept("another\n")) == ["b/b_node.cpp"]
+    with pytest.raises(AssertionError):
+        kept(f"{renamed}\n", Owner.USER)
 
 
 # Stale files --------------------------------------------------------------------------------------
