@@ -21,6 +21,25 @@ from tests.support.timelines import Timeline
 
 DEROS = Path(sys.executable).with_name("deros")
 
+TABLE = """\
+# Title
+```deros
+action stop;
+input v = topic /speed.data
+input f = topic /flag.data
+```
+## name
+why
+```deros
+entity e { r: v > 0.5; }
+if e.r then { stop; };
+```
+| time until 9 s | message | effect |
+|---|---|---|
+| 1 s | v = 0.6 | stop |
+| 2 s | | stop refused |
+"""
+
 every_timeline = pytest.mark.parametrize("case", timelines.ALL, ids=lambda case: case.name)
 
 
@@ -28,6 +47,67 @@ def test_all_given_timelines_exist() -> None:
     """No timeline is lost, and names are unique."""
     assert len(timelines.GIVEN) == 33
     assert len({case.name for case in timelines.ALL}) == len(timelines.ALL)
+
+
+def test_table_is_read(tmp_path: Path) -> None:
+    """A table gives the rules that its timeline needs, the trace, the end and the events."""
+    (tmp_path / "t.md").write_text(
+        TABLE.replace("| 1 s |", "| 0.5 s, 1 s |").replace("| stop |", "| |")
+    )
+    (case,) = timelines.read(tmp_path / "t.md")
+    assert case == Timeline(
+        "name",
+        "why",
+        "action stop;\ninput v = topic /speed.data\n"
+        "entity e { r: v > 0.5; }\nif e.r then { stop; };\n",
+        tuple(f'{{"t": "{t}", "topic": "/speed", "data": {{"data": 0.6}}}}' for t in ("0.5", "1")),
+        "9",
+        ((2_000_000_000, "stop", "refused"),),
+    )
+
+
+MALFORMED = (
+    (7, "### name", "level 1 or 2"),
+    (9, "```yaml", "not one of ```deros"),
+    (13, "| time until 9 s | message | cause |", "the columns are not"),
+    (13, "| time until nine | message | effect |", "'nine' is not a time"),
+    (13, "| time until 1.5 s | message | effect |", "an effect after the end"),
+    (14, "| 0 s | v = 0.1 | |", "|---| belongs below"),
+    (15, "| 1 | v = 0.6 | stop |", "'1' is not a time"),
+    (15, "| 1.0000000001 s | v = 0.6 | stop |", "is not a time"),
+    (15, "| 1 s, 1.5 s | v = 0.6 | stop |", "an effect of several times"),
+    (15, "| 1 s | w = 0.6 | stop |", "no input 'w'"),
+    (15, "| 1 s | v = 0.6, /flag.data = true | stop |", "not the fields of one message"),
+    (15, "| 1 s | /speed = 0.6 | stop |", "not the fields of one message"),
+    (15, "| 1 s | v 0.6 | stop |", "NAME.PATH = VALUE"),
+    (15, "| 1 s | v = fast | stop |", "not a value"),
+    (15, "| 1 s | v = 0.6 v = 0.7 | stop |", "values are separated"),
+    (15, "| 1 s | v = 0.6 | stop ends |", "unknown effect 'stop ends'"),
+    (15, "| 1 s | v = 0.6 | calm |", "unknown effect 'calm'"),
+    (15, "| 1 s | v = 0.6 |", "not the cells"),
+    (15, "| 1 s | v = 0.6 | stop | |", "not the cells"),
+    (15, "1 s | v = 0.6 | stop |", "not the cells"),
+    (15, "1 s: stop", "neither a row"),
+    (16, "| 0.5 s | | stop |", "not in order of time"),
+    (16, "| 0.5 s | v = 0.1 | stop |", "not in order of time"),
+    (16, "| back to 0.5 s | | stop |", "not in order of time"),
+    (16, "| back to 2 s | v = 0.1 | stop |", "not in order of time"),
+    (16, "\n| 2 s | | stop |", "a row apart"),
+)
+
+
+def test_malformed_table_is_rejected(tmp_path: Path) -> None:
+    """The error names file and line."""
+    path = tmp_path / "t.md"
+    for number, text, message in MALFORMED:
+        lines = TABLE.splitlines()
+        lines[number - 1] = text
+        path.write_text("\n".join(lines))
+        with pytest.raises(timelines.TableError) as raised:
+            timelines.read(path)
+        place = f"{path}:{number + text.count(chr(10))}: "
+        assert str(raised.value).startswith(place), (text, message)
+        assert message in str(raised.value), text
 
 
 @every_timeline
