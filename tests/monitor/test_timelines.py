@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,8 +13,8 @@ from click.testing import CliRunner
 from deros.cli.simulate import simulate as command
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
-from deros.monitor.ir import Program
-from deros.monitor.simulate import Monitor, seconds, simulate
+from deros.monitor.simulate import seconds, simulate
+from deros.monitor.trace import TraceMessage
 from tests.support import timelines
 from tests.support.timelines import Timeline
 
@@ -111,32 +110,32 @@ def test_malformed_table_is_rejected(tmp_path: Path) -> None:
 
 
 @every_timeline
-@pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
-def test_timeline_matches(case: Timeline, monitor: Callable[[Program], Monitor]) -> None:
-    """The engine gives the expected events at the exact nanosecond."""
+def test_timeline_matches(case: Timeline) -> None:
+    """Each engine gives the expected events at the exact nanosecond.
+
+    Timers that fire at every deadline have no effect on the events.
+    """
     program = case.program()
-    events = simulate(monitor(program), case.messages(program), case.until_ns)
-    assert timelines.happenings(list(events)) == case.expect
+    messages = case.messages(program)
+    for monitor in (Engine, GeneratedMonitor):
+        events = simulate(monitor(program), messages, case.until_ns)
+        assert timelines.happenings(list(events)) == case.expect, monitor
+        assert _with_punctual_timers(monitor(program), messages, case) == case.expect, monitor
 
 
-@every_timeline
-@pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
-def test_punctual_timers_do_not_change_the_timeline(
-    case: Timeline, monitor: Callable[[Program], Engine]
-) -> None:
-    """Timers that fire at every deadline have no effect on the events."""
-    program = case.program()
-    runner = monitor(program)
-    for message in case.messages(program):
+def _with_punctual_timers(
+    runner: Engine | GeneratedMonitor, messages: tuple[TraceMessage, ...], case: Timeline
+) -> tuple[timelines.Happening, ...]:
+    for message in messages:
         if message.t_ns > case.until_ns:
             break
         _run_timers(runner, message.t_ns)
         runner.message(message.t_ns, message.topic, message.leaves)
     _run_timers(runner, case.until_ns)
-    assert timelines.happenings(runner.events) == case.expect
+    return timelines.happenings(runner.events)
 
 
-def _run_timers(runner: Engine, until_ns: int) -> None:
+def _run_timers(runner: Engine | GeneratedMonitor, until_ns: int) -> None:
     while (due_ns := runner.next_deadline) is not None and due_ns <= until_ns:
         runner.advance(due_ns)
 
@@ -146,23 +145,19 @@ given = pytest.mark.parametrize("case", timelines.GIVEN, ids=lambda case: case.n
 
 @given
 def test_command_prints_the_timeline(case: Timeline, tmp_path: Path) -> None:
-    """``deros simulate`` prints exactly the expected events, one per line."""
-    result = CliRunner().invoke(command, _arguments(case, tmp_path)[1:])
-    assert result.exit_code == 0, result.output
-    assert _printed(result.stdout) == _expected(case)
+    """``deros simulate`` prints exactly the expected events, one per line.
 
-
-@given
-def test_generated_monitor_prints_the_same(case: Timeline, tmp_path: Path) -> None:
-    """``--monitor python`` prints the output of the reference engine, character by character."""
+    ``--monitor python`` prints the output of the reference engine, character by character.
+    """
     arguments = _arguments(case, tmp_path)[1:]
-    outputs = [
-        CliRunner().invoke(command, [*arguments, "--monitor", monitor])
-        for monitor in ("reference", "python")
-    ]
-    assert [output.exit_code for output in outputs] == [0, 0]
-    assert outputs[0].stdout == outputs[1].stdout
-    assert _printed(outputs[1].stdout) == _expected(case)
+    plain, *others = (
+        CliRunner().invoke(command, [*arguments, *option])
+        for option in ((), ("--monitor", "reference"), ("--monitor", "python"))
+    )
+    assert plain.exit_code == 0, plain.output
+    assert _printed(plain.stdout) == _expected(case)
+    for other in others:
+        assert (other.exit_code, other.stdout) == (0, plain.stdout)
 
 
 def _arguments(case: Timeline, folder: Path) -> list[str]:
