@@ -11,9 +11,7 @@ from pathlib import Path
 import pytest
 
 from deros.diagnostics import Diagnostic
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 
 GRAMMARS = Path(__file__).resolve().parents[2] / "src" / "deros" / "metamodels"
 
@@ -157,9 +155,8 @@ def test_table_covers_all_name_attributes() -> None:
 def _check(folder: Path, place: str, name: str) -> list[Diagnostic]:
     """Return the findings of the model that has a name at a place."""
     suffix, template, _ = PLACES[place]
-    repository = Repository()
-    loaded = repository.load_text(folder / f"model{suffix}", template.replace("NAME", name))
-    return check([loaded], repository, InterfaceStore((), ()))
+    model = folder / f"model{suffix}"
+    return checked(model, texts={model: template.replace("NAME", name)})
 
 
 @pytest.mark.parametrize("place", PLACES)

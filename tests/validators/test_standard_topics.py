@@ -12,8 +12,7 @@ from deros.interfaces import standard_topics
 from deros.interfaces.standard_topics import standard_topic
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 
 TABLE = Path(standard_topics.__file__).with_name("standard_topics.json")
 
@@ -27,8 +26,7 @@ def _check(folder: Path, ports: str, system: str = "") -> list[Diagnostic]:
     (folder / "user.rnd").write_text(f"node user : demo {ports}\n")
     path = folder / "demo.system"
     path.write_text(f'system Demo\nimports import "user.rnd"\n{system or "node user : user"}\n')
-    repository = Repository()
-    return check([repository.load(path)], repository, InterfaceStore())
+    return checked(path, store=InterfaceStore())
 
 
 @pytest.mark.parametrize(
