@@ -21,12 +21,6 @@ from tests.support.needs import needs
 DEROS = Path(sys.executable).with_name("deros")
 
 
-@pytest.mark.parametrize("name", ALL_CODES)
-def test_every_code_is_explained(name: str) -> None:
-    """The page of each code is in the package."""
-    assert deros("explain", name).out.startswith(f"# {name}: {ALL_CODES[name].title}\n")
-
-
 @pytest.mark.parametrize(
     "word", ["DRS317", "drs317", "317", "DRS-317", "input-without-timeout", "INPUT_WITHOUT_TIMEOUT"]
 )
