@@ -2,8 +2,6 @@
 
 PYTHON ?= python3
 JOBS ?= 2
-# Tests on the middleware wait more than they compute, so two processes a core.
-TESTERS ?= 4
 # The many processes of a test run import the same modules: they share what Python compiled.
 unexport PYTHONDONTWRITEBYTECODE
 
@@ -15,6 +13,8 @@ BENCH_READY := $(VENV)/.ready-bench
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # Runs a command and, however it ends, leaves none of its descendants behind.
 ALONE := $(BIN)/python tools/supervise.py
+BEGAN := $(shell $(PYTHON) -c 'import time; print(time.time())')
+TESTS = $(ALONE) $(BIN)/python -m tools.run_tests --began $(BEGAN) --ready $(READY)
 CHECKED := src tests tools benchmarks examples
 BENCHMARKS := $(filter-out benchmarks/big_system.py,$(wildcard benchmarks/*.py))
 
@@ -31,16 +31,21 @@ demo: $(READY)  ## Generate the feeding robot, start it, play its fifteen test c
 
 .PHONY: test
 test: $(READY)  ## Run the tests, those on the real middleware included
-	@$(ALONE) $(BIN)/python -m pytest -n $(TESTERS) --dist worksteal -m "not slow"
+	@$(TESTS) --slow-share 0
 
 .PHONY: test-all
 test-all: $(READY)  ## Run the slow tests too, and 500 examples of each property instead of 100
-	@$(ALONE) $(BIN)/python -m pytest -n $(TESTERS) --dist worksteal --hypothesis-profile ci
+	@$(TESTS) --hypothesis-profile ci
+
+.PHONY: test-rest
+test-rest: $(READY)  ## After make test: a tenth of the slow tests, and what lacked a program then
+	@$(TESTS) --slow-share 0.1 --draw $$(git rev-parse HEAD) --hypothesis-profile ci \
+	  --after .tmp/tests.json --record .tmp/tests-rest.json
 
 .PHONY: property
 property: $(READY)  ## Compare monitors on 120,000 random pairs; 5,000 examples of each property (nightly)
 	@$(ALONE) $(BIN)/python -m tools.property --jobs $(JOBS)
-	@$(ALONE) $(BIN)/python -m pytest -n $(TESTERS) -m hypothesis --hypothesis-profile nightly
+	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) -m hypothesis --hypothesis-profile nightly
 
 .PHONY: repeat
 repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (nightly)
@@ -48,7 +53,7 @@ repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (
 
 .PHONY: sanitize
 sanitize: $(READY)  ## Compare monitors in C with the reference, watched by gcc's sanitizers
-	@$(ALONE) $(BIN)/python -m tools.sanitize
+	@$(ALONE) $(BIN)/python -m tools.sanitize $(if $(PROGRAMS),--programs $(PROGRAMS))
 
 .PHONY: fuzz
 fuzz: $(READY)  ## Fuzz the monitors in C of the examples, 30 seconds each; needs clang
@@ -63,13 +68,28 @@ misra: $(READY)  ## Hold the emitted C against MISRA C:2012; needs cppcheck
 	@$(ALONE) $(BIN)/python -m tools.misra
 
 .PHONY: prove
-prove: $(READY)  ## Prove that the monitors in C of the examples do what the rules mean; needs Frama-C
-	@$(ALONE) $(BIN)/python -m tools.prove --jobs $(JOBS) $(RULES) \
-	  $(if $(SHARE),--share $(SHARE) --draw $$(git rev-parse HEAD))
+prove: $(READY)  ## Prove what the ledger lacks of the monitors in C of the examples; needs Frama-C
+	@$(ALONE) $(BIN)/python -m tools.prove --new $(if $(RECORD),--record) --jobs $(JOBS) $(RULES)
+
+.PHONY: prove-all
+prove-all: $(READY)  ## Prove that the monitors in C of the examples do what the rules mean
+	@$(ALONE) $(BIN)/python -m tools.prove --check --jobs $(JOBS) $(RULES)
 
 .PHONY: slips
 slips: $(READY)  ## Put every single slip into the C that is proved, and see the proof find each; takes hours
-	@$(ALONE) $(BIN)/python -m tools.mutate_proof --jobs $(JOBS)
+	@$(ALONE) $(BIN)/python -m tools.mutate_proof --jobs $(JOBS) $(if $(SHARE),--share $(SHARE))
+
+.PHONY: chaos
+chaos: $(READY)  ## Break the driving robot at random 200 times, two faults at a time (nightly)
+	@$(ALONE) $(BIN)/python -m tools.chaos --rounds 200
+
+.PHONY: reruns
+reruns: $(READY)  ## List the tests on ROS that passed only when run again, in the last week
+	@$(BIN)/python -m tools.reruns
+
+.PHONY: nightly
+nightly: $(READY)  ## Run all that takes too long for a change, and print one table; takes hours
+	@$(ALONE) $(BIN)/python -m tools.nightly
 
 .PHONY: lint
 lint: $(READY)  ## Check format, style, types and the layering of the packages
@@ -112,12 +132,12 @@ $(BIN)/python:
 
 $(READY): pyproject.toml | $(BIN)/python
 	@$(PIP) install --editable '.[dev]'
-	@touch $@
+	@$(BIN)/python -c 'open("$@", "w")'
 
 $(BENCH_READY): pyproject.toml | $(READY)
 	@$(PIP) install --editable '.[bench]'
-	@touch $@
+	@$(BIN)/python -c 'open("$@", "w")'
 
 $(DOCS_READY): pyproject.toml | $(READY)
 	@$(PIP) install --editable '.[docs]'
-	@touch $@
+	@$(BIN)/python -c 'open("$@", "w")'

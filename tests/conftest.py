@@ -12,7 +12,14 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 profiles.register()
 
-pytest_plugins = ("tests.support.golden", "tests.support.killing_pairs", "tests.support.ros")
+pytest_plugins = (
+    "pytester",
+    "tests.support.needs",
+    "tests.support.record",
+    "tests.support.golden",
+    "tests.support.killing_pairs",
+    "tests.support.ros",
+)
 
 collect_ignore = ["golden"]
 """Generated packages have their own tests, which run where they are built."""

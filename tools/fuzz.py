@@ -7,7 +7,6 @@ do it are kept under ``.tmp/fuzz``. Exit code 2 says that there is no libFuzzer.
 from __future__ import annotations
 
 import argparse
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,18 +14,11 @@ from pathlib import Path
 from tests.support.c_everything import everything, examples
 from tests.support.c_fuzz import fuzz_text
 from tests.support.c_harness import DRIVER, Unit, unit
-from tests.support.c_library import links
+from tests.support.capabilities import FUZZED, has_fuzzer
 
 ROOT = Path(__file__).resolve().parents[1]
 COMPILER = "clang"
-FLAGS = (
-    "-std=c99",
-    "-g",
-    "-O1",
-    "-fsanitize=fuzzer,address,undefined",
-    "-fno-sanitize-recover=all",
-)
-ENTRY = "int LLVMFuzzerTestOneInput(const char *d, long s) { return (d == 0) && (s != 0); }"
+FLAGS = (*FUZZED, "-fno-sanitize-recover=all")
 
 
 def main() -> int:
@@ -36,7 +28,7 @@ def main() -> int:
     arguments = parser.parse_args()
     folder = ROOT / ".tmp" / "fuzz"
     folder.mkdir(parents=True, exist_ok=True)
-    if shutil.which(COMPILER) is None or not links(str(folder), COMPILER, *FLAGS, text=ENTRY):
+    if not has_fuzzer():
         needed = "clang with libFuzzer (Debian: clang, libclang-rt-14-dev)"
         print(f"make fuzz needs {needed}", file=sys.stderr)
         return 2

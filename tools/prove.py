@@ -2,13 +2,13 @@
 
 Eva shows that no sequence of calls with any values causes a run-time error. WP proves that each
 function meets its contract, which states the meaning of the rules. Prints the numbers of proved and
-of all goals. Exit code 1: a goal is not proved; 2: Frama-C is not installed.
+of all goals. With ``--new``, only what the ledger (``tools/ledger.py``) lacks is proved. Exit code
+1: a goal is not proved; 2: Frama-C is not installed.
 """
 
 from __future__ import annotations
 
 import argparse
-import hashlib
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -23,6 +23,7 @@ from deros.metamodels.rules import Rules
 from deros.monitor.build import build
 from deros.monitor.ir import Program
 from tests.support import c_proof
+from tools.ledger import ERRORS, Ledger, digests
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 EXAMPLES = ("intelligent_one", "feeding_robot")
@@ -40,8 +41,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         help="files of rules, or sources of monitors with the contracts beside them",
     )
     parser.add_argument("--functions", default="", help="prove only these, separated by commas")
-    parser.add_argument("--share", type=float, help="prove only so many of the functions, 0 to 1")
-    parser.add_argument("--draw", default="", help="decides which, such as the digest of a commit")
+    parser.add_argument("--new", action="store_true", help="prove only what the ledger lacks")
+    parser.add_argument("--check", action="store_true", help="the ledger must list what it may")
+    parser.add_argument("--record", action="store_true", help="add what is proved to the ledger")
     parser.add_argument("--timeout", type=int, default=300, help="seconds for a goal")
     parser.add_argument("--jobs", type=int, default=2, help="provers at once")
     parser.add_argument("--output", type=Path, help="keep the sources and Frama-C's words here")
@@ -53,13 +55,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with tempfile.TemporaryDirectory(prefix="deros-proof-") as temporary:
         for path in options.rules:
             if path.suffix == ".c":
-                results.append(_prove(path.resolve(), path.stem, options))
+                functions = [each for each in options.functions.split(",") if each]
+                results.append(_prove(path.resolve(), path.stem, options, functions))
             else:
                 folder = (options.output or Path(temporary)) / path.stem
                 source = c_proof.write(program_of(path), folder)
-                results.append(_prove(source, path.stem, options))
-                if not options.functions and options.share is None:
-                    results.append(_analyse(source, path.stem))
+                results.append(_program(source, path.stem, options))
     return 0 if all(results) else 1
 
 
@@ -72,21 +73,38 @@ def program_of(path: Path) -> Program:
     return built.program
 
 
-def drawn(functions: Sequence[str], share: float, text: str) -> list[str]:
-    """Return a share of the functions, at least one; ``text`` decides which."""
-    number = max(1, round(share * len(functions)))
-    return sorted(functions, key=lambda each: hashlib.sha256(f"{text} {each}".encode()).digest())[
-        :number
-    ]
+def _program(source: Path, name: str, options: argparse.Namespace) -> bool:
+    """Prove one program, or what the ledger lacks of it; return whether all of it is proved."""
+    ledger, console = Ledger(), Console(soft_wrap=True)
+    chosen = [each for each in options.functions.split(",") if each] or list(digests(source))
+    left = ledger.open(name, source)
+    wanted = [each for each in chosen if each in left] if options.new else chosen
+    known = f"{len(chosen) - len(wanted)} of {len(chosen)} by the ledger"
+    console.print(f"{name}: {known}, to prove: {', '.join(wanted) or 'nothing'}", highlight=False)
+    proved = [ERRORS] if ERRORS in wanted and _analyse(source, name) else []
+    functions = [each for each in wanted if each != ERRORS]
+    if functions and _prove(source, name, options, functions):
+        proved += functions
+    if options.record:
+        ledger.record(name, source, proved)
+    is_listed = not options.check or _check(ledger, source, name, console)
+    return set(proved) == set(wanted) and is_listed
 
 
-def _prove(source: Path, name: str, options: argparse.Namespace) -> bool:
-    """Prove one program, and tell how it went."""
+def _check(ledger: Ledger, source: Path, name: str, console: Console) -> bool:
+    """Report what the ledger lacks of a program, and what it has in vain."""
+    lacks, stale = ledger.open(name, source), ledger.stale(name, source)
+    for verb, names in (("lacks", lacks), ("has, and should not have,", stale)):
+        if names:
+            console.print(f"  the ledger {verb} {', '.join(names)}", style="red", highlight=False)
+    return not lacks and not stale
+
+
+def _prove(
+    source: Path, name: str, options: argparse.Namespace, functions: Sequence[str] = ()
+) -> bool:
+    """Prove functions of one program, and report the outcome."""
     console = Console()
-    functions = [each for each in options.functions.split(",") if each]
-    if options.share is not None:
-        functions = drawn(functions or c_proof.functions_of(source), options.share, options.draw)
-        console.print(f"{name}: proving {', '.join(functions)}", highlight=False)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, TimeElapsedColumn(), console=console) as progress:
         task = progress.add_task(f"{name}: proving", total=None)

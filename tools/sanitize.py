@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 
 from tests.support import c_library, c_pairs, counterexamples
+from tests.support.capabilities import has_sanitizers
 
 
 def main() -> int:
@@ -22,7 +23,7 @@ def main() -> int:
     parser.add_argument("--programs", type=int, default=60, help="for each choice of inputs")
     parser.add_argument("--seed", type=int, help="repeats an earlier run")
     arguments = parser.parse_args()
-    if not c_library.has_sanitizers():
+    if not has_sanitizers():
         print("make sanitize needs gcc with libasan and libubsan (Debian: gcc)", file=sys.stderr)
         return 2
     seed = secrets.randbelow(1 << 48) if arguments.seed is None else arguments.seed

@@ -15,7 +15,8 @@ import pytest
 from benchmarks.support.samples import ReportedSample, Sample, Trigger, match
 from benchmarks.support.schedule import Schedule
 from benchmarks.support.summary import summarize
-from tests.support.cpp import BUILD_LIMIT, needs_rclcpp
+from tests.support.cpp import BUILD_LIMIT
+from tests.support.needs import needs
 
 REACTION = Path(__file__).resolve().parents[2] / "benchmarks" / "reaction.py"
 MS = 1_000_000
@@ -113,7 +114,7 @@ def test_short_run_measures_rclpy(tmp_path: Path) -> None:
 
 
 @pytest.mark.ros
-@needs_rclcpp
+@needs("rclcpp")
 def test_short_run_measures_rclcpp(tmp_path: Path) -> None:
     """Nodes, relays and a driver are built for it."""
     results = _run(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from tests.support.needs import needs
 
 THROUGHPUT = Path(__file__).resolve().parents[2] / "benchmarks" / "throughput.py"
 
@@ -31,7 +32,7 @@ def _run(folder: Path, **env: str) -> dict[str, Any]:
     return results
 
 
-@pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
+@needs("gcc")
 @pytest.mark.slow
 def test_c_monitors_are_compared(tmp_path: Path) -> None:
     """Generated and hand-written have times above those of empty calls, a size, and a ratio."""

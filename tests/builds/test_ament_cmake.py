@@ -8,17 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.builds import (
-    EACH_GENERATOR,
-    GENERATORS,
-    PROGRAM,
-    Project,
-    configured,
-    needs_cmake,
-    replace,
-)
+from tests.support.builds import EACH_GENERATOR, GENERATORS, PROGRAM, Project, configured, replace
 from tests.support.cli import deros
-from tests.support.cpp import colcon_build, needs_compiler, needs_rclcpp, program
+from tests.support.cpp import colcon_build, program
+from tests.support.needs import needs
 
 NODE = """\
 node odometer : odometry "Turns ticks into metres"
@@ -54,7 +47,7 @@ def test_new_package_has_four_kinds_of_files(package: Path) -> None:
     )
 
 
-@needs_rclcpp
+@needs("rclcpp")
 def test_colcon_builds_and_tests_the_package(
     package: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -142,8 +135,7 @@ def _output_of_program(project: Project) -> str:
     return subprocess.run([program], capture_output=True, text=True, check=True).stdout
 
 
-@needs_cmake
-@needs_compiler
+@needs("cmake", "ctest", "c++")
 @pytest.mark.parametrize("tool", EACH_GENERATOR)
 def test_generated_and_hand_written_files_are_built(counted: Path, tool: str) -> None:
     """A changed model or user file is in the next build; nothing else is rebuilt."""
@@ -165,8 +157,7 @@ def test_generated_and_hand_written_files_are_built(counted: Path, tool: str) ->
 
 
 @pytest.mark.slow
-@needs_cmake
-@needs_compiler
+@needs("cmake", "c++")
 @pytest.mark.parametrize("tool", EACH_GENERATOR)
 def test_model_error_fails_the_build(counted: Path, tool: str) -> None:
     """The build ends with the diagnostic and its place until the model is fixed."""
@@ -187,7 +178,7 @@ def test_model_error_fails_the_build(counted: Path, tool: str) -> None:
     assert "--target counted --scaffold" in " ".join(failed.stdout.split())
 
 
-@needs_cmake
+@needs("cmake", "make")
 @pytest.mark.parametrize(
     ("script", "complaint"),
     [

@@ -12,6 +12,7 @@ import pytest
 
 from tests.support.builds import colcon, frozen_program, models, replace
 from tests.support.cli import deros
+from tests.support.needs import needs
 
 ACTIONS = "robot_safety/robot_safety_node_actions.py"
 MORE = """
@@ -67,6 +68,7 @@ def test_new_package_has_four_kinds_of_files(package: Path) -> None:
     )
 
 
+@needs("sh")
 @pytest.mark.slow
 @pytest.mark.parametrize("how", [(), ("--symlink-install",)], ids=["install", "symlink-install"])
 def test_colcon_builds_the_current_models(package: Path, how: tuple[str, ...]) -> None:
@@ -87,6 +89,7 @@ def test_colcon_builds_the_current_models(package: Path, how: tuple[str, ...]) -
     assert (package / ".deros/.gitignore").read_text() == "*\n"
 
 
+@needs("sh")
 @pytest.mark.slow
 def test_model_error_fails_the_build_with_its_place(package: Path) -> None:
     """The output shows the diagnostic, not a traceback of setup.py; nothing is installed."""
@@ -99,6 +102,7 @@ def test_model_error_fails_the_build_with_its_place(package: Path) -> None:
     assert not list(_workspace(package).glob("install/**/monitor.py"))
 
 
+@needs("sh")
 @pytest.mark.slow
 def test_additional_user_files_are_installed(package: Path) -> None:
     """Hand-written modules, programs and data files are installed with the generated ones."""
@@ -142,6 +146,7 @@ def test_missing_user_code_is_reported_by_every_build(package: Path) -> None:
         assert "DRS4" not in build()
 
 
+@needs("sh")
 @pytest.mark.slow
 def test_missing_user_file_fails_the_build(package: Path) -> None:
     """An action with user code needs its file; the build names the command that writes it."""

@@ -19,14 +19,14 @@ from tests.support.builds import (
     configured,
     frozen_program,
     models,
-    needs_cmake,
     replace,
     times,
     touch,
 )
 from tests.support.cli import deros as run
+from tests.support.needs import needs
 
-pytestmark = needs_cmake
+pytestmark = needs("cmake", "make")
 
 HEAD = (
     "cmake_minimum_required(VERSION 3.22)\nproject(p LANGUAGES {})\nfind_package(deros REQUIRED)\n"
@@ -276,7 +276,7 @@ int main(void)
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+@needs("cc")
 def test_firmware_links_to_the_monitor(folder: Path, tool: str) -> None:
     """Nothing is recompiled unless the code of the monitor changes."""
     (folder / "safety").mkdir(parents=True)
@@ -311,7 +311,7 @@ FUSED = {"x86_64": ["-mfma"], "aarch64": []}
 
 @pytest.mark.slow
 @pytest.mark.skipif(platform.machine() not in FUSED, reason="no known fused instructions")
-@pytest.mark.skipif(shutil.which("objdump") is None, reason="no objdump")
+@needs("cc", "ninja", "objdump")
 def test_products_and_sums_are_not_fused(folder: Path) -> None:
     """Each operation of a rule is rounded, whatever the compiler may do by default."""
     options = ["-O2", *FUSED[platform.machine()]]

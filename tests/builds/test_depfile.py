@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from deros.pipeline.depfile import depfile, is_current, prerequisites, read_stam
 from tests.support.builds import PROGRAM, frozen_program, models, replace, touch
 from tests.support.cli import Outcome
 from tests.support.cli import deros as run
+from tests.support.needs import needs
 
 AWKWARD = ["/a b/c.rnd", "/costs $5/x", "/one#two", "/tab\there", "/plain"]
 
@@ -45,7 +45,7 @@ def test_special_characters_round_trip() -> None:
     assert prerequisites(depfile(["/the stamp"], AWKWARD)) == AWKWARD
 
 
-@pytest.mark.skipif(shutil.which("make") is None, reason="no make")
+@needs("make", "touch")
 def test_make_reads_special_file_names(tmp_path: Path) -> None:
     """Make rebuilds exactly when a file with a special name changes."""
     sources = [tmp_path / name for name in ("a b.rnd", "costs $5", "one#two")]
@@ -79,7 +79,7 @@ build/robot_monitor.c: build/robot.stamp ;
 """
 
 
-@pytest.mark.skipif(shutil.which("make") is None, reason="no make")
+@needs("make")
 def test_makefile_with_a_depfile_rebuilds_only_changes(tmp_path: Path) -> None:
     """Make generates exactly when an imported model changes."""
     models(tmp_path)

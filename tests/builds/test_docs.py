@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from tests.support.builds import GENERATORS, Project, configured, frozen_program, needs_cmake
+from tests.support.builds import GENERATORS, Project, configured, frozen_program
 from tests.support.cli import deros
+from tests.support.needs import needs
 from tests.support.profiles import slow
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "build-systems.md").read_text("utf-8")
 HEAD = "cmake_minimum_required(VERSION 3.22)\nproject(p LANGUAGES NONE)\nfind_package(deros)\n"
-needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 
 # Rules that need the mathematical library, like those of the documentation.
 ROBOT = """\
@@ -81,19 +80,18 @@ def folder(tmp_path: Path) -> Path:
 
 def test_every_snippet_has_a_test() -> None:
     """A snippet added to the page needs a test here."""
-    known = [
-        ("cmake", ("deros_add_monitor", "deros_generate", "deros_package")),
-        ("make", ("--depfile",)),
-        ("python", ("deros.build",)),
-    ]
-    for language, words in known:
+    known = {
+        "cmake": ("deros_add_monitor", "deros_generate", "deros_package"),
+        "make": ("--depfile",),
+        "python": ("deros.build",),
+    }
+    for language, words in known.items():
         snippets = _snippets(language)
         assert len(snippets) == len(words)
         assert all(word in text for word, text in zip(words, snippets, strict=True))
 
 
-@needs_c
-@needs_cmake
+@needs("cmake", "make", "cc")
 @pytest.mark.parametrize("kind", ["", slow("STATIC"), slow("OBJECT")])
 def test_monitor_library_snippet_builds_and_runs(folder: Path, kind: str) -> None:
     """The project of the page compiles, links and runs, with each kind of library."""
@@ -106,7 +104,7 @@ def test_monitor_library_snippet_builds_and_runs(folder: Path, kind: str) -> Non
     assert done.returncode == 0
 
 
-@needs_cmake
+@needs("cmake", "make")
 def test_generate_snippet_builds_the_launch_file(folder: Path) -> None:
     """The target of the page generates the launch file that it installs."""
     script = HEAD + _snippet("cmake", "deros_generate")
@@ -119,16 +117,15 @@ def test_generate_snippet_builds_the_launch_file(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("language", "word", "file", "model", "target"),
+    ("word", "file", "model", "target"),
     [
-        ("cmake", "deros_package", "CMakeLists.txt", "models/odometer.rnd", "cpp"),
-        ("python", "deros.build", "setup.py", "models/robot.deros", "python"),
+        ("deros_package", "CMakeLists.txt", "models/odometer.rnd", "cpp"),
+        ("deros.build", "setup.py", "models/robot.deros", "python"),
     ],
 )
 def test_scaffold_matches_the_page(
     folder: Path,
     monkeypatch: pytest.MonkeyPatch,
-    language: str,
     word: str,
     file: str,
     model: str,
@@ -140,11 +137,12 @@ def test_scaffold_matches_the_page(
     (folder / "models/odometer.rnd").write_text(odometer, encoding="utf-8")
     outcome = deros("generate", model, "--target", target, "--scaffold", ".")
     assert outcome.code == 0, outcome.err
+    language = "python" if file == "setup.py" else "cmake"
     assert (folder / file).read_text(encoding="utf-8").strip() == _snippet(language, word).strip()
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(shutil.which("make") is None, reason="no make")
+@needs("make")
 def test_make_snippet_rebuilds_only_changes(folder: Path) -> None:
     """The rules for Make generate once, and again when a model changes."""
     (folder / "Makefile").write_text(_snippet("make", "--depfile"), encoding="utf-8")
@@ -153,7 +151,7 @@ def test_make_snippet_rebuilds_only_changes(folder: Path) -> None:
 
     def make() -> str:
         done = subprocess.run(
-            ["sh", "-c", command],
+            ["/bin/sh", "-c", command],
             cwd=folder,
             capture_output=True,
             text=True,

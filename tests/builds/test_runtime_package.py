@@ -13,7 +13,10 @@ import pytest
 from deros import __version__
 from tests.support.builds import colcon, models, replace, touch
 from tests.support.cli import deros
+from tests.support.needs import needs
 from tests.support.ros import Peer, running
+
+pytestmark = needs("sh")  # that colcon runs
 
 OTHER = "0.0.10"
 """Another version; of another length, or Python might run the module that it compiled before."""

@@ -10,6 +10,7 @@ import pytest
 from deros.cli.main import COMMANDS
 from tests.support.builds import PROGRAM
 from tests.support.cli import deros
+from tests.support.needs import needs
 
 # Arguments of each command for a file; other commands are called without one.
 ON_A_FILE: dict[str, list[str]] = {
@@ -74,6 +75,7 @@ def test_up_rejects_arguments_that_its_script_rejects(arguments: list[str], tmp_
     assert "Traceback" not in outcome.err
 
 
+@needs("bash")
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_into_a_closed_pipe_is_silent(name: str) -> None:
     """If the reader is gone before the first line, the code is 141 without a message."""

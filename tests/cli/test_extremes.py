@@ -132,20 +132,20 @@ NUMBERS = {
 
 
 @pytest.mark.parametrize("place", NUMBERS)
-@pytest.mark.parametrize("number", ["9" * 5000, "1e400", "1" * 300, "18446744073709551616"])
-def test_number_out_of_range_is_a_finding(tmp_path: Path, place: str, number: str) -> None:
+def test_number_out_of_range_is_a_finding(tmp_path: Path, place: str) -> None:
     """A number that no type can represent is reported at its place, wherever it is."""
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
     from deros.validators.check import check as check_loaded
 
-    text = NUMBERS[place].replace("@", number)
-    repository = Repository()
-    loaded = repository.load_text(tmp_path / "model.rnd", text)
-    findings = check_loaded([loaded], repository, InterfaceStore((), ()))
-    errors = [each for each in findings if each.is_error]
-    fits = place in ("lower end", "upper end") and number in ("1" * 300, "18446744073709551616")
-    assert errors or fits, (place, number[:30])
+    for number in ("9" * 5000, "1e400", "1" * 300, "18446744073709551616"):
+        text = NUMBERS[place].replace("@", number)
+        repository = Repository()
+        loaded = repository.load_text(tmp_path / "model.rnd", text)
+        findings = check_loaded([loaded], repository, InterfaceStore((), ()))
+        errors = [each for each in findings if each.is_error]
+        fits = place in ("lower end", "upper end") and number in ("1" * 300, "18446744073709551616")
+        assert errors or fits, number[:30]
 
 
 # Special files ------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ import pytest
 from deros import __version__
 from deros.cli import main
 from tests.support.cli import deros
+from tests.support.needs import needs
 
 DEROS = str(Path(sys.executable).with_name("deros"))
 
@@ -102,6 +103,7 @@ def test_interrupt_gives_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "Traceback" not in outcome.err
 
 
+@needs("bash")
 def test_closed_pipe_gives_no_traceback(tmp_path: Path) -> None:
     """If the reader of the output exits early, the command exits silently."""
     bad = tmp_path / "bad.rnd"

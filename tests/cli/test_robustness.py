@@ -14,8 +14,6 @@ from hypothesis import strategies as st
 from tests.support.cli import Outcome, deros
 from tests.support.profiles import scaled
 
-CASES = Path(__file__).resolve().parents[1] / "cases"
-
 MODELS = {
     "robot.rnd": """\
 node robot : demo "A robot" executable "run"
@@ -208,14 +206,3 @@ def test_generate_writes_nothing_from_models_with_errors(models: Path) -> None:
         assert outcome.code == 1
         assert "DRS103" in outcome.err
         assert not (models / "out").exists()
-
-
-@pytest.mark.parametrize("case", sorted(p.name for p in CASES.glob("DRS*")))
-def test_cases_can_be_checked_from_any_directory(
-    case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Every bad model gives the exit code of its findings, from any working directory."""
-    monkeypatch.chdir(tmp_path)
-    if not case.endswith(".expected"):
-        outcome, findings = _findings(CASES / case)
-        assert outcome.code >= any(finding["severity"] == "error" for finding in findings)

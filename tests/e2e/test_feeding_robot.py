@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.cpp import BUILD_LIMIT, needs_rclcpp, python_overlay
+from tests.support.cpp import BUILD_LIMIT, python_overlay
 from tests.support.examples import EXAMPLES
+from tests.support.needs import needs
 from tests.support.processes import processes_with
 
 DEMO = EXAMPLES / "feeding_robot/demo.py"
@@ -53,13 +54,14 @@ def test_runs_cover_all_fifteen_cases() -> None:
     assert [number for cases in RUNS for number in cases] == list(range(1, 16))
 
 
+@needs("sh")
 @pytest.mark.ros
 @pytest.mark.parametrize(
     ("language", "cases"),
     [
         ("python", RUNS[0]),
         *(pytest.param("python", cases, marks=pytest.mark.slow) for cases in RUNS[1:]),
-        pytest.param("cpp", range(1, 16), marks=needs_rclcpp),
+        pytest.param("cpp", range(1, 16), marks=needs("rclcpp")),
     ],
     ids=lambda value: f"{value[0]}-{value[-1]}" if isinstance(value, range) else None,
 )
@@ -79,6 +81,7 @@ def test_cases_pass(language: str, cases: range, ros_env: dict[str, str], tmp_pa
     assert processes_with(str(tmp_path)) == []
 
 
+@needs("sh")
 @pytest.mark.ros
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -108,6 +111,7 @@ def changed(tmp_path: Path, file: str, before: str, after: str) -> Path:
     return example / "demo.py"
 
 
+@needs("sh")
 @pytest.mark.ros
 @pytest.mark.slow
 def test_wrong_reaction_fails_the_demo(ros_env: dict[str, str], tmp_path: Path) -> None:
@@ -120,6 +124,7 @@ def test_wrong_reaction_fails_the_demo(ros_env: dict[str, str], tmp_path: Path) 
     assert "Case 10 failed: the reaction took" in text, text
 
 
+@needs("sh")
 @pytest.mark.slow
 @pytest.mark.ros
 def test_failed_node_ends_the_demo_at_once(ros_env: dict[str, str], tmp_path: Path) -> None:
@@ -133,6 +138,7 @@ def test_failed_node_ends_the_demo_at_once(ros_env: dict[str, str], tmp_path: Pa
     assert processes_with(str(tmp_path)) == []
 
 
+@needs("sh")
 @pytest.mark.ros
 def test_model_error_prevents_the_demo(ros_env: dict[str, str], tmp_path: Path) -> None:
     """The demo reports the line without a traceback, and starts nothing."""

@@ -15,8 +15,9 @@ from typing import Any
 
 import pytest
 
-from tests.support.cpp import colcon_build, needs_rclcpp, python_overlay
+from tests.support.cpp import colcon_build, python_overlay
 from tests.support.examples import EXAMPLES
+from tests.support.needs import needs
 from tests.support.ros import Peer, running
 
 README = EXAMPLES / "intelligent_one/README.md"
@@ -33,7 +34,7 @@ def commands(folder: Path) -> tuple[list[str], list[str]]:
     return generate, up.split()
 
 
-@pytest.fixture(params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+@pytest.fixture(params=["python", pytest.param("cpp", marks=needs("rclcpp"))])
 def packages(
     request: pytest.FixtureRequest, tmp_path: Path, ros_env: dict[str, str]
 ) -> tuple[list[str], dict[str, str]]:

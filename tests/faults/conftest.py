@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.cpp import needs_rclcpp
 from tests.support.faults import CppRobot, PythonRobot, Robot, Software
+from tests.support.needs import needs
 from tests.support.ros import Peer
 
 RULES = Path(__file__).resolve().parent / "models" / "faulty.deros"
 
 
-@pytest.fixture(scope="session", params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+@pytest.fixture(scope="session", params=["python", pytest.param("cpp", marks=needs("rclcpp"))])
 def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Software:
     """Return the generated safety node and gate, in each language."""
     robot_class = PythonRobot if request.param == "python" else CppRobot

@@ -10,8 +10,8 @@ import pytest
 
 from tests.faults.conftest import RULES
 from tests.faults.test_gate import assert_zeros_only, is_stopped
-from tests.support.cpp import needs_rclcpp
 from tests.support.faults import CppRobot, PythonRobot, Robot, Software
+from tests.support.needs import needs
 from tests.support.played import imu, scan
 from tests.support.victims import Sensors
 
@@ -36,7 +36,7 @@ blind = pytest.mark.parametrize(
 )
 
 
-@pytest.fixture(scope="module", params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+@pytest.fixture(scope="module", params=["python", pytest.param("cpp", marks=needs("rclcpp"))])
 def software(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Software:
     """Return the nodes of the robot with failsafe rules, in each language."""
     folder = tmp_path_factory.mktemp("watchful")

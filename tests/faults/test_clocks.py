@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.faults import PROMPT, Robot
+from tests.support.needs import needs
 from tests.support.played import TOPICS, imu, load, speed, ticks
 from tests.support.preload import WallClock
 from tests.support.profiles import slow
@@ -19,6 +20,7 @@ TILTED = math.radians(20.0)
 DAY = 86400
 
 
+@needs("gcc")
 @pytest.mark.parametrize("seconds", [slow(400 * DAY), -3600])
 def test_wall_clock_step_has_no_effect(robot: Robot, tmp_path: Path, seconds: int) -> None:
     """Setting the system clock neither stops the robot nor prevents a stop."""
@@ -41,6 +43,7 @@ def test_wall_clock_step_has_no_effect(robot: Robot, tmp_path: Path, seconds: in
         robot.until_stopped("/halt", limit=0.5 + 1.0)
 
 
+@needs("gcc")
 @pytest.mark.slow
 def test_timers_survive_a_wall_clock_step(robot: Robot, tmp_path: Path) -> None:
     """Set back by a year, without messages, the node keeps its heartbeat and its deadlines."""

@@ -11,7 +11,7 @@ from tests.support.chaos.bench import Bench, running
 from tests.support.chaos.campaign import EXAMPLE, generate_packages
 from tests.support.chaos.round import play
 from tests.support.chaos.schedule import Schedule
-from tests.support.cpp import needs_rclcpp
+from tests.support.needs import needs
 from tests.support.ros import environment
 
 pytestmark = pytest.mark.ros
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.ros
 SCHEDULES = sorted((Path(__file__).parent / "schedules").glob("*.json"))
 
 
-@pytest.fixture(scope="module", params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+@pytest.fixture(scope="module", params=["python", pytest.param("cpp", marks=needs("rclcpp"))])
 def bench(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Bench]:
@@ -35,6 +35,7 @@ def bench(
     patch.undo()
 
 
+@needs("gcc")
 @pytest.mark.slow
 @pytest.mark.parametrize("path", SCHEDULES, ids=lambda path: path.stem)
 def test_former_counterexample_has_no_violation(bench: Bench, path: Path) -> None:

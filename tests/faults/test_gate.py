@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.faults import GATE, PROMPT, Heard, Robot
+from tests.support.needs import needs
 from tests.support.played import COMMANDER, SENSES, TOPICS, command, load
 from tests.support.preload import WallClock
 from tests.support.profiles import slow
@@ -180,6 +181,7 @@ def test_limit_becomes_zero_when_the_safety_node_dies(robot: Robot) -> None:
         robot.restart()
 
 
+@needs("gcc")
 @pytest.mark.slow
 def test_zeros_survive_a_wall_clock_step(robot: Robot, tmp_path: Path) -> None:
     """Set back by a year, without messages, the gate still detects the loss and still commands."""

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.faults import NODE, Robot
+from tests.support.needs import needs
 from tests.support.preload import Disk
 from tests.support.profiles import slow
 
@@ -194,6 +195,7 @@ def test_folder_that_cannot_be_created_means_stopped(robot: Robot, tmp_path: Pat
         assert "cannot be" in node.output()
 
 
+@needs("gcc")
 def test_full_disk_does_not_prevent_a_stop(robot: Robot, tmp_path: Path) -> None:
     """The stop is published, and a restart finds it although it could not be written."""
     folder = tmp_path / "disk"
@@ -210,6 +212,7 @@ def test_full_disk_does_not_prevent_a_stop(robot: Robot, tmp_path: Path) -> None
         assert robot.is_active("/stop"), "the stop was undone by a restart"
 
 
+@needs("gcc")
 @pytest.mark.slow
 def test_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
     """A reset that a restart would undo is refused until there is space again."""
@@ -236,6 +239,7 @@ def test_full_disk_refuses_the_reset(robot: Robot, tmp_path: Path) -> None:
         robot.until(lambda: not robot.is_active("/stop"))
 
 
+@needs("gcc")
 @pytest.mark.slow
 def test_disk_full_from_the_start_means_stopped(robot: Robot, tmp_path: Path) -> None:
     """A node that could not store a stop starts stopped."""

@@ -13,7 +13,7 @@ from deros.generators.monitor.python.render import render_monitor as render_pyth
 from deros.monitor.engine import Engine
 from deros.monitor.ir import Program
 from tests.support import timelines
-from tests.support.c_library import needs_c
+from tests.support.needs import needs
 
 Rule = Callable[[int], str]
 
@@ -101,8 +101,9 @@ LARGE = {
 }
 
 
-@needs_c
-@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize(
+    "compiler", [pytest.param(name, marks=needs(name)) for name in ("gcc", "clang")]
+)
 @pytest.mark.parametrize("name", LARGE)
 def test_large_rules_compile(name: str, compiler: str, tmp_path: Path) -> None:
     """Compilers limit nested calls, clang to 256; Python limits nested parentheses to 200."""

@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
 from deros.interfaces.keywords import CPP, CPP_20, C
+from tests.support.needs import needs
 
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "deros"
 
 
 @pytest.mark.parametrize(
     ("compiler", "standard", "words"),
-    [("cc", "c99", C), ("c++", "c++17", CPP), ("c++", "c++20", CPP_20)],
-    ids=["C", "C++17", "C++20"],
+    [
+        pytest.param("cc", "c99", C, id="C", marks=needs("cc")),
+        pytest.param("c++", "c++17", CPP, id="C++17", marks=needs("c++")),
+        pytest.param("c++", "c++20", CPP_20, id="C++20", marks=needs("c++")),
+    ],
 )
 def test_compiler_rejects_keywords_as_names(
     compiler: str, standard: str, words: frozenset[str], tmp_path: Path
 ) -> None:
     """Every keyword is a syntax error as a variable name; another word is not."""
-    if shutil.which(compiler) is None:
-        pytest.skip(f"no {compiler}")
     file = tmp_path / "names.txt"
     language = "c" if standard.startswith("c9") else "c++"
     for word in sorted(words):

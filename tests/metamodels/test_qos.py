@@ -122,18 +122,18 @@ PINS = [
 ]
 
 
-@pytest.mark.parametrize(("pin", "profile", "wrong"), PINS)
-def test_violations_of_pinned_qos_are_found(
-    pin: QosProfile, profile: QosProfile | None, wrong: tuple[str, str]
-) -> None:
+def test_violations_of_pinned_qos_are_found() -> None:
     """A publisher must offer at least the pinned QoS, a subscription request exactly that."""
-    violations_of_ends = (publisher_violations(pin, profile), subscription_violations(pin, profile))
-    assert wrong == tuple(
-        "".join("more" if violation.excess else "less" for violation in violations)
-        for violations in violations_of_ends
-    )
-    assert all(each.certain for each in (*violations_of_ends[0], *violations_of_ends[1]))
-    assert [each for each in violations_of_ends[1] if each.excess] == list(excess(pin, profile))
+    for pin, ends, wrong in PINS:
+        case = (pin, ends)
+        published = publisher_violations(*case)
+        subscribed = subscription_violations(*case)
+        assert wrong == tuple(
+            "".join("more" if violation.excess else "less" for violation in violations)
+            for violations in (published, subscribed)
+        ), case
+        assert all(each.certain for each in (*published, *subscribed)), case
+        assert [each for each in subscribed if each.excess] == list(excess(*case)), case
 
 
 def test_open_policy_is_not_a_certain_violation() -> None:

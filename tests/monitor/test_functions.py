@@ -6,7 +6,6 @@ import ctypes
 import functools
 import math
 import re
-import shutil
 import struct
 import subprocess
 from collections.abc import Callable, Sequence
@@ -25,6 +24,7 @@ from deros.monitor import function_values as values
 from deros.monitor.function_texts import C
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.memories import SAMPLES
+from tests.support.needs import needs
 
 NUMBERS = st.floats(allow_nan=False)
 MODERATE = st.floats(-1e3, 1e3, allow_subnormal=False)
@@ -293,9 +293,6 @@ OF_ELEMENTS = (("BASE", "float64"), ("ELEMENT", "double"), ("RESULT", "double"),
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     """Compile all C texts with strict warnings and export their functions."""
-    compiler = shutil.which("cc")
-    if compiler is None:
-        pytest.skip("no C compiler")
     directory: Path = tmp_path_factory.mktemp("functions")
     texts = [*C.values(), *(text for _, text in shared_texts())]
     texts += [printed_in_c(row) for row in FUNCTIONS.values() if not row.c]
@@ -308,7 +305,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     (directory / "functions.c").write_text(source)
     strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-O1"]
     subprocess.run(
-        [compiler, *strict, "-shared", "-fPIC", "functions.c", "-o", "functions.so", "-lm"],
+        ["cc", *strict, "-shared", "-fPIC", "functions.c", "-o", "functions.so", "-lm"],
         cwd=directory,
         check=True,
     )
@@ -346,6 +343,7 @@ def rate_in_c(library: ctypes.CDLL, value: float, previous: float, ns: int) -> f
     return None if math.isnan(result) else result
 
 
+@needs("cc")
 @pytest.mark.parametrize("name", ["roll", "pitch", "yaw", "tilt"])
 @given(x=MODERATE, y=MODERATE, z=MODERATE, w=MODERATE)
 @example(x=0.0, y=0.0, z=0.0, w=0.0)
@@ -358,6 +356,7 @@ def test_c_angles_agree_with_the_reference(
     assert same(call_c(library, name, *unit), getattr(values, name)(x, y, z, w))
 
 
+@needs("cc")
 @given(x=NUMBERS, y=NUMBERS, elapsed_ns=st.integers(0, 10**15))
 def test_c_rate_agrees_with_the_reference(
     library: ctypes.CDLL, x: float, y: float, elapsed_ns: int
@@ -366,6 +365,7 @@ def test_c_rate_agrees_with_the_reference(
     assert same(rate_in_c(library, x, y, elapsed_ns), values.rate(x, y, elapsed_ns))
 
 
+@needs("cc")
 @given(x=MODERATE, y=MODERATE, z=MODERATE)
 def test_c_norm_agrees_with_the_reference(
     library: ctypes.CDLL, x: float, y: float, z: float
@@ -374,6 +374,7 @@ def test_c_norm_agrees_with_the_reference(
     assert same(call_c(library, "norm", x, y, z), values.norm(x, y, z))
 
 
+@needs("cc")
 @given(value=st.integers(-(2**63) + 1, 2**63 - 1))
 def test_c_magnitude_agrees_with_the_reference(library: ctypes.CDLL, value: int) -> None:
     """The C text gives the results of the reference for integers."""
@@ -381,6 +382,7 @@ def test_c_magnitude_agrees_with_the_reference(library: ctypes.CDLL, value: int)
     assert library.magnitude(ctypes.c_int64(value)) == values.absolute(value)
 
 
+@needs("cc")
 @given(array=st.lists(NUMBERS, max_size=8))
 def test_c_array_functions_agree_with_the_reference(
     library: ctypes.CDLL, array: list[float]
@@ -391,6 +393,7 @@ def test_c_array_functions_agree_with_the_reference(
     assert call_c(library, "greatest_float64", elements) == values.greatest(array)
 
 
+@needs("cc")
 @given(arguments=SCANS)
 def test_c_nearest_agrees_with_the_reference(
     library: ctypes.CDLL, arguments: tuple[Any, ...]

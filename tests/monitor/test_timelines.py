@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,12 +13,31 @@ from click.testing import CliRunner
 from deros.cli.simulate import simulate as command
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
-from deros.monitor.ir import Program
-from deros.monitor.simulate import Monitor, seconds, simulate
+from deros.monitor.simulate import seconds, simulate
+from deros.monitor.trace import TraceMessage
 from tests.support import timelines
 from tests.support.timelines import Timeline
 
 DEROS = Path(sys.executable).with_name("deros")
+
+TABLE = """\
+# Title
+```deros
+action stop;
+input v = topic /speed.data
+input f = topic /flag.data
+```
+## name
+why
+```deros
+entity e { r: v > 0.5; }
+if e.r then { stop; };
+```
+| time until 9 s | message | effect |
+|---|---|---|
+| 1 s | v = 0.6 | stop |
+| 2 s | | stop refused |
+"""
 
 every_timeline = pytest.mark.parametrize("case", timelines.ALL, ids=lambda case: case.name)
 
@@ -30,33 +48,94 @@ def test_all_given_timelines_exist() -> None:
     assert len({case.name for case in timelines.ALL}) == len(timelines.ALL)
 
 
-@every_timeline
-@pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
-def test_timeline_matches(case: Timeline, monitor: Callable[[Program], Monitor]) -> None:
-    """The engine gives the expected events at the exact nanosecond."""
-    program = case.program()
-    events = simulate(monitor(program), case.messages(program), case.until_ns)
-    assert timelines.happenings(list(events)) == case.expect
+def test_table_is_read(tmp_path: Path) -> None:
+    """A table gives the rules that its timeline needs, the trace, the end and the events."""
+    (tmp_path / "t.md").write_text(
+        TABLE.replace("| 1 s |", "| 0.5 s, 1 s |").replace("| stop |", "| |")
+    )
+    (case,) = timelines.read(tmp_path / "t.md")
+    assert case == Timeline(
+        "name",
+        "why",
+        "action stop;\ninput v = topic /speed.data\n"
+        "entity e { r: v > 0.5; }\nif e.r then { stop; };\n",
+        tuple(f'{{"t": "{t}", "topic": "/speed", "data": {{"data": 0.6}}}}' for t in ("0.5", "1")),
+        "9",
+        ((2_000_000_000, "stop", "refused"),),
+    )
+
+
+MALFORMED = (
+    (7, "### name", "level 1 or 2"),
+    (9, "```yaml", "not one of ```deros"),
+    (13, "| time until 9 s | message | cause |", "the columns are not"),
+    (13, "| time until nine | message | effect |", "'nine' is not a time"),
+    (13, "| time until 1.5 s | message | effect |", "an effect after the end"),
+    (14, "| 0 s | v = 0.1 | |", "|---| belongs below"),
+    (15, "| 1 | v = 0.6 | stop |", "'1' is not a time"),
+    (15, "| 1.0000000001 s | v = 0.6 | stop |", "is not a time"),
+    (15, "| 1 s, 1.5 s | v = 0.6 | stop |", "an effect of several times"),
+    (15, "| 1 s | w = 0.6 | stop |", "no input 'w'"),
+    (15, "| 1 s | v = 0.6, /flag.data = true | stop |", "not the fields of one message"),
+    (15, "| 1 s | /speed = 0.6 | stop |", "not the fields of one message"),
+    (15, "| 1 s | v 0.6 | stop |", "NAME.PATH = VALUE"),
+    (15, "| 1 s | v = fast | stop |", "not a value"),
+    (15, "| 1 s | v = 0.6 v = 0.7 | stop |", "values are separated"),
+    (15, "| 1 s | v = 0.6 | stop ends |", "unknown effect 'stop ends'"),
+    (15, "| 1 s | v = 0.6 | calm |", "unknown effect 'calm'"),
+    (15, "| 1 s | v = 0.6 |", "not the cells"),
+    (15, "| 1 s | v = 0.6 | stop | |", "not the cells"),
+    (15, "1 s | v = 0.6 | stop |", "not the cells"),
+    (15, "1 s: stop", "neither a row"),
+    (16, "| 0.5 s | | stop |", "not in order of time"),
+    (16, "| 0.5 s | v = 0.1 | stop |", "not in order of time"),
+    (16, "| back to 0.5 s | | stop |", "not in order of time"),
+    (16, "| back to 2 s | v = 0.1 | stop |", "not in order of time"),
+    (16, "\n| 2 s | | stop |", "a row apart"),
+)
+
+
+def test_malformed_table_is_rejected(tmp_path: Path) -> None:
+    """The error names file and line."""
+    path = tmp_path / "t.md"
+    for number, text, message in MALFORMED:
+        lines = TABLE.splitlines()
+        lines[number - 1] = text
+        path.write_text("\n".join(lines))
+        with pytest.raises(timelines.TableError) as raised:
+            timelines.read(path)
+        place = f"{path}:{number + text.count(chr(10))}: "
+        assert str(raised.value).startswith(place), (text, message)
+        assert message in str(raised.value), text
 
 
 @every_timeline
-@pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
-def test_punctual_timers_do_not_change_the_timeline(
-    case: Timeline, monitor: Callable[[Program], Engine]
-) -> None:
-    """Timers that fire at every deadline have no effect on the events."""
+def test_timeline_matches(case: Timeline) -> None:
+    """Each engine gives the expected events at the exact nanosecond.
+
+    Timers that fire at every deadline have no effect on the events.
+    """
     program = case.program()
-    runner = monitor(program)
-    for message in case.messages(program):
+    messages = case.messages(program)
+    for monitor in (Engine, GeneratedMonitor):
+        events = simulate(monitor(program), messages, case.until_ns)
+        assert timelines.happenings(list(events)) == case.expect, monitor
+        assert _with_punctual_timers(monitor(program), messages, case) == case.expect, monitor
+
+
+def _with_punctual_timers(
+    runner: Engine | GeneratedMonitor, messages: tuple[TraceMessage, ...], case: Timeline
+) -> tuple[timelines.Happening, ...]:
+    for message in messages:
         if message.t_ns > case.until_ns:
             break
         _run_timers(runner, message.t_ns)
         runner.message(message.t_ns, message.topic, message.leaves)
     _run_timers(runner, case.until_ns)
-    assert timelines.happenings(runner.events) == case.expect
+    return timelines.happenings(runner.events)
 
 
-def _run_timers(runner: Engine, until_ns: int) -> None:
+def _run_timers(runner: Engine | GeneratedMonitor, until_ns: int) -> None:
     while (due_ns := runner.next_deadline) is not None and due_ns <= until_ns:
         runner.advance(due_ns)
 
@@ -66,23 +145,19 @@ given = pytest.mark.parametrize("case", timelines.GIVEN, ids=lambda case: case.n
 
 @given
 def test_command_prints_the_timeline(case: Timeline, tmp_path: Path) -> None:
-    """``deros simulate`` prints exactly the expected events, one per line."""
-    result = CliRunner().invoke(command, _arguments(case, tmp_path)[1:])
-    assert result.exit_code == 0, result.output
-    assert _printed(result.stdout) == _expected(case)
+    """``deros simulate`` prints exactly the expected events, one per line.
 
-
-@given
-def test_generated_monitor_prints_the_same(case: Timeline, tmp_path: Path) -> None:
-    """``--monitor python`` prints the output of the reference engine, character by character."""
+    ``--monitor python`` prints the output of the reference engine, character by character.
+    """
     arguments = _arguments(case, tmp_path)[1:]
-    outputs = [
-        CliRunner().invoke(command, [*arguments, "--monitor", monitor])
-        for monitor in ("reference", "python")
-    ]
-    assert [output.exit_code for output in outputs] == [0, 0]
-    assert outputs[0].stdout == outputs[1].stdout
-    assert _printed(outputs[1].stdout) == _expected(case)
+    plain, *others = (
+        CliRunner().invoke(command, [*arguments, *option])
+        for option in ((), ("--monitor", "reference"), ("--monitor", "python"))
+    )
+    assert plain.exit_code == 0, plain.output
+    assert _printed(plain.stdout) == _expected(case)
+    for other in others:
+        assert (other.exit_code, other.stdout) == (0, plain.stdout)
 
 
 def _arguments(case: Timeline, folder: Path) -> list[str]:

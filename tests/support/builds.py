@@ -17,6 +17,7 @@ import pytest
 
 import deros as package
 from tests.support.cli import deros
+from tests.support.needs import needs
 
 PROGRAM = Path(sys.executable).with_name("deros")
 """The program deros of this environment."""
@@ -24,10 +25,11 @@ PROGRAM = Path(sys.executable).with_name("deros")
 GENERATORS = ("Ninja", "Unix Makefiles")
 """CMake's generators that a build must work with."""
 
-EACH_GENERATOR = (GENERATORS[0], pytest.param(GENERATORS[1], marks=pytest.mark.slow))
+EACH_GENERATOR = (
+    pytest.param(GENERATORS[0], marks=needs("ninja")),
+    pytest.param(GENERATORS[1], marks=[needs("make"), pytest.mark.slow]),
+)
 """The generators as parameters of a test."""
-
-needs_cmake = pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake")
 
 _LIMIT = 300.0
 
@@ -74,8 +76,6 @@ class Project:
 
     def __init__(self, folder: Path, generator: str, script: str) -> None:
         """Write the project; its models are to be put beside."""
-        if generator == "Ninja" and shutil.which("ninja") is None:
-            pytest.skip("no ninja")
         self.folder = folder
         self.build_folder = folder / "build tree"
         self._generator = generator

@@ -6,32 +6,28 @@ import contextlib
 import ctypes
 import shutil
 import subprocess
-import tempfile
 from array import array
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Protocol
 
-import pytest
 from typing_extensions import Self
 
 from tests.support.c_harness import DRIVER, Unit, library_text
+from tests.support.capabilities import SANITIZED
 
 CAPACITY = 1 << 16
 """Words that an answer may have."""
 
 COMPILER = "gcc"
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
-SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 
 def has_compiler() -> bool:
     """Tell whether there is a C compiler."""
     return shutil.which(COMPILER) is not None
 
-
-needs_c = pytest.mark.skipif(not has_compiler(), reason=f"no {COMPILER}")
 
 LIMIT = 600.0
 """Seconds that the compiler may take for a library."""
@@ -178,22 +174,3 @@ def compile_units(units: Sequence[Unit], folder: Path, name: str, *arguments: st
     )
     assert done.returncode == 0, done.stderr
     return folder / name
-
-
-def has_sanitizers() -> bool:
-    """Tell whether the compiler links programs that its sanitizers watch."""
-    with tempfile.TemporaryDirectory(prefix="deros-c-") as folder:
-        return shutil.which(COMPILER) is not None and links(folder, COMPILER, *SANITIZED)
-
-
-def links(folder: str, *command: str, text: str = "int main(void) { return 0; }") -> bool:
-    """Tell whether a compiler makes a program of a text."""
-    done = subprocess.run(
-        [*command, "-x", "c", "-", "-o", str(Path(folder) / "tried")],
-        input=text,
-        capture_output=True,
-        text=True,
-        timeout=LIMIT,
-        check=False,
-    )
-    return done.returncode == 0

@@ -18,6 +18,9 @@ from deros.generators.monitor.c.view import monitor_view
 from deros.monitor.ir import Program
 from tests.support.c_eva import eva_program
 
+LEMMAS = "@lemma"
+"""The lemmas of the contracts, which are goals of no function, in Frama-C's words."""
+
 PACKAGES = "frama-c-base why3 z3 cvc4"
 """The Debian packages of which the proofs are made."""
 
@@ -92,6 +95,11 @@ instantiated for two addresses and a range: with the fields of a monitor, millio
 _PLAIN = "auto_config=false smt.mbqi=false smt.relevancy=0 smt.random_seed=42"
 
 
+def settings() -> str:
+    """Return all that decides how proofs are made: options, provers, assumptions about libm."""
+    return "\0".join([*OPTIONS, PROVERS, _PROVERS, _DRIVER, _PLAIN, _LIBM.read_text("utf-8")])
+
+
 @dataclass(frozen=True)
 class Proof:
     """What became of the goals of a program.
@@ -151,15 +159,16 @@ def prove(
     jobs: int = 2,
     progress: Progress | None = None,
 ) -> Proof:
-    """Prove the contracts of a source, or of some of its functions.
+    """Prove the contracts of a source, or of some of its functions, :data:`LEMMAS` among them.
 
     Most of the time goes into the simplifier, which works on one goal after the other: so several
     processes share the functions.
     """
-    names = list(functions) or functions_of(source)
-    asked = [["-wp-fct", ",".join(names[i : i + _AT_ONCE])] for i in range(0, len(names), _AT_ONCE)]
-    if not functions and _states_lemmas(source):
-        asked.append(["-wp-prop", "@lemma"])
+    names = list(functions) or [*functions_of(source), *([LEMMAS] if has_lemmas(source) else [])]
+    bodies = [name for name in names if name != LEMMAS]
+    groups = [bodies[i : i + _AT_ONCE] for i in range(0, len(bodies), _AT_ONCE)]
+    asked = [["-wp-fct", ",".join(group)] for group in groups]
+    asked += [["-wp-prop", LEMMAS]] if LEMMAS in names else []
     options = [
         *OPTIONS,
         *("-wp-prover", PROVERS, "-wp-timeout", str(timeout_s), "-wp-par", "1"),
@@ -191,7 +200,7 @@ def prove(
     )
 
 
-def _states_lemmas(source: Path) -> bool:
+def has_lemmas(source: Path) -> bool:
     """Tell whether the contracts of a source state lemmas: they are goals of no function."""
     texts = (each.read_text(encoding="utf-8") for each in source.parent.glob("*.h"))
     return any("/*@ lemma" in text for text in texts)

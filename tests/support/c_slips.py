@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import re
@@ -15,6 +14,7 @@ from pathlib import Path
 from tests.support import c_proof
 from tests.support.c_eva import TABLES_CHECK
 from tests.support.c_mutants import TABLES, Mutant
+from tests.support.c_proof_texts import ProofTexts
 
 MARGIN = 3
 """How many times the steps that it took without the slip a goal is given with it."""
@@ -27,10 +27,6 @@ _GOAL = re.compile(
     r"\[wp\] \[(?P<prover>\w+)[^\]]*\] Goal (?P<name>\w+) : Valid(?:.*\((?P<steps>\d+)\))?"
 )
 _LEFT = re.compile(r"\[wp\] \[(?P<how>[^\]]+)\] Goal (?P<name>\w+)(?P<after> : \w+)?")
-_BLOCK = re.compile(r"/\*@.*?\*/\n.*?\b(?P<name>\w+)\([^;{}]*\);", re.DOTALL)
-_MACRO = re.compile(r"#define (?P<name>\w+)\((?:.*\\\n)*.*\n")
-_PREDICATE = re.compile(r"/\*@ predicate (?P<name>\w+).*?\*/", re.DOTALL)
-_USE = re.compile(r"\b(\w+)(?:\{[^}]*\})?\(")
 
 
 @dataclass(frozen=True)
@@ -61,47 +57,21 @@ class Found:
     refused: bool = False
 
 
-class Original:
+class Original(ProofTexts):
     """A monitor without slips: what its functions need to be proved, and what that rests on."""
 
     def __init__(self, source: Path, environment: dict[str, str]) -> None:
         """Read the texts beside a source; proofs run in ``environment``."""
-        self.source = source
-        self.text = source.read_text(encoding="utf-8")
-        prefix = source.name.removesuffix("_monitor.c")
-        folder = source.parent
-        self.header = (folder / f"{prefix}_monitor.h").read_text(encoding="utf-8")
-        self.contracts = (folder / f"{prefix}_contracts.h").read_text(encoding="utf-8")
+        super().__init__(source)
         self._environment = environment
-        self._blocks = {e["name"]: e.group() for e in _BLOCK.finditer(self.contracts)}
-        self._macros = {
-            each["name"]: each.group()
-            for pattern in (_MACRO, _PREDICATE)
-            for each in pattern.finditer(self.contracts)
-        }
 
     def key(self, mutant: Mutant) -> str:
         """Return the key of a result: all that the proof of a mutation reads."""
-        return self._key(mutant.function, mutant.source, mutant.before + mutant.after)
+        return self.digest(mutant.function, mutant.source, mutant.before + mutant.after)
 
     def effort_key(self, function: str) -> str:
         """Return the key of an effort: all that the proof reads."""
-        return self._key(function, self.text, "")
-
-    def _key(self, name: str, source: str, body: str) -> str:
-        function = re.search(rf"^[^\n]*\b{name}\([^;{{]*\)\n\{{.*?^\}}", source, re.M | re.S)
-        text = function.group() if function else source
-        todo = {name, *_USE.findall(text)}
-        seen: set[str] = set()
-        parts = [body, text, self.header]
-        while todo - seen:
-            used = min(todo - seen)
-            seen.add(used)
-            part = self._blocks.get(used, "") + self._macros.get(used, "")
-            parts.append(part)
-            todo |= {each for each in _USE.findall(part) if each in self._macros}
-        parts += [each for each in self.contracts.split("\n\n") if "axiomatic" in each]
-        return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:20]
+        return self.digest(function, self.text, "")
 
     def effort(self, function: str) -> Effort:
         """Prove a function as it is, and return the effort.

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import pytest
-
 from tests.support.ros import LIMIT, Peer, running
-
-needs_ros2 = pytest.mark.skipif(shutil.which("ros2") is None, reason="no command ros2")
 
 _NAME = "/box"
 

@@ -2,8 +2,8 @@
 
 Where a comparison fails, ``make property`` writes the pair, as small as it could be made, into
 ``tests/generators/monitor/python/counterexamples``. It stays there and is compared in every run of
-the tests. A file is JSON: an object of the field ``is`` and the fields of the class so named; a
-span is the number of its line; NaN and infinities are written as Python does.
+the tests. A file is one line of JSON: an object of the field ``is`` and the fields of the class so
+named; a span is the number of its line; NaN and infinities are written as Python does.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def pairs(program: ir.Program) -> st.SearchStrategy[Pair]:
 
 def write(pair: Pair, folder: Path = FOLDER) -> Path:
     """Write a pair into a file named after its content; return its path."""
-    text = json.dumps(encoded(pair), indent=1) + "\n"
+    text = json.dumps(encoded(pair), separators=(",", ":")) + "\n"
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{hashlib.sha256(text.encode()).hexdigest()[:12]}.json"
     path.write_text(text, encoding="utf-8")

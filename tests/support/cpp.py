@@ -1,7 +1,7 @@
 """C++ in tests: the compiler, the wheels' message headers, and an rclcpp where there is one.
 
-rclcpp is not on the package index. Tests of generated nodes therefore ask :data:`needs_rclcpp`; to
-have them on, source a ROS 2 (``. /opt/ros/jazzy/setup.sh``) before pytest.
+rclcpp is not on the package index. Tests of generated nodes therefore say ``needs("rclcpp")``; to
+have them run, source a ROS 2 (``. /opt/ros/jazzy/setup.sh``) before pytest.
 """
 
 from __future__ import annotations
@@ -17,8 +17,6 @@ import tempfile
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-
-import pytest
 
 from tests.support.object_cache import compile_objects
 
@@ -63,12 +61,6 @@ def rclcpp_environment() -> dict[str, str] | None:
 def has_package(name: str) -> bool:
     """Tell whether a ROS 2 package is in one of the prefixes in AMENT_PREFIX_PATH."""
     return any((prefix / "share" / name).is_dir() for prefix in _prefixes(os.environ))
-
-
-needs_rclcpp = pytest.mark.skipif(
-    rclcpp_environment() is None, reason="no rclcpp in AMENT_PREFIX_PATH"
-)
-needs_compiler = pytest.mark.skipif(shutil.which("c++") is None, reason="no C++ compiler")
 
 
 # Packages on rclcpp -------------------------------------------------------------------------------

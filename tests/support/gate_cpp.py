@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import struct
 import subprocess
 from collections.abc import Iterator, Sequence
@@ -10,8 +9,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any
-
-import pytest
 
 from deros.generators.gate.cpp.generate import render
 from deros.generators.gate.cpp.view import GateView, gate_view
@@ -32,7 +29,6 @@ STRICT = (*WARNINGS, "-Wshadow", "-Wsign-conversion", "-Wold-style-cast")
 
 SANITIZED = ("-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
-needs_clang = pytest.mark.skipif(shutil.which("clang++") is None, reason="no clang++")
 
 _KINDS: tuple[OutputKind, ...] = ("pass", "limited", "zero")
 _CALLS = ("command", "state", "heartbeat", "advance", "no_safety_node", "reset")

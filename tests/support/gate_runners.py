@@ -11,7 +11,7 @@ from typing import Protocol
 import pytest
 
 from tests.support import gate_cpp_nodes, gate_nodes
-from tests.support.cpp import needs_rclcpp
+from tests.support.needs import needs
 
 
 class RunGate(Protocol):
@@ -43,6 +43,6 @@ def in_cpp(_folder: Path) -> RunGate:
 
 LANGUAGES = [
     pytest.param(in_python, id="python"),
-    pytest.param(in_cpp, id="cpp", marks=needs_rclcpp),
+    pytest.param(in_cpp, id="cpp", marks=needs("rclcpp")),
 ]
 """Parameters of a fixture that gives a :class:`RunGate`, made in a folder of the test's own."""

@@ -20,7 +20,8 @@ from deros.generators.safety_package.python import generate as safety_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
-from tests.support.cpp import colcon_build, needs_rclcpp, overlay, program
+from tests.support.cpp import colcon_build, overlay, program
+from tests.support.needs import needs
 from tests.support.ros import LIMIT, Peer, running
 
 MODELS = Path(__file__).resolve().parent.parent / "generators/safety_node/python/models"
@@ -123,7 +124,7 @@ class CppNode:
 Software = PythonNode | CppNode
 
 
-@pytest.fixture(params=["python", pytest.param("cpp", marks=needs_rclcpp)])
+@pytest.fixture(params=["python", pytest.param("cpp", marks=needs("rclcpp"))])
 def node(request: pytest.FixtureRequest, tmp_path: Path) -> Software:
     """Give the generated node, in one language after the other."""
     return (PythonNode if request.param == "python" else CppNode)(tmp_path / "packages")

@@ -1,13 +1,42 @@
-"""The timelines: rules, a trace, and what must happen, worked out by hand."""
+"""The timelines: rules, a trace, and what must happen, worked out by hand.
+
+They are read from Markdown, as in ``docs/patterns.md``::
+
+    ## name_of_the_timeline
+    One sentence says why.
+    ```deros
+    entity e { fast: v > 0.5 for 1 sec; }
+    if e.fast then { stop; };
+    ```
+    | time until 9 s | message | effect |
+    |---|---|---|
+    | 1 s | v = 0.6 | |
+    | 2 s | | stop |
+    | back to 1.5 s | v = 0.1, v.header.stamp.sec = 7 | stop reset, calm refused |
+
+Rows are in order of time; a message at which the clock steps back says so. A message that comes
+several times may have all of its times in one row. Fields are those of an input, or of a topic
+(``/imu.orientation.x``); values are JSON, with NaN and infinities. An effect is a trigger, or says
+``reset`` or ``refused``. Without ``until``, the clock stops with the last row. Without rules, a
+timeline has those of the timeline before it.
+
+Below a heading of level 1 may stand what is common to the timelines that follow: statements, of
+which a timeline has only those inputs and constants that its rules name and do not declare; and a
+table ``| topic | fields |`` of fields that every message of a topic has. The value ``time`` of such
+a field is the time of the message, as a stamp.
+"""
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import takewhile
 from pathlib import Path
-from typing import Any
 
 from deros.diagnostics import SourceFile
+from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
@@ -35,7 +64,9 @@ class Timeline:
     @property
     def until_ns(self) -> int:
         """The time up to which the clock runs on."""
-        return _ns(self.until)
+        until_ns = nanoseconds(self.until)
+        assert until_ns is not None
+        return until_ns
 
     def program(self) -> Program:
         """Load and build the rules."""
@@ -68,34 +99,207 @@ def happenings(events: list[Event]) -> tuple[Happening, ...]:
     return tuple((e.t_ns, e.action, e.kind) for e in events if e.kind != "clock_step")
 
 
-def load(file: str) -> list[Timeline]:
-    """Return the timelines of a file; those of ``timelines.json`` are the given ones."""
-    return [_timeline(each) for each in json.loads((DIRECTORY / file).read_text())]
+def read(path: Path) -> list[Timeline]:
+    """Return the timelines of a file.
+
+    Raises:
+        TableError: the file is malformed.
+    """
+    found = []
+    common, rules, fields = [], "", {}
+    for section in _sections(path):
+        if section.heading.text.startswith("# "):
+            common, rules = section.rules, ""
+            rows = section.rows("topic", "fields") if section.table else []
+            fields = {line.cells[0]: line for line in rows}
+            continue
+        if section.rules:
+            rules = _with_common(common, "\n".join(section.rules))
+        if not rules:
+            raise section.heading.fault("neither rules nor a timeline before it")
+        found.append(_Table(section, rules, fields).timeline())
+    return found
 
 
-def _timeline(case: dict[str, Any]) -> Timeline:
-    return Timeline(
-        case["name"],
-        case["why"],
-        case["rules"],
-        tuple(json.dumps(message) for message in case["trace"]),
-        case["until"],
-        tuple((_ns(each["t"]), each["action"], each["event"]) for each in case["expect"]),
-    )
+class TableError(Exception):
+    """A file of timelines is malformed; the text begins with file and line."""
 
 
-def _ns(seconds: str) -> int:
-    t_ns = nanoseconds(seconds)
-    assert t_ns is not None
-    return t_ns
+@dataclass(frozen=True)
+class _Line:
+    path: Path
+    number: int
+    text: str
+
+    @property
+    def cells(self) -> list[str]:
+        return [each.strip() for each in self.text.strip("|").split("|")]
+
+    def fault(self, text: str) -> TableError:
+        return TableError(f"{self.path}:{self.number}: {text}: {self.text}")
 
 
-GIVEN = load("timelines.json")
+@dataclass
+class _Section:
+    heading: _Line
+    prose: list[str] = field(default_factory=list)
+    rules: list[str] = field(default_factory=list)
+    table: list[_Line] = field(default_factory=list)
+
+    def rows(self, *columns: str) -> list[_Line]:
+        """Return the rows below the names of the columns, the first of which may go on."""
+        if not self.table:
+            raise self.heading.fault("a timeline without a table")
+        for place, line in enumerate(self.table):
+            if line.number != self.table[0].number + place:
+                raise line.fault("a row apart from its table")
+            if not re.fullmatch(r"\|.*\|", line.text) or len(line.cells) != len(columns):
+                raise line.fault(f"not the cells | {' | '.join(columns)} |")
+            if (place == 1) != (line.text == "|" + "---|" * len(columns)):
+                raise line.fault("|---| belongs below the names of the columns, and only there")
+        first, *others = self.table[0].cells
+        if (first.split(" until ")[0], *others) != columns:
+            raise self.table[0].fault(f"the columns are not | {' | '.join(columns)} |")
+        return self.table[2:]
+
+
+def _sections(path: Path) -> list[_Section]:
+    """Split a file at its headings."""
+    found = [_Section(_Line(path, 1, ""))]
+    lines = (_Line(path, *each) for each in enumerate(path.read_text("utf-8").splitlines(), 1))
+    for line in lines:
+        last = found[-1]
+        if line.text.startswith(("# ", "## ")):
+            found.append(_Section(line))
+        elif line.text.startswith("#"):
+            raise line.fault("a heading is of level 1 or 2")
+        elif line.text.startswith("```"):
+            if line.text != "```deros" or last.rules:
+                raise line.fault("a second block, or not one of ```deros")
+            last.rules += [each.text for each in takewhile(lambda each: each.text != "```", lines)]
+        elif "|" in line.text:
+            last.table.append(line)
+        elif line.text and last.table and last.table[-1].number == line.number - 1:
+            raise line.fault("neither a row of the table above nor apart from it")
+        else:
+            last.prose.append(line.text)
+    return found[1:]
+
+
+def _with_common(common: list[str], rules: str) -> str:
+    """Return rules below the common statements that they need."""
+
+    def is_needed(statement: str) -> bool:
+        declared = re.match(r"(?:input|const) (\w+)", statement)
+        if not declared:
+            return True
+        if re.search(rf"\b{declared[0]}\b", rules):
+            return False
+        named = rf"(?<![\w./])(?<!\d ){declared[1]}\b(?!:)"  # neither a unit nor a rule
+        return re.search(named, rules) is not None
+
+    return "\n".join([*filter(is_needed, common), rules, ""])
+
+
+class _Table:
+    """Reads the table of a timeline."""
+
+    def __init__(self, section: _Section, rules: str, common: dict[str, _Line]) -> None:
+        self._section = section
+        self._rules = rules
+        self._common = common  # the rows that list the fields of every message of a topic
+        found = re.findall(r"^input (\w+) = topic (/[\w/]+)(\S*)", rules, re.MULTILINE)
+        self._inputs = {name: (topic, path) for name, topic, path in found}
+
+    def timeline(self) -> Timeline:
+        trace: list[str] = []
+        expect: list[Happening] = []
+        now_ns, time = 0, ""
+        for row in self._section.rows("time", "message", "effect"):
+            times, message, effects = row.cells
+            if effects and ", " in times:
+                raise row.fault("an effect of several times")
+            for cell in times.split(", "):
+                time, at_ns = _time(cell.removeprefix("back to "), row)
+                if (at_ns < now_ns) != (cell.startswith("back to ") and message != ""):
+                    raise row.fault("not in order of time")
+                now_ns = at_ns
+                trace += [self._message(time, message, row)] if message else []
+            expect += [(now_ns, *self._effect(each, row)) for each in effects.split(", ") if each]
+        header = self._section.table[0]
+        until, until_ns = _time(header.cells[0].partition(" until ")[2] or f"{time} s", header)
+        if any(at_ns > until_ns for at_ns, _, _ in expect):
+            raise header.fault("an effect after the end")
+        name = self._section.heading.text.removeprefix("## ")
+        why = " ".join(takewhile(bool, filter(None, self._section.prose)))
+        return Timeline(name, why, self._rules, tuple(trace), until, tuple(expect))
+
+    def _message(self, time: str, cell: str, row: _Line) -> str:
+        """Return a message as a line of a trace."""
+        data: dict[str, str] = {}
+        topics = set()
+        for start, path, value in _fields(cell, row):
+            if not start.startswith("/") and start not in self._inputs:
+                raise row.fault(f"no input '{start}'")
+            topic, within = self._inputs.get(start, (start, ""))
+            topics.add(topic)
+            data[f"{within}{path}".removeprefix(".")] = value
+        if len(topics) != 1 or "" in data:
+            raise row.fault("not the fields of one message")
+        (topic,) = topics
+        if topic in self._common:
+            common = self._common[topic]
+            given = _fields(common.cells[1], common)
+            data = {f"{start}{path}": value for start, path, value in given} | data
+        sec, nanosec = divmod(_time(f"{time} s", row)[1], NS_PER_S)
+        stamp = f'{{"sec": {sec}, "nanosec": {nanosec}}}'
+        fields = ", ".join(
+            f'"{path}": {stamp if value == "time" else value}' for path, value in data.items()
+        )
+        return f'{{"t": "{time}", "topic": "{topic}", "data": {{{fields}}}}}'
+
+    def _effect(self, cell: str, row: _Line) -> tuple[str, str]:
+        """Return an action, and what happens to it."""
+        action, _, kind = cell.partition(" ")
+        if kind not in ("", "reset", "refused") or not re.search(rf"\b{action}\b", self._rules):
+            raise row.fault(f"unknown effect '{cell}'")
+        return action, kind or "trigger"
+
+
+def _time(text: str, line: _Line) -> tuple[str, int]:
+    """Return the seconds, as text and in nanoseconds."""
+    seconds = text.removesuffix(" s")
+    at_ns = nanoseconds(seconds)
+    if at_ns is None or seconds == text:
+        raise line.fault(f"'{text}' is not a time in seconds")
+    return seconds, at_ns
+
+
+def _fields(cell: str, row: _Line) -> Iterator[tuple[str, str, str]]:
+    """Return the input or topic, the path within it, and the value as JSON, of each field."""
+    place = 0
+    while place < len(cell):
+        target = re.compile(r"(/?\w[\w/]*)((?:\.\w+|\[\d+\])*) = (time)?").match(cell, place)
+        if not target:
+            raise row.fault("fields are written NAME.PATH = VALUE, and separated by ', '")
+        start = end = target.end()
+        if not target[3]:
+            try:
+                _, end = json.JSONDecoder().raw_decode(cell, start)
+            except ValueError as error:
+                raise row.fault(f"not a value: {error}") from error
+        if cell[end : end + 2] not in ("", ", "):
+            raise row.fault("values are separated by ', '")
+        yield target[1], target[2], target[3] or cell[start:end]
+        place = end + 2
+
+
+GIVEN = read(DIRECTORY / "timelines.md")
 ALL = [
     *GIVEN,
     *(
         each
         for file in ("more", "named_rules", "since", "within", "arithmetic", "previous")
-        for each in load(f"{file}.json")
+        for each in read(DIRECTORY / f"{file}.md")
     ),
 ]

@@ -11,6 +11,7 @@ from tests.support.chaos import campaign
 from tests.support.chaos.referee import Verdict, Violation
 from tests.support.chaos.rules import Broken
 from tests.support.chaos.schedule import Schedule, draw
+from tests.support.needs import needs
 
 HELD = Verdict([Broken("stop zone", 1.0, 2.0)], [], slowest=0.2, moved=True)
 FAILED = Verdict([], [Violation("gate", 1.5, "it passes 0.40 m/s")], moved=True)
@@ -35,6 +36,7 @@ def play(
     return campaign.run(rounds, folder, 2, 10.0), rounds
 
 
+@needs("gcc")
 def test_passing_rounds_exit_with_0(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -47,6 +49,7 @@ def test_passing_rounds_exit_with_0(
     assert "10 of 11 rounds played" in printed
 
 
+@needs("gcc")
 def test_violation_exits_with_1_and_is_kept(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -61,6 +64,7 @@ def test_violation_exits_with_1_and_is_kept(
     assert Schedule.load(kept) == rounds[2]
 
 
+@needs("gcc")
 @pytest.mark.parametrize("verdict", [None, Verdict([], [], moved=False)])
 def test_campaign_without_evidence_fails(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, verdict: Verdict | None

@@ -67,7 +67,7 @@ def test_frozen_process_is_completely_stopped(tmp_path: Path) -> None:
 
 def test_ended_process_cannot_be_frozen() -> None:
     """The calling test has lost its subject."""
-    with subprocess.Popen(["true"]) as process:
+    with subprocess.Popen([sys.executable, "-c", ""]) as process:
         os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
         with pytest.raises(AssertionError, match="has ended"):
             freeze(process.pid)

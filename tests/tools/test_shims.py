@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.preload import Disk, WallClock, build_shim, compiler
+from tests.support.needs import needs
+from tests.support.preload import Disk, WallClock, build_shim
 
 HARNESS = Path(__file__).resolve().parents[1] / "support" / "c" / "signal_stack.c"
 
@@ -27,7 +28,7 @@ def harness(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Build a program that calls the functions from a signal handler on a small stack."""
     program = tmp_path_factory.mktemp("harness") / "signal_stack"
     options = ["-Wall", "-Wextra", "-Werror", "-O2", "-Wl,-z,now"]
-    subprocess.run([compiler(), *options, "-o", str(program), str(HARNESS)], check=True)
+    subprocess.run(["gcc", *options, "-o", str(program), str(HARNESS)], check=True)
     return program
 
 
@@ -56,6 +57,7 @@ def preloads(tmp_path: Path) -> tuple[Disk, WallClock, dict[str, str]]:
     return disk, clock, {**disk.env, **clock.env, "LD_PRELOAD": both}
 
 
+@needs("gcc")
 def test_signal_handlers_may_call_the_shims(harness: Path, tmp_path: Path) -> None:
     """On the smallest stack, with a guard page below it, all calls succeed and preserve errno."""
     _, _, env = preloads(tmp_path)
@@ -64,6 +66,7 @@ def test_signal_handlers_may_call_the_shims(harness: Path, tmp_path: Path) -> No
     assert all(abs(seconds - time.time()) < 60 for seconds in times)
 
 
+@needs("gcc")
 def test_signal_handlers_get_the_faults(harness: Path, tmp_path: Path) -> None:
     """The disk is full for the folder only, and the clock is stepped."""
     disk, clock, env = preloads(tmp_path)
@@ -80,6 +83,7 @@ def test_signal_handlers_get_the_faults(harness: Path, tmp_path: Path) -> None:
     assert call(harness, tmp_path / "disk", env)[0] == [0] * 12
 
 
+@needs("gcc")
 def test_other_folder_with_the_same_prefix_has_space(harness: Path, tmp_path: Path) -> None:
     """Only the named folder is full, not every folder whose name starts like it."""
     disk, _, env = preloads(tmp_path)
@@ -88,6 +92,7 @@ def test_other_folder_with_the_same_prefix_has_space(harness: Path, tmp_path: Pa
     assert call(harness, tmp_path / "disk2", env)[0] == [0] * 12
 
 
+@needs("gcc")
 @pytest.mark.parametrize("name", ["clock", "disk"])
 def test_shims_have_a_small_stack_bound(name: str, tmp_path: Path) -> None:
     """The compiler knows a small bound for each function."""
@@ -99,6 +104,7 @@ def test_shims_have_a_small_stack_bound(name: str, tmp_path: Path) -> None:
     assert [use for use in uses if int(use[1]) > STACK] == []
 
 
+@needs("gcc")
 def test_disk_is_full_until_the_last_fill_is_cleared(tmp_path: Path) -> None:
     """Two faults of a campaign may overlap."""
     disk = Disk(tmp_path, tmp_path)

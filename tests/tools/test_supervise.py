@@ -16,7 +16,8 @@ SUPERVISE = Path(__file__).resolve().parents[2] / "tools" / "supervise.py"
 # Starts a daemon in its own session, prints its pid, and then does as its argument says.
 PARENT = """
 import os, subprocess, sys, time
-child = subprocess.Popen(["sleep", "600"], start_new_session=True, stdout=subprocess.DEVNULL)
+daemon = [sys.executable, "-c", "import time; time.sleep(600)"]
+child = subprocess.Popen(daemon, start_new_session=True, stdout=subprocess.DEVNULL)
 print(child.pid, os.getpid(), flush=True)
 exec(sys.argv[1])
 """

@@ -9,8 +9,8 @@ import pytest
 
 from deros import codes
 from deros.codes import ALL_CODES
-from deros.diagnostics import Code, Severity, SourceFile, Span, report
-from deros.validators.allowances import ProjectAllowance, allowable, read_allowances
+from deros.diagnostics import SourceFile, Span, report
+from deros.validators.allowances import ProjectAllowance, read_allowances
 from tests.support.cli import deros
 
 MODELS = {
@@ -119,14 +119,6 @@ def test_reason_may_begin_with_a_slug() -> None:
     """Without a comma, a slug behind a code belongs to the reason."""
     code = _write("lone.system", "// deros: allow DRS212 unused-import is the reason")
     assert code not in _codes("lone.system")
-
-
-@pytest.mark.parametrize("code", ALL_CODES.values(), ids=str)
-def test_only_warnings_and_notes_about_models_are_allowable(code: Code) -> None:
-    """Errors and findings about allowances cannot be allowed."""
-    reason = allowable(code.name, Span(SourceFile("x.rnd", ""), 0, 0))
-    expected = code.severity is not Severity.ERROR and code in codes.OF_MODELS
-    assert (reason is code) == expected
 
 
 def test_unneeded_allowance_is_reported_for_named_files_only() -> None:

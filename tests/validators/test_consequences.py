@@ -10,8 +10,7 @@ import pytest
 from deros import codes
 from deros.diagnostics import Diagnostic, Severity
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "intelligent_one"
 FILES = {path.name: path.read_text(encoding="utf-8") for path in sorted(EXAMPLE.glob("*.*[dsm]"))}
@@ -22,10 +21,8 @@ _EVERY = 17
 
 
 def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
-    repository = Repository()
-    repository.load_text(folder / changed, text)
-    named = [repository.load(folder / name) for name in NAMED]
-    findings = check(named, repository, InterfaceStore(()))
+    named = (folder / name for name in NAMED)
+    findings = checked(*named, texts={folder / changed: text}, store=InterfaceStore(()))
     return [each for each in findings if each.severity is not Severity.INFO]
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 
 
 @pytest.fixture
@@ -32,9 +31,7 @@ def _findings(folder: Path, prefix: Path, value: str, name: str = "file") -> lis
     (folder / "s.system").write_text(
         f'system S\nimports import "n.rnd"\nnode n : n\nparameters\n  param {name} = {value}\n'
     )
-    repository = Repository()
-    named = [repository.load(folder / "s.system")]
-    findings = check(named, repository, InterfaceStore((), prefixes=[prefix]))
+    findings = checked(folder / "s.system", store=InterfaceStore((), prefixes=[prefix]))
     assert {each.code.name for each in findings} <= {"DRS028"}, findings
     return [(each.span.text, each.hint) for each in findings]
 
@@ -99,6 +96,5 @@ def test_only_package_paths_of_defaults_are_checked(tmp_path: Path, prefix: Path
         'node n : pkg\nparameters\n  name a : string = "package://arm/urdf/amr.urdf"\n'
         '  name b : string = "maps/ofice.yaml"\n'
     )
-    repository = Repository()
-    findings = check([repository.load(path)], repository, InterfaceStore((), prefixes=[prefix]))
+    findings = checked(path, store=InterfaceStore((), prefixes=[prefix]))
     assert [(each.code.name, each.span.line) for each in findings] == [("DRS028", 3)]

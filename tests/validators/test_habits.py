@@ -9,8 +9,7 @@ import pytest
 
 from deros.diagnostics import Diagnostic, Severity
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 
 BASE = {
     "camera.rnd": """\
@@ -280,12 +279,10 @@ MISTAKES = [
 
 
 def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
-    repository = Repository()
     for name, sound in BASE.items():
         (folder / name).write_text(sound, encoding="utf-8")
-    repository.load_text(folder / changed, text)
-    named = [repository.load(folder / name) for name in ("demo.system", "demo.deros")]
-    findings = check(named, repository, InterfaceStore(()))
+    named = (folder / "demo.system", folder / "demo.deros")
+    findings = checked(*named, texts={folder / changed: text}, store=InterfaceStore(()))
     return [each for each in findings if each.severity is not Severity.INFO]
 
 

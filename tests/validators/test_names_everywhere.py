@@ -10,9 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from deros.diagnostics import Diagnostic
+from tests.support.checks import checked
 
 GRAMMARS = Path(__file__).resolve().parents[2] / "src" / "deros" / "metamodels"
 
@@ -153,41 +152,33 @@ def test_table_covers_all_name_attributes() -> None:
     assert attributes == (PLACES.keys() - {"Setting.value"}) | REFERENCES.keys()
 
 
-@pytest.mark.parametrize(
-    ("place", "name"),
-    [(place, name) for place, (_, _, names) in PLACES.items() for name in names],
-    ids=lambda value: value[:24],
-)
-def test_invalid_ros_name_is_an_error_at_its_place(tmp_path: Path, place: str, name: str) -> None:
-    """The error points at the name."""
+def _check(folder: Path, place: str, name: str) -> list[Diagnostic]:
+    """Return the findings of the model that has a name at a place."""
     suffix, template, _ = PLACES[place]
-    (tmp_path / "base.rnd").write_text(NODE_FILE)
-    (tmp_path / "s.system").write_text(SYSTEM.replace("HERE", ""))
-    text = template.replace("NAME", name)
-    at = template.index("NAME")
-    repository = Repository()
-    loaded = repository.load_text(tmp_path / f"model{suffix}", text)
-    errors = [
-        each
-        for each in check([loaded], repository, InterfaceStore((), ()))
-        if each.is_error and each.span.file.endswith(f"model{suffix}")
-    ]
-    # The span of a quoted name includes the quotes.
-    places = range(at - 1, at + len(name))
-    assert any(error.span.start in places for error in errors), errors
+    model = folder / f"model{suffix}"
+    return checked(model, texts={model: template.replace("NAME", name)})
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_valid_name_is_accepted_everywhere(tmp_path: Path, place: str) -> None:
-    """The tables are rejected for the name, not for the text around it."""
+def test_only_valid_ros_names_are_accepted(tmp_path: Path, place: str) -> None:
+    """The error points at an invalid name; a valid one shows that the text around it is sound."""
     suffix, template, names = PLACES[place]
     (tmp_path / "base.rnd").write_text(NODE_FILE)
     (tmp_path / "s.system").write_text(SYSTEM.replace("HERE", ""))
+    at = template.index("NAME")
+    for name in names:
+        errors = [
+            each
+            for each in _check(tmp_path, place, name)
+            if each.is_error and each.span.file.endswith(f"model{suffix}")
+        ]
+        # The span of a quoted name includes the quotes.
+        places = range(at - 1, at + len(name))
+        assert any(error.span.start in places for error in errors), (name, errors)
+
     sound = {"Wiring.port": "odom", "Setting.name": "odom_topic"}.get(place)
     if sound is None:
         sound = "/odom" if set(TOPICS) <= set(names) else "sound"
-    repository = Repository()
-    loaded = repository.load_text(tmp_path / f"model{suffix}", template.replace("NAME", sound))
-    findings = check([loaded], repository, InterfaceStore((), ()))
     refused = ("DRS003", "DRS007", "DRS105", "DRS223", "DRS332")
-    assert [each.message for each in findings if each.code.name in refused] == []
+    findings = _check(tmp_path, place, sound)
+    assert [each.message for each in findings if each.code.name in refused] == [], sound

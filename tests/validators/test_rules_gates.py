@@ -7,9 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros.diagnostics import Diagnostic
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 from tests.support.cli import deros
 
 NODES = {
@@ -69,12 +67,8 @@ def _findings(members: str, topics: str = TOPICS, rules: str = RULES) -> list[Di
     system = f"system S\nimports\n{IMPORTS}topics\n{topics}{members}"
     Path("s.system").write_text(system, encoding="utf-8")
     Path("s.deros").write_text(rules, encoding="utf-8")
-    repository = Repository()
-    loaded = repository.load("s.deros")
-    findings = check([loaded], repository, InterfaceStore((), prefixes=()))
-    return [
-        each for each in findings if each.code.name != "DRS222"
-    ]  # the system may leave imports unused
+    # The system may leave imports unused.
+    return [each for each in checked("s.deros") if each.code.name != "DRS222"]
 
 
 def _codes(members: str, topics: str = TOPICS, rules: str = RULES) -> list[str]:

@@ -7,9 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros.diagnostics import Diagnostic
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 
 SAFETY = """node guard_node : guard
 parameters
@@ -74,9 +72,7 @@ def _findings(members: str, rules: str = RULES, topics: str = TOPICS) -> list[Di
     )
     Path("s.system").write_text(text, encoding="utf-8")
     Path("s.deros").write_text(rules, encoding="utf-8")
-    repository = Repository()
-    findings = check([repository.load("s.deros")], repository, InterfaceStore((), prefixes=()))
-    return [each for each in findings if each.code.name in ("DRS343", "DRS345", "DRS363")]
+    return [each for each in checked("s.deros") if each.code.name in ("DRS343", "DRS345", "DRS363")]
 
 
 def test_default_heartbeat_rate_suffices() -> None:

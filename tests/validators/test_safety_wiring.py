@@ -8,9 +8,7 @@ from pathlib import Path
 import pytest
 
 from deros.diagnostics import Diagnostic
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 from tests.support.cli import deros
 from tests.support.hand_wired import DIFFERENCES, RULES, STATEMENT, write_hand_wired
 
@@ -22,9 +20,7 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def findings(*files: str) -> list[Diagnostic]:
     """Return the findings of ``deros check`` on the files."""
-    repository = Repository()
-    named = [repository.load(file) for file in files or ("robot.system",)]
-    return check(named, repository, InterfaceStore((), prefixes=()))
+    return checked(*(files or ("robot.system",)))
 
 
 def codes(*files: str) -> list[str]:

@@ -12,8 +12,7 @@ from deros.interfaces import standard_topics
 from deros.interfaces.standard_topics import standard_topic
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 
 TABLE = Path(standard_topics.__file__).with_name("standard_topics.json")
 
@@ -27,8 +26,7 @@ def _check(folder: Path, ports: str, system: str = "") -> list[Diagnostic]:
     (folder / "user.rnd").write_text(f"node user : demo {ports}\n")
     path = folder / "demo.system"
     path.write_text(f'system Demo\nimports import "user.rnd"\n{system or "node user : user"}\n')
-    repository = Repository()
-    return check([repository.load(path)], repository, InterfaceStore())
+    return checked(path, store=InterfaceStore())
 
 
 @pytest.mark.parametrize(
@@ -55,15 +53,15 @@ def _check(folder: Path, ports: str, system: str = "") -> list[Diagnostic]:
         ("/bond", "bond.Status"),
     ],
 )
-@pytest.mark.parametrize("section", ["publishes", "subscribes"])
-def test_standard_topics_are_external(tmp_path: Path, name: str, kind: str, section: str) -> None:
+def test_standard_topics_are_external(tmp_path: Path, name: str, kind: str) -> None:
     """One end suffices, whether or not the topic is declared or connected."""
     missing = {"DRS101", "DRS102"}  # some of the packages may not be installed
-    port = f"{section} topic {name} : {kind}"
     wired = f"node user : user wirings connect {name} to {name}"
-    for system in ("", wired, f"topics topic {name}\n{wired}"):
-        codes = {each.code.name for each in _check(tmp_path, port, system)}
-        assert codes <= missing, system
+    for section in ("publishes", "subscribes"):
+        port = f"{section} topic {name} : {kind}"
+        for system in ("", wired, f"topics topic {name}\n{wired}"):
+            codes = {each.code.name for each in _check(tmp_path, port, system)}
+            assert codes <= missing, (section, system)
 
 
 def test_topic_of_another_type_is_not_standard(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from deros.diagnostics import Diagnostic
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.validators.check import check
+from tests.support.checks import checked
 from tests.support.work import calls
 
 NODES = {
@@ -32,9 +33,7 @@ subsystem Joints {
 def _check(directory: Path, *names: str, **files: str) -> list[Diagnostic]:
     for name, text in {**NODES, **files}.items():
         (directory / name).write_text(text)
-    repository = Repository()
-    named = [repository.load(directory / name) for name in names]
-    return check(named, repository, InterfaceStore((), prefixes=()))
+    return checked(*(directory / name for name in names))
 
 
 def _files_and_codes(findings: list[Diagnostic]) -> list[tuple[str, str]]:

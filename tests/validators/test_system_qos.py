@@ -17,8 +17,8 @@ from deros.metamodels.load import Repository
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Rules
 from deros.monitor.build import build
-from deros.validators.check import check
 from deros.validators.rules_ends import ends_of
+from tests.support.checks import checked
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -38,9 +38,7 @@ node b : b wirings connect x to /x
 {wiring}
 """
     (folder / "demo.system").write_text(system)
-    repository = Repository()
-    named = [repository.load(folder / "demo.system")]
-    return check(named, repository, InterfaceStore((), prefixes=()))
+    return checked(folder / "demo.system")
 
 
 OFFERS = ["", "qos best_effort", "qos deadline 500 ms", "qos liveliness automatic lease 2 sec"]
@@ -160,7 +158,5 @@ def test_type_and_qos_come_from_the_outermost_declaration(tmp_path: Path) -> Non
         'system Demo imports import "a.rnd" import "part.system"\n'
         "topics topic /x\nnode a : a wirings connect x to /x\nsubsystem part : Part\n"
     )
-    repository = Repository()
-    named = [repository.load(tmp_path / "demo.system")]
-    findings = check(named, repository, InterfaceStore((), prefixes=()))
+    findings = checked(tmp_path / "demo.system")
     assert {finding.code.name for finding in findings} >= {"DRS209", "DRS230"}

@@ -7,9 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros.diagnostics import Diagnostic
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.validators.check import check
+from tests.support.checks import checked
 
 IMU = """\
 node driver : demo publishes topic data : sensor_msgs.Imu topic bias : sensor_msgs.Imu
@@ -25,8 +23,7 @@ def _check(folder: Path, system: str) -> list[Diagnostic]:
         (folder / f"{name}.rnd").write_text(f"{line}\n")
     path = folder / "demo.system"
     path.write_text(f'system Demo\nimports import "*.rnd"\n{system}')
-    repository = Repository()
-    return check([repository.load(path)], repository, InterfaceStore((), prefixes=()))
+    return checked(path)
 
 
 def _likely(findings: list[Diagnostic]) -> list[Diagnostic]:

@@ -22,7 +22,8 @@ from deros.monitor.function_forms import Remembered, loop, step
 from deros.monitor.functions import Argument, Function, Result, UnitRule, usage_table
 from deros.monitor.ir import Apply, Program
 from tests.support import c_pairs, c_proof
-from tests.support.c_library import Loaded, needs_c
+from tests.support.c_library import Loaded
+from tests.support.needs import needs
 from tests.support.profiles import scaled, slow
 from tests.support.rules import program
 
@@ -175,7 +176,7 @@ def calls(rules: Program, name: str) -> bool:
     return any(isinstance(value, Apply) and value.function == name for value in values)
 
 
-@needs_c
+@needs("gcc")
 def test_rows_are_drawn_and_agree_everywhere(add: Callable[..., None], tmp_path: Path) -> None:
     """A row defines random programs, reference and both monitors, which agree on traces."""
     add(*ROWS)
@@ -296,7 +297,7 @@ def monitor(add: Callable[..., None], tmp_path: Path) -> Path:
     return c_proof.write(program(RULES), tmp_path)
 
 
-@pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
+@needs("frama-c", "why3", "z3", "cvc4")
 @pytest.mark.parametrize("functions", [QUICK, slow(tuple(PROVED))], ids=["quick", "all"])
 def test_contracts_follow_from_rows(functions: tuple[str, ...], monitor: Path) -> None:
     """The contract of each function is derived from its row, and proved for the printed C."""
@@ -306,7 +307,7 @@ def test_contracts_follow_from_rows(functions: tuple[str, ...], monitor: Path) -
     assert proof.is_complete
 
 
-@pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
+@needs("frama-c", "why3", "z3", "cvc4")
 @pytest.mark.parametrize("function", [each if each == QUICK[-1] else slow(each) for each in PROVED])
 def test_mutation_of_a_printed_function_fails_the_proof(function: str, monitor: Path) -> None:
     """A function that differs from its row cannot be proved."""

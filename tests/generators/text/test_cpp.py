@@ -29,7 +29,8 @@ from deros.generators.text.cpp import (
     statement,
     tidied,
 )
-from tests.support.cpp import compile_cpp, needs_compiler
+from tests.support.cpp import compile_cpp
+from tests.support.needs import needs
 
 
 @pytest.mark.parametrize(
@@ -51,7 +52,7 @@ def test_identifiers_are_valid(name: str, identifier: str) -> None:
     assert cpp_identifier(name) == identifier
 
 
-@needs_compiler
+@needs("c++")
 def test_literals_keep_their_value(tmp_path: Path) -> None:
     """The compiler reads the same bytes, doubles and integers."""
     chosen = random.Random(1)

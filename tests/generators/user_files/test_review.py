@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from deros.generators.user_files.review import review, users_files
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
+from tests.support.needs import needs
 from tests.support.rules import embedded_store, load
 
 OLD = """node base : robot
@@ -60,13 +60,11 @@ def language(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
 
-@pytest.fixture(params=["clang", "names"])
+@pytest.fixture(params=[pytest.param("clang++", marks=needs("clang++")), "names"])
 def reader(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Read C++ with and without clang."""
     if request.param == "names":
         monkeypatch.setattr("deros.generators.user_files.cpp.shutil.which", lambda _: None)
-    elif shutil.which("clang++") is None:
-        pytest.skip("no clang++")
 
 
 def _words(found: list[Diagnostic]) -> set[tuple[str, str]]:

@@ -13,8 +13,7 @@ from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor.commands import HEADER, LAYOUT
 from deros.monitor.gate_engine import GateEngine
 from deros.monitor.ir import Gate, GateLine, Limit
-from tests.support.cpp import needs_compiler
-from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded, needs_clang
+from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded
 from tests.support.gate_traces import (
     MORE_COMMANDS,
     Trace,
@@ -24,9 +23,10 @@ from tests.support.gate_traces import (
 )
 from tests.support.gates import ACTIONS, QUIET, STORE, Happening, message_type, play, span
 from tests.support.messages import message_types
+from tests.support.needs import needs
 from tests.support.profiles import draws_new_examples, scaled, thinned
 
-pytestmark = needs_compiler
+pytestmark = needs("c++")
 
 IN_CI = 3000
 EXAMPLES = scaled(IN_CI)
@@ -119,7 +119,7 @@ def test_zeros_are_not_limited_as_executed_commands(tmp_path: Path) -> None:
             ("-O2",),
             [*MORE_COMMANDS],
             id="optimised",
-            marks=[needs_clang, pytest.mark.slow],
+            marks=[needs("clang++"), pytest.mark.slow],
         ),
     ],
 )

@@ -15,13 +15,14 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
-from tests.support.cpp import message_flags, needs_compiler
+from tests.support.cpp import message_flags
 from tests.support.cpp_lint import assert_cpp_lint_clean
-from tests.support.gate_cpp import STRICT, needs_clang
+from tests.support.gate_cpp import STRICT
 from tests.support.gate_cpp_nodes import PACKAGE, gate_package
 from tests.support.gate_nodes import MODELS
 from tests.support.golden import Golden
 from tests.support.golden_alike import unlike_the_first
+from tests.support.needs import may_run, needs
 
 GATES = ("cmd_vel_gate", "arm_command_gate", "wheels_command_gate", "lamp_command_gate")
 HEAD = """
@@ -85,6 +86,7 @@ def write_kinds(folder: Path) -> None:
     write(gate_package((MODELS / "gates.deros").read_text(encoding="utf-8")), folder)
 
 
+@may_run("cppcheck")
 def test_files_pass_the_ament_linters(tmp_path: Path) -> None:
     """uncrustify, cpplint and cppcheck with ament's settings accept all files of gates."""
     write_kinds(tmp_path)
@@ -93,10 +95,12 @@ def test_files_pass_the_ament_linters(tmp_path: Path) -> None:
     assert_cpp_lint_clean(tmp_path)
 
 
-@needs_compiler
 @pytest.mark.parametrize(
     "compiler",
-    ["g++", pytest.param("clang++", marks=[needs_clang, pytest.mark.slow])],
+    [
+        pytest.param("g++", marks=needs("g++")),
+        pytest.param("clang++", marks=[needs("clang++"), pytest.mark.slow]),
+    ],
     ids=["gcc", "clang"],
 )
 def test_every_kind_of_logic_compiles_strictly(compiler: str, tmp_path: Path) -> None:

@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 from deros.generators.output.writer import write
-from tests.support.cpp import message_flags, needs_compiler
+from tests.support.cpp import message_flags
 from tests.support.gate_cpp import STRICT
 from tests.support.gate_cpp_nodes import PACKAGE, gate_package
 from tests.support.gate_nodes import MODELS
+from tests.support.needs import needs
 
-pytestmark = needs_compiler
+pytestmark = needs("c++")
 
 COUNTER = """
 #include <array>

@@ -5,7 +5,6 @@ Behaviour common to both languages is tested with the Python gate, in tests that
 
 from __future__ import annotations
 
-import shutil
 import signal
 import subprocess
 from pathlib import Path
@@ -13,12 +12,13 @@ from pathlib import Path
 import pytest
 
 from tests.support import gate_cpp_nodes
-from tests.support.cpp import needs_rclcpp, overlay
+from tests.support.cpp import overlay
 from tests.support.gate_nodes import World
 from tests.support.gate_runners import RunGate, in_cpp, in_python
+from tests.support.needs import needs
 from tests.support.ros import LIMIT, Peer, running
 
-pytestmark = [pytest.mark.ros, needs_rclcpp]
+pytestmark = [pytest.mark.ros, needs("rclcpp")]
 
 GATE = "cmd_vel_gate"
 CONTAINER = "lib/rclcpp_components/component_container"
@@ -109,7 +109,7 @@ def test_garbage_collection_parameter_has_no_effect(
         world.wish_until(0.3, lambda: world.status.get("level") == "0")
 
 
-@pytest.mark.skipif(shutil.which("ros2") is None, reason="no command ros2")
+@needs("ros2")
 def test_gate_runs_as_a_component(ros_env: dict[str, str], world: World) -> None:
     """In a container with intra-process communication, commands pass and a stop is zero too."""
     env = overlay(gate_cpp_nodes.installed_gates(), ros_env)

@@ -11,7 +11,7 @@ from deros.generators.monitor.c.interface import render_monitor
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
 from tests.support import timelines
-from tests.support.c_library import needs_c
+from tests.support.needs import needs
 
 SYSTEM = 'use "robot.system" import Robot\n'
 SPEED = "input v = topic /speed.data\n"
@@ -41,7 +41,7 @@ PROGRAMS = {
 """Rules by the only construct that they contain."""
 
 
-@needs_c
+@needs("gcc")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_nearly_empty_program_compiles_in_c(name: str, tmp_path: Path) -> None:
     """No enumeration or table is empty, and no parameter is unused."""

@@ -11,7 +11,7 @@ import pytest
 from deros.generators.monitor.c.deviations import DEVIATIONS, Deviation
 from deros.generators.monitor.c.interface import render_monitor
 from tests.support.c_everything import examples
-from tests.support.c_library import needs_c
+from tests.support.needs import needs
 
 DOCS = Path(__file__).resolve().parents[4] / "docs"
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
@@ -33,7 +33,7 @@ void brake(void) { exit((now >= 3000000000) ? 0 : 2); }
 """A machine that drives too fast from the first second on; braking is correct from the third."""
 
 
-@needs_c
+@needs("gcc")
 def test_documented_example_brakes(tmp_path: Path) -> None:
     """The main loop compiles without warnings, and brakes two seconds after the speed rose."""
     (example,) = (each for each in examples() if each.name == "intelligent_one")

@@ -9,7 +9,8 @@ import pytest
 from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.interface import render_monitor
 from tests.support import c_pairs, counterexamples
-from tests.support.c_library import Loaded, needs_c
+from tests.support.c_library import Loaded
+from tests.support.needs import needs
 from tests.support.profiles import scaled, slow
 
 PROGRAMS = scaled(60)
@@ -24,7 +25,7 @@ QUICK = ("all kinds", "arrays", "rates")
 KEPT = sorted([*counterexamples.FOLDER.glob("*.json"), *c_pairs.FOLDER.glob("*.json")])
 
 
-@needs_c
+@needs("gcc")
 @pytest.mark.parametrize(
     "focus", [each if each in QUICK else slow(each) for each in c_pairs.FOCUSES]
 )
@@ -36,7 +37,7 @@ def test_events_match_the_reference(focus: str, tmp_path: Path) -> None:
         raise AssertionError(f"{error}\nof {pair}") from error
 
 
-@needs_c
+@needs("gcc")
 @pytest.mark.parametrize("path", KEPT, ids=lambda path: path.stem)
 def test_former_counterexample_passes(path: Path) -> None:
     """Former failures are compared in C as well, if C supports the rules."""
@@ -49,7 +50,7 @@ def test_former_counterexample_passes(path: Path) -> None:
 
 
 @pytest.mark.slow
-@needs_c
+@needs("gcc")
 def test_difference_is_minimised(tmp_path: Path) -> None:
     """A failing pair is reported without unnecessary steps."""
     cases = c_pairs.cases(("number", "boolean"), 20, 1)

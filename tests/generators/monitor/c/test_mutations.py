@@ -19,9 +19,10 @@ from deros.monitor import walk
 from deros.monitor.ir import Compute, Program
 from tests.support import c_monitors, c_pairs
 from tests.support.c_harness import Unit, unit
-from tests.support.c_library import Loaded, needs_c
+from tests.support.c_library import Loaded
 from tests.support.counterexamples import Pair
 from tests.support.killing_pairs import KillingPairs
+from tests.support.needs import needs
 
 SLIPS = {
     "for is exclusive": (r"(now - \*since\)) >= duration", r"\1 > duration"),
@@ -127,7 +128,7 @@ def mutated(slip: str, rendered: Unit) -> Unit | None:
     return replace(rendered, texts={**rendered.texts, name: changed})
 
 
-@needs_c
+@needs("gcc")
 @pytest.mark.parametrize("slip", SLIPS)
 def test_mutation_is_detected(slip: str, killing_pairs: KillingPairs, tmp_path: Path) -> None:
     """A stored program and trace distinguish the mutated monitor from the reference."""
@@ -138,7 +139,7 @@ def test_mutation_is_detected(slip: str, killing_pairs: KillingPairs, tmp_path: 
     )
 
 
-@needs_c
+@needs("gcc")
 @pytest.mark.slow
 @pytest.mark.parametrize("slip", SLIPS)
 def test_random_pairs_detect_mutation(slip: str, tmp_path: Path) -> None:

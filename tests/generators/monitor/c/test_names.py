@@ -15,9 +15,8 @@ from deros.metamodels.rules import Rules
 from deros.monitor.build import build
 from tests.support import c_proof
 from tests.support.c_everything import NODE, RULES, SYSTEM, everything
-from tests.support.c_library import needs_c
+from tests.support.needs import needs
 
-needs_frama_c = pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 KEYWORDS = {"if", "pass", "for", "while", "switch", "return", "sizeof"}
 ARRAYS = """\
@@ -81,7 +80,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-@needs_c
+@needs("gcc")
 def test_fields_may_have_names_of_monitor_functions(source: Path) -> None:
     """Each becomes a parameter of a function that calls functions of the monitor."""
     command = ["gcc", *STRICT, "-c", source.name, "-o", "monitor.o"]
@@ -91,7 +90,7 @@ def test_fields_may_have_names_of_monitor_functions(source: Path) -> None:
     assert result.returncode == 0, result.stderr[:4000]
 
 
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 @pytest.mark.slow
 def test_contracts_refer_to_monitor_functions(source: Path) -> None:
     """A function called in a contract is not hidden by a parameter."""

@@ -11,9 +11,8 @@ from tests.support import c_proof, rules
 from tests.support.c_eva import TABLES_CHECK
 from tests.support.c_everything import everything, examples
 from tests.support.c_harness import Unit, unit
+from tests.support.needs import needs
 from tools import prove
-
-needs_frama_c = pytest.mark.skipif(bool(c_proof.missing()), reason=c_proof.missing())
 
 PROVED = ("lasting", "judge_drive_system_max_speed_exceeded", "expire_speed", "settle_stop")
 """Functions of the smallest example that are proved within seconds; `make prove` proves all."""
@@ -136,7 +135,7 @@ def written(monitor: Unit, folder: Path, source: str | None = None) -> Path:
     return path
 
 
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 def test_contracts_are_proved(example: Unit, tmp_path: Path) -> None:
     """No goal is left, and nothing is assumed."""
     proof = c_proof.prove(written(example, tmp_path), PROVED)
@@ -155,7 +154,7 @@ if e.r or e.s then { stop; };
 
 
 @pytest.mark.slow
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 def test_contracts_of_rates_are_proved(tmp_path: Path) -> None:
     """A rate is the change over time, and over a span the change since the newest older sample."""
     source = c_proof.write(rules.program(RATES), tmp_path)
@@ -181,7 +180,7 @@ if not e.calm then { free; };
 
 
 @pytest.mark.slow
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 def test_contracts_of_rules_that_name_rules_are_proved(tmp_path: Path) -> None:
     """A verdict is what the rule means of the verdicts that it names, after each message too."""
     source = c_proof.write(rules.program(NAMED), tmp_path)
@@ -207,7 +206,7 @@ if not e.high since e.unanswered then { free; };
 
 
 @pytest.mark.slow
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 def test_contracts_of_since_are_proved(tmp_path: Path) -> None:
     """Its verdict follows from its parts and the one before; no event without news changes it."""
     source = c_proof.write(rules.program(SINCE), tmp_path)
@@ -237,7 +236,7 @@ if not e.moved within 3 sec then { free; };
 
 
 @pytest.mark.slow
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 def test_contracts_of_within_are_proved(tmp_path: Path) -> None:
     """It ends by a deadline, so long after the event at which its operand ceased to be true."""
     source = c_proof.write(rules.program(WITHIN), tmp_path)
@@ -265,7 +264,7 @@ if e.r and e.s then { stop; };
 
 
 @pytest.mark.slow
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 def test_contracts_of_arithmetic_are_proved(tmp_path: Path) -> None:
     """It is what its formula says, of operands of two topics, and known while all of them are."""
     source = c_proof.write(rules.program(ARITHMETIC), tmp_path)
@@ -280,7 +279,7 @@ def test_contracts_of_arithmetic_are_proved(tmp_path: Path) -> None:
     assert proof.is_complete
 
 
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 @pytest.mark.slow
 @pytest.mark.parametrize("slip", SLIPS)
 def test_mutation_fails_the_proof(
@@ -299,7 +298,7 @@ def test_mutation_fails_the_proof(
     assert f"not proved: typed_{function}_" in re.sub(r"\s+", " ", capsys.readouterr().out)
 
 
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 @pytest.mark.parametrize(
     ("right", "wrong"), [("22U, arguments_1", "23U, arguments_1"), ("arguments_3, 1U", "NULL, 0U")]
 )
@@ -314,7 +313,7 @@ def test_wrong_table_is_detected(right: str, wrong: str, tmp_path: Path) -> None
     assert not c_proof.analyse(source, TABLES_CHECK).is_clean
 
 
-@needs_frama_c
+@needs("frama-c", "why3", "z3", "cvc4")
 @pytest.mark.slow
 def test_lemmas_must_be_proved(tmp_path: Path) -> None:
     """Lemmas of the contracts are goals as well, and fail the proof if they are wrong."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import functools
 import re
-import shutil
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 from typing import get_args
 
 import pytest
+from _pytest.mark import ParameterSet
 
 from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.deviations import DEVIATIONS
@@ -20,7 +20,7 @@ from deros.monitor.functions import FUNCTIONS
 from deros.monitor.ir import Apply, Condition, Program
 from tests.support import c_pairs, misra
 from tests.support.c_everything import RULES, built, everything, examples
-from tests.support.profiles import slow
+from tests.support.needs import needs
 
 PROGRAMS = {each.name: each for each in (everything(), *examples())}
 
@@ -39,6 +39,12 @@ LIBM = {"fabs", "sqrt", "sin", "cos", "tan", "atan2", "asin", "fmod", "remainder
 """Functions of the mathematical library that rules may use."""
 
 
+def _compiler(name: str) -> ParameterSet:
+    """Return a parameter of tests: a compiler, of which one alone is quick."""
+    marks = [needs(COMPILERS[name][0]), *([] if name == "gcc" else [pytest.mark.slow])]
+    return pytest.param(name, marks=marks)
+
+
 @functools.cache
 def random_texts() -> tuple[Mapping[str, str], ...]:
     """Return the texts of some random programs of all kinds."""
@@ -53,8 +59,6 @@ def compiled(
     texts: Mapping[str, str], folder: Path, command: tuple[str, ...], *flags: str
 ) -> list[Path]:
     """Compile monitors with warnings as errors, and return the objects."""
-    if shutil.which(command[0]) is None:
-        pytest.skip(f"no {command[0]}")
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
     sources = [name for name in texts if name.endswith(".c")]
@@ -70,7 +74,7 @@ def compiled(
     return [folder / name.replace(".c", ".o") for name in sources]
 
 
-@pytest.mark.parametrize("compiler", ["gcc", *map(slow, list(COMPILERS)[1:])])
+@pytest.mark.parametrize("compiler", [_compiler(name) for name in COMPILERS])
 def test_all_compilers_accept_the_code_without_warnings(compiler: str, tmp_path: Path) -> None:
     """This holds for every compiler and any rules."""
     texts = [*map(render_monitor, PROGRAMS.values()), *random_texts()]
@@ -78,6 +82,7 @@ def test_all_compilers_accept_the_code_without_warnings(compiler: str, tmp_path:
     compiled(together, tmp_path, COMPILERS[compiler])
 
 
+@needs("gcc", "nm")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_monitor_needs_only_its_callback_and_libm(name: str, tmp_path: Path) -> None:
     """It links with the callback of its user and functions of the mathematical library."""
@@ -87,6 +92,7 @@ def test_monitor_needs_only_its_callback_and_libm(name: str, tmp_path: Path) -> 
     assert needed - LIBM == {f"{name}_emit"}
 
 
+@needs("gcc", "nm")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_other_symbols_are_not_exported(name: str, tmp_path: Path) -> None:
     """All exported names have the prefix, so that several monitors link together."""
@@ -98,6 +104,7 @@ def test_other_symbols_are_not_exported(name: str, tmp_path: Path) -> None:
     assert all(each.startswith(f"{name}_") for each in defined)
 
 
+@needs("gcc")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_stack_is_bounded(name: str, tmp_path: Path) -> None:
     """No function has dynamic or large stack use, and none is recursive."""
@@ -147,7 +154,7 @@ def test_rendering_is_deterministic() -> None:
     assert "/tmp" not in "".join(texts[0].values())
 
 
-@pytest.mark.skipif(not misra.has_cppcheck(), reason=f"no {misra.CPPCHECK}")
+@needs("cppcheck")
 @pytest.mark.slow
 def test_code_follows_misra(tmp_path: Path) -> None:
     """The only violations of MISRA C:2012 are the advisory ones that the text lists."""
@@ -157,7 +164,7 @@ def test_code_follows_misra(tmp_path: Path) -> None:
     assert any(each.is_allowed for each in violations)
 
 
-@pytest.mark.skipif(not misra.has_cppcheck(), reason=f"no {misra.CPPCHECK}")
+@needs("cppcheck")
 def test_misra_check_is_effective(tmp_path: Path) -> None:
     """A violated required rule is detected and distinguished from an advisory one."""
     text = "#define UNUSED 1\nint f(int a);\nint f(int a)\n{\n  return a + 017;\n}\n"

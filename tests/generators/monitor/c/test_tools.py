@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from tests.support import c_library, c_pairs
+from tests.support import c_pairs
 from tests.support.c_everything import examples
 from tests.support.c_fuzz import fuzz_text
 from tests.support.c_harness import DRIVER, Unit, unit
 from tests.support.c_library import CrashError, Watched
-
-FUZZED = ("-std=c99", "-g", "-O1", "-fsanitize=fuzzer,address,undefined")
-ENTRY = "int LLVMFuzzerTestOneInput(const char *d, long s) { return (d == 0) && (s != 0); }"
-
-needs_sanitizers = pytest.mark.skipif(
-    not c_library.has_sanitizers(), reason="no gcc with sanitizers"
-)
+from tests.support.capabilities import FUZZED
+from tests.support.needs import needs
 
 
 def slipped(made: Unit, right: str, wrong: str) -> Unit:
@@ -30,7 +24,7 @@ def slipped(made: Unit, right: str, wrong: str) -> Unit:
 
 
 @pytest.mark.slow
-@needs_sanitizers
+@needs("gcc", "gcc's sanitizers")
 def test_sanitizers_find_nothing(tmp_path: Path) -> None:
     """Random monitors have no out-of-bounds access and no undefined behaviour."""
     cases = c_pairs.cases(c_pairs.FOCUSES["mixed"], 12, 5)
@@ -39,7 +33,7 @@ def test_sanitizers_find_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@needs_sanitizers
+@needs("gcc", "gcc's sanitizers")
 def test_sanitizers_detect_an_overrun(tmp_path: Path) -> None:
     """Reading one element too far ends the program with a report."""
     cases = c_pairs.cases(("floats",), 20, 5)
@@ -60,14 +54,19 @@ def example() -> Unit:
 
 def fuzz(made: Unit, folder: Path) -> subprocess.CompletedProcess[str]:
     """Fuzz a monitor with some tens of thousands of inputs."""
-    if shutil.which("clang") is None or not c_library.links(
-        str(folder), "clang", *FUZZED, text=ENTRY
-    ):
-        pytest.skip("no clang with libFuzzer")
     for name, text in made.texts.items():
         (folder / name).write_text(text, encoding="utf-8")
     (folder / "fuzz.c").write_text(fuzz_text(made), encoding="utf-8")
-    flags = [*FUZZED, "-fno-sanitize-recover=all", "-I", str(DRIVER), "fuzz.c", "-o", "fuzz", "-lm"]
+    flags = [
+        *FUZZED,
+        "-fno-sanitize-recover=all",
+        "-I",
+        str(DRIVER),
+        "fuzz.c",
+        "-o",
+        "fuzz",
+        "-lm",
+    ]
     subprocess.run(["clang", *flags], cwd=folder, check=True, timeout=120)
     options = ["-runs=20000", "-seed=1", "-max_len=256", "-len_control=0", "-timeout=5"]
     return subprocess.run(
@@ -75,6 +74,7 @@ def fuzz(made: Unit, folder: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
+@needs("clang", "libFuzzer")
 def test_fuzzer_finds_nothing(example: Unit, tmp_path: Path) -> None:
     """No input violates the invariants of the smallest example."""
     done = fuzz(example, tmp_path)
@@ -94,6 +94,7 @@ SLIPS = {
 """Mutations by name, and the violated invariants."""
 
 
+@needs("clang", "libFuzzer")
 @pytest.mark.parametrize(
     "slip",
     [

@@ -19,6 +19,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.needs import may_run
 from tests.support.node_targets import files_of, node_of, refusal
 from tests.support.profiles import scaled
 
@@ -232,6 +233,7 @@ def test_external_node_may_have_its_own_main() -> None:
 # Any text -----------------------------------------------------------------------------------------
 
 
+@may_run("cppcheck")
 def test_long_names_pass_the_linters(tmp_path: Path) -> None:
     """Names of maximum length and hostile descriptions still give a clean package."""
     long = "n" * 120

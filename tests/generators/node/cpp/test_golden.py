@@ -16,11 +16,12 @@ from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
-from tests.support.cpp import colcon_build, has_package, needs_rclcpp
+from tests.support.cpp import colcon_build, has_package
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.golden import Golden
 from tests.support.golden_alike import differences, forms
 from tests.support.lint import assert_lint_clean
+from tests.support.needs import may_run, needs
 
 SHARED = Path(__file__).resolve().parents[1] / "python/models"
 MODELS = {
@@ -112,6 +113,7 @@ def test_user_class_overrides_every_handler(name: str) -> None:
 # Linters ------------------------------------------------------------------------------------------
 
 
+@may_run("cppcheck")
 @pytest.mark.parametrize("options", [{}, COPYRIGHT], ids=["plain", "copyright"])
 def test_packages_pass_the_ament_linters(options: dict[str, str], tmp_path: Path) -> None:
     """The C++ and Python linters of ament find nothing in any file."""
@@ -121,7 +123,7 @@ def test_packages_pass_the_ament_linters(options: dict[str, str], tmp_path: Path
     assert_lint_clean(tmp_path)
 
 
-@needs_rclcpp
+@needs("rclcpp")
 @pytest.mark.skipif(not has_package("ament_lint_auto"), reason="no ament_lint_auto")
 def test_tests_of_the_package_pass(tmp_path: Path) -> None:
     """``colcon test`` passes, with the XML, CMake and copyright linters."""

@@ -11,12 +11,13 @@ import pytest
 
 from deros.generators.node.python.generate import generate as generate_python
 from deros.generators.output.writer import write
-from tests.support.containers import needs_ros2, running_container
-from tests.support.cpp import needs_rclcpp, overlay
+from tests.support.containers import running_container
+from tests.support.cpp import overlay
+from tests.support.needs import needs
 from tests.support.node_packages import MODELS, PICKY, CppPackages, Start, model_of
 from tests.support.ros import LIMIT, Peer, running, set_parameter, stop
 
-pytestmark = [pytest.mark.ros, needs_rclcpp]
+pytestmark = [pytest.mark.ros, needs("rclcpp")]
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +120,7 @@ def test_uncaught_exception_ends_the_program(start: Start, ros_peer: Peer) -> No
 # Components ---------------------------------------------------------------------------------------
 
 
-@needs_ros2
+@needs("ros2")
 def test_nodes_are_components(
     packages: CppPackages, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:

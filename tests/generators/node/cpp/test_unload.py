@@ -9,11 +9,12 @@ from typing import Any
 import pytest
 
 from tests.support.breakers import cpp_breaker
-from tests.support.containers import Loader, needs_ros2, running_container
-from tests.support.cpp import colcon_build, instrument, needs_rclcpp, overlay, sanitized
+from tests.support.containers import Loader, running_container
+from tests.support.cpp import colcon_build, instrument, overlay, sanitized
+from tests.support.needs import needs
 from tests.support.ros import Peer, stop
 
-pytestmark = [pytest.mark.ros, needs_rclcpp, needs_ros2]
+pytestmark = [pytest.mark.ros, needs("rclcpp"), needs("ros2", "c++")]
 
 SOURCES = ("src/breaker.cpp", "src/breaker_base.cpp", "src/runtime/goal_threads.cpp")
 TIMES = 10

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from tests.support.breakers import STUBBORN, USUAL, Breaker, CppBreaker, PythonBreaker
-from tests.support.cpp import needs_rclcpp
+from tests.support.needs import needs
 from tests.support.profiles import slow
 from tests.support.ros import LIMIT, Peer, running, set_parameter, stop
 
@@ -28,7 +28,7 @@ ORDINARY = 5
     scope="module",
     params=[
         pytest.param(PythonBreaker, id="python"),
-        pytest.param(CppBreaker, id="cpp", marks=needs_rclcpp),
+        pytest.param(CppBreaker, id="cpp", marks=needs("rclcpp")),
     ],
 )
 def breaker(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Breaker:
@@ -154,7 +154,7 @@ def _set_at_once(peer: Peer, place: str) -> None:
     client.call_async(SetParameters.Request(parameters=wanted))
 
 
-@needs_rclcpp
+@needs("rclcpp")
 @pytest.mark.parametrize("way", WAYS)
 def test_failing_destructor_ends_the_program_with_the_reason(
     way: str, breaker: Breaker, start: Start, client: Client

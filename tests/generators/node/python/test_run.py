@@ -14,7 +14,7 @@ from deros.generators.api.protocol import Context
 from deros.generators.system.params.generate import generate as generate_params
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from tests.support.cpp import needs_rclcpp
+from tests.support.needs import needs
 from tests.support.node_packages import MODELS, CppPackages, NodePackages, PythonPackages, Start
 from tests.support.ros import LIMIT, Peer, read_line, set_parameter, stop
 from tests.support.systems import load_text
@@ -26,7 +26,7 @@ pytestmark = pytest.mark.ros
     scope="module",
     params=[
         pytest.param(PythonPackages, id="python"),
-        pytest.param(CppPackages, id="cpp", marks=needs_rclcpp),
+        pytest.param(CppPackages, id="cpp", marks=needs("rclcpp")),
     ],
 )
 def packages(

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from tests.support.cpp import needs_rclcpp
 from tests.support.leavers import TRANSITIONS, CppLeaver, Leaver, PythonLeaver
+from tests.support.needs import needs
 from tests.support.profiles import slow
 from tests.support.ros import LIMIT, Peer, running, set_parameter, stop
 
@@ -32,7 +32,7 @@ BEFORE = {
     scope="module",
     params=[
         pytest.param(PythonLeaver, id="python"),
-        pytest.param(CppLeaver, id="cpp", marks=needs_rclcpp),
+        pytest.param(CppLeaver, id="cpp", marks=needs("rclcpp")),
     ],
 )
 def leaver(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Leaver:

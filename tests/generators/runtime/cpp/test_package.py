@@ -11,8 +11,9 @@ import pytest
 from deros import __version__
 from deros.generators.output.writer import write
 from deros.generators.runtime.interface import CPP_RUNTIME, runtime_package
-from tests.support.cpp import colcon_build, has_package, needs_rclcpp
+from tests.support.cpp import colcon_build, has_package
 from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.needs import may_run, needs
 from tests.support.safety_cpp import RUNTIME
 
 
@@ -49,12 +50,13 @@ def test_build_script_and_manifest_have_the_same_dependencies() -> None:
     assert exported[1].split() == depends
 
 
+@may_run("cppcheck")
 def test_sources_pass_the_ament_linters(workspace: Path) -> None:
     """Copies in generated packages must pass the same linters."""
     assert_cpp_lint_clean(workspace / CPP_RUNTIME)
 
 
-@needs_rclcpp
+@needs("rclcpp")
 def test_colcon_builds_and_tests_the_package(workspace: Path) -> None:
     """The library, its headers and its version file are installed, and its own tests pass."""
     install = colcon_build(workspace, testing=has_package("ament_lint_auto"))

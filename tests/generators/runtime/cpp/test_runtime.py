@@ -16,10 +16,10 @@ import pytest
 from deros.generators.runtime.python.deros_runtime.instance import Refusal, claim, file_stem
 from deros.generators.runtime.python.deros_runtime.latches import LatchFile, default_path
 from deros.generators.runtime.python.deros_runtime.start_order import StartOrder
-from tests.support.cpp import needs_compiler
+from tests.support.needs import needs
 from tests.support.safety_cpp import RUNTIME, Harness, compiled
 
-pytestmark = needs_compiler
+pytestmark = needs("c++")
 
 OWNER = "/robot_safety"
 KNOWN = ("halt", "stop")

@@ -10,15 +10,14 @@ from deros.monitor import walk
 from deros.monitor.ir import Program, Scale
 from tests.support import c_pairs, cpp_causes
 from tests.support.c_harness import unit
-from tests.support.c_library import needs_c
 from tests.support.c_monitors import CMonitor
-from tests.support.cpp import needs_compiler
 from tests.support.monitors import START_NS
+from tests.support.needs import needs
 from tests.support.profiles import scaled
 from tests.support.rules import program
 from tests.support.strategies import ALL_KINDS
 
-pytestmark = [needs_c, needs_compiler]
+pytestmark = [needs("gcc"), needs("c++")]
 
 PROGRAMS = scaled(35)
 """Number of programs drawn per property; five traces are compared for each."""

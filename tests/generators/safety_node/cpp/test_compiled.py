@@ -15,10 +15,10 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
 from deros.monitor.build import build
-from tests.support.cpp import needs_compiler
+from tests.support.needs import needs
 from tests.support.safety_cpp import compiled
 
-pytestmark = needs_compiler
+pytestmark = needs("c++")
 
 HERE = Path(__file__).resolve().parent
 MODEL = HERE.parent / "python/models/every_thing.deros"

@@ -17,12 +17,13 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
-from tests.support.containers import Container, LoadError, needs_ros2, running_container
-from tests.support.cpp import colcon_build, needs_rclcpp, overlay
+from tests.support.containers import Container, LoadError, running_container
+from tests.support.cpp import colcon_build, overlay
 from tests.support.fill_in import fill_in, insert
+from tests.support.needs import needs
 from tests.support.ros import LIMIT, Peer
 
-pytestmark = [pytest.mark.ros, needs_rclcpp, needs_ros2]
+pytestmark = [pytest.mark.ros, needs("rclcpp"), needs("ros2")]
 
 MODELS = Path(__file__).resolve().parent / "models"
 PARTS = ("base", "arm")

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.cpp import needs_rclcpp
+from tests.support.needs import needs
 from tests.support.ros import LIMIT
 from tests.support.safety_node import CppNode, PythonNode, Robot, Start, end, starting
 
-pytestmark = [pytest.mark.ros, needs_rclcpp]
+pytestmark = [pytest.mark.ros, needs("rclcpp")]
 
 
 @pytest.fixture

@@ -17,11 +17,12 @@ from deros.generators.safety_package.cpp.generate import generate as safety_pack
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
-from tests.support.containers import Loader, needs_ros2, running_container
-from tests.support.cpp import colcon_build, instrument, needs_rclcpp, overlay, sanitized
+from tests.support.containers import Loader, running_container
+from tests.support.cpp import colcon_build, instrument, overlay, sanitized
+from tests.support.needs import needs
 from tests.support.ros import Peer, stop
 
-pytestmark = [pytest.mark.ros, needs_rclcpp, needs_ros2]
+pytestmark = [pytest.mark.ros, needs("rclcpp"), needs("ros2", "c++")]
 
 RULES = Path(__file__).resolve().parent / "models/base/robot.deros"
 GATE = ("base_command_gate.cpp", "base_command_gate_logic.cpp", "runtime/gate_runner.cpp")

@@ -18,6 +18,7 @@ from deros.metamodels.rules import Rules
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.golden import Golden
 from tests.support.golden_runtime import is_copy
+from tests.support.needs import may_run
 from tests.support.profiles import slow
 
 MODELS = Path(__file__).resolve().parents[2] / "safety_node/python/models"
@@ -154,6 +155,7 @@ def test_rules_with_errors_are_rejected() -> None:
     assert "DRS310" in [diagnostic.code.name for diagnostic in refused.value.diagnostics]
 
 
+@may_run("cppcheck")
 @pytest.mark.parametrize(
     ("name", "options"),
     [slow("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],

@@ -17,9 +17,9 @@ from deros.generators.safety_package.cpp.generate import generate
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
-from tests.support.builds import needs_cmake
-from tests.support.cpp import colcon_build, needs_rclcpp, overlay, program, rclcpp_environment
+from tests.support.cpp import colcon_build, overlay, program, rclcpp_environment
 from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.needs import may_run, needs
 from tests.support.ros import Peer, running
 from tests.support.safety_cpp import RUNTIME
 
@@ -100,6 +100,7 @@ def test_package_with_the_name_of_the_runtime_is_rejected() -> None:
         generated("package", package=CPP_RUNTIME)
 
 
+@may_run("cppcheck")
 def test_linked_package_passes_the_ament_linters(tmp_path: Path) -> None:
     """Packages with a copy are linted in another test."""
     write(generated("package"), tmp_path)
@@ -107,7 +108,7 @@ def test_linked_package_passes_the_ament_linters(tmp_path: Path) -> None:
 
 
 @pytest.mark.ros
-@needs_rclcpp
+@needs("rclcpp")
 def test_linked_nodes_run(installed: Path, ros_env: dict[str, str], ros_peer: Peer) -> None:
     """The safety node publishes heartbeats, and its gate passes a command."""
     from geometry_msgs.msg import Twist
@@ -134,8 +135,8 @@ def test_linked_nodes_run(installed: Path, ros_env: dict[str, str], ros_peer: Pe
         ros_peer.until(publish)
 
 
-@needs_rclcpp
-@needs_cmake
+@needs("rclcpp")
+@needs("cmake")
 def test_other_runtime_version_fails_the_build(other_runtime: Path, tmp_path: Path) -> None:
     """CMake accepts only the version that the package was generated for."""
     write(generated("package"), tmp_path)
@@ -153,7 +154,7 @@ def test_other_runtime_version_fails_the_build(other_runtime: Path, tmp_path: Pa
 
 
 @pytest.mark.ros
-@needs_rclcpp
+@needs("rclcpp")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_other_runtime_version_prevents_the_start(
     name: str, installed: Path, other_runtime: Path, ros_env: dict[str, str]

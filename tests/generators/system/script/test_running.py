@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.needs import needs
 from tests.support.stand_ins import LIMIT, Run, await_end, make_prefix, make_script
 
 Start = Callable[..., Run]
@@ -127,6 +128,7 @@ def test_programs_are_found_through_the_environment(start: Start, tmp_path: Path
     assert "[a] done" in run.lines
 
 
+@needs("bash")
 def test_dry_run_prints_the_commands_and_starts_nothing(start: Start, tmp_path: Path) -> None:
     """The commands can be pasted into a shell."""
     run = start('subsystem arm "The arm" { node a : short }', "--dry-run")
@@ -139,6 +141,7 @@ def test_dry_run_prints_the_commands_and_starts_nothing(start: Start, tmp_path: 
     assert (pasted.returncode, pasted.stdout) == (0, "done\n")
 
 
+@needs("bash", "env")
 def test_printed_command_runs_a_package_from_its_sources(start: Start, tmp_path: Path) -> None:
     """The environment set by --package-path is part of the command."""
     package = tmp_path / "given" / "talk" / "talk"

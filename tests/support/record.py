@@ -1,0 +1,116 @@
+"""What became of each test: ``pytest --record FILE`` writes it, ``--after FILE`` reads it.
+
+``--slow-share S --draw TEXT`` runs a share of the slow tests, which another text draws anew; 0 runs
+none of them, 1, the default, all. With ``--after FILE``, of the tests that are not slow only those
+are run that were skipped in the run that FILE records, because a program was missing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import pytest
+
+
+@dataclass
+class Result:
+    """One test.
+
+    Attributes:
+        outcome: ``passed``, ``skipped`` or ``failed``, of setup, test and teardown the worst.
+        seconds: that it took, with setup and teardown.
+        text: why it was skipped or how it failed, in one line.
+        is_ros: whether it is marked to start processes of ROS.
+    """
+
+    outcome: str = "passed"
+    seconds: float = 0.0
+    text: str = ""
+    is_ros: bool = False
+
+
+def read(path: Path) -> dict[str, Result]:
+    """Return the results that were recorded, by the id of the test."""
+    entries = json.loads(path.read_text(encoding="utf-8"))
+    return {test: Result(**entry) for test, entry in entries.items()}
+
+
+def write(path: Path, results: Mapping[str, Result]) -> None:
+    """Write results in the form that :func:`read` takes."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    entries = {test: asdict(result) for test, result in results.items()}
+    path.write_text(json.dumps(entries, indent=0), encoding="utf-8")
+
+
+# Plug-in of pytest --------------------------------------------------------------------------------
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options."""
+    group = parser.getgroup("deros")
+    group.addoption("--record", type=Path, help="write there what became of each test")
+    group.addoption("--after", type=Path, help="run no quick test that FILE records as run")
+    group.addoption("--slow-share", type=float, default=1.0, help="the share of slow tests to run")
+    group.addoption("--draw", default="", help="a text by which the slow tests are drawn")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Record in the process that hears of all tests, not in its workers."""
+    path = config.getoption("record")
+    if path is not None and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(_Recorder(path))
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Keep the drawn ones of the slow tests, and of the others those that are asked for."""
+    share, draw = config.getoption("slow_share"), config.getoption("draw")
+    after = config.getoption("after")
+    results = None if after is None else read(after)
+
+    def is_run(item: pytest.Item) -> bool:
+        if item.get_closest_marker("slow"):
+            return bool(_drawn(f"{draw} {item.nodeid}") < share)
+        return results is None or item.nodeid not in results or _was_missed(results[item.nodeid])
+
+    left = [item for item in items if not is_run(item)]
+    if left:
+        config.hook.pytest_deselected(items=left)
+        items[:] = [item for item in items if is_run(item)]
+
+
+def _was_missed(result: Result) -> bool:
+    return result.outcome == "skipped" and "Skipped: no " in result.text
+
+
+def _drawn(text: str) -> float:
+    """Return a number from 0 to 1, less than 1, that follows from a text."""
+    return int.from_bytes(hashlib.sha256(text.encode()).digest()[:6], "big") / 2**48
+
+
+class _Recorder:
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._results: dict[str, Result] = {}
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        result = self._results.setdefault(report.nodeid, Result())
+        result.seconds += report.duration
+        result.is_ros = "ros" in report.keywords
+        if report.outcome != "passed" and result.outcome != "failed":
+            result.outcome, result.text = report.outcome, _line(report)
+
+    def pytest_sessionfinish(self) -> None:
+        write(self._path, self._results)
+
+
+def _line(report: pytest.TestReport) -> str:
+    """Return the reason of a report in one line."""
+    if isinstance(report.longrepr, tuple):
+        return str(report.longrepr[2])
+    crash = getattr(report.longrepr, "reprcrash", None)
+    text = str(report.longrepr) if crash is None else str(crash.message)
+    return text.strip().partition("\n")[0]

@@ -1,0 +1,88 @@
+"""The ledger of proofs: what has to be proved again after a change."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.support import c_proof
+from tools.ledger import ERRORS, Ledger, digests
+from tools.prove import program_of
+
+EXAMPLE = Path(__file__).parents[2] / "examples/intelligent_one/intelligent_one.deros"
+
+
+@pytest.fixture
+def source(tmp_path: Path) -> Path:
+    """Return the source of the smaller example, with its contracts beside it."""
+    return c_proof.write(program_of(EXAMPLE), tmp_path / "source")
+
+
+@pytest.fixture
+def ledger(source: Path, tmp_path: Path) -> Ledger:
+    """Return a ledger in which all of the example is proved."""
+    found = Ledger(tmp_path / "proved.json")
+    found.record("example", source, list(digests(source)))
+    return Ledger(tmp_path / "proved.json")
+
+
+def replace(path: Path, before: str, after: str) -> None:
+    """Change a text at the first place where it has something."""
+    text = path.read_text(encoding="utf-8")
+    assert before in text
+    path.write_text(text.replace(before, after, 1), encoding="utf-8")
+
+
+def beside(source: Path, suffix: str) -> Path:
+    """Return another file of the monitor."""
+    return source.with_name(source.name.replace("_monitor.c", suffix))
+
+
+def test_what_is_recorded_is_not_open(ledger: Ledger, source: Path) -> None:
+    """All functions and the analysis are known; of another program nothing is."""
+    assert ledger.open("example", source) == []
+    assert ledger.stale("example", source) == []
+    assert set(ledger.open("other", source)) == {*c_proof.functions_of(source), ERRORS}
+
+
+def test_changed_body_opens_its_function_alone(ledger: Ledger, source: Path) -> None:
+    """The proofs of others read its contract, not its body."""
+    replace(source, "  m->stop_active = false;", "  m->stop_active = true;")
+    assert set(ledger.open("example", source)) == {"settle_stop", ERRORS}
+    assert set(ledger.stale("example", source)) == {"settle_stop", ERRORS}
+
+
+def test_changed_contract_opens_the_functions_that_read_it(ledger: Ledger, source: Path) -> None:
+    """They are the function itself and its callers, not all."""
+    contracts = beside(source, "_contracts.h")
+    replace(contracts, "predicate judged_", "predicate  judged_")
+    opened = ledger.open("example", source)
+    assert opened
+    assert len(opened) < len(c_proof.functions_of(source))
+
+
+@pytest.mark.parametrize("suffix", ["_monitor.h", "_monitor.c"])
+def test_changed_declaration_opens_everything(ledger: Ledger, source: Path, suffix: str) -> None:
+    """Types and constants may matter to every function."""
+    path = beside(source, suffix)
+    path.write_text(f"{path.read_text(encoding='utf-8')}\n#define MORE 1\n", encoding="utf-8")
+    assert set(ledger.open("example", source)) == {*c_proof.functions_of(source), ERRORS}
+
+
+def test_changed_prover_opens_everything(
+    ledger: Ledger, source: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A proof by other provers, or with other assumptions, is another proof."""
+    monkeypatch.setattr(c_proof, "PROVERS", "alt-ergo")
+    assert set(ledger.open("example", source)) == {*c_proof.functions_of(source), ERRORS}
+
+
+def test_vanished_functions_leave_the_ledger(ledger: Ledger, source: Path, tmp_path: Path) -> None:
+    """Recording drops digests that no longer match."""
+    replace(source, "  m->stop_active = false;", "  m->stop_active = true;")
+    stale = ledger.stale("example", source)
+    ledger.record("example", source, [])
+    again = Ledger(tmp_path / "proved.json")
+    assert again.stale("example", source) == []
+    assert set(again.open("example", source)) == set(stale)

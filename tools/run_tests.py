@@ -1,0 +1,159 @@
+"""Run the tests in stages: without other programs, with compilers and their like, then on ROS.
+
+Nothing else runs beside the tests on ROS. Those of them that fail are run once more, alone; the run
+fails if one fails again, or if more than three needed that. What passed the second time is printed
+and kept (:mod:`tools.reruns`). The end is a table of the stages, and the slowest tests.
+
+Exit code 0 says that all passed, 1 that something failed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.support.record import Result, read, write
+from tools import reruns
+from tools.reruns import Rerun
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+RECORD = REPOSITORY / ".tmp" / "tests.json"
+"""What became of each test of the last run."""
+
+MOST_RERUNS = 3
+NO_TESTS = 5
+"""The exit code of pytest that says that no test was selected."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A run of pytest: the tests with some marks, in some processes."""
+
+    title: str
+    marks: str
+    jobs: int
+
+
+STAGES = (
+    Stage("without other programs", "not ros and not needs", 2),
+    Stage("with compilers and other programs", "not ros and needs", 2),
+    Stage("on ROS", "ros", 4),
+)
+
+
+@dataclass
+class Options:
+    """How pytest is called in all stages: its arguments, and where tests are."""
+
+    arguments: Sequence[str]
+    record: Path
+    reruns: Path
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the stages; return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--record", type=Path, default=RECORD)
+    parser.add_argument("--reruns", type=Path, default=reruns.default_path())
+    parser.add_argument("--slowest", type=int, default=20, help="how many tests are listed")
+    parser.add_argument("--began", type=float, default=time.time(), help="when make began")
+    parser.add_argument("--ready", type=Path, help="a file that the set-up of the machine wrote")
+    parser.add_argument("--only", choices=["ros", "rest"], help="only these stages")
+    known, for_pytest = parser.parse_known_args(arguments)
+    options = Options(for_pytest, known.record, known.reruns)
+    results: dict[str, Result] = {}
+    rows: list[tuple[str, float]] = []
+    is_good = True
+    for stage in STAGES:
+        is_ros = stage.marks == "ros"
+        if known.only is not None and is_ros != (known.only == "ros"):
+            continue
+        print(f"--- {stage.title}", flush=True)
+        start = time.monotonic()
+        code, found = _run(stage, options)
+        if code == 1 and is_ros:
+            code = 0 if _again(found, options) else 1
+        is_good = is_good and code in (0, NO_TESTS)
+        results |= found
+        rows.append((stage.title, time.monotonic() - start))
+    write(options.record, results)
+    set_up = known.ready.stat().st_mtime - known.began if known.ready else 0.0
+    _report(rows, results, known.slowest, known.began, set_up)
+    return 0 if is_good else 1
+
+
+def _run(stage: Stage, options: Options) -> tuple[int, dict[str, Result]]:
+    """Run a stage; return pytest's exit code, and what became of each test."""
+    jobs = ["-n", str(stage.jobs), "--dist", "worksteal", "-m", stage.marks]
+    return _pytest([*jobs, *options.arguments])
+
+
+def _pytest(arguments: Sequence[str]) -> tuple[int, dict[str, Result]]:
+    with tempfile.TemporaryDirectory(prefix="deros-tests-") as folder:
+        record = Path(folder) / "record.json"
+        command = [sys.executable, "-m", "pytest", "--record", str(record), *arguments]
+        code = subprocess.run(command, check=False).returncode
+        return code, read(record) if record.exists() else {}
+
+
+def _again(results: dict[str, Result], options: Options) -> bool:
+    """Run the tests that failed once more, alone; return whether all is well.
+
+    Args:
+        results: of the tests on ROS; those of the second time take their place.
+        options: those of the run.
+    """
+    failed = {test: result for test, result in results.items() if result.outcome == "failed"}
+    if not failed or len(failed) > MOST_RERUNS:
+        print(f"{len(failed)} tests on ROS failed; at most {MOST_RERUNS} are run once more")
+        return False
+    load = os.getloadavg()[0] / (os.cpu_count() or 1)
+    print(f"--- once more, alone: {', '.join(failed)}", flush=True)
+    alone = [each for each in options.arguments if not each.startswith("tests")]
+    code, second = _pytest(["-n", "0", *alone, *failed])
+    passed = [
+        Rerun(test, first.text, first.seconds, second[test].seconds, load)
+        for test, first in failed.items()
+        if test in second and second[test].outcome == "passed"
+    ]
+    reruns.keep(passed, options.reruns)
+    for rerun in passed:
+        print(f"rerun: {rerun}", flush=True)
+    results.update(second)
+    return code == 0 and len(passed) == len(failed)
+
+
+def _report(
+    rows: Sequence[tuple[str, float]],
+    results: Mapping[str, Result],
+    slowest: int,
+    began: float,
+    set_up: float,
+) -> None:
+    """Print the slowest tests, and where the time went."""
+    by_time = sorted(results.items(), key=lambda each: -each[1].seconds)
+    print(f"--- the {slowest} slowest of {len(results)} tests")
+    for test, result in by_time[:slowest]:
+        print(f"{result.seconds:8.1f} s  {test}")
+    counts = Counter(result.outcome for result in results.values())
+    parts = ", ".join(f"{title} {_minutes(seconds)}" for title, seconds in rows)
+    state = f"cold, {_minutes(set_up)} of it for the set-up" if set_up > 0 else "warm"
+    total = ", ".join(f"{counts[kind]} {kind}" for kind in ("passed", "failed", "skipped"))
+    print(f"--- {total} in {_minutes(time.time() - began)} ({state}): {parts}", flush=True)
+
+
+def _minutes(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes else f"{rest} s"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
