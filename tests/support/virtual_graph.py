@@ -39,10 +39,13 @@ class Graph:
     Attributes:
         clock: the steady clock.
         nodes: the nodes whose endpoints others know.
+        events_are_late: whether subscriptions learn of a publisher after its first messages.
     """
 
     def __init__(self) -> None:
         """Begin without nodes, 1000 s after the start of the machine."""
+        self.events_are_late = False
+        self._late: list[VirtualSubscription] = []
         self.clock = VirtualClock(1000 * SECOND)
         self.nodes: list[VirtualNode] = []
         self._timers: list[Timer] = []
@@ -67,7 +70,7 @@ class Graph:
         """Run all nodes for a time, or until something is true; return whether it became true."""
         end = self.now + round(seconds * SECOND)
         while not until():
-            if self._work():
+            if self.turn():
                 continue
             timer = min(self._running(), key=lambda each: each[0], default=None)
             if timer is None or timer[0] > end:
@@ -85,8 +88,10 @@ class Graph:
         """
         assert self.run(seconds, condition), "the awaited event did not come"
 
-    def _work(self) -> bool:
+    def turn(self) -> bool:
         """Take one turn of each queue; return whether there was one."""
+        while self._late:
+            self._late.pop(0).matched()
         busy = [node for node in self.nodes if node.queue and node.is_running]
         for node in busy:
             if node.queue and node.is_running:
@@ -125,7 +130,10 @@ class Graph:
             pairs = [(each, end) for each in self.publishers(end.topic_name, end.node)]
         for publisher, subscription in pairs:
             if publisher.fits(subscription):
-                subscription.matched()
+                if self.events_are_late:
+                    self._late.append(subscription)
+                else:
+                    subscription.matched()
                 if appears and publisher.last is not None and subscription.is_latched:
                     subscription.receive(publisher.last)
 
