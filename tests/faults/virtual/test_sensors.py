@@ -24,7 +24,14 @@ def test_silent_sensor_stops_the_robot(robot: VirtualRobot, topic: str) -> None:
     robot.until_free()
     robot.run(0.123)
     sensors.quiet(topic)
-    assert robot.until_active("/halt") == sensors.last[topic] + SILENT
+    halted = robot.until_active("/halt")
+    assert halted == sensors.last[topic] + SILENT
+    robot.run(0.1)
+    event = [each for each in robot.events if each["kind"] == "trigger"][-1]
+    assert (event["action"], event["time_ns"], event["published_ns"]) == (
+        "halt",
+        *[str(halted)] * 2,
+    )
     robot.assert_protects()
 
 
