@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from tests.support.faults import GATE, NODE
@@ -199,6 +200,29 @@ def test_stop_passes_the_gate_at_once(robot: VirtualRobot, sensors: Sensors) -> 
     assert len(robot.commands) - stopped == 20  # at 20 Hz, with or without commands
     robot.until(lambda: robot.reset()[0])
     until_driving(robot)
+
+
+def test_status_reports_output_and_reason(robot: VirtualRobot, sensors: Sensors) -> None:
+    """One status each second and 50 ms after a change, which says since when a line applies."""
+    sent: list[tuple[int, str, str]] = []
+
+    def take(message: Any) -> None:
+        for status in message.status:
+            if status.name == f"/{GATE}":
+                since = next(each.value for each in status.values if each.key == "since_ns")
+                sent.append((robot.now, status.message, since))
+
+    robot.peer.create_subscription(DiagnosticArray, "/diagnostics", take, 10)
+    robot.run(2.5)
+    assert {message for _, message, _ in sent} == {"commands pass"}
+    sent.clear()
+    sensors.send("/speed", speed(9.0))
+    stopped = robot.now
+    robot.run(3.5)
+    first = stopped + ns(0.05)
+    assert [at for at, _, _ in sent] == [first + ns(second) for second in range(4)]
+    assert {message.partition(" (")[0] for _, message, _ in sent} == {"stop: zero"}
+    assert {since for _, _, since in sent} == {str(stopped)}
 
 
 def test_no_old_command_is_published_when_a_stop_ends(

@@ -165,7 +165,7 @@ def test_silence_of_input_or_heartbeat_gives_zero(
 def test_status_reports_output_and_reason(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """One status on /diagnostics, every second and soon after a change."""
+    """One status on /diagnostics; tests/faults/virtual asks when, and since when a line applies."""
     with run_gate(GATE, ros_env) as process:
         world.meet()
         world.release()
@@ -176,10 +176,8 @@ def test_status_reports_output_and_reason(
         world.wish_until(0.3, lambda: world.status["message"] == reason)
         assert world.status["level"] == "1"
         assert world.status["name"] == f"/{GATE}"
-        first = world.status["since_ns"]
         seen = world.reports
         world.wish_until(0.3, lambda: world.reports >= seen + 2)
-        assert world.status["since_ns"] == first
         process.send_signal(signal.SIGTERM)
         output, _ = process.communicate(timeout=LIMIT)
     assert process.returncode == 0
