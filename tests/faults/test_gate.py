@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
-from tests.support.faults import GATE, PROMPT, Heard, Robot
+from tests.support.faults import GATE, PROMPT, Robot
 from tests.support.needs import needs
 from tests.support.played import COMMANDER, SENSES, TOPICS, command, load
 from tests.support.preload import WallClock
@@ -26,16 +25,7 @@ LOST_HEARTBEAT, LOST_INPUT = 0.3, 0.5
 LIMIT = 0.1
 """The speed, in m/s, to which the gate limits commands while the arm is overloaded."""
 
-LATE = 0.05
-"""Maximum delay of a zero, in s."""
-
-PERIOD = 0.05
 DAY = 86400
-
-
-def lateness(messages: list[Heard], period: float) -> float:
-    """Return the worst delay, in s, of periodic messages on this machine."""
-    return max(after.sent - before.sent - period for before, after in pairwise(messages))
 
 
 def assert_zeros_only(robot: Robot, first: int) -> None:
@@ -56,11 +46,12 @@ def is_driving(robot: Robot) -> bool:
     return len(robot.commands) >= 10 and all(each.value for each in robot.commands[-10:])
 
 
-@pytest.mark.parametrize("fault", [slow(Process.kill), Process.freeze])
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", [Process.kill, Process.freeze])
 def test_dead_or_hung_safety_node_stops_the_robot(
     robot: Robot, tmp_path: Path, fault: Callable[[Process], None]
 ) -> None:
-    """The last nonzero command leaves the gate 0.3 s after the last heartbeat."""
+    """Only zeros come then; tests/faults/virtual asks that they come after 0.3 s."""
     lease = short_lease(tmp_path)  # after which the gate accepts the restarted node
     with robot.safety_node(**lease) as node, robot.gate(), robot.sensors() as sensors:
         sensors.drive()
@@ -68,8 +59,6 @@ def test_dead_or_hung_safety_node_stops_the_robot(
         fault(node)
         robot.until(lambda: is_stopped(robot))
         zero = max(n for n, each in enumerate(robot.commands) if each.value) + 1
-        late = robot.commands[zero].sent - robot.beats[-1].sent - LOST_HEARTBEAT
-        assert late < LATE + lateness(robot.commands[zero - 10 : zero], PERIOD)
         assert_zeros_only(robot, zero)
         node.kill()
         robot.restart()
@@ -101,6 +90,7 @@ def test_latched_stop_survives_any_crash(robot: Robot, tmp_path: Path) -> None:
         gate.end()
 
 
+@pytest.mark.slow
 def test_gate_without_a_safety_node_commands_zero(robot: Robot) -> None:
     """Started alone, it lets no command pass."""
     with robot.sensors() as sensors:

@@ -29,6 +29,7 @@ def start_second(robot: Robot, folder: Path) -> Process:
     return robot.start(NODE, parameters, TMPDIR=str(folder), TEMP="", TMP="")
 
 
+@pytest.mark.slow
 def test_second_node_ends_even_if_the_lock_is_deleted(robot: Robot, tmp_path: Path) -> None:
     """It gets the free lock, finds the first node in the graph, and exits."""
     with robot.safety_node(TMPDIR=str(tmp_path)):

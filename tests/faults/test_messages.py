@@ -9,7 +9,6 @@ import pytest
 
 from tests.support.faults import PROMPT, Robot
 from tests.support.played import button, imu, load, scan, speed
-from tests.support.profiles import slow
 from tests.support.stalls import stalls
 
 pytestmark = pytest.mark.ros
@@ -93,7 +92,8 @@ def test_publisher_of_another_type_is_not_the_sensor(robot: Robot) -> None:
             robot.until_stopped("/halt", limit=0.5 + PROMPT)
 
 
-@pytest.mark.parametrize("garbage", [b"\x00\x01\x00\x00", slow(b"\xff" * 400)])
+@pytest.mark.slow
+@pytest.mark.parametrize("garbage", [b"\x00\x01\x00\x00", b"\xff" * 400])
 def test_garbage_counts_as_silence(robot: Robot, garbage: bytes) -> None:
     """Data that cannot be decoded is reported once and ignored, however often it arrives."""
     with robot.safety_node() as node, robot.sensors() as sensors:

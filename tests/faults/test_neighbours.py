@@ -36,6 +36,7 @@ def until_no_fault(robot: Robot, topic: str) -> None:
     robot.until(lambda: topic not in robot.faults)
 
 
+@pytest.mark.slow
 def test_second_publisher_does_not_hide_a_dead_sensor(robot: Robot) -> None:
     """Two publishers of one input are a fault, whichever of them is alive; one is not."""
     with robot.safety_node(), robot.sensors() as sensors:

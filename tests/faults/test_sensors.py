@@ -9,7 +9,6 @@ import pytest
 
 from tests.support.faults import Robot
 from tests.support.played import SENSES, imu, speed
-from tests.support.profiles import slow
 from tests.support.victims import Sensors
 
 pytestmark = pytest.mark.ros
@@ -17,7 +16,8 @@ pytestmark = pytest.mark.ros
 TILTED = math.radians(20.0)
 
 
-@pytest.mark.parametrize("fault", [slow(Sensors.kill), Sensors.freeze])
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", [Sensors.kill, Sensors.freeze])
 def test_dead_or_hung_sensor_stops_the_robot(
     robot: Robot, fault: Callable[[Sensors], None]
 ) -> None:

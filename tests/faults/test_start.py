@@ -50,6 +50,7 @@ def test_grace_has_neither_halt_nor_heartbeat(robot: Robot) -> None:
         node.end()
 
 
+@pytest.mark.slow
 def test_absent_input_is_missing_after_the_grace(robot: Robot) -> None:
     """The grace period ends by itself: the halt comes, and the heartbeat."""
     with robot.sensors({"/speed": TOPICS["/speed"]}) as sensors:

@@ -183,6 +183,7 @@ class Robot:
         self._prober: Sensors | None = None
         self._node: Process | None = None
         self._processes: list[Process] = []
+        self._sensors: list[Sensors] = []
         self._resets = {
             node: peer.node.create_client(Trigger, f"/{node}/reset") for node in (NODE, WHEELS_GATE)
         }
@@ -242,12 +243,33 @@ class Robot:
         return bool(seen and seen[-1].value)
 
     def until(self, condition: Callable[[], Any], limit: float = LIMIT) -> Any:
-        """Wait until something is true."""
-        return self.peer.until(condition, limit)
+        """Wait until something is true.
+
+        The limit does not count the time for which the machine ran other processes instead of those
+        of the robot, so that load alone does not exceed it.
+        """
+        began, held_up = time.monotonic(), self._held_up()
+        came: Any = None
+
+        def is_over() -> bool:
+            nonlocal came
+            came = condition()
+            passed = time.monotonic() - began
+            return came or (passed > limit and passed - (self._held_up() - held_up) > limit)
+
+        self.peer.until(is_over, limit + LIMIT)
+        assert came, "the awaited event did not come"
+        return came
+
+    def _held_up(self) -> float:
+        """Return the seconds for which the machine ran other processes than those of the test."""
+        robot: list[Process | Sensors] = [*self._processes, *self._sensors]
+        robot += [] if self._prober is None else [self._prober]
+        return self.peer.held_up + sum(each.waited() for each in robot)
 
     def until_stopped(self, topic: str = "/stop", limit: float = LIMIT) -> None:
         """Wait until an action is active."""
-        self.peer.until(lambda: self.is_active(topic), limit)
+        self.until(lambda: self.is_active(topic), limit)
 
     def until_free(self) -> None:
         """Wait until the sensors are heard, and the operator has undone the halt without them."""
@@ -264,10 +286,10 @@ class Robot:
 
         When each was received counts, not when this process, which may be starved, looks at it.
         """
-        now, held_up = time.time(), self.peer.held_up
+        now, held_up = time.time(), self._held_up()
         self.until(lambda: _since(now, self.beats) >= count)
         passed = [each.received for each in self.beats if each.received > now][count - 1] - now
-        passed -= self.peer.held_up - held_up
+        passed -= self._held_up() - held_up
         assert passed < 0.1 * count + PROMPT, f"{count} heartbeats took {passed:.1f} s"
 
     def until_silent(self) -> None:
@@ -278,14 +300,14 @@ class Robot:
         Raises:
             AssertionError: if it does not fall silent, or has sent anything since.
         """
-        began, held_up = time.time(), self.peer.held_up
+        began, held_up = time.time(), self._held_up()
         before = -1
         while (heard := len(self.beats) + len(self.states["/stop"])) != before:
             assert time.time() < began + LIMIT, "the safety node does not fall silent"
             before = heard
             self.spin(0.5)
         went_on = max(each.sent for each in (*self.beats, *self.states["/stop"])) - began
-        went_on -= self.peer.held_up - held_up
+        went_on -= self._held_up() - held_up
         assert went_on < PROMPT, f"it went on for {went_on:.1f} s"
 
     def spin(self, seconds: float) -> None:
@@ -303,9 +325,11 @@ class Robot:
     def sensors(self, topics: Mapping[str, str] = TOPICS, **env: str) -> Iterator[Sensors]:
         """Run a process that plays sensors."""
         sensors = Sensors(topics, {**self.env, **env})
+        self._sensors.append(sensors)
         try:
             yield sensors
         finally:
+            self._sensors.remove(sensors)
             sensors.close()
 
     def start(

@@ -93,7 +93,8 @@ class World:
     """All that is around a gate of commands for a drive: who commands, the drive, the rules.
 
     Attributes:
-        heard: what the gate published, serialized, with the time at which it was heard.
+        heard: what the gate published, serialized, with the time at which it did, in s since the
+            epoch.
         status: its last status on /diagnostics: name, level, message, and all values.
         reports: how many of these there have been.
         beats: how many heartbeats it has published.
@@ -140,8 +141,8 @@ class World:
         self.status |= {"name": status.name, "message": status.message}
         self.status["level"] = str(status.level[0])
 
-    def _take(self, data: bytes) -> None:
-        self.heard.append((time.monotonic(), data))
+    def _take(self, data: bytes, info: dict[str, int]) -> None:
+        self.heard.append((info["source_timestamp"] / 1e9, data))
 
     def meet(self) -> None:
         """Wait until all ends know each other."""
@@ -168,11 +169,9 @@ class World:
         for publisher, state in self._said.items():
             publisher.publish(state)
 
-    def stop(self, active: bool) -> float:
-        """Publish whether the stop is active, and return when that was."""
-        before = time.monotonic()
+    def stop(self, active: bool) -> None:
+        """Publish whether the stop is active."""
         self._say(self.stop_publisher, self._types[1](data=active))
-        return before
 
     def mode(self, value: int) -> None:
         """Publish which limits are active: 1 those of slow, 2 those of slower, 0 none."""

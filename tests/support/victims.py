@@ -24,6 +24,18 @@ _ALARMS = re.compile(
 )
 
 
+def waited(pid: int) -> float:
+    """Return the seconds for which a process was ready to run and other processes ran instead.
+
+    Those of all its threads are added up. It is 0 where the kernel does not count them.
+    """
+    total = 0
+    for counted in Path(f"/proc/{pid}/task").glob("*/schedstat"):
+        with contextlib.suppress(OSError):  # the thread has ended
+            total += int(counted.read_text(encoding="ascii").split()[1])
+    return total / 1e9
+
+
 class Process:
     """A process of the robot: its output goes to a file, because a full pipe would block it."""
 
@@ -55,6 +67,10 @@ class Process:
     def output(self) -> str:
         """Return what it has printed up to now."""
         return self._log.read_text(encoding="utf-8", errors="replace")
+
+    def waited(self) -> float:
+        """Return the seconds for which it has been ready to run and other processes ran instead."""
+        return waited(self.popen.pid)
 
     def memory(self) -> int:
         """Return the bytes of memory that are its own."""
@@ -126,15 +142,8 @@ class Sensors:
         self._do({**command, "times": times or len(messages)})
 
     def waited(self) -> float:
-        """Return the seconds for which it has been ready to run and other processes ran instead.
-
-        It is 0 where the kernel does not count them.
-        """
-        try:
-            counted = Path(f"/proc/{self._popen.pid}/schedstat").read_text(encoding="ascii")
-        except FileNotFoundError:
-            return 0.0
-        return int(counted.split()[1]) / 1e9
+        """Return the seconds for which it has been ready to run and other processes ran instead."""
+        return waited(self._popen.pid)
 
     def kill(self) -> None:
         """End the sensors as a crash would."""

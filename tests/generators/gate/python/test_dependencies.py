@@ -20,12 +20,10 @@ from tests.support.ros import LIMIT, Peer, set_parameter
 
 pytestmark = pytest.mark.ros
 
-PROMPT = 1.0
-"""Margin for a busy machine, in s."""
-
 # States and heartbeat ---------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_undecodable_state_stops(world: World) -> None:
     """Invalid bytes count as active until a valid state of the safety node arrives."""
@@ -78,6 +76,7 @@ def test_state_counts_from_its_arrival(
         world.assert_stands(1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_node_that_replaces_the_safety_node_is_obeyed(
     world: World, ros_env: dict[str, str]

@@ -110,6 +110,7 @@ def test_foreign_publisher_that_ends_during_a_hang_does_not_release(
     assert {world.speeds(data) for _, data in world.heard[before:]} == {STILL}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_foreign_active_state_stops(world: World, ros_env: dict[str, str]) -> None:
     """It counts until its publisher is gone, whatever the safety node publishes."""
@@ -120,6 +121,7 @@ def test_foreign_active_state_stops(world: World, ros_env: dict[str, str]) -> No
     world.until_driving()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_second_heartbeat_publisher_counts_as_a_loss(world: World, ros_env: dict[str, str]) -> None:
     """The safety node cannot be identified; when the second is gone, the gate continues."""
@@ -166,6 +168,7 @@ def test_constant_heartbeat_releases_nothing(
         world.until_driving()
 
 
+@pytest.mark.slow
 def test_state_of_another_node_than_the_heartbeat_is_ignored(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 import signal
-import statistics
 import time
 from typing import Any
 
@@ -13,33 +12,26 @@ import pytest
 
 from tests.support.gate_nodes import GATE, SAFETY_NODE, STILL, World
 from tests.support.gate_runners import RunGate
+from tests.support.profiles import slow
 from tests.support.ros import LIMIT, Peer, set_parameter
-from tests.support.stalls import stalls
 
 pytestmark = pytest.mark.ros
 
-PERIOD = 0.05
-PROMPT = 1.0
-"""Margin for a busy machine, in s, if only the result matters and not its time."""
 ON_CLOCK = ("use_sim_time:=true", "losses_in_simulated_time:=true")
 
 
 def test_commands_pass_byte_for_byte(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """Without active actions, every command is published at once, unchanged."""
+    """Without active actions, every command is published, unchanged, before anything else."""
     with run_gate(GATE, ros_env):
         world.meet()
         world.release()
-        delays = []
         for number in range(200):
             before = len(world.heard)
-            sent = time.monotonic()
             data = world.wish(0.001 * number, y=-0.0)
             world.hear_after(before)
             assert world.heard[before][1] == data
-            delays.append(world.heard[before][0] - sent)
-    assert statistics.median(delays) < 0.01
 
 
 def test_robot_is_held_until_it_is_known_to_be_safe(
@@ -58,23 +50,23 @@ def test_robot_is_held_until_it_is_known_to_be_safe(
 def test_stop_publishes_zero_at_once_and_periodically(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """The first zero comes with the stop, the others at the rate, with or without commands."""
-    with run_gate(GATE, ros_env), stalls() as stalled:
+    """Nothing else comes after the stop, and zeros go on, with or without commands.
+
+    At which times they come is asked in tests/faults/virtual.
+    """
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
-        before, held_up = len(world.heard), stalled.seconds
-        stopped = world.stop(True)
+        before = len(world.heard)
+        world.stop(True)
         world.hear_after(before)
-        assert world.heard[before][0] - stopped < 0.02 + stalled.seconds - held_up
         world.peer.until(lambda: len(world.heard) >= before + 20)
         world.wish_until(0.3, lambda: len(world.heard) >= before + 40)
         zeros = world.heard[before:]
     assert {world.speeds(data) for _, data in zeros} == {STILL}
-    times = [heard for heard, _ in zeros]
-    gaps = [after - before for before, after in itertools.pairwise(times)]
-    assert statistics.median(gaps) == pytest.approx(PERIOD, abs=0.005)
 
 
+@pytest.mark.slow
 def test_no_old_command_is_published_when_a_stop_ends(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
@@ -111,19 +103,17 @@ def test_limits_apply_at_once_to_each_field(
         world.wish_until(-0.9, lambda: world.last == (-0.9, 0.0, 0.0))
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("bad", [math.nan, slow(math.inf), slow(-math.inf)])
 def test_non_finite_command_is_refused(
     run_gate: RunGate, ros_env: dict[str, str], world: World, bad: float
 ) -> None:
     """It counts as lost input: zeros until the next valid command; and it is counted."""
-    with run_gate(GATE, ros_env), stalls() as stalled:
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
-        before, held_up = len(world.heard), stalled.seconds
-        sent = time.monotonic()
+        before = len(world.heard)
         world.wish(0.3, y=bad)
         world.hear_after(before)
-        assert world.heard[before][0] - sent < 0.02 + stalled.seconds - held_up
         assert world.last == STILL
         world.peer.until(
             lambda: "a NaN or an infinite number" in world.status.get("refused_last", "")
@@ -133,7 +123,9 @@ def test_non_finite_command_is_refused(
     assert not [data for _, data in world.heard if not math.isfinite(world.speeds(data)[1])]
 
 
-@pytest.mark.parametrize("data", [b"", b"\x00\x01\x00\x00", b"\x00\x01\x00\x00" + bytes(17)])
+@pytest.mark.parametrize(
+    "data", [slow(b""), b"\x00\x01\x00\x00", slow(b"\x00\x01\x00\x00" + bytes(17))]
+)
 def test_undecodable_command_is_refused(
     run_gate: RunGate, ros_env: dict[str, str], world: World, data: bytes
 ) -> None:
@@ -151,22 +143,15 @@ def test_undecodable_command_is_refused(
 def test_silence_of_input_or_heartbeat_gives_zero(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """The time counts from the last message, and the zero needs no message."""
-    with run_gate(GATE, ros_env), stalls() as stalled:
+    """The zero needs no message; at which time it comes is asked in tests/faults/virtual."""
+    with run_gate(GATE, ros_env):
         world.meet()
         world.release()
-        last, _ = world.heard[-1]
         world.peer.until(lambda: world.last == STILL)
-        assert -0.05 < world.heard[-1][0] - last - 0.5 < 0.05 + stalled.seconds
 
         world.release()
         world.beating.cancel()
-        before = stalled.seconds
-        world.beat()
-        beaten = time.monotonic()
         world.wish_until(0.3, lambda: world.last == STILL)
-        late = world.heard[-1][0] - beaten - 0.3
-        assert -0.05 < late < 0.05 + stalled.seconds - before
         world.stop(False)
         world.mode(0)
 
@@ -180,7 +165,7 @@ def test_silence_of_input_or_heartbeat_gives_zero(
 def test_status_reports_output_and_reason(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:
-    """One status on /diagnostics, every second and soon after a change."""
+    """One status on /diagnostics; tests/faults/virtual asks when, and since when a line applies."""
     with run_gate(GATE, ros_env) as process:
         world.meet()
         world.release()
@@ -191,10 +176,8 @@ def test_status_reports_output_and_reason(
         world.wish_until(0.3, lambda: world.status["message"] == reason)
         assert world.status["level"] == "1"
         assert world.status["name"] == f"/{GATE}"
-        first = world.status["since_ns"]
         seen = world.reports
         world.wish_until(0.3, lambda: world.reports >= seen + 2)
-        assert world.status["since_ns"] == first
         process.send_signal(signal.SIGTERM)
         output, _ = process.communicate(timeout=LIMIT)
     assert process.returncode == 0
@@ -270,11 +253,12 @@ def test_simulated_time_pauses_and_steps_back(
         world.peer.until(lambda: world.last == STILL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [0.0, 0.05])
 def test_losses_are_measured_on_the_steady_clock(
     run_gate: RunGate, ros_env: dict[str, str], world: World, rate: float
 ) -> None:
-    """With a paused or slow simulated clock, silence is detected in time, and zeros follow."""
+    """With a paused or slow simulated clock, silence is detected all the same, and zeros follow."""
     from rosgraph_msgs.msg import Clock
 
     clock = world.peer.node.create_publisher(Clock, "/clock", 10)
@@ -292,16 +276,9 @@ def test_losses_are_measured_on_the_steady_clock(
         world.meet()
         world.release()
         world.beating.cancel()
-        world.beat()
-        beaten, stalled = time.monotonic(), world.peer.held_up
         world.wish_until(0.3, lambda: world.last == STILL)
-        late = world.peer.held_up - stalled
-        assert 0.25 < world.heard[-1][0] - beaten < 0.3 + PROMPT + late
         before = len(world.heard)
         world.peer.until(lambda: len(world.heard) > before + 5)
-        times = [heard for heard, _ in world.heard[before:]]
-        gaps = [after - before for before, after in itertools.pairwise(times)]
-        assert statistics.median(gaps) == pytest.approx(PERIOD, abs=0.02)
 
 
 @pytest.mark.slow

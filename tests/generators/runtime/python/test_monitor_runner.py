@@ -1,11 +1,9 @@
-"""Running a monitor in real time."""
+"""Running a monitor by a clock."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
-from unittest.mock import Mock
 
 import pytest
 
@@ -17,6 +15,7 @@ from deros.generators.runtime.python.deros_runtime.monitor_runner import (
     ActionError,
     MonitorRunner,
 )
+from tests.support.clockwork import Clockwork
 
 
 class Event(NamedTuple):
@@ -65,13 +64,13 @@ class Owner:
     def __init__(self, *actions: str, failing: bool = False) -> None:
         """Start a runner without simulated time."""
         self.calls: list[str] = []
-        self.steady = Mock()
-        node = Mock()
+        self.clockwork = Clockwork(1_000)
+        node = self.clockwork.node
         node.get_parameter.return_value.value = False
         self.actions = list(actions)
         self.failing = failing
         host: Any = self
-        self.runner = MonitorRunner(node, self.steady, host)
+        self.runner = MonitorRunner(node, self.clockwork.clock, host)
         self.runner.start()
 
     def begin(self, _start: int, emit: Callable[[Event], None]) -> Monitor:
@@ -190,8 +189,7 @@ def test_reports_are_deferred_near_a_deadline() -> None:
     owner = Owner()
     runner = owner.runner
     assert runner.defer() <= AFTER
-    now = time.monotonic_ns()
-    runner.now = lambda: now
+    now = owner.clockwork.now
     for left, pause in ((NEAR + 10**9, 0), (NEAR - 10**6, NEAR - 10**6 + AFTER), (-(10**9), 0)):
         runner.monitor.next_deadline = now + left
         assert max(runner.defer(), 0) == pause

@@ -81,7 +81,7 @@ def test_second_heartbeat_is_reported_and_ends_the_later_node() -> None:
     node, found = Mock(), Mock()
     node.get_publishers_info_by_topic.return_value = []  # no reader is known either
     node.count_publishers.return_value = 2
-    detector = DuplicateInstanceDetector(node, "/safety/heartbeat", [], found)
+    detector = DuplicateInstanceDetector(node, "/safety/heartbeat", [], found, int)
     detector._order = Mock()
     detector._order.gives_way.return_value = False
     detector.check()
@@ -108,7 +108,7 @@ def test_other_publisher_of_a_state_is_named() -> None:
     node.get_fully_qualified_name.return_value = "/safety"
     own = SimpleNamespace(node_name="safety", node_namespace="/")
     node.get_publishers_info_by_topic.return_value = [own, publisher()]
-    detector = DuplicateInstanceDetector(node, "/safety/heartbeat", ["/stop", "/slow"], found)
+    detector = DuplicateInstanceDetector(node, "/safety/heartbeat", ["/stop", "/slow"], found, int)
     for _ in range(3):
         detector.check()
     text = "published by /arm/driver, too: its subscribers cannot tell them apart"

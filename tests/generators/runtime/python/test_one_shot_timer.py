@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
 from unittest.mock import Mock
 
 import pytest
@@ -14,7 +13,9 @@ pytest.importorskip("rclpy")
 from deros.generators.runtime.python.deros_runtime.one_shot_timer import (
     MAX_DEFERRAL,
     TOLERANCE,
+    NodeClock,
     OneShotTimer,
+    steady_clock,
 )
 from tests.support.clockwork import Clockwork
 from tests.support.ros import LIMIT
@@ -128,7 +129,7 @@ def test_callback_may_schedule_other_timers(clockwork: Clockwork) -> None:
         for i, (other, _) in enumerate(others):
             other.schedule(clockwork.now + 300 - 100 * i)
 
-    OneShotTimer(clockwork.node, clockwork.clock, clockwork.read, fire).schedule(1500)
+    OneShotTimer(clockwork.clock, fire).schedule(1500)
     before = clockwork.times_set
     clockwork.pass_to(1500)
     assert (clockwork.times_set, clockwork.timer.expires) == (before + 1, 1600)
@@ -137,7 +138,7 @@ def test_callback_may_schedule_other_timers(clockwork: Clockwork) -> None:
 def test_each_clock_has_its_own_shared_timer(clockwork: Clockwork) -> None:
     """Simulated and steady time are independent."""
     timer_on(clockwork)
-    OneShotTimer(clockwork.node, Mock(), clockwork.read, Mock())
+    NodeClock(clockwork.node, Mock(), clockwork.read)
     assert clockwork.timers == 2
 
 
@@ -148,15 +149,13 @@ def test_timer_calls_do_not_multiply_on_a_busy_node(ros_env: dict[str, str]) -> 
     With a separate timer for each of them it makes thirty calls for each expiry.
     """
     import rclpy
-    from rclpy.clock import Clock
-    from rclpy.clock_type import ClockType
     from rclpy.context import Context
     from rclpy.experimental.events_executor import EventsExecutor
 
     context = Context()
     rclpy.init(context=context, domain_id=int(ros_env["ROS_DOMAIN_ID"]))
     node = rclpy.create_node("busy", context=context)
-    steady = Clock(clock_type=ClockType.STEADY_TIME)
+    steady = steady_clock(node)
     timers: list[OneShotTimer] = []
     fired = calls = 0
 
@@ -169,7 +168,7 @@ def test_timer_calls_do_not_multiply_on_a_busy_node(ros_env: dict[str, str]) -> 
         for timer in timers:
             timer.schedule(time.monotonic_ns() + MS)
 
-    timers += [OneShotTimer(node, steady, time.monotonic_ns, fire) for _ in range(4)]
+    timers += [OneShotTimer(steady, fire) for _ in range(4)]
     timers[0].schedule(0)
     executor = EventsExecutor(context=context)
     executor.add_node(node)
@@ -193,8 +192,7 @@ def timer_on(
     def fire() -> None:
         fired.append(clockwork.now)
 
-    node: Any = clockwork.node
-    return OneShotTimer(node, clockwork.clock, clockwork.read, fire, defer), fired
+    return OneShotTimer(clockwork.clock, fire, defer), fired
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from deros.generators.runtime.python.deros_runtime import report_queue
 from deros.generators.runtime.python.deros_runtime.report_queue import (
     CHUNK,
     PAUSE,
@@ -23,15 +22,14 @@ from tests.support.clockwork import Clockwork
 class QueueOnClock(Clockwork):
     """A queue on a simulated clock, and its reports."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def __init__(self) -> None:
         """Start at time zero without reports."""
         super().__init__()
         self.reported: list[int] = []
         self.pauses = 0
-        monkeypatch.setattr(report_queue, "time", Mock(monotonic_ns=self.read))
         self.diagnostics = Mock()
         events: Any = Mock(report_monitor_event=self.note)
-        self.reports = ReportQueue(self.node, self.clock, events, self.diagnostics, self.pause, int)
+        self.reports = ReportQueue(self.clock, events, self.diagnostics, self.pause, int)
 
     def note(self, event: Any, done: int, states: Any) -> None:
         """Record a report with its data."""
@@ -54,9 +52,9 @@ class QueueOnClock(Clockwork):
 
 
 @pytest.fixture
-def queue(monkeypatch: pytest.MonkeyPatch) -> QueueOnClock:
+def queue() -> QueueOnClock:
     """Return an empty queue."""
-    return QueueOnClock(monkeypatch)
+    return QueueOnClock()
 
 
 def test_reports_wait_for_the_readers_of_states(queue: QueueOnClock) -> None:

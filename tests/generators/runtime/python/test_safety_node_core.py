@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import tempfile
-import time
 from collections.abc import Callable, Collection
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
-from unittest.mock import Mock
 
 import pytest
 
@@ -28,6 +26,7 @@ from deros.generators.runtime.python.deros_runtime.safety_node_core import (
     SafetyNodeCore,
     SafetyNodePorts,
 )
+from tests.support.clockwork import Clockwork
 
 METADATA = RuleMetadata(
     rules="robot.deros",
@@ -136,7 +135,9 @@ class Robot:
         self.monitor: Any = None
         self.stop = Topic("stop")
         self.file = folder / "latches"
-        self.node = Mock(subscriptions=[])
+        self.clockwork = Clockwork(SECOND)
+        self.node = self.clockwork.node
+        self.node.subscriptions = []
         self.node.get_fully_qualified_name.return_value = "/robot"
         self.node.context.get_domain_id.return_value = 7
         self.node.get_parameter.return_value.value = False
@@ -151,7 +152,9 @@ class Robot:
             "lock_memory": False,
             "garbage_collection": True,
         }
-        self.core = SafetyNodeCore(self.node, METADATA, SimpleNamespace(**{**chosen, **settings}))
+        self.core = SafetyNodeCore(
+            self.node, METADATA, SimpleNamespace(**{**chosen, **settings}), self.clockwork.clock
+        )
 
     def start(self, unfilled: Collection[str] = ()) -> None:
         """Start the monitoring."""
@@ -324,7 +327,10 @@ def test_heartbeat_waits_for_the_inputs(robot: Robot) -> None:
     robot.core._publish()
     assert robot.beats == []
     assert "starting" in robot.core._not_ready_reason()
-    robot.core.runner.began_at = time.monotonic_ns() - 2 * SECOND
+    robot.clockwork.now += SECOND - 1
+    robot.core._publish()
+    assert robot.beats == []
+    robot.clockwork.now += 1
     robot.core._publish()
     robot.core._publish()
     assert robot.beats == [1, 2]

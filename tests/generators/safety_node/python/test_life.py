@@ -123,7 +123,7 @@ def test_each_trigger_is_one_event_with_its_cause(start: Start, robot: Robot) ->
     assert event["message"] == (
         "stop, by speeding (every_thing.deros:28): drive.fast for 100 ms: speed 0.9 > 0.5 m/s"
     )
-    assert 0 <= int(event["published_ns"]) - int(event["time_ns"]) < 1_000_000_000
+    assert int(event["published_ns"]) >= int(event["time_ns"])  # tests/faults/virtual: the same
 
 
 def test_diagnostics_show_rules_actions_and_values(start: Start, robot: Robot) -> None:

@@ -6,14 +6,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import dataclasses
 from dataclasses import dataclass
 import itertools
-import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from rclpy.clock import Clock
 from rclpy.node import Node
 
 from .event_reporter import cause, shown
-from .one_shot_timer import OneShotTimer
+from .one_shot_timer import NodeClock, OneShotTimer
 from .report_types import Behaviour, Event, EventKind, Explanation, RuleState
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
@@ -45,7 +43,7 @@ class Diagnostics:
     def __init__(
         self,
         node: Node,
-        steady: Clock,
+        steady: NodeClock,
         behaviours: Mapping[str, Behaviour],
         actions: Mapping[str, bool],
         publish: Callable[[DiagnosticArray], None],
@@ -61,7 +59,8 @@ class Diagnostics:
         self._period = round(1e9 / frequency)
         self._rest: Iterator[DiagnosticStatus] | None = None
         self._again = False
-        self._timer = OneShotTimer(node, steady, time.monotonic_ns, self._fire, defer)
+        self._steady = steady
+        self._timer = OneShotTimer(steady, self._fire, defer)
 
     def begin(
         self,
@@ -80,7 +79,7 @@ class Diagnostics:
 
     def changed(self) -> None:
         """Publish soon."""
-        soon = time.monotonic_ns() + SOON
+        soon = self._steady.now() + SOON
         if not self._timer.is_scheduled or self._timer.due > soon:
             self._timer.schedule(soon)
         self._again = True
@@ -120,7 +119,7 @@ class Diagnostics:
             self._again = False
             self._rest = self._statuses()
         statuses = list(itertools.islice(self._rest, CHUNK))
-        now = time.monotonic_ns()
+        now = self._steady.now()
         if len(statuses) == CHUNK:
             self._timer.schedule(now + PAUSE)
         else:

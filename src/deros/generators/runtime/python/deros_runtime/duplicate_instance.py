@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 import itertools
-import time
 
 from rclpy.node import Node
 
@@ -29,15 +28,21 @@ class DuplicateInstanceDetector:
         heartbeat: str,
         states: Iterable[str],
         report: Callable[[str, str], None],
+        now: Callable[[], int],
     ) -> None:
-        """Set up; report is called with a topic and its problem, empty if it has none."""
+        """
+        Set up; report is called with a topic and its problem, empty if it has none.
+
+        now returns a steady time in nanoseconds.
+        """
         self._node = node
         self._heartbeat = heartbeat
         own = list(states)
         self._states = itertools.cycle(own)
         self._offered = itertools.cycle([heartbeat, *own])
         self._report = report
-        self._order = StartOrder(time.monotonic_ns())
+        self._now = now
+        self._order = StartOrder(now())
 
     def check(self) -> None:
         """Check now; raises Refusal if there is a second node and this one started last."""
@@ -53,7 +58,7 @@ class DuplicateInstanceDetector:
     def _check_heartbeat(self) -> None:
         has_double = self._node.count_publishers(self._heartbeat) > 1
         text = 'another node publishes this heartbeat: its subscribers cannot tell them apart'
-        if self._order.gives_way(has_double, time.monotonic_ns()):
+        if self._order.gives_way(has_double, self._now()):
             raise Refusal(f'{self._heartbeat}: {text}; this one started last and ends now')
         self._report(self._heartbeat, text if has_double else '')
 

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-import time
 from typing import Any, Protocol
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
-from .one_shot_timer import OneShotTimer
+from .one_shot_timer import OneShotTimer, steady_clock
 from .publishers import PublisherCheck
 from .target_publishers import TargetPublisherCheck
 
@@ -60,9 +57,8 @@ class GateReport:
         self._cause = ''
         self._publishers = PublisherCheck(node, self.fault)
         self._target = TargetPublisherCheck(node, target, self.fault)
-        self._timer = OneShotTimer(
-            node, Clock(clock_type=ClockType.STEADY_TIME), time.monotonic_ns, self._fire
-        )
+        self._steady = steady_clock(node)
+        self._timer = OneShotTimer(self._steady, self._fire)
         self._timer.schedule(0)
 
     def check(self) -> None:
@@ -97,12 +93,12 @@ class GateReport:
         self._hurry()
 
     def _hurry(self) -> None:
-        soon = time.monotonic_ns() + SOON
+        soon = self._steady.now() + SOON
         if not self._timer.is_scheduled or self._timer.due > soon:
             self._timer.schedule(soon)
 
     def _fire(self) -> None:
-        self._timer.schedule(time.monotonic_ns() + PERIOD)
+        self._timer.schedule(self._steady.now() + PERIOD)
         if self._gate.applying != self._reported:
             self._log()
         self._reported = self._gate.applying

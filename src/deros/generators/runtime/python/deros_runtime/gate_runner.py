@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-import time
 from typing import Protocol
 
-from rclpy.clock import Clock, JumpThreshold, TimeJump
-from rclpy.clock_type import ClockType
+from rclpy.clock import JumpThreshold, TimeJump
 from rclpy.duration import Duration
 from rclpy.node import Node
 
 from .clock_choice import refuse_clock_change, USE_SIM_TIME
-from .one_shot_timer import OneShotTimer
+from .one_shot_timer import NodeClock, OneShotTimer, ros_clock, steady_clock
 
 NEVER = 1 << 62  # or later, in nanoseconds; no timer can wait for so long
 
@@ -35,12 +33,15 @@ class GateRunner:
     The owner passes each message to the gate, with the time of now(), and calls settle() then.
     """
 
-    def __init__(self, node: Node, in_simulated_time: bool) -> None:
+    def __init__(
+        self, node: Node, in_simulated_time: bool, steady: NodeClock | None = None
+    ) -> None:
         """Set up; start() comes next. For tests, the gate can run on /clock, if the node does."""
         self._node = node
         refuse_clock_change(node)
-        self.now, clock = self._choose_clock(in_simulated_time)
-        self._deadline = OneShotTimer(node, clock, self.now, self.advance)
+        clock = self._choose_clock(in_simulated_time, steady or steady_clock(node))
+        self.now = clock.now
+        self._deadline = OneShotTimer(clock, self.advance)
 
     def start(self, gate: GateLogic, settled: Callable[[], None]) -> None:
         """Start a gate; settled is called after each call of it."""
@@ -60,16 +61,15 @@ class GateRunner:
             self._deadline.schedule(due)
         self._settled()
 
-    def _choose_clock(self, in_simulated_time: bool) -> tuple[Callable[[], int], Clock]:
-        steady = Clock(clock_type=ClockType.STEADY_TIME)
+    def _choose_clock(self, in_simulated_time: bool, steady: NodeClock) -> NodeClock:
         if not (in_simulated_time and self._node.get_parameter(USE_SIM_TIME).value):
-            return time.monotonic_ns, steady  # the same time as that clock's, in a thirtieth of it
+            return steady
         # The callback of a jump may not do much, so it leaves the rest to a timer due at once.
-        self._step = OneShotTimer(self._node, steady, time.monotonic_ns, self.advance)
+        self._step = OneShotTimer(steady, self.advance)
         jumps = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
         clock = self._node.get_clock()
         self._jumps = clock.create_jump_callback(jumps, post_callback=self._on_clock_jump)
-        return lambda: clock.now().nanoseconds, clock
+        return ros_clock(self._node)
 
     def _on_clock_jump(self, _jump: TimeJump) -> None:
         self._step.schedule(0)

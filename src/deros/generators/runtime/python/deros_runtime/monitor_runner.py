@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-import time
 import traceback
 from typing import Any, Protocol, TypeVar
 
-from rclpy.clock import Clock, JumpThreshold, TimeJump
+from rclpy.clock import JumpThreshold, TimeJump
 from rclpy.duration import Duration
 from rclpy.node import Node
 
 from .clock_choice import refuse_clock_change
-from .one_shot_timer import OneShotTimer
+from .one_shot_timer import NodeClock, OneShotTimer, ros_clock
 from .report_types import ActionCall, Event, Explanation, Monitor
 
 NEAR = 2_000_000  # ns before a deadline in which nothing is started that can wait
@@ -67,7 +66,7 @@ class MonitorRunner:
     the monitor, and calls settle() then.
     """
 
-    def __init__(self, node: Node, steady: Clock, host: MonitorHost) -> None:
+    def __init__(self, node: Node, steady: NodeClock, host: MonitorHost) -> None:
         """Choose the clock; start() comes next."""
         self.began_at = 0
         self.monitor: Any = None  # a Monitor, and a method for each of its inputs
@@ -82,8 +81,9 @@ class MonitorRunner:
         self._code: list[int] = []  # the indices of those whose code is still to be run
         self._states: list[Explanation] = []  # what the monitor explained after each of them
         refuse_clock_change(node)
-        self.now, self.clock = self._choose_clock(steady)
-        self._deadline = OneShotTimer(node, self.clock, self.now, self._on_deadline)
+        self.clock = self._choose_clock(steady)
+        self.now = self.clock.now
+        self._deadline = OneShotTimer(self.clock, self._on_deadline)
 
     def start(self) -> None:
         """Start the monitor: its timeouts count from now."""
@@ -129,17 +129,17 @@ class MonitorRunner:
         left: int = deadline - self.now()
         return left + AFTER if left < NEAR else 0
 
-    def _choose_clock(self, steady: Clock) -> tuple[Callable[[], int], Clock]:
+    def _choose_clock(self, steady: NodeClock) -> NodeClock:
         if not self._node.get_parameter('use_sim_time').value:
-            return time.monotonic_ns, steady  # the same time as that clock's, in a thirtieth of it
+            return steady
         # The callback of a jump may not do much, so it leaves the rest to a timer due at once.
-        self._step = OneShotTimer(self._node, steady, time.monotonic_ns, self._on_step)
+        self._step = OneShotTimer(steady, self._on_step)
         jumps = JumpThreshold(
             min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
         )
         clock = self._node.get_clock()
         self._jumps = clock.create_jump_callback(jumps, post_callback=self._on_clock_jump)
-        return lambda: clock.now().nanoseconds, clock
+        return ros_clock(self._node)
 
     def _on_clock_jump(self, jump: TimeJump) -> None:
         """Start when simulated time begins, and handle a step back without waiting."""

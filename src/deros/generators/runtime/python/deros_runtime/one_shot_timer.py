@@ -1,10 +1,12 @@
-"""One-shot timers; all those of one clock share a single timer of rclpy."""
+"""The clocks of a node, and one-shot timers, which share a single timer of rclpy per clock."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+import time
 
 from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 MAX_DEFERRAL = 50_000_000  # ns that a timer may be deferred in all
@@ -21,42 +23,39 @@ class OneShotTimer:
 
     def __init__(
         self,
-        node: Node,
-        clock: Clock,
-        now: Callable[[], int],
+        clock: NodeClock,
         callback: Callable[[], None],
         defer: Callable[[], int] | None = None,
     ) -> None:
         """
         Create the timer; it is not scheduled.
 
-        now returns the time of the clock in nanoseconds. defer, which timers that are not urgent
-        have, returns for how many nanoseconds the callback has to wait for something else.
+        defer, which timers that are not urgent have, returns for how many nanoseconds the callback
+        has to wait for something else.
         """
         self.due = 0  # for which it is scheduled, or was last
         self.wait_until = 0  # the same, or later if it has been deferred
         self.is_scheduled = False
-        self._now = now
+        self._clock = clock
         self._callback = callback
         self._defer = defer
-        self._shared_timer = _shared_timer(node, clock, now)
-        self._shared_timer.timers.append(self)
+        clock.timers.append(self)
 
     def schedule(self, due: int) -> None:
         """Fire at an instant, or at once if it is past; this replaces an earlier schedule."""
         self.due = self.wait_until = due
         self.is_scheduled = True
-        self._shared_timer.adjust()
+        self._clock.adjust()
 
     def repeat(self, period: int) -> None:
         """Fire again a period after the last time, or after now if either was long ago."""
-        latest = self._now() + period
+        latest = self._clock.now() + period
         due = self.due + period
         self.schedule(due if latest - period < due <= latest else latest)
 
     def fire(self) -> None:
         """Call back, or defer that."""
-        now = self._now()
+        now = self._clock.now()
         if self._defer is not None and now - self.due < MAX_DEFERRAL:
             pause = self._defer()
             if pause > 0:
@@ -66,9 +65,9 @@ class OneShotTimer:
         self._callback()
 
 
-class SharedTimer:
+class NodeClock:
     """
-    The one timer of a clock, which expires when the first of its one-shot timers is due.
+    A clock of a node, with one timer, which expires when the first of its one-shot timers is due.
 
     While a timer has expired and not been called yet, the EventsExecutor calls it once more each
     time that any timer is set, and after each of these calls it looks for expired timers again:
@@ -78,9 +77,9 @@ class SharedTimer:
     """
 
     def __init__(self, node: Node, clock: Clock, now: Callable[[], int]) -> None:
-        """Create the timer; nothing is due."""
+        """Create the timer; nothing is due. now returns the time of the clock in nanoseconds."""
+        self.now = now
         self.timers: list[OneShotTimer] = []
-        self._now = now
         self._due: int | None = None  # when the timer expires
         self._is_firing = False
         self._timer = node.create_timer(1.0, self._expire, clock=clock, autostart=False)
@@ -92,7 +91,7 @@ class SharedTimer:
         first = self._first()
         if first is not None and (self._due is None or first.wait_until < self._due):
             self._due = first.wait_until
-            self._wait(self._due - self._now())
+            self._wait(self._due - self.now())
 
     def _first(self) -> OneShotTimer | None:
         scheduled = (timer for timer in self.timers if timer.is_scheduled)
@@ -102,7 +101,7 @@ class SharedTimer:
         if self._due is None:
             self._timer.cancel()
             return
-        now = self._now()
+        now = self.now()
         if now < self._due:
             left = self._timer.time_until_next_call()
             if left is None or abs(self._due - now - left) > TOLERANCE:  # the clock has stepped
@@ -126,9 +125,13 @@ class SharedTimer:
         self._timer.timer_period_ns = 1
 
 
-def _shared_timer(node: Node, clock: Clock, now: Callable[[], int]) -> SharedTimer:
-    """Return the shared timer of a node for a clock."""
-    shared_timers: dict[Clock, SharedTimer] = vars(node).setdefault('_shared_timers', {})
-    if clock not in shared_timers:
-        shared_timers[clock] = SharedTimer(node, clock, now)
-    return shared_timers[clock]
+def steady_clock(node: Node) -> NodeClock:
+    """Return the steady clock, which never steps."""
+    clock = Clock(clock_type=ClockType.STEADY_TIME)
+    return NodeClock(node, clock, time.monotonic_ns)  # the same time, read in a thirtieth of it
+
+
+def ros_clock(node: Node) -> NodeClock:
+    """Return the clock of the node: simulated time under use_sim_time."""
+    clock = node.get_clock()
+    return NodeClock(node, clock, lambda: clock.now().nanoseconds)

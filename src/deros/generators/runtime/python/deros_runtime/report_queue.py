@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-import time
-
-from rclpy.clock import Clock
-from rclpy.node import Node
 
 from .diagnostics import Diagnostics
 from .event_reporter import EventReporter
-from .one_shot_timer import OneShotTimer
+from .one_shot_timer import NodeClock, OneShotTimer
 from .report_types import Event, Explanation
 
 SOON = 2_000_000  # ns from an action to its report: subscribers that have to act come first
@@ -30,8 +26,7 @@ class ReportQueue:
 
     def __init__(
         self,
-        node: Node,
-        steady: Clock,
+        steady: NodeClock,
         events: EventReporter,
         diagnostics: Diagnostics,
         prepare: Callable[[], None],
@@ -48,7 +43,8 @@ class ReportQueue:
         self._waiting: deque[tuple[Sequence[Event], Sequence[int], Sequence[Explanation]]] = (
             deque()
         )
-        self._timer = OneShotTimer(node, steady, time.monotonic_ns, self._fire, defer)
+        self._now = steady.now
+        self._timer = OneShotTimer(steady, self._fire, defer)
 
     def add(
         self, events: Sequence[Event], done: Sequence[int], states: Sequence[Explanation]
@@ -62,7 +58,7 @@ class ReportQueue:
         if len(self._waiting) > ROOM:
             self._publish_batch(1)
         if not self._timer.is_scheduled:
-            self._timer.schedule(time.monotonic_ns() + SOON)
+            self._timer.schedule(self._now() + SOON)
 
     def flush(self) -> None:
         """Publish all that is left, at the end."""
@@ -71,7 +67,7 @@ class ReportQueue:
     def _fire(self) -> None:
         self._publish_batch(min(CHUNK, len(self._waiting)))
         if self._waiting:
-            self._timer.schedule(time.monotonic_ns() + PAUSE)
+            self._timer.schedule(self._now() + PAUSE)
 
     def _publish_batch(self, count: int) -> None:
         for _ in range(count):

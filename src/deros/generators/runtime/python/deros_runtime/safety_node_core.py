@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Container, Mapping, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
-import time
 from typing import NamedTuple, Protocol
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from .diagnostics import Diagnostics
@@ -19,7 +16,7 @@ from .event_reporter import ERROR, EventReporter, OK, WARN
 from .instance import claim, file_stem
 from .latches import default_path, Latches, LatchFile
 from .monitor_runner import MonitorRunner
-from .one_shot_timer import OneShotTimer
+from .one_shot_timer import NodeClock, OneShotTimer, steady_clock
 from .publishers import PublisherCheck
 from .realtime import configure_process
 from .report_queue import ReportQueue
@@ -95,13 +92,21 @@ class SafetyNodeCore:
 
     runner: MonitorRunner  # from start() on
 
-    def __init__(self, node: Node, metadata: RuleMetadata, settings: Settings) -> None:
+    def __init__(
+        self,
+        node: Node,
+        metadata: RuleMetadata,
+        settings: Settings,
+        steady: NodeClock | None = None,
+    ) -> None:
         """
         Acquire the lock of the node's name, and configure the process.
 
-        Raises Refusal if another process of this machine holds the lock.
+        Time is that of steady; by default, of the steady clock. Raises Refusal if another process
+        of this machine holds the lock.
         """
         self._node = node
+        self._steady = steady
         self._metadata = metadata
         self._name = node.get_fully_qualified_name()
         self._domain: int = node.context.get_domain_id()
@@ -140,7 +145,7 @@ class SafetyNodeCore:
         self._events = EventReporter(
             node, metadata.rules, metadata.behaviours, hooks.publish_events
         )
-        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        steady = self._steady or steady_clock(node)
         self.runner = MonitorRunner(node, steady, self)
         lasting = {name: action.lasts for name, action in metadata.actions.items()}
         self._diagnostics = Diagnostics(
@@ -153,21 +158,20 @@ class SafetyNodeCore:
             self.runner.defer,
         )
         self._duplicates = DuplicateInstanceDetector(
-            node, ports.heartbeat, [name for name, _ in ports.states], self._report_fault
+            node,
+            ports.heartbeat,
+            [name for name, _ in ports.states],
+            self._report_fault,
+            steady.now,
         )
         self._publisher_check = PublisherCheck(node, self._report_fault, ports.shared)
         self._report_start(ports.unfilled)
         self._open_latches(state_file)
         self._reports = ReportQueue(
-            node,
-            steady,
-            self._events,
-            self._diagnostics,
-            self._prepare_states,
-            self.runner.defer,
+            steady, self._events, self._diagnostics, self._prepare_states, self.runner.defer
         )
-        self._publishing = OneShotTimer(node, self.runner.clock, self.runner.now, self._publish)
-        self._housekeeping = OneShotTimer(node, steady, time.monotonic_ns, self._do_housekeeping)
+        self._publishing = OneShotTimer(self.runner.clock, self._publish)
+        self._housekeeping = OneShotTimer(steady, self._do_housekeeping)
         self.runner.start()
         self._run_latched()
         self._housekeeping.schedule(0)

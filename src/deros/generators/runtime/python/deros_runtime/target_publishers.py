@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-import time
 
-from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from .endpoints import node_of
 from .instance import Refusal
-from .one_shot_timer import OneShotTimer
+from .one_shot_timer import OneShotTimer, steady_clock
 from .publishers import node_names, unmatched_subscriptions
 from .start_order import StartOrder, YOUNG
 
@@ -28,11 +25,12 @@ class TargetPublisherCheck:
         self._node = node
         self._target = node.resolve_topic_name(target)
         self._report = report
-        started = time.monotonic_ns()
+        clock = steady_clock(node)
+        self._now = clock.now
+        started = self._now()
         self._order = StartOrder(started)
         self._early_until = started + EARLY
-        clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._early = OneShotTimer(node, clock, time.monotonic_ns, self._check_early)
+        self._early = OneShotTimer(clock, self._check_early)
         self._early.schedule(0)
 
     def check(self) -> None:
@@ -58,6 +56,6 @@ class TargetPublisherCheck:
         others = [info for info in publishers if node_of(info) != own]
         has_double = len(publishers) - len(others) > 1
         text = f'a second gate of the name {own} publishes on it'
-        if self._order.gives_way(has_double, time.monotonic_ns()):
+        if self._order.gives_way(has_double, self._now()):
             raise Refusal(f'{self._target}: {text}; this one started last and ends now')
         return others, text if has_double else ''
