@@ -51,6 +51,11 @@ property: $(READY)  ## Compare monitors on 120,000 random pairs; 5,000 examples 
 repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (nightly)
 	@$(ALONE) $(BIN)/python -m tools.repeat --jobs $(JOBS)
 
+.PHONY: gate-times
+gate-times: $(READY)  ## Kill and stop the safety node 100 times, and time the gate's zeros (nightly)
+	@DEROS_REPEATS=100 $(ALONE) $(BIN)/python -m pytest -q -s \
+	  tests/generators/gate/python/test_dead_safety_node.py
+
 .PHONY: sanitize
 sanitize: $(READY)  ## Compare monitors in C with the reference, watched by gcc's sanitizers
 	@$(ALONE) $(BIN)/python -m tools.sanitize $(if $(PROGRAMS),--programs $(PROGRAMS))

@@ -135,18 +135,18 @@ def _listed(names: frozenset[str] | set[str]) -> str:
 def _audit(event: str, arguments: tuple[Any, ...]) -> None:
     """Note a program that is started; see the table of audit events in Python's documentation."""
     if event == "subprocess.Popen":
-        executable, command, _, env = arguments
+        executable, command, folder, env = arguments
         program = executable or (command if isinstance(command, (str, bytes)) else command[0])
         search = (env or os.environ).get("PATH")
     elif event in ("os.posix_spawn", "os.exec"):
-        program, search = arguments[0], os.environ.get("PATH")
+        program, search, folder = arguments[0], os.environ.get("PATH"), None
     else:
         return
     path = os.fsdecode(program)
     if path in _FREE:
         return
-    found = shutil.which(path, path=search)
-    if found is None or not _is_own(Path(found)):
+    found = str(Path(folder or "", path)) if os.sep in path else shutil.which(path, path=search)
+    if found is None or not _is_own(Path(found).absolute()):
         _ran.add(Path(path).name)
 
 

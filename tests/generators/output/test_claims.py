@@ -8,6 +8,9 @@ from pathlib import Path
 import pytest
 
 from tests.support.cli import deros
+from tests.support.needs import may_run
+
+pytestmark = may_run("clang++")  # it reads the user's C++ more exactly
 
 NODE = "node base : drive publishes topic odom : std_msgs.String"
 SYSTEM = 'system Robot imports import "base.rnd" node BASE : base'

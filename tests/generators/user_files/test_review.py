@@ -15,8 +15,10 @@ from deros.generators.user_files.review import review, users_files
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
-from tests.support.needs import needs
+from tests.support.needs import may_run, needs
 from tests.support.rules import embedded_store, load
+
+pytestmark = may_run("clang++")  # it reads the user's C++ more exactly
 
 OLD = """node base : robot
 parameters
