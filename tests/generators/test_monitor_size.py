@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -102,7 +103,15 @@ LARGE = {
 
 
 @needs_c
-@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize(
+    "compiler",
+    [
+        "gcc",
+        pytest.param(
+            "clang", marks=pytest.mark.skipif(shutil.which("clang") is None, reason="no clang")
+        ),
+    ],
+)
 @pytest.mark.parametrize("name", LARGE)
 def test_large_rules_compile(name: str, compiler: str, tmp_path: Path) -> None:
     """Compilers limit nested calls, clang to 256; Python limits nested parentheses to 200."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -58,11 +60,18 @@ def example() -> Unit:
     return unit(found)
 
 
+@functools.cache
+def has_fuzzer() -> bool:
+    """Return whether clang links programs with libFuzzer and the sanitizers."""
+    with tempfile.TemporaryDirectory(prefix="deros-c-") as folder:
+        return shutil.which("clang") is not None and c_library.links(
+            folder, "clang", *FUZZED, text=ENTRY
+        )
+
+
 def fuzz(made: Unit, folder: Path) -> subprocess.CompletedProcess[str]:
     """Fuzz a monitor with some tens of thousands of inputs."""
-    if shutil.which("clang") is None or not c_library.links(
-        str(folder), "clang", *FUZZED, text=ENTRY
-    ):
+    if not has_fuzzer():
         pytest.skip("no clang with libFuzzer")
     for name, text in made.texts.items():
         (folder / name).write_text(text, encoding="utf-8")
