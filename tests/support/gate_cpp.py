@@ -33,6 +33,8 @@ SANITIZED = ("-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover
 _KINDS: tuple[OutputKind, ...] = ("pass", "limited", "zero")
 _CALLS = ("command", "state", "heartbeat", "advance", "no_safety_node", "reset")
 _NEVER = 2**63 - 1
+_IN_ONE_SOURCE = 24
+"""Gates that are compiled together."""
 
 
 def view_of(gate: Gate, package: str, actions: tuple[Action, ...] = ACTIONS) -> GateView:
@@ -264,13 +266,13 @@ _STATE_TYPES = {action.binding.topic: action.binding.type for action in ACTIONS 
 def compiled(gates: Sequence[Gate], folder: Path, compiler: str, *flags: str) -> Path:
     """Compile the logic of gates, strictly, and return the program that plays traces."""
     views = [view_of(gate, f"random_{number}") for number, gate in enumerate(gates)]
-    together: dict[str, list[int]] = {}  # one source for each package: headers take their time
-    for number, gate in enumerate(gates):
-        together.setdefault(gate.type.package, []).append(number)
+    # Headers take longer than gates: few sources, each with the gates of few packages.
+    ordered = sorted(range(len(gates)), key=lambda number: gates[number].type.package)
     (folder / "wire.hpp").write_text(f"#pragma once\n{wire.head()}", encoding="utf-8")
     (folder / "player.hpp").write_text(f"#pragma once\n{_PLAYER}", encoding="utf-8")
     sources = []
-    for package, numbers in together.items():
+    for begin in range(0, len(ordered), _IN_ONE_SOURCE):
+        numbers = ordered[begin : begin + _IN_ONE_SOURCE]
         text = '#include <memory>\n#include <optional>\n#include "player.hpp"\n'
         text += wire.cpp(STORE, [*(gates[n].type for n in numbers), *_STATE_TYPES.values()])
         for number in numbers:
@@ -279,7 +281,7 @@ def compiled(gates: Sequence[Gate], folder: Path, compiler: str, *flags: str) ->
             text += f"std::unique_ptr<Player> make_{number}();\n"
             text += f"std::unique_ptr<Player> make_{number}()\n"
             text += f"{{return std::make_unique<random_{number}::Adapter>();}}\n"
-        source = folder / f"commands_{package}.cpp"
+        source = folder / f"commands_{begin}.cpp"
         source.write_text(text, encoding="utf-8")
         sources.append(source)
     declarations = "\n".join(f"std::unique_ptr<Player> make_{n}();" for n in range(len(gates)))

@@ -1,4 +1,4 @@
-"""Runs of ``deros`` as a process, with the time and memory that they take."""
+"""Runs of ``deros`` as a process, with the memory that they take."""
 
 from __future__ import annotations
 
@@ -32,18 +32,16 @@ class Measured:
     Attributes:
         code: its exit code; negative where a signal ended it.
         out: what it printed, on both streams.
-        seconds: of processor time.
         peak_mb: the most memory it had.
     """
 
     code: int
     out: str
-    seconds: float
     peak_mb: float
 
 
 def run(*arguments: object, folder: Path | None = None) -> Measured:
-    """Run ``deros`` and measure it."""
+    """Run ``deros`` and measure it; a minute of processor time ends it, as a hang."""
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as peak:
         command = [sys.executable, "-c", _STARTER, str(peak.fileno()), *map(str, arguments)]
         process = subprocess.Popen(
@@ -63,8 +61,7 @@ def run(*arguments: object, folder: Path | None = None) -> Measured:
         text = out.read().decode(errors="replace")
         peak.seek(0)
         reported = peak.read().split()
-    seconds = usage.ru_utime + usage.ru_stime
     # The kernel's figure begins with the memory of this process, so it serves only where the
     # process could not report its own.
     peak_kb = int(reported[1]) if reported else usage.ru_maxrss
-    return Measured(process.returncode, text, seconds, peak_kb / 1024)
+    return Measured(process.returncode, text, peak_kb / 1024)

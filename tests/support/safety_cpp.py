@@ -21,6 +21,11 @@ PURE = (
 """The parts of the runtime that need only the system and rcutils."""
 WITH_MESSAGES = ("diagnostics", "event_reporter")
 """The parts of the runtime that need the headers of messages, too."""
+TOGETHER = (
+    *("digest", "event_loop", "event_reporter", "instance", "realtime", "regular_file"),
+    *("report_types", "start_order", "text", "worker"),
+)
+"""The parts that compile as one source; each of the others defines some name of these again."""
 
 
 def compiled(source: Path, folder: Path, files: Files | None = None) -> Path:
@@ -47,14 +52,23 @@ def compiled(source: Path, folder: Path, files: Files | None = None) -> Path:
 
 
 def _copied(folder: Path, package: str) -> list[Path]:
-    """Write the runtime of a package, and return its sources."""
+    """Write the runtime of a package, and return its sources.
+
+    They are two, as headers take longer than what is in the parts. That each part includes what it
+    needs is seen where ``deros_runtime_cpp``, of which they are copies, is compiled.
+    """
     runtime = folder / package / "runtime"
     runtime.mkdir(parents=True, exist_ok=True)
     for name in (*HEADERS, *PURE, *WITH_MESSAGES):
         (runtime / f"{name}.hpp").write_text(copied_text(f"{name}.hpp", package))
     for name in (*PURE, *WITH_MESSAGES):
         (runtime / f"{name}.cpp").write_text(copied_text(f"{name}.cpp", package))
-    return [runtime / f"{name}.cpp" for name in (*PURE, *WITH_MESSAGES)]
+    rest = [part for part in (*PURE, *WITH_MESSAGES) if part not in TOGETHER]
+    sources = []
+    for parts in (TOGETHER, rest):
+        sources.append(runtime / f"with_{parts[0]}.cpp")
+        sources[-1].write_text("".join(f'#include "{part}.cpp"\n' for part in parts))
+    return sources
 
 
 def _written(folder: Path, files: Files) -> list[Path]:

@@ -5,6 +5,7 @@ Shared by the defaults of node descriptions and the ``param`` lines of system de
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from itertools import combinations
 
@@ -103,14 +104,16 @@ def constraint_fault(parameter: Parameter, value: Value) -> str | None:
 
 def entry_faults(node: NodeType, key: Parameter, value: Value) -> Iterator[str]:
     """Yield why entries of a list cannot name the parameters that are declared for each of them."""
-    declared = [parameter for parameter in node.parameters if parameter.keys == (key.name,)]
-    if not declared or not isinstance(value, tuple):
+    if not isinstance(value, tuple):
         return
-    entries = [entry for entry in value if isinstance(entry, str)]
-    twice = sorted({entry for entry in entries if entries.count(entry) > 1})
+    declared = [parameter for parameter in node.parameters if parameter.keys == (key.name,)]
+    if not declared:
+        return
+    entries = Counter(entry for entry in value if isinstance(entry, str))
+    twice = sorted(entry for entry, count in entries.items() if count > 1)
     for entry in twice:
         yield f"the entry {show(entry)} occurs twice, and both name '{declared[0].name_for(entry)}'"
-    for entry in dict.fromkeys(entries):
+    for entry in entries:
         for parameter in declared:
             name = parameter.name_for(entry)
             why = check_parameter_name(name)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -84,16 +85,52 @@ def check_trace(players: Players, gates: Sequence[Gate], number: int, trace: Tra
     return len(engine.outputs)
 
 
-def test_zeros_are_not_limited_as_executed_commands(tmp_path: Path) -> None:
-    """Values that a limit left in them are not limited again after the zero line has ended."""
-    kind = message_type("std_msgs.Int32")
-    data = FieldType("int32")
-    lines = (
-        GateLine(2, None, None, (Limit(("data",), data, -3, 3),), span(2)),
+ZEROED = Gate(
+    0,
+    "/wish",
+    "/robot/command",
+    message_type("std_msgs.Int32"),
+    10,
+    (
+        GateLine(2, None, None, (Limit(("data",), FieldType("int32"), -3, 3),), span(2)),
         GateLine(0, None, None, (), span(3)),
-        GateLine(3, None, None, (Limit(("data",), data, -1, 1),), span(4)),
-    )
-    gates = [Gate(0, "/wish", "/robot/command", kind, 10, lines, span(1))]
+        GateLine(3, None, None, (Limit(("data",), FieldType("int32"), -1, 1),), span(4)),
+    ),
+    span(1),
+)
+"""A gate with a zero line between two limits."""
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A program, and the gates in it."""
+
+    program: Path
+    gates: Sequence[Gate]
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
+    """Compile the gates of all tests, which read the same headers, into one program."""
+    gates = [ZEROED, *drawn("c++", FEW_COMMANDS), *of_every_type()]
+    return Compiled(compiled(gates, tmp_path_factory.mktemp("plain"), "c++", "-O0"), gates)
+
+
+def drawn(compiler: str, types: Iterable[str]) -> list[Gate]:
+    """Draw a gate for each type of commands, others for each compiler."""
+    rng = random.Random(f"{SEED} {compiler}")
+    return [random_gate(rng, name) for name in sorted(types)]
+
+
+def of_every_type() -> list[Gate]:
+    """Draw a gate for one of :data:`TYPES_STEP` types that can be commands."""
+    rng = random.Random(f"{SEED} types")
+    kinds = commands()[::TYPES_STEP]
+    return [random_gate(rng, kind.short, limitable(rng, kind)) for kind in kinds]
+
+
+def test_zeros_are_not_limited_as_executed_commands(plain: Compiled) -> None:
+    """Values that a limit left in them are not limited again after the zero line has ended."""
     happens = [
         *QUIET,
         Happening(1, "state", {"data": 1}, "/mode"),
@@ -103,36 +140,42 @@ def test_zeros_are_not_limited_as_executed_commands(tmp_path: Path) -> None:
         Happening(1, "state", {"data": 2}, "/mode"),
     ]
     trace = [(START_NS + number, each) for number, each in enumerate(happens)]
-    with Players(compiled(gates, tmp_path, "c++", "-O0"), gates) as players:
-        assert check_trace(players, gates, 0, trace) == 3  # at the start, limited, and zero
+    with Players(plain.program, plain.gates) as players:
+        # At the start, limited, and zero.
+        assert check_trace(players, plain.gates, plain.gates.index(ZEROED), trace) == 3
+
+
+def test_commands_match_the_reference(plain: Compiled) -> None:
+    """Both publish the same messages at the same nanosecond, with late timers and clock steps."""
+    chosen = drawn("c++", FEW_COMMANDS)
+    check_random_traces(plain, [plain.gates.index(gate) for gate in chosen])
 
 
 @pytest.mark.parametrize(
     ("compiler", "flags", "types"),
     [
-        pytest.param("c++", ("-O0",), FEW_COMMANDS, id="plain"),
-        pytest.param(
-            "c++", SANITIZED, 2 * [*MORE_COMMANDS], id="sanitized", marks=pytest.mark.slow
-        ),
-        pytest.param(
-            "clang++",
-            ("-O2",),
-            [*MORE_COMMANDS],
-            id="optimised",
-            marks=[needs("clang++"), pytest.mark.slow],
-        ),
+        pytest.param("c++", SANITIZED, TWICE, id="sanitized"),
+        pytest.param("clang++", ("-O2",), MORE_COMMANDS, id="optimised", marks=needs("clang++")),
     ],
 )
-def test_commands_match_the_reference(
+@pytest.mark.slow
+def test_commands_match_the_reference_otherwise_compiled(
     compiler: str, flags: tuple[str, ...], types: Sequence[str], tmp_path: Path
 ) -> None:
-    """Both publish the same messages at the same nanosecond, with late timers and clock steps."""
-    rng = random.Random(f"{SEED} {compiler}")
-    gates = [random_gate(rng, name) for name in sorted(types)]
+    """They do so for all types, with sanitizers and with another compiler."""
+    gates = drawn(compiler, types)
+    program = Compiled(compiled(gates, tmp_path, compiler, *flags), gates)
+    check_random_traces(program, range(len(gates)))
+
+
+def check_random_traces(program: Compiled, numbers: Sequence[int]) -> None:
+    """Play random traces to gates of a program, as many to each."""
+    rng = random.Random(f"{SEED} traces")
     published = 0
-    with Players(compiled(gates, tmp_path, compiler, *flags), gates) as players:
+    with Players(program.program, program.gates) as players:
         for example in range(EXAMPLES // 2):
-            published += check(players, gates, example % len(gates), rng.randrange(2**48))
+            number = numbers[example % len(numbers)]
+            published += check(players, program.gates, number, rng.randrange(2**48))
     assert published > EXAMPLES  # several in each
 
 
@@ -143,14 +186,12 @@ def commands() -> list[InterfaceType]:
     return [kind for kind in kinds if type_views(STORE, kind)]
 
 
-def test_commands_of_every_type(tmp_path: Path) -> None:
+def test_commands_of_every_type(plain: Compiled) -> None:
     """Each float is checked, each number zeroed or limited, and the rest is unchanged."""
-    rng = random.Random(f"{SEED} types")
-    every = commands()
-    assert len(every) > 100
-    kinds = every[::TYPES_STEP]
-    gates = [random_gate(rng, kind.short, limitable(rng, kind)) for kind in kinds]
-    with Players(compiled(gates, tmp_path, "c++", "-O0"), gates) as players:
-        for number in range(len(gates)):
+    assert len(commands()) > 100
+    rng = random.Random(f"{SEED} traces of types")
+    with Players(plain.program, plain.gates) as players:
+        for gate in of_every_type():
+            number = plain.gates.index(gate)
             for _ in range(TRACES_OF_A_TYPE):
-                check(players, gates, number, rng.randrange(2**48))
+                check(players, plain.gates, number, rng.randrange(2**48))

@@ -55,15 +55,12 @@ def random_texts() -> tuple[Mapping[str, str], ...]:
     )
 
 
-def compiled(
-    texts: Mapping[str, str], folder: Path, command: tuple[str, ...], *flags: str
-) -> list[Path]:
-    """Compile monitors with warnings as errors, and return the objects."""
+def compiled(texts: Mapping[str, str], folder: Path, command: tuple[str, ...], *flags: str) -> None:
+    """Compile monitors to objects in a folder, with warnings as errors."""
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
-    sources = [name for name in texts if name.endswith(".c")]
     done = subprocess.run(
-        [*command, *WARNINGS, *flags, "-c", *sources],
+        [*command, *WARNINGS, *flags, "-c", *(name for name in texts if name.endswith(".c"))],
         cwd=folder,
         capture_output=True,
         text=True,
@@ -71,33 +68,51 @@ def compiled(
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    return [folder / name.replace(".c", ".o") for name in sources]
 
 
 @pytest.mark.parametrize("compiler", [_compiler(name) for name in COMPILERS])
 def test_all_compilers_accept_the_code_without_warnings(compiler: str, tmp_path: Path) -> None:
     """This holds for every compiler and any rules."""
-    texts = [*map(render_monitor, PROGRAMS.values()), *random_texts()]
-    together = {name: text for each in texts for name, text in each.items()}
-    compiled(together, tmp_path, COMPILERS[compiler])
+    drawn = {name: text for each in random_texts() for name, text in each.items()}
+    compiled(_texts_of_programs() | drawn, tmp_path, COMPILERS[compiler])
+
+
+@pytest.fixture(scope="module")
+def built_for_debugging(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of the objects that are not optimised, and of their stack use."""
+    folder = tmp_path_factory.mktemp("debugging")
+    flags = ("-O0", "-fstack-usage", "-fcallgraph-info")
+    compiled(_texts_of_programs(), folder, ("gcc", "-std=c99"), *flags)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def built_for_use(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of the optimised objects."""
+    folder = tmp_path_factory.mktemp("use")
+    compiled(_texts_of_programs(), folder, ("gcc", "-std=c99", "-O1"))
+    return folder
+
+
+def _texts_of_programs() -> dict[str, str]:
+    return {name: text for each in PROGRAMS.values() for name, text in render_monitor(each).items()}
 
 
 @needs("gcc", "nm")
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_monitor_needs_only_its_callback_and_libm(name: str, tmp_path: Path) -> None:
+def test_monitor_needs_only_its_callback_and_libm(name: str, built_for_use: Path) -> None:
     """It links with the callback of its user and functions of the mathematical library."""
-    (made,) = compiled(render_monitor(PROGRAMS[name]), tmp_path, ("gcc", "-std=c99", "-O1"))
-    done = subprocess.run(["nm", "-u", str(made)], capture_output=True, text=True, check=True)
+    command = ["nm", "-u", str(built_for_use / f"{name}_monitor.o")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
     needed = set(re.findall(r"\bU (\w+)", done.stdout))
     assert needed - LIBM == {f"{name}_emit"}
 
 
 @needs("gcc", "nm")
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_other_symbols_are_not_exported(name: str, tmp_path: Path) -> None:
+def test_other_symbols_are_not_exported(name: str, built_for_debugging: Path) -> None:
     """All exported names have the prefix, so that several monitors link together."""
-    (made,) = compiled(render_monitor(PROGRAMS[name]), tmp_path, ("gcc", "-std=c99"))
-    command = ["nm", "-g", "--defined-only", str(made)]
+    command = ["nm", "-g", "--defined-only", str(built_for_debugging / f"{name}_monitor.o")]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     defined = re.findall(r"\b[A-Z] (\w+)", done.stdout)
     assert defined
@@ -106,16 +121,14 @@ def test_other_symbols_are_not_exported(name: str, tmp_path: Path) -> None:
 
 @needs("gcc")
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_stack_is_bounded(name: str, tmp_path: Path) -> None:
+def test_stack_is_bounded(name: str, built_for_debugging: Path) -> None:
     """No function has dynamic or large stack use, and none is recursive."""
-    flags = ("-fstack-usage", "-fcallgraph-info")
-    compiled(render_monitor(PROGRAMS[name]), tmp_path, ("gcc", "-std=c99", "-O0"), *flags)
-    usage = (tmp_path / f"{name}_monitor.su").read_text().splitlines()
+    usage = (built_for_debugging / f"{name}_monitor.su").read_text().splitlines()
     sizes = [line.split("\t")[1:] for line in usage]
     assert sizes
     assert {kind for _, kind in sizes} == {"static"}
     assert max(int(size) for size, _ in sizes) <= 512
-    graph = (tmp_path / f"{name}_monitor.ci").read_text()
+    graph = (built_for_debugging / f"{name}_monitor.ci").read_text()
     edges = re.findall(r'edge: \{ sourcename: "([^"]*)" targetname: "([^"]*)"', graph)
     assert edges
     assert _is_acyclic(edges)

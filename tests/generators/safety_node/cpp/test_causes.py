@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import pytest
 
@@ -34,22 +35,7 @@ def _keeps_values(program: Program) -> bool:
     return not any(isinstance(each, Scale) for each in walk.values(walk.conditions(program)))
 
 
-@pytest.mark.parametrize("kinds", KINDS)
-def test_causes_match_the_reference(kinds: str, tmp_path: Path) -> None:
-    """Every true rule and every active behaviour is compared after every call."""
-    cases = c_pairs.cases(KINDS[kinds], PROGRAMS, 1, accept=_keeps_values)
-    library = cpp_causes.Told([each.unit for each in cases], tmp_path)
-    told = sum(
-        cpp_causes.compare(library, number, pair)
-        for number, case in enumerate(cases)
-        for pair in case.pairs
-    )
-    assert told > 20 * PROGRAMS, "too few rules were true"
-
-
-def test_causes_use_the_words_of_the_rules(tmp_path: Path) -> None:
-    """Units, names of constants and strings are as written; braces and quotes are preserved."""
-    rules = """
+WORDS = """
     action stop;
     const limit = 2.5
     input u = topic /odom.twist.twist.linear.x
@@ -63,8 +49,45 @@ def test_causes_use_the_words_of_the_rules(tmp_path: Path) -> None:
     }
     behaviour b: if e.fast then { stop; };
     """
-    built = program(rules)
-    library = cpp_causes.Told([unit(built)], tmp_path)
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """The monitors of all tests in one library, which reads the headers once.
+
+    The first one is that of :data:`WORDS`; those of the cases of each kind follow in order.
+    """
+
+    library: cpp_causes.Told
+    cases: Mapping[str, Sequence[c_pairs.Case]]
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
+    """Compile the monitors and the reports of their causes."""
+    cases = {
+        name: c_pairs.cases(kinds, PROGRAMS, 1, first=number * PROGRAMS, accept=_keeps_values)
+        for number, (name, kinds) in enumerate(KINDS.items())
+    }
+    units = [unit(program(WORDS)), *(case.unit for name in cases for case in cases[name])]
+    return Compiled(cpp_causes.Told(units, tmp_path_factory.mktemp("causes")), cases)
+
+
+@pytest.mark.parametrize("kinds", KINDS)
+def test_causes_match_the_reference(kinds: str, compiled: Compiled) -> None:
+    """Every true rule and every active behaviour is compared after every call."""
+    first = 1 + list(KINDS).index(kinds) * PROGRAMS
+    told = sum(
+        cpp_causes.compare(compiled.library, number, pair)
+        for number, case in enumerate(compiled.cases[kinds], first)
+        for pair in case.pairs
+    )
+    assert told > 20 * PROGRAMS, "too few rules were true"
+
+
+def test_causes_use_the_words_of_the_rules(compiled: Compiled) -> None:
+    """Units, names of constants and strings are as written; braces and quotes are preserved."""
+    built, library = compiled.library.units[0].program, compiled.library
     monitor = CMonitor(library, 0, START_NS)
     leaves = {built.inputs[leaf.input].name: leaf.index for leaf in built.leaves}
     monitor.message(START_NS, "/odom", {leaves["u"]: 3.0})
