@@ -38,6 +38,10 @@ SEEN = {
         'import subprocess\nCOMPILER = "gcc"\n'
         "def test_it():\n    subprocess.run([COMPILER, '--version'])\n"
     ),
+    "a command in a constant": (
+        'import subprocess\nCOMPILER = ("gcc", "-O2")\n'
+        "def test_it():\n    subprocess.run([*COMPILER, '--version'])\n"
+    ),
     "a parameter": (
         'import subprocess, pytest\n@pytest.mark.parametrize("command", [("gcc", "-v")])\n'
         "def test_it(command):\n    subprocess.run(command)\n"

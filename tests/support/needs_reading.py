@@ -103,9 +103,10 @@ def _parts(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _texts(node: ast.expr, names: dict[str, Any]) -> Iterator[str]:
+    if isinstance(node, ast.Starred):
+        node = node.value
     value = names.get(node.id) if isinstance(node, ast.Name) else getattr(node, "value", None)
-    if isinstance(value, str):
-        yield value
+    yield from _heads(value)
 
 
 def _heads(value: Any) -> Iterator[str]:

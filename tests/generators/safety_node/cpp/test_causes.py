@@ -18,7 +18,7 @@ from tests.support.profiles import scaled
 from tests.support.rules import program
 from tests.support.strategies import ALL_KINDS
 
-pytestmark = [needs("gcc"), needs("c++")]
+pytestmark = needs("gcc", "g++", "c++")
 
 PROGRAMS = scaled(35)
 """Number of programs drawn per property; five traces are compared for each."""
