@@ -28,6 +28,12 @@ from tools.ledger import ERRORS, Ledger, digests
 REPOSITORY = Path(__file__).resolve().parents[1]
 EXAMPLES = ("intelligent_one", "feeding_robot")
 
+FEW = 8
+"""How many of the functions to be proved are named."""
+
+CHUNK = 16
+"""After how many functions the ledger is written, so that an interrupted run loses little."""
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Prove the programs asked for; return the exit code."""
@@ -79,14 +85,18 @@ def _program(source: Path, name: str, options: argparse.Namespace) -> bool:
     chosen = [each for each in options.functions.split(",") if each] or list(digests(source))
     left = ledger.open(name, source)
     wanted = [each for each in chosen if each in left] if options.new else chosen
-    known = f"{len(chosen) - len(wanted)} of {len(chosen)} by the ledger"
-    console.print(f"{name}: {known}, to prove: {', '.join(wanted) or 'nothing'}", highlight=False)
+    known = f"{len(chosen) - len(wanted)} of {len(chosen)} functions known to be proved"
+    some = ", ".join(wanted[:FEW]) + (", …" if len(wanted) > FEW else "")
+    console.print(f"{name}: {known}; to prove: {len(wanted)} {some}", highlight=False)
     proved = [ERRORS] if ERRORS in wanted and _analyse(source, name) else []
     functions = [each for each in wanted if each != ERRORS]
-    if functions and _prove(source, name, options, functions):
-        proved += functions
-    if options.record:
-        ledger.record(name, source, proved)
+    size = CHUNK if options.record else len(functions)
+    for start in range(0, len(functions), size):
+        chunk = functions[start : start + size]
+        if _prove(source, name, options, chunk):
+            proved += chunk
+        if options.record:
+            ledger.record(name, source, proved)
     is_listed = not options.check or _check(ledger, source, name, console)
     return set(proved) == set(wanted) and is_listed
 
