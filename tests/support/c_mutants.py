@@ -6,9 +6,10 @@ and loop annotations stay as they are.
 
 from __future__ import annotations
 
+import functools
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import tree_sitter_c
@@ -74,10 +75,35 @@ class Mutant:
 
 
 @dataclass(frozen=True)
-class _Change:
+class Change:
+    """A node of the code, and the text in its place."""
+
     kind: str
     node: Node
     text: str
+
+
+class Source:
+    """A parsed monitor, and the changes that can be made in it."""
+
+    def __init__(self, text: str, header: str) -> None:
+        """Parse the texts of ``robot_monitor.c`` and of its header."""
+        self.data = text.encode()
+        self._root = _PARSER.parse(self.data).root_node
+        self._writer = _Writer(_PARSER.parse(header.encode()).root_node)
+
+    def code(self) -> Iterator[tuple[str, Node]]:
+        """Yield each function and each table with its name, of a table :data:`TABLES`."""
+        for node in self._root.named_children:
+            if node.type == "function_definition":
+                yield _name_of(node), node
+            elif node.type == "declaration" and _all(node, "initializer_list"):
+                yield TABLES, node
+
+    def changes(self, top: Node, kind: str = "") -> list[Change]:
+        """Return every change of a function or table, or those of a kind, in order of the text."""
+        made = self._writer.changes(top, kind)
+        return sorted(made, key=lambda each: each.node.start_byte)
 
 
 def mutants(source: str, header: str) -> Iterator[Mutant]:
@@ -87,12 +113,11 @@ def mutants(source: str, header: str) -> Iterator[Mutant]:
         source: the text of ``robot_monitor.c``.
         header: the text of ``robot_monitor.h``, which names fields and enumerators.
     """
-    data = source.encode()
-    root = _PARSER.parse(data).root_node
-    writer = _Writer(_PARSER.parse(header.encode()).root_node)
+    parsed = Source(source, header)
+    data = parsed.data
     known = {data}
-    for function, top in _code(root):
-        for change in sorted(writer.changes(top), key=lambda each: each.node.start_byte):
+    for function, top in parsed.code():
+        for change in parsed.changes(top):
             start, end = change.node.start_byte, change.node.end_byte
             text = data[:start] + change.text.encode() + data[end:]
             if text not in known:
@@ -102,15 +127,7 @@ def mutants(source: str, header: str) -> Iterator[Mutant]:
                 yield Mutant(change.kind, function, before, after, line, text.decode())
 
 
-def _code(root: Node) -> Iterator[tuple[str, Node]]:
-    for node in root.named_children:
-        if node.type == "function_definition":
-            yield _name_of(node), node
-        elif node.type == "declaration" and _all(node, "initializer_list"):
-            yield TABLES, node
-
-
-def _told(data: bytes, change: _Change) -> tuple[str, str]:
+def _told(data: bytes, change: Change) -> tuple[str, str]:
     """Return the statement around a change as it was, and as it is, in one line each."""
     around = change.node
     while around.parent is not None and around.type not in _SIMPLE:
@@ -154,83 +171,87 @@ class _Writer:
                 self._fields[name] = type_
             self._by_type = by_type  # the last one is the monitor
         for each in _all(header, "enumerator_list"):
-            names = [_text(e.named_children[0]) for e in each.named_children if e.named_children]
+            names = [code_of(e.named_children[0]) for e in each.named_children if e.named_children]
             self._enumerations.update(dict.fromkeys(names, names))
 
-    def changes(self, top: Node) -> Iterator[_Change]:
-        """Yield all changes within a function or table."""
+    def changes(self, top: Node, kind: str) -> Iterator[Change]:
+        """Yield all changes within a function or table, or those of a kind."""
         names = _names(top) if top.type == "function_definition" else {}
-        body = top.child_by_field_name("body") or top
-        for node in _walk(body):
-            yield from self._statements(node)
-            yield from self._operators(node)
-            yield from self._constants(node)
-            yield from self._conditions(node)
-            yield from self._swaps(node)
-            yield from self._exchanges(node, names)
+        ways: tuple[tuple[tuple[str, ...], Callable[[Node], Iterator[Change]]], ...] = (
+            (("statement",), self._statements),
+            (("comparison", "operator"), self._operators),
+            (("constant", "operator"), self._constants),
+            (("condition",), self._conditions),
+            (("swap",), self._swaps),
+            (("field", "name"), functools.partial(self._exchanges, names)),
+        )
+        chosen = [way for kinds, way in ways if kind in ("", "emission", *kinds)]
+        for node in walk(top.child_by_field_name("body") or top):
+            for way in chosen:
+                yield from (each for each in way(node) if kind in ("", each.kind))
 
-    def _statements(self, node: Node) -> Iterator[_Change]:
+    def _statements(self, node: Node) -> Iterator[Change]:
         if node.type in _STATEMENTS and not _is_void_of_name(node):
-            yield _Change("emission" if _emits(node) else "statement", node, ";")
+            yield Change("emission" if _emits(node) else "statement", node, ";")
         if node.type == "init_declarator":
             value = node.child_by_field_name("value")
             if value is not None and value.type == "call_expression" and not _is_literal(value):
-                yield _Change("statement", value, "0")
+                yield Change("statement", value, "0")
         if node.type == "return_statement" and node.named_children:
             value = node.named_children[0]
             if value.type == "call_expression":
-                yield _Change("statement", value, "0")
+                yield Change("statement", value, "0")
 
-    def _operators(self, node: Node) -> Iterator[_Change]:
-        if node.type == "unary_expression" and _text(node.children[0]) == "-":
-            yield _Change("operator", node.children[0], "")
+    def _operators(self, node: Node) -> Iterator[Change]:
+        if node.type == "unary_expression" and code_of(node.children[0]) == "-":
+            yield Change("operator", node.children[0], "")
         if node.type != "binary_expression":
             return
         operator = node.child_by_field_name("operator")
         assert operator is not None
-        for text in _COMPARISONS.get(_text(operator), ()):
-            yield _Change("comparison", operator, text)
-        if _text(operator) in _OPERATORS:
-            yield _Change("operator", operator, _OPERATORS[_text(operator)])
+        for text in _COMPARISONS.get(code_of(operator), ()):
+            yield Change("comparison", operator, text)
+        if code_of(operator) in _OPERATORS:
+            yield Change("operator", operator, _OPERATORS[code_of(operator)])
 
-    def _constants(self, node: Node) -> Iterator[_Change]:
+    def _constants(self, node: Node) -> Iterator[Change]:
         kind = "emission" if _is_emitted(node) else "constant"
-        text = _text(node)
+        text = code_of(node)
         if node.type == "number_literal":
             match = _NUMBER.fullmatch(text)
             values = [int(match["digits"]) + by for by in (1, -1)] if match else []
             if match is None and re.fullmatch(r"-?\d+\.\d+(e-?\d+)?", text):
                 for by in (1.0, -1.0):
-                    yield _Change(kind, node, repr(float(text) + by))
+                    yield Change(kind, node, repr(float(text) + by))
                 if text.startswith("-"):
-                    yield _Change("operator", node, text[1:])
+                    yield Change("operator", node, text[1:])
             for value in values:
                 assert match is not None
-                yield _Change(kind, node, f"{value}{match['suffix'] if value >= 0 else ''}")
+                yield Change(kind, node, f"{value}{match['suffix'] if value >= 0 else ''}")
         elif node.type in ("true", "false"):
-            yield _Change(kind, node, "false" if text == "true" else "true")
+            yield Change(kind, node, "false" if text == "true" else "true")
         elif node.type == "identifier" and text in self._enumerations:
             for other in _others(self._enumerations[text], text):
-                yield _Change(kind, node, other)
+                yield Change(kind, node, other)
         elif node.type == "identifier" and _is_macro(node):
-            yield _Change(kind, node, f"({text} + 1)")
-            yield _Change(kind, node, f"({text} - 1)")
+            yield Change(kind, node, f"({text} + 1)")
+            yield Change(kind, node, f"({text} - 1)")
 
-    def _conditions(self, node: Node) -> Iterator[_Change]:
+    def _conditions(self, node: Node) -> Iterator[Change]:
         if (
             node.type in ("if_statement", "while_statement", "for_statement")
             or node.type == "conditional_expression"
         ):
             yield from self._negated(node.child_by_field_name("condition"))
-        elif node.type == "unary_expression" and _text(node.children[0]) == "!":
-            yield _Change("condition", node.children[0], "")
+        elif node.type == "unary_expression" and code_of(node.children[0]) == "!":
+            yield Change("condition", node.children[0], "")
         elif node.type == "binary_expression":
             operator = node.child_by_field_name("operator")
-            if operator is not None and _text(operator) in ("&&", "||"):
+            if operator is not None and code_of(operator) in ("&&", "||"):
                 for side in ("left", "right"):
                     yield from self._negated(node.child_by_field_name(side))
 
-    def _negated(self, condition: Node | None) -> Iterator[_Change]:
+    def _negated(self, condition: Node | None) -> Iterator[Change]:
         """Yield the negation of a condition, but where a change of its operator is the same."""
         if condition is None:
             return
@@ -238,20 +259,20 @@ class _Writer:
         while inner.type == "parenthesized_expression":
             inner = inner.named_children[0]
         operator = inner.child_by_field_name("operator")
-        if operator is not None and _text(operator) in ("==", "!=", "!"):
+        if operator is not None and code_of(operator) in ("==", "!=", "!"):
             return
         if condition.type == "parenthesized_expression":
-            yield _Change("condition", condition, f"(!{_text(condition)})")
+            yield Change("condition", condition, f"(!{code_of(condition)})")
         else:
-            yield _Change("condition", condition, f"!({_text(condition)})")
+            yield Change("condition", condition, f"!({code_of(condition)})")
 
-    def _swaps(self, node: Node) -> Iterator[_Change]:
+    def _swaps(self, node: Node) -> Iterator[Change]:
         if node.type == "argument_list":
             arguments = node.named_children
             for i, j in itertools.combinations(range(len(arguments)), 2):
                 yield self._swapped(node, arguments[i], arguments[j])
         elif node.type == "binary_expression":
-            operator = _text(node.child_by_field_name("operator"))
+            operator = code_of(node.child_by_field_name("operator"))
             left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
             assert left is not None
             assert right is not None
@@ -259,7 +280,7 @@ class _Writer:
             if operator in _ORDERED or (operator in ("&&", "||") and calls):
                 yield self._swapped(node, left, right)
 
-    def _swapped(self, node: Node, first: Node, second: Node) -> _Change:
+    def _swapped(self, node: Node, first: Node, second: Node) -> Change:
         data, start = node.text or b"", node.start_byte
         parts = (
             data[: first.start_byte - start],
@@ -269,21 +290,21 @@ class _Writer:
             data[second.end_byte - start :],
         )
         kind = "emission" if _is_emitted(first) else "swap"
-        return _Change(kind, node, b"".join(parts).decode())
+        return Change(kind, node, b"".join(parts).decode())
 
-    def _exchanges(self, node: Node, names: dict[str, str]) -> Iterator[_Change]:
+    def _exchanges(self, names: dict[str, str], node: Node) -> Iterator[Change]:
         kind = "emission" if _is_emitted(node) else ""
-        text = _text(node)
+        text = code_of(node)
         if node.type == "field_identifier":
             alike = self._by_type.get(self._fields.get(text, ""), [])
             if text in alike:
-                yield _Change(kind or "field", node, _next(alike, text))
+                yield Change(kind or "field", node, _next(alike, text))
         elif node.type == "identifier" and text in names:
             if _is_defined(node):
                 return
             for other, type_ in names.items():
                 if type_ == names[text]:
-                    yield _Change(kind or "name", node, other)
+                    yield Change(kind or "name", node, other)
 
 
 def _next(names: list[str], name: str) -> str:
@@ -296,23 +317,25 @@ def _others(names: list[str], name: str) -> list[str]:
     return names if len(names) <= _FEW else [_next(names, name)]
 
 
-def _walk(node: Node) -> Iterator[Node]:
-    yield node
-    for each in node.named_children:
-        yield from _walk(each)
+def walk(node: Node) -> Iterator[Node]:
+    """Yield a node and all within it, in the order of the text."""
+    todo = [node]
+    while todo:
+        yield (each := todo.pop())
+        todo += reversed(each.named_children)
 
 
 def _all(node: Node, type_: str) -> list[Node]:
-    return [each for each in _walk(node) if each.type == type_]
+    return [each for each in walk(node) if each.type == type_]
 
 
-def _text(node: Node | None) -> str:
+def code_of(node: Node | None) -> str:
+    """Return the code of a node; of none, nothing."""
     return (node.text or b"").decode() if node is not None else ""
 
 
 def _name_of(function: Node) -> str:
-    (declarator,) = _all(function, "function_declarator")[:1]
-    return _text(declarator.child_by_field_name("declarator"))
+    return next(code_of(each) for each in walk(function) if each.type == "identifier")
 
 
 def _declared(node: Node) -> tuple[str, str]:
@@ -322,7 +345,7 @@ def _declared(node: Node) -> tuple[str, str]:
     while declarator is not None and declarator.child_by_field_name("declarator") is not None:
         stars += "*" if declarator.type == "pointer_declarator" else ""
         declarator = declarator.child_by_field_name("declarator")
-    return _text(declarator), _text(node.child_by_field_name("type")) + stars
+    return code_of(declarator), code_of(node.child_by_field_name("type")) + stars
 
 
 def _names(function: Node) -> dict[str, str]:
@@ -333,7 +356,7 @@ def _names(function: Node) -> dict[str, str]:
 
 def _is_void_of_name(node: Node) -> bool:
     """Tell whether a statement says no more than that a parameter is not used."""
-    return bool(re.fullmatch(r"\(void\)\w+;", _text(node)))
+    return bool(re.fullmatch(r"\(void\)\w+;", code_of(node)))
 
 
 def _is_defined(node: Node) -> bool:
@@ -346,15 +369,15 @@ def _is_defined(node: Node) -> bool:
 
 def _is_macro(node: Node) -> bool:
     called = node.parent is not None and node.parent.type == "call_expression"
-    return not called and bool(re.fullmatch(r"[A-Z][A-Z0-9_]*_[A-Z0-9_]+", _text(node)))
+    return not called and bool(re.fullmatch(r"[A-Z][A-Z0-9_]*_[A-Z0-9_]+", code_of(node)))
 
 
 def _is_literal(call: Node) -> bool:
-    return bool(re.fullmatch(r"U?INT\d+_C\(.*\)", _text(call)))
+    return bool(re.fullmatch(r"U?INT\d+_C\(.*\)", code_of(call)))
 
 
 def _emits(statement: Node) -> bool:
-    return bool(re.match(r"\w+_emit\(", _text(statement)))
+    return bool(re.match(r"\w+_emit\(", code_of(statement)))
 
 
 def _is_emitted(node: Node) -> bool:

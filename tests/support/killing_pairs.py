@@ -19,7 +19,11 @@ from tests.support.counterexamples import Pair
 
 
 class KillingPairs:
-    """The pairs of one file, by slip."""
+    """The pairs of one file, by slip.
+
+    Attributes:
+        stored: what the file holds.
+    """
 
     def __init__(self, path: Path, refresh: bool) -> None:
         """Read the file, if there is one.
@@ -30,15 +34,15 @@ class KillingPairs:
         """
         self._path = path
         self._refresh = refresh
-        self._pairs: dict[str, Pair] = {}
+        self.stored: dict[str, Pair] = {}
         if path.exists():
             for line in path.read_text(encoding="utf-8").splitlines():
                 entry = json.loads(line)
-                self._pairs[entry["slip"]] = counterexamples.decoded(entry["pair"])
+                self.stored[entry["slip"]] = counterexamples.decoded(entry["pair"])
 
     def __contains__(self, slip: str) -> bool:
         """Return whether a pair is stored for a slip."""
-        return slip in self._pairs
+        return slip in self.stored
 
     def check(
         self, slip: str, kills: Callable[[Pair], bool], search: Callable[[bool], Pair | None]
@@ -54,7 +58,7 @@ class KillingPairs:
             AssertionError: no pair kills the slip.
         """
         if not self._refresh:
-            pair = self._pairs.get(slip)
+            pair = self.stored.get(slip)
             if pair is not None and kills(pair):
                 return
         found = search(self._refresh)
@@ -67,13 +71,13 @@ class KillingPairs:
             warnings.warn(text, stacklevel=2)
 
     def _store(self, slip: str, pair: Pair) -> None:
-        self._pairs[slip] = pair
+        self.stored[slip] = pair
         lines = [
             json.dumps(
-                {"slip": name, "pair": counterexamples.encoded(self._pairs[name])},
+                {"slip": name, "pair": counterexamples.encoded(self.stored[name])},
                 separators=(",", ":"),
             )
-            for name in sorted(self._pairs)
+            for name in sorted(self.stored)
         ]
         self._path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 

@@ -7,10 +7,9 @@ import functools
 import itertools
 import multiprocessing
 import os
-import re
 import resource
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
@@ -20,74 +19,104 @@ from deros.monitor.ir import Compute, Program
 from tests.support import c_monitors, c_pairs
 from tests.support.c_harness import Unit, unit
 from tests.support.c_library import Loaded
+from tests.support.c_mutants import TABLES
+from tests.support.c_planted import planted
+from tests.support.c_shared import shared
 from tests.support.counterexamples import Pair
 from tests.support.killing_pairs import KillingPairs
 from tests.support.needs import needs
+from tests.support.slips import Slip
 
-SLIPS = {
-    "for is exclusive": (r"(now - \*since\)) >= duration", r"\1 > duration"),
-    "an interval restarts at every event": (r"if \(\*since == \w+\) \{", "if (true) {"),
-    "an interval is never cleared": (r"^    \*since = [A-Z0-9_]+;", "    (void)since;"),
-    "the end of an interval is not a deadline": (r"^.*due = earlier\(.* duration\);$", ""),
-    "a comparison includes its bound": (r" > (?=-?\d)", " >= "),
-    "unknown counts as false": (r"(return known \? verdict : \w+)_UNKNOWN", r"\1_FALSE"),
-    "or for and": (r"return \(a < b\) \? a : b;(?=\n\}\n\n/\* Kleene)", "return (a < b) ? b : a;"),
-    "not of unknown is true": (
-        r"(negated\(\w+ operand\)\n\{\n  \w+ verdict = \w+)_UNKNOWN",
-        r"\1_TRUE",
+SLIPS: dict[str, tuple[Slip, ...]] = {
+    "for is exclusive": (Slip("comparison", "lasting", "(now - *since) >= duration", ">"),),
+    "an interval restarts at every event": (Slip("value", "lasting", "*since == $", "true"),),
+    "an interval is never cleared": (Slip("statement", "lasting", "*since = $_UNSET;"),),
+    "the end of an interval is not a deadline": (
+        Slip("statement", "lasting", "*due = earlier($$);"),
     ),
-    "NaN is taken as a value": (r"return value == value;", "return true;"),
-    "NaN in an array is ignored": (r"numbers = false;", "numbers = true;"),
-    "an input is not forgotten": (r"store_truth\(&m->\w+_known, false, news\)", "news"),
-    "deadlines are missed": (r"else if \(now >= m->due\)", "else if (false)"),
-    "a clock step is ignored": (r"if \(now < m->now\)", "if (false)"),
-    "deadlines at t are delayed": (r"while \(m->due <= t\)", "while (m->due < t)"),
-    "behaviours act at every event": (r" && \(!held\);", ";"),
-    "a nested behaviour ignores the outer": (r"both\(\s*m->\w+_condition,", "both((2),"),
-    "a reset is never refused": (r"^    if \(m->\w+_condition == .*\{", "    if (true) {"),
+    "a comparison includes its bound": (
+        Slip("comparison", "observe_$ judge_$ behave_$ compute_$", "$$ > $$", ">="),
+    ),
+    "unknown counts as false": (Slip("constant", "truth_of", "$_UNKNOWN", "$_FALSE"),),
+    "or for and": (Slip("comparison", "both", "a < b", ">"),),
+    "not of unknown is true": (Slip("constant", "negated", "$_UNKNOWN", "$_TRUE"),),
+    "NaN is taken as a value": (Slip("value", "is_number", "value == value", "true"),),
+    "NaN in an array is ignored": (Slip("constant", "are_numbers_$", "false"),),
+    "an input is not forgotten": (
+        Slip("statement", "forget_$ observe_$", "news = store_truth(&m->$_known, false, news);"),
+    ),
+    "deadlines are missed": (Slip("value", "arrive", "now >= m->due", "false"),),
+    "a clock step is ignored": (Slip("value", "arrive", "now < m->now", "false"),),
+    "deadlines at t are delayed": (Slip("comparison", "$", "m->due <= t", "<"),),
+    "behaviours act at every event": (Slip("value", "behave_$", "!held", "true"),),
+    "a nested behaviour ignores the outer": (
+        Slip("value", "behave_$", "m->$_condition", "2", "both(@, $$)"),
+    ),
+    "a reset is never refused": (Slip("value", "settle_$", "m->$_condition == $_FALSE", "true"),),
     "a reset succeeds while unknown": (
-        r"(if \(\(?m->\w+_condition) == \w+FALSE\)",
-        r"\1 < 2)",
+        Slip("comparison", "settle_$", "m->$_condition == $_FALSE", "!="),
+        Slip("constant", "settle_$", "$_FALSE", "$_TRUE", "m->$_condition == @"),
     ),
-    "a reset has no effect": (r"^(    m->\w+)_ran = true;", r"\1_ran = false;"),
-    "messages do not renew the timeout": (r"^    m->\w+_base = m->now;", ""),
-    "a missing input stays missing": (r"store_truth\(&m->\w+_missing, false, news\)", "news"),
-    "a timeout is late": (r"(\w+_base \+ INT64_C\(\d+\)\)) <= m->now", r"\1 < m->now"),
-    "intervals survive a clock step": (r"^  m->\w+_since = [A-Z0-9_]+;", ""),
-    "the grace is ignored": (r"bounded\(m->now \+ bounded\(grace\)\)", "m->now"),
-    "a latch is lost": (r"^  m->(\w+)_active = true;\n\}", "}"),
-    "a disabled behaviour acts": (r"truth_of\(true, m->\w+_enabled\)", "truth_of(true, true)"),
-    "enabling does not evaluate the rules": (
-        r"(m->\w+_enabled = enabled;)\n    evaluate\(m\);",
-        r"\1",
+    "a reset has no effect": (Slip("constant", "behave_$", "true", "", "m->$_ran = @"),),
+    "messages do not renew the timeout": (Slip("statement", "observe_$", "m->$_base = m->now;"),),
+    "a missing input stays missing": (
+        Slip("statement", "observe_$", "news = store_truth(&m->$_missing, false, news);"),
     ),
-    "the first event is treated as a later one": (r"if \(!m->started\)", "if (false)"),
-    "the change of a rule has no time": (r"^    \*since = now;", "    (void)since;"),
-    "rates use the wrong time": (r"t - \*last_t", "t + *last_t"),
-    "a rate keeps its first value": (r"^  \*last = value;", ""),
-    "within ends too late": (r"\(now < \*until\)", "(now <= *until)"),
-    "the end of a within is no deadline": (r"\*due = earlier\(\*due, \*until\);", "(void)due;"),
-    "a within restarts at every event": (r"else if \(\*until == \w+\) \{", "else if (true) {"),
-    "a within survives a clock step": (r"^  m->\w+_until = 0;", ""),
-    "since forgets": (r"m->\w+_kept\)\);", "(0)));"),
-    "a since survives a clock step": (r"^  m->\w+_kept = [A-Z0-9_]+_FALSE;", ""),
-    "arithmetic is of what was before": (r"^ +m->computed_\d+ = .*;$", ""),
+    "a timeout is late": (
+        Slip("comparison", "expire_$", "(m->$_base + INT64_C($)) <= m->now", "<"),
+    ),
+    "intervals survive a clock step": (Slip("statement", "restart", "m->$_since$ = $_UNSET;"),),
+    "the grace is ignored": (Slip("value", "$_start", "bounded(grace)", "0"),),
+    "a latch is lost": (Slip("statement", "$_latch_$", "m->$_active = true;"),),
+    "a disabled behaviour acts": (
+        Slip("value", "behave_$", "m->$_enabled", "true", "truth_of(true, @)"),
+    ),
+    "enabling does not evaluate the rules": (Slip("statement", "$_enable_$", "evaluate(m);"),),
+    "the first event is treated as a later one": (
+        Slip("value", "take_$ after_$", "!m->started", "false"),
+    ),
+    "the change of a rule has no time": (Slip("statement", "turned", "*since = now;"),),
+    "rates use the wrong time": (Slip("operator", "rate", "t - *last_t", "+"),),
+    "a rate keeps its first value": (Slip("statement", "rate", "*last = value;"),),
+    "a previous value keeps its first value": (Slip("statement", "previous_of", "*last = value;"),),
+    "an unwrapped angle keeps its first value": (Slip("statement", "unwrapped", "*last = value;"),),
+    "within ends too late": (Slip("comparison", "recent", "now < *until", "<="),),
+    "the end of a within is no deadline": (
+        Slip("statement", "recent", "*due = earlier(*due, *until);"),
+    ),
+    "a within restarts at every event": (Slip("value", "recent", "*until == $_NEVER", "true"),),
+    "a within survives a clock step": (Slip("statement", "restart", "m->$_until$ = 0;"),),
+    "since forgets": (Slip("value", "judge_$ behave_$", "m->$_kept$", "0"),),
+    "a since survives a clock step": (Slip("statement", "restart", "m->$_kept$ = $_FALSE;"),),
+    "arithmetic is of what was before": (
+        Slip("statement", "observe_$", "m->computed_$ = compute_$($$);"),
+    ),
     "arithmetic is known without an operand": (
-        r"(?:m->\w+_known && )+is_number\(m->computed",
-        "is_number(m->computed",
+        Slip("value", "$", "m->$_known", "true", "$$ @ $$ && is_number(m->computed_$)"),
     ),
-    "a quotient by zero is infinite": (r" == 0\.0\) \? NAN", " == 0.0) ? INFINITY"),
-    "the previous value is the present one": (r"former = \*last;", "former = value;"),
-    "minimum and maximum are swapped": (r"values\[i\] < found", "values[i] > found"),
-    "the last element is skipped": (r"i < count;", "(i + 1U) < count;"),
-    "a short range is invalid": (r"distance = range_min \+ 0\.0;", "distance = NAN;"),
-    "a missing element counts": (r"if \(\w+_given\b", "if (true"),
-    "a string is compared by its length": (r"same = \(text\[i\] == expected\[i\]\);", ""),
-    "waiting for inputs without a timeout": (r"waiting = true;", "waiting = false;"),
-    "a line is wrong": (r"(_BEHAVIOUR_\d+, \d+)U", r"\g<1>1U"),
-    "an argument is wrong": (r"_NUMBER, false, 0, 2\.5", "_NUMBER, false, 0, 2.0"),
+    "a quotient by zero is infinite": (
+        Slip("value", "compute_$", "NAN", "INFINITY", "($$ == 0.0) ? @ : $$"),
+    ),
+    "the previous value is the present one": (
+        Slip("value", "previous_of", "*last", "value", "former = @"),
+    ),
+    "minimum and maximum are swapped": (Slip("comparison", "least_$", "values[i] < found", ">"),),
+    "the last element is skipped": (Slip("bound", "$", "i", "", "@ < count"),),
+    "a short range is invalid": (Slip("value", "beam", "range_min + 0.0", "NAN"),),
+    "a missing element counts": (Slip("value", "observe_$", "$_given", "true"),),
+    "a string is compared by its length": (
+        Slip("statement", "is_text", "same = (text[i] == expected[i]);"),
+    ),
+    "waiting for inputs without a timeout": (
+        Slip("constant", "$_waiting", "true", "", "waiting = @"),
+    ),
+    "a line is wrong": (Slip("constant", TABLES, "$U", "", "{$_ACTION_$, $_BEHAVIOUR_$, @ $$}"),),
+    "an argument is wrong": (Slip("constant", TABLES, "$$", "", "{$_NUMBER, false, 0, @, NULL}"),),
 }
-"""Mutations by name: a pattern of the generated text, and its replacement."""
+"""Mutations by name: structural changes of the generated code that are made together."""
+
+FLAGS = ("-O0", "-Wno-error")
+"""Options of the compiler: a mutation may leave a variable that is not used."""
 
 PROGRAMS = 40
 """Number of programs drawn for each choice of inputs."""
@@ -119,22 +148,64 @@ def _divides(program: Program) -> bool:
 
 
 def mutated(slip: str, rendered: Unit) -> Unit | None:
-    """Return a mutated monitor, or ``None`` if its text does not contain the pattern."""
-    name = f"{rendered.prefix}_monitor.c"
-    text = rendered.texts[name]
-    changed = re.sub(*SLIPS[slip], text, flags=re.MULTILINE)
-    if changed == text:
+    """Return a mutated monitor, or ``None`` if the slip has no place in it."""
+    header = rendered.texts[f"{rendered.prefix}_monitor.h"]
+    changed = planted(rendered.source, header, SLIPS[slip])
+    if changed is None:
         return None
-    return replace(rendered, texts={**rendered.texts, name: changed})
+    texts = {**rendered.texts, f"{rendered.prefix}_monitor.c": changed}
+    return replace(rendered, texts=texts)
+
+
+@dataclass(frozen=True)
+class Replay:
+    """The monitor of a pair without and with a slip: a number in each of two libraries."""
+
+    pair: Pair
+    sound: Loaded
+    wrong: Loaded
+    number: int
+
+    def kills(self) -> bool:
+        """Return whether the mutated monitor differs from the reference.
+
+        Raises:
+            AssertionError: the sound one does.
+        """
+        c_monitors.compare(self.sound, self.number, self.pair.steps, self.pair.start)
+        return _differs(self.wrong, self.number, self.pair)
+
+
+@pytest.fixture(scope="module")
+def replays(
+    killing_pairs: KillingPairs, tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, Replay]:
+    """Return the stored pair of each slip that has a place in it, all compiled together."""
+    pairs: dict[str, Pair] = {}
+    sound: list[Unit] = []
+    wrong: list[Unit] = []
+    for slip, pair in killing_pairs.stored.items():
+        if slip not in SLIPS:
+            continue
+        made = unit(pair.program, f"stored_{len(pairs)}")
+        changed = mutated(slip, made)
+        if changed is not None:
+            pairs[slip] = pair
+            sound.append(made)
+            wrong.append(changed)
+    first, second = shared([sound, wrong], tmp_path_factory.mktemp("replays"), *FLAGS)
+    return {slip: Replay(pair, first, second, n) for n, (slip, pair) in enumerate(pairs.items())}
 
 
 @needs("gcc")
 @pytest.mark.parametrize("slip", SLIPS)
-def test_mutation_is_detected(slip: str, killing_pairs: KillingPairs, tmp_path: Path) -> None:
+def test_mutation_is_detected(
+    slip: str, killing_pairs: KillingPairs, replays: dict[str, Replay], tmp_path: Path
+) -> None:
     """A stored program and trace distinguish the mutated monitor from the reference."""
     killing_pairs.check(
         slip,
-        lambda pair: _kills(slip, pair, tmp_path),
+        lambda pair: _kills(slip, pair, replays.get(slip), tmp_path),
         lambda small: _search(slip, _by_size() if small else drawn(), tmp_path),
     )
 
@@ -147,28 +218,32 @@ def test_random_pairs_detect_mutation(slip: str, tmp_path: Path) -> None:
     assert _search(slip, drawn(), tmp_path) is not None
 
 
-def _kills(slip: str, pair: Pair, folder: Path) -> bool:
+def _kills(slip: str, pair: Pair, replay: Replay | None, folder: Path) -> bool:
     """Return whether the mutated monitor differs from the reference, and the sound one does not."""
-    sound = unit(pair.program, "sound")
-    wrong = mutated(slip, unit(pair.program, "wrong"))
-    if wrong is None:
-        return False
-    library = Loaded([sound, wrong], folder / "replayed", "-O0", "-Wno-error")
-    c_monitors.compare(library, 0, pair.steps, pair.start)
-    return _differs(library, 1, pair)
+    if replay is None or replay.pair is not pair:  # it has just been found
+        sound = unit(pair.program, "found")
+        wrong = mutated(slip, sound)
+        if wrong is None:
+            return False
+        right = Loaded([sound], folder / "sound", *FLAGS)
+        replay = Replay(pair, right, Loaded([wrong], folder / "wrong", *FLAGS), 0)
+    return replay.kills()
 
 
 def _search(slip: str, cases: Iterable[c_pairs.Case], folder: Path) -> Pair | None:
     """Return the first pair that detects a mutation, without the steps that it does not need."""
     wrong = ((mutated(slip, case.unit), case) for case in cases)
     found = ((made, case) for made, case in wrong if made is not None)
+    is_made = False
     while batch := list(itertools.islice(found, BATCH)):
+        is_made = True
         units = [made for made, _ in batch]
-        library = Loaded(units, folder / units[0].prefix, "-O0", "-Wno-error")
+        library = Loaded(units, folder / units[0].prefix, *FLAGS)
         for number, (_, case) in enumerate(batch):
             for pair in case.pairs:
                 if _differs(library, number, pair):
                     return _shortened(library, number, pair)
+    assert is_made, f"the slip '{slip}' has no place in any program"
     return None
 
 

@@ -4,81 +4,97 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import re
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from deros.generators.monitor.python.interface import render_monitor
-from deros.monitor.ir import Program
 from tests.support.counterexamples import Pair
 from tests.support.killing_pairs import KillingPairs
 from tests.support.monitors import compare
+from tests.support.python_mutants import planted
+from tests.support.slips import Slip
 from tests.support.strategies import programs, starts, traces
 
-SLIPS = {
-    "for is exclusive": (r"t >= (\w+_due)", r"t > \1"),
-    "an interval restarts at every event": (r"if \w+_due is NEVER:", "if True:"),
-    "an interval is never cleared": (r"(\w+_due) = self\._\w+_due = NEVER", r"\1 = NEVER"),
-    "a comparison includes its bound": (r" > ", " >= "),
-    "unknown counts as false": (r" is False", " is not True"),
-    "and for or": (r" or ", " and "),
-    "or for and": (r"^( +if .*) and (?=.*:$)", r"\1 or "),
-    "NaN is taken as a value": (r"^        if (\w+) == \1\b.*:", "        if True:"),
-    "an input is not forgotten": (r"^            self\._forget_\w+\(\)$", "            pass"),
-    "deadlines are missed": (r"^            self\._catch_up\(t\)", "            pass"),
-    "behaviours act at every event": (r"if not self\._behaviour_\d+:", "if True:"),
-    "a nested behaviour ignores the outer": (r"if self\._behaviour_\d+ and ", "if "),
-    "a reset is never refused": (r"^            if self\._behaviour_.*:", "            if False:"),
-    "messages do not renew the timeout": (
-        r"^            self\._\w+_heard = t$",
-        "            pass",
+SLIPS: dict[str, tuple[Slip, ...]] = {
+    "for is exclusive": (Slip("comparison", "$", "t >= $_due$", ">"),),
+    "an interval restarts at every event": (Slip("value", "$", "$_due$ is NEVER", "True"),),
+    "an interval is never cleared": (
+        Slip("target", "$", "self._$_due$", "", "$_due$ = @ = NEVER"),
     ),
-    "intervals survive a clock step": (
-        r"^        self\.(_\w+_due) = NEVER$",
-        r"        self.\1 = getattr(self, '\1', NEVER)",
+    "a comparison includes its bound": (
+        Slip("comparison", "on_$ _judge_$ _act _compute_$", "$$ > $$", ">="),
     ),
+    "unknown counts as false": (
+        Slip("comparison", "_judge_$ _act reset", "$$ is False", "is not"),
+        Slip("constant", "_judge_$ _act reset", "False", "", "$$ is @"),
+    ),
+    "and for or": (Slip("operator", "$", "$$ or $$", "and"),),
+    "and for or in a rule": (Slip("operator", "_judge_$", "$$ or $$", "and"),),
+    "or for and": (Slip("operator", "$", "$$ and $$", "or", "if @: $$"),),
+    "or for and in a rule": (Slip("operator", "_judge_$", "$$ and $$", "or"),),
+    "NaN is taken as a value": (Slip("value", "on_$ _judge_$", "$1 == $1", "True", "if @ $$"),),
+    "an input is not forgotten": (Slip("statement", "on_$", "self._forget_$()"),),
+    "deadlines are missed": (Slip("statement", "$", "self._catch_up(t)"),),
+    "behaviours act at every event": (Slip("value", "_act", "not self._behaviour_$", "True"),),
+    "a nested behaviour ignores the outer": (
+        Slip("value", "_act", "self._behaviour_$", "True", "@ and $$"),
+    ),
+    "a reset is never refused": (Slip("value", "reset", "self._behaviour_$ is False", "True"),),
+    "a reset is always refused": (Slip("value", "reset", "self._behaviour_$ is False", "False"),),
+    "messages do not renew the timeout": (Slip("statement", "on_$", "self._$_heard = t"),),
+    "intervals survive a clock step": (Slip("once", "_restart", "self._$_due$ = NEVER"),),
     "the first event is treated as a later one": (
-        r"^        if not self\._started:",
-        "        if False:",
+        Slip("value", "on_$", "not self._started", "False"),
     ),
-    "the grace is ignored": (r"_heard = t \+ grace$", "_heard = t"),
-    "a latch is lost": (r"'\w+' in latched$", "False"),
-    "a disabled behaviour acts": (r"'\w+' not in self\._disabled", "True"),
+    "the grace is ignored": (Slip("value", "_restart", "grace", "0", "self._$_heard = t + @"),),
+    "a latch is lost": (Slip("value", "__init__", "'$' in latched", "False"),),
+    "a disabled behaviour acts": (Slip("value", "_act", "'$' not in self._disabled", "True"),),
     "enabling does not evaluate the rules": (
-        r"^( +)self\._disabled\.remove\(behaviour\)$",
-        r"\g<0>\n\1return",
+        Slip(
+            "statement",
+            "enable",
+            "self._evaluate(t)",
+            "",
+            "if enabled and $$: self._disabled.remove(behaviour) @ $$",
+        ),
     ),
-    "new values are ignored": (r"^( +)if (?:not fresh|\w+ == self\._\w+):$", r"\1if True:"),
-    "a missing input stays missing": (r"_silent = self\._\w+_missing = False", "_silent = False"),
-    "the geometry of a scan is kept": (r"scan_beams\(len\(ranges\), ", "scan_beams(4, "),
-    "the change of a rule has no time": (r"^( {12,})self\._\w+_since = t$", r"\g<1>pass"),
-    "within ends too late": (r"t < (\w+_until):", r"t <= \1:"),
-    "the end of a within is no deadline": (r"if (\w+_until) < self\._due:", "if False:"),
-    "a within restarts at every event": (r"elif \w+_until is NEVER:", "else:"),
-    "a within survives a clock step": (
-        r"^        self\.(_\w+_until) = 0$",
-        r"        self.\1 = getattr(self, '\1', 0)",
+    "disabling does not evaluate the rules": (
+        Slip("statement", "enable", "self._evaluate(t)", "", "$$ self._disabled.add(behaviour) @"),
     ),
-    "since forgets its cause": (r"(\w+_kept) = self\._\w+_kept = True", r"\1 = True"),
-    "a since survives a clock step": (
-        r"^        self\.(_\w+_kept) = False$",
-        r"        self.\1 = getattr(self, '\1', False)",
+    "new values are ignored": (Slip("value", "on_$", "$ == self._$", "True", "if @: return"),),
+    "new values of several are ignored": (
+        Slip("value", "on_$", "not fresh", "True", "if @: return"),
     ),
+    "a missing input stays missing": (
+        Slip("target", "on_$", "self._$_missing", "", "self._$_silent = @ = False"),
+    ),
+    "the geometry of a scan is kept": (
+        Slip("value", "$", "len(ranges)", "4", "scan_beams(@, $$)"),
+    ),
+    "the change of a rule has no time": (Slip("statement", "_judge_$", "self._$_since = t"),),
+    "within ends too late": (Slip("comparison", "$", "t < $_until$", "<="),),
+    "the end of a within is no deadline": (Slip("value", "$", "$_until$ < self._due", "False"),),
+    "a within restarts at every event": (Slip("value", "$", "$_until$ is NEVER", "True"),),
+    "a within survives a clock step": (Slip("once", "_restart", "self._$_until$ = 0"),),
+    "since forgets its cause": (Slip("target", "$", "self._$_kept$", "", "$_kept$ = @ = True"),),
+    "a since survives a clock step": (Slip("once", "_restart", "self._$_kept$ = False"),),
     "arithmetic is of what was before": (
-        r"^( +)self\._computed_\d+ = _compute_\d+\(.*\)$",
-        r"\1pass",
+        Slip("statement", "$", "self._computed_$ = _compute_$($$)"),
     ),
-    "a quotient by zero is infinite": (r" != 0\.0 else math\.nan", " != 0.0 else math.inf"),
+    "a quotient by zero is infinite": (
+        Slip("value", "_compute_$", "math.nan", "math.inf", "$$ != 0.0 else @"),
+    ),
     "arithmetic is known without its operands": (
-        r"^        self\.(_computed_\d+) = NAN$",
-        r"        self.\1 = getattr(self, '\1', NAN)",
+        Slip("once", "_forget_$", "self._computed_$ = NAN"),
     ),
-    "the previous value is the present one": (r"former = self\.last", "former = value"),
-    "rates use the wrong time": (r"t - self\._(\w+_last_t)", r"t + self._\1"),
+    "the previous value is the present one": (
+        Slip("value", "follow", "self.last", "value", "former = @"),
+    ),
+    "rates use the wrong time": (Slip("operator", "$", "t - self._$_last_t$", "+"),),
 }
-"""Mutations by name: a pattern of the generated text, and its replacement."""
+"""Mutations by name: structural changes of the generated code that are made together."""
 
 
 @pytest.mark.parametrize("slip", SLIPS)
@@ -96,13 +112,6 @@ def test_random_pairs_detect_mutation(slip: str) -> None:
     assert _search(slip, shrink=False) is not None
 
 
-def _mutant(slip: str, program: Program) -> str | None:
-    """Return the mutated monitor, or ``None`` if the text does not contain the pattern."""
-    text = render_monitor(program)
-    mutant = re.sub(*SLIPS[slip], text, flags=re.MULTILINE)
-    return mutant if mutant != text else None
-
-
 def _differs(pair: Pair, text: str) -> bool:
     try:
         compare(pair.program, pair.steps, text, pair.start)
@@ -114,13 +123,14 @@ def _differs(pair: Pair, text: str) -> bool:
 def _kills(slip: str, pair: Pair) -> bool:
     """Return whether the mutated monitor differs from the reference, and the sound one does not."""
     pair.compare()
-    mutant = _mutant(slip, pair.program)
+    mutant = planted(render_monitor(pair.program), SLIPS[slip])
     return mutant is not None and _differs(pair, mutant)
 
 
 def _search(slip: str, *, shrink: bool) -> Pair | None:
     """Draw pairs until one detects a mutation; return the smallest one if it is to ``shrink``."""
     found: list[Pair] = []
+    made: list[bool] = []
 
     @settings(
         max_examples=3000,
@@ -133,9 +143,10 @@ def _search(slip: str, *, shrink: bool) -> Pair | None:
     @given(st.data())
     def draw(data: st.DataObject) -> None:
         program = data.draw(programs())
-        mutant = _mutant(slip, program)
+        mutant = planted(render_monitor(program), SLIPS[slip])
         if mutant is None:
             return
+        made.append(True)
         pair = Pair(program, data.draw(starts(program)), tuple(data.draw(traces(program))))
         if _differs(pair, mutant):
             found.append(pair)  # the smallest comes last
@@ -143,4 +154,5 @@ def _search(slip: str, *, shrink: bool) -> Pair | None:
 
     with contextlib.suppress(AssertionError):
         draw()
+    assert made, f"the slip '{slip}' has no place in any program"
     return found[-1] if found else None
