@@ -54,9 +54,12 @@ class Loaded:
 
     def __init__(self, units: Sequence[Unit], folder: Path, *flags: str) -> None:
         """Compile the monitors in a folder of their own."""
+        self._load(units, compile_units(units, folder, "monitors.so", "-shared", "-fPIC", *flags))
+
+    def _load(self, units: Sequence[Unit], path: Path) -> None:
+        """Load the library of some monitors."""
         self.units = units
-        library = compile_units(units, folder, "monitors.so", "-shared", "-fPIC", *flags)
-        self._library = ctypes.CDLL(str(library))
+        self._library = ctypes.CDLL(str(path))
         self._library.driver_size.restype = ctypes.c_size_t
         self._library.driver_step.restype = ctypes.c_size_t
         self._out = (ctypes.c_int64 * CAPACITY)()

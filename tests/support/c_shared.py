@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import ctypes
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
 from tests.support.c_harness import DRIVER, Unit, library_text
-from tests.support.c_library import CAPACITY, COMPILER, LIMIT, STRICT, Loaded
+from tests.support.c_library import COMPILER, LIMIT, STRICT, Loaded
 from tests.support.object_cache import compile_objects
 
 
@@ -17,15 +16,9 @@ class Shared(Loaded):
 
     def __init__(self, units: Sequence[Unit], built: Path, path: Path) -> None:
         """Link the object of the monitors, and load the library."""
-        self.units = units
         command = [COMPILER, "-shared", "-Wl,-Bsymbolic", str(built), "-o", str(path), "-lm"]
         subprocess.run(command, check=True, capture_output=True, timeout=LIMIT)
-        self._library = ctypes.CDLL(str(path))
-        self._library.driver_size.restype = ctypes.c_size_t
-        self._library.driver_step.restype = ctypes.c_size_t
-        self._out = (ctypes.c_int64 * CAPACITY)()
-        self._owner = ctypes.c_void_p()
-        self._monitor = None
+        self._load(units, path)
 
 
 def shared(libraries: Sequence[Sequence[Unit]], folder: Path, *flags: str) -> list[Shared]:
