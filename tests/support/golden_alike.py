@@ -48,7 +48,7 @@ def parts_of(folder: str, package: str, nodes: Sequence[str], files: Files) -> l
 def unlike_those_before(folder: str, parts: Sequence[Part]) -> Files:
     """Return what is kept in a folder, each file as its difference from the most similar one.
 
-    A difference of more than half the lines of a file is harder to read than the file, which then
+    A file of whose lines more than half are its own is easier to read than its difference, and
     stays whole.
 
     Args:
@@ -58,11 +58,11 @@ def unlike_those_before(folder: str, parts: Sequence[Part]) -> Files:
     kept: dict[str, File] = {}
     for number, part in enumerate(parts):
         for path, file in part.files.items() if part.folder == folder else ():
-            candidates = (_differences(path, part, other) for other in parts[:number])
-            texts = [each for found in candidates for each in found]
-            shortest = min(texts, key=lambda text: text.count("\n"), default=file.text * 2)
-            if 2 * shortest.count("\n") <= file.text.count("\n"):
-                kept[f"{path}.diff"] = File(shortest, Owner.USER)
+            found = [each for other in parts[:number] for each in _differences(path, part, other)]
+            short = [each for each in found if _is_short(each, file.text)]
+            if short:
+                text = min(short, key=lambda each: each.count("\n"))
+                kept[f"{path}.diff"] = File(text, Owner.USER)
             else:
                 kept[path] = file
     return kept
@@ -97,6 +97,11 @@ def _differences(path: str, part: Part, other: Part) -> Iterator[str]:
             changed = f" ({changes})" if changes else ""
             lines = difference(file.text, _renamed(one.text, names))
             yield "\n".join([f"like {other.folder}/{like}{changed}", *lines, ""])
+
+
+def _is_short(found: str, text: str) -> bool:
+    lines = text.count("\n")
+    return found.count("\n") < lines and 2 * found.count("\n+") <= lines
 
 
 def _renamed(text: str, names: dict[str, str]) -> str:
