@@ -78,15 +78,16 @@ def _nodes(block: ast.stmt) -> list[Node]:
 
 
 def _shown(lines: list[str], block: ast.stmt, new: list[Node]) -> Iterator[str]:
-    """Yield the first line of a block and those of its new shapes; others are counted."""
-    chosen = {block.lineno}
-    for node in new:
-        body = getattr(node, "body", None)
-        is_compound = isinstance(body, list) and body[0].lineno > node.lineno
-        last = body[0].lineno - 1 if body and is_compound else node.end_lineno or 0
-        chosen |= set(range(node.lineno, last + 1))
+    """Yield the first line of a block and the statements with new shapes; others are counted."""
     begins = [each.lineno for each in (block, *getattr(block, "decorator_list", ()))]
-    numbers = range(min(begins), (block.end_lineno or block.lineno) + 1)
+    changed = {each.lineno for each in new}
+    chosen = {block.lineno, *changed.intersection(begins)}
+    for statement in (each for each in ast.walk(block) if isinstance(each, ast.stmt)):
+        body = getattr(statement, "body", None)
+        ends = body[0].lineno if body else (statement.end_lineno or 0) + 1
+        head = range(statement.lineno, max(ends, statement.lineno + 1))
+        chosen.update(head if changed.intersection(head) else ())
+    numbers = range(min(begins), (block.end_lineno or 0) + 1)
     for is_shown, run in itertools.groupby(numbers, lambda each: each in chosen):
         hidden = [*run]
         alone = is_shown or len(hidden) == 1

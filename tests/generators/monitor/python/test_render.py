@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from deros.diagnostics import SourceFile, Span
-from deros.generators.api.protocol import File
+from deros.generators.api.protocol import File, Owner
 from deros.generators.monitor.python.conditions import scaled
 from deros.generators.monitor.python.interface import monitor_view, render_monitor
 from deros.generators.monitor.python.run import GeneratedMonitor
@@ -102,7 +102,8 @@ def _lint(folder: Path) -> str:
 
 def test_snippets_match_golden(golden: Golden) -> None:
     """The text of the smallest monitor, and what each construct adds to it, match the reviewed."""
-    golden.check("monitor_python", {f"{name}.py": File(text) for name, text in snippets().items()})
+    files = {f"{name}.py": File(text, Owner.USER) for name, text in snippets().items()}
+    golden.check("monitor_python", files)
 
 
 @functools.cache
@@ -190,6 +191,7 @@ def test_each_rule_is_quoted_above_its_code() -> None:
     text = render_monitor(timelines.program(EVERYTHING, "everything"))
     assert "# Rule drive.too_fast (everything.deros:15)\n" in text
     assert "#   too_fast: speed > max_speed for 2 sec" in text
+    assert " for\n        #     0.2 sec;\n" in text
     assert "# Behaviour tilt (everything.deros:31)\n" in text
     assert str(timelines.DIRECTORY) not in text
 
