@@ -22,6 +22,7 @@ comparison connectives timeout unknown failsafe duration named_rule two_inputs a
 scan rate behaviour latched_action reset_by
 """
 RULES = {
+    "boolean": f"action stop; input v = topic /flag.data entity e {{ r: not v; }} {STOP}",
     **{name: SNIPPETS[name].rules for name in _ALIKE.split()},
     "integer": f"action stop; input v = topic /mode.data entity e {{ r: v = 0 or v >= 3; }} {STOP}",
     "groups": "action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec "

@@ -27,6 +27,4 @@
             if verdict or self._e_q:
                 self._e_q_since = t
             self._e_q = verdict
-    # 6 lines
-        if v < 2.0 and e_q is False:
-    # 17 lines
+    # 24 lines
