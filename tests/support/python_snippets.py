@@ -79,15 +79,21 @@ def _nodes(block: ast.stmt) -> list[Node]:
 
 
 def _shown(lines: list[str], block: ast.stmt, new: list[Node]) -> Iterator[str]:
-    """Yield the first line of a block and the statements with new shapes; others are counted."""
+    """Yield the first line of a block and the statements with new shapes; others are counted.
+
+    A compound statement is shown whole if what stands above its body is new.
+    """
     begins = [each.lineno for each in (block, *getattr(block, "decorator_list", ()))]
     changed = {each.lineno for each in new}
     chosen = {block.lineno, *changed.intersection(begins)}
     for statement in (each for each in ast.walk(block) if isinstance(each, ast.stmt)):
-        body = getattr(statement, "body", None)
-        ends = body[0].lineno if body else (statement.end_lineno or 0) + 1
-        head = range(statement.lineno, max(ends, statement.lineno + 1))
-        chosen.update(head if changed.intersection(head) else ())
+        ends = (statement.end_lineno or 0) + 1
+        if body := getattr(statement, "body", None):
+            head = range(statement.lineno, max(body[0].lineno, statement.lineno + 1))
+        else:
+            head = range(statement.lineno, ends)
+        if changed.intersection(head):
+            chosen.update(head if statement is block else range(statement.lineno, ends))
     numbers = range(min(begins), (block.end_lineno or 0) + 1)
     for is_shown, run in itertools.groupby(numbers, lambda each: each in chosen):
         hidden = [*run]

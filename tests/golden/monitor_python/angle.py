@@ -3,7 +3,8 @@
     def _why_e_r(self) -> tuple[str, ...]:
     # 2 lines
         if 0.0 <= self._v_roll <= 1.0:
-    # 8 lines
+            found.append(f'v.roll() {shown(self._v_roll)} in [0, 1]')
+    # 7 lines
 
     def on_imu(
     # 15 lines
@@ -36,4 +37,12 @@
     def _judge_imu(self, t: int) -> bool:
     # 9 lines
         if 0.0 <= v_roll <= 1.0 or v_pitch > 1.0 or v_yaw > 1.0 or v_tilt > 1.0:
-    # 9 lines
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed

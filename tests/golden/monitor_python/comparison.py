@@ -7,14 +7,25 @@
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
     # 6 lines
         if twist_twist_linear_x == twist_twist_linear_x:
-    # 4 lines
+            if twist_twist_linear_x == self._v:
+                return
+            self._v = twist_twist_linear_x
+        else:
             self._forget_v()
     # 2 lines
 
     def _judge_odom(self, t: int) -> bool:
     # 6 lines
         if v > 1.5:
-    # 9 lines
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed
 
     def _forget_v(self) -> None:
         """Make the values of input v unknown."""

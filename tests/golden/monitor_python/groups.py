@@ -26,7 +26,8 @@
         if self._v_missing or not self._v_silent and not self._v_known:
             found.append('v.unknown()')
         if self._w_missing or not self._w_silent and self._w_tilt != self._w_tilt:
-    # 2 lines
+            found.append('w.tilt().unknown()')
+        return tuple(found)
 
     def _why_e_u(self) -> tuple[str, ...]:
     # 3 lines
@@ -45,7 +46,8 @@
         if self._e_u:
             found.append(because('e.u: ', self._why_e_u()))
         if self._e_s:
-    # 2 lines
+            found.append(because('e.s: ', self._why_e_s()))
+        return tuple(found)
 
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
     # 26 lines
@@ -72,14 +74,20 @@
             and not w_missing
             and (w_silent or w_tilt == w_tilt)
         ):
-    # 22 lines
+            verdict = False
+        else:
+            verdict = None
+    # 19 lines
         if (
             t >= e_u_due and e_s is False
             or not (t < e_u_due < NEVER or e_r is False or e_s) and (not v_silent or v_missing)
         ):
             verdict = True
         elif t < e_u_due < NEVER or e_r is False or e_s:
-    # 9 lines
+            verdict = False
+        else:
+            verdict = None
+    # 6 lines
 
     def _act(self, t: int) -> None:
     # 19 lines
@@ -93,6 +101,11 @@
         elif behaviour_2_due is not NEVER:
             behaviour_2_due = self._behaviour_2_due = NEVER
         if t >= behaviour_2_due:
-    # 4 lines
+            if not self._behaviour_2:
+                self._behaviour_2 = True
+                self._stop_active = True
+                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_2', (), 2))
         elif t < behaviour_2_due < NEVER or e_r:
-    # 3 lines
+            self._behaviour_2 = False
+        else:
+            self._behaviour_2 = None

@@ -5,7 +5,8 @@
         if self._v == 0:
             found.append('v = 0')
         if self._v >= 3:
-    # 2 lines
+            found.append(f'v {shown(self._v)} >= 3')
+        return tuple(found)
 
     def on_mode(self, t: int, data: int) -> None:
     # 11 lines
@@ -13,4 +14,12 @@
     def _judge_mode(self, t: int) -> bool:
     # 6 lines
         if v == 0 or v >= 3:
-    # 9 lines
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed

@@ -35,13 +35,15 @@
                 self._stop_active = True
                 self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_1', (), 2))
         elif e_r is False:
-    # 2 lines
+            self._behaviour_1 = False
+        else:
             self._behaviour_1 = None
     # 6 lines
                 self._stop_active = True
                 self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_2', (), 2))
         elif e_s is False:
-    # 2 lines
+            self._behaviour_2 = False
+        else:
             self._behaviour_2 = None
 
     def _refuse(self, t: int, action: str, line: int, *behaviours: tuple[str, bool | None]) -> None:  # noqa: E501

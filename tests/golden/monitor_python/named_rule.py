@@ -27,4 +27,5 @@
             if verdict or self._e_q:
                 self._e_q_since = t
             self._e_q = verdict
-    # 24 lines
+            changed = True
+    # 23 lines

@@ -56,4 +56,5 @@ def scan_nearest(
                 0.5235987755982989,
             )
             if v_nearest is None:
-    # 8 lines
+                v_nearest = NAN
+    # 7 lines

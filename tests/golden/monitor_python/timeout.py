@@ -44,7 +44,15 @@
         v_counted = self._v_counted
     # 4 lines
         if v > 1.0 or v_missing or t - v_counted > 200_000_000:
-    # 9 lines
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed
 
     def _catch_up(self, t: int) -> None:
     # 9 lines

@@ -20,4 +20,12 @@
     def _judge_odom(self, t: int) -> bool:
     # 7 lines
         if v > w:
-    # 9 lines
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed

@@ -24,7 +24,15 @@
         v_known = self._v_known
     # 4 lines
         if v_missing or not v_silent and not v_known:
-    # 9 lines
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed
 
     def _forget_v(self) -> None:
         """Make the values of input v unknown."""
