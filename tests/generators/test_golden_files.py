@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from deros.generators.api.protocol import Context, File, Files, Owner
 from deros.generators.builtin import rosnode_cpp, rosnode_python, rossystem_script
@@ -18,7 +20,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from tests.support.golden import GOLDEN, RUNTIME_FILES, Golden
-from tests.support.golden_alike import differences, forms
+from tests.support.golden_alike import Part, difference, unlike_those_before
 from tests.support.golden_runtime import is_copy, without_modules
 from tests.support.systems import CONTEXT, EVERYTHING, load
 
@@ -143,24 +145,42 @@ def test_other_code_in_a_script_is_found(old: str, new: str) -> None:
 
 
 def test_difference_from_another_file_shows_every_change() -> None:
-    """Names that differ do not; a file that is unlike the other one stays as it is."""
+    """Names that differ do not; a file that is unlike the other ones stays as it is."""
     lines = "\n".join(f"line {number} of a_node" for number in range(20))
-    others = {"a/a_node.cpp": File(f"{lines}\n")}
+    others = Part("some/a", "apples", "a_node", {"apples/a_node.cpp": File(f"{lines}\n")})
     renamed = lines.replace("a_node", "b_node")
-    names = {"a/": "b/", **forms("a_node", "b_node")}
 
-    def kept(text: str, owner: Owner = Owner.GENERATOR) -> dict[str, str]:
-        made = differences({"b/b_node.cpp": File(text, owner)}, others, names)
+    def kept(text: str, owner: Owner = Owner.GENERATOR, path: str = "b_node.cpp") -> dict[str, str]:
+        part = Part("some/b", "bananas", "b_node", {f"bananas/{path}": File(text, owner)})
+        made = unlike_those_before("some/b", [others, part])
         return {path: "".join(file.text.splitlines(True)[1:]) for path, file in made.items()}
 
-    assert kept(f"{renamed}\n") == {"b/b_node.cpp.diff": ""}
+    like = "bananas/b_node.cpp.diff"
+    assert kept(f"{renamed}\n") == {like: " 21 lines\n"}
     changed = renamed.replace("line 7 of b_node", "line 7 of a_node")
-    shown = " line 6 of b_node\n-line 7 of b_node\n+line 7 of a_node\n line 8 of b_node\n"
-    assert kept(f"{changed}\n") == {"b/b_node.cpp.diff": f"@@\n{shown}"}
+    shown = " 7 lines\n-1 lines\n+line 7 of a_node\n 13 lines\n"
+    assert kept(f"{changed}\n") == {like: shown}
     assert kept(renamed) != kept(f"{renamed}\n")
-    assert list(kept("another\n")) == ["b/b_node.cpp"]
-    with pytest.raises(AssertionError):
-        kept(f"{renamed}\n", Owner.USER)
+    assert list(kept("another\n")) == ["bananas/b_node.cpp"]
+    assert list(kept(f"{renamed}\n", Owner.USER)) == ["bananas/b_node.cpp"]
+    assert list(kept(f"{renamed}\n", path="c_node.cpp")) == ["bananas/c_node.cpp"]
+
+
+_SOME_LINES = st.lists(st.sampled_from(["", "a", "b", " 1 lines", "-1 lines"])).map("\n".join)
+
+
+@given(_SOME_LINES, _SOME_LINES)
+def test_difference_tells_all_of_a_file(text: str, other: str) -> None:
+    """A file follows from the other one and the difference, so that no fault is left out."""
+    rest, found = other.split("\n"), []
+    for line in difference(text, other):
+        if line.startswith("+"):
+            found.append(line[1:])
+        else:
+            number = int(line.split()[0].lstrip("-"))
+            found += rest[:number] if line.startswith(" ") else []
+            del rest[:number]
+    assert ("\n".join(found), rest) == (text, [])
 
 
 # Stale files --------------------------------------------------------------------------------------

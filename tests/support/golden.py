@@ -34,7 +34,7 @@ class Golden:
     def check(self, name: str, files: Files) -> None:
         """Hold ``files`` against ``tests/golden/<name>``, as the writer would put them there."""
         folder = self.root / name
-        reviewed = _reviewed(files)
+        reviewed = with_copies_listed(files)
         if self.refresh:
             shutil.rmtree(folder, ignore_errors=True)
             write(reviewed, folder)
@@ -51,7 +51,7 @@ class Golden:
             assert text == kept[path], f"{path}: refresh with pytest --refresh-golden"
 
 
-def _reviewed(files: Files) -> Files:
+def with_copies_listed(files: Files) -> Files:
     """Return the files to read: the list of the runtime's copies in place of the copies."""
     assert_copies(files)
     copies = [path for path in files if is_copy(path)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import keyword
 import math
 import subprocess
@@ -15,7 +16,7 @@ from typing import Any
 import pytest
 
 from deros.diagnostics import SourceFile, Span
-from deros.generators.api.protocol import File
+from deros.generators.api.protocol import File, Owner
 from deros.generators.monitor.python.conditions import scaled
 from deros.generators.monitor.python.interface import monitor_view, render_monitor
 from deros.generators.monitor.python.run import GeneratedMonitor
@@ -24,8 +25,10 @@ from deros.monitor import ir
 from deros.monitor.evaluate import evaluate_value
 from deros.monitor.state import State
 from tests.support import timelines
+from tests.support.c_snippets import SMALLEST_RULES
 from tests.support.golden import Golden
 from tests.support.profiles import slow
+from tests.support.python_snippets import RULES, shapes, snippets, text_of
 from tests.support.timelines import Timeline
 
 EVERYTHING = """use "robot.system" import Robot
@@ -44,7 +47,7 @@ entity drive {
   // the comment stays with the rule
   too_fast: speed > max_speed for 2 sec;
   jerky: speed.rate() > 2 and not enabled;
-  silent: speed.missing() or scan.age() > 1 sec;
+  quiet: speed.missing() or scan.age() > 1 sec;
 }
 entity body {
   tilted: attitude.roll() not in [-10 deg, 10 deg] or
@@ -63,7 +66,7 @@ behaviour tilt: if body.tilted for 0.4 sec then {
   if not controller.manual for 1 sec then { beep(3); };
   stop;
 };
-if body.near or body.turning or drive.silent or drive.jerky then { stop; };
+if body.near or body.turning or drive.quiet or drive.jerky then { stop; };
 if controller.manual then { ok; };
 if doubt.blind or doubt.hidden then { stop; };
 entity summary {
@@ -97,10 +100,41 @@ def _lint(folder: Path) -> str:
     return "".join(result.stdout + result.stderr for result in results)
 
 
-def test_monitor_text_matches_golden(golden: Golden) -> None:
-    """The text of a program with every construct matches the reviewed one."""
+def test_snippets_match_golden(golden: Golden) -> None:
+    """The text of the smallest monitor, and what each construct adds to it, match the reviewed."""
+    files = {f"{name}.py": File(text, Owner.USER) for name, text in snippets().items()}
+    golden.check("monitor_python", files)
+
+
+@functools.cache
+def shapes_shown() -> set[tuple[str, str]]:
+    """Return the shapes of all that is shown."""
+    return set().union(*(shapes(text_of(rules)) for rules in (SMALLEST_RULES, *RULES.values())))
+
+
+def test_snippets_show_every_kind_of_code() -> None:
+    """Whoever adds a construct, a method or a statement to the text of a monitor adds it here."""
     text = render_monitor(timelines.program(EVERYTHING, "everything"))
-    golden.check("monitor_python", {"everything.py": File(text)})
+    assert shapes(text) - shapes_shown() == set(), "show them in tests/support/python_snippets.py"
+
+
+@pytest.mark.parametrize(
+    "added",
+    [
+        "        self._due = self._drive_jerky_due",
+        "        self._restart(t)",
+        "        while t > self._due:\n            t = t",
+        "        t >= self._due",
+        "\n    def flush(self) -> None:\n        self._now = 0",
+    ],
+)
+def test_code_that_is_not_shown_is_found(added: str) -> None:
+    """Each is a statement that methods of that kind do not have in any snippet."""
+    text = render_monitor(timelines.program(EVERYTHING, "everything"))
+    begins = "        done = True\n"
+    assert text.count(begins) == 1
+    changed = text.replace(begins, f"{begins}{added}\n")
+    assert shapes(changed) - shapes_shown() != set()
 
 
 @pytest.mark.parametrize("cases", [timelines.GIVEN, slow(timelines.ALL)], ids=["given", "all"])
@@ -143,7 +177,7 @@ def test_only_the_standard_library_is_imported() -> None:
     text = render_monitor(timelines.program(EVERYTHING))
     assert _imported(text) == {"collections.abc", "enum", "functools", "math", "numpy", "typing"}
     lines = [line for line in EVERYTHING.splitlines(keepends=True) if "scan" not in line]
-    small = "".join(lines).replace("body.near or", "").replace("drive.silent or", "")
+    small = "".join(lines).replace("body.near or", "").replace("drive.quiet or", "")
     assert _imported(render_monitor(timelines.program(small))) == {
         "collections.abc",
         "enum",
@@ -157,6 +191,7 @@ def test_each_rule_is_quoted_above_its_code() -> None:
     text = render_monitor(timelines.program(EVERYTHING, "everything"))
     assert "# Rule drive.too_fast (everything.deros:15)\n" in text
     assert "#   too_fast: speed > max_speed for 2 sec" in text
+    assert " for\n        #     0.2 sec;\n" in text
     assert "# Behaviour tilt (everything.deros:31)\n" in text
     assert str(timelines.DIRECTORY) not in text
 

@@ -17,6 +17,7 @@ from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.golden import Golden
+from tests.support.golden_alike import Part, parts_of, unlike_those_before
 from tests.support.golden_runtime import is_copy
 from tests.support.needs import may_run
 from tests.support.profiles import slow
@@ -41,9 +42,11 @@ def files_of_text(text: str) -> Files:
     return generate(loaded.model, context, {})
 
 
-@pytest.mark.parametrize("name", ["every_thing", "two_rules"])
-def test_files_match_golden(name: str, golden: Golden) -> None:
-    """Node, description, messages, metadata, actions and the list of the runtime's files match.
+KEPT = ["every_thing", "two_rules"]
+
+
+def parts(name: str) -> list[Part]:
+    """Return node, description, messages, metadata, actions and the runtime's files.
 
     Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
@@ -55,7 +58,14 @@ def test_files_match_golden(name: str, golden: Golden) -> None:
         if is_copy(path)
         or (Path(path).suffix in (".cpp", ".hpp", ".rnd") and Path(path).stem in stems)
     }
-    golden.check(f"safety_cpp/{name}", files)
+    return parts_of(f"safety_cpp/{name}", name, [name], files)
+
+
+@pytest.mark.parametrize("name", KEPT)
+def test_files_match_golden(name: str, golden: Golden) -> None:
+    """What is of the safety node alone matches, whole or as its difference from another one."""
+    both = [part for each in KEPT for part in parts(each)]
+    golden.check(f"safety_cpp/{name}", unlike_those_before(f"safety_cpp/{name}", both))
 
 
 def test_nodes_of_both_languages_differ_only_in_type_name() -> None:

@@ -17,6 +17,7 @@ from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules
 from tests.support.golden import Golden
+from tests.support.golden_alike import Part, parts_of, unlike_those_before
 from tests.support.golden_runtime import is_copy
 from tests.support.lint import assert_lint_clean
 
@@ -41,9 +42,11 @@ def files_of(name: str, **options: str) -> Files:
     return generate(loaded.model, context, options)
 
 
-@pytest.mark.parametrize("name", ["every_thing", "two_rules"])
-def test_files_match_golden(name: str, golden: Golden) -> None:
-    """Node, description, actions and the list of the runtime's files match the reviewed text.
+KEPT = ["every_thing", "two_rules"]
+
+
+def parts(name: str) -> list[Part]:
+    """Return node, description, actions and the runtime's files.
 
     Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
@@ -52,7 +55,14 @@ def test_files_match_golden(name: str, golden: Golden) -> None:
     files = {path: file for path, file in files_of(name).items() if Path(path).name in own}
     assert len(files) == len(own)
     files |= {path: file for path, file in files_of(name).items() if is_copy(path)}
-    golden.check(f"safety_python/{name}", files)
+    return parts_of(f"safety_python/{name}", name, [name], files)
+
+
+@pytest.mark.parametrize("name", KEPT)
+def test_files_match_golden(name: str, golden: Golden) -> None:
+    """What is of the safety node alone matches, whole or as its difference from another one."""
+    both = [part for each in KEPT for part in parts(each)]
+    golden.check(f"safety_python/{name}", unlike_those_before(f"safety_python/{name}", both))
 
 
 @pytest.mark.parametrize(

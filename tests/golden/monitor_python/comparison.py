@@ -1,0 +1,32 @@
+# action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v > 1.5; } if e.r then { stop; };
+
+    def _why_e_r(self) -> tuple[str, ...]:
+        """Return why e.r is true."""
+        return (f'v {shown(self._v)} > 1.5',)
+
+    def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
+    # 6 lines
+        if twist_twist_linear_x == twist_twist_linear_x:
+            if twist_twist_linear_x == self._v:
+                return
+            self._v = twist_twist_linear_x
+        else:
+            self._forget_v()
+    # 2 lines
+
+    def _judge_odom(self, t: int) -> bool:
+    # 6 lines
+        if v > 1.5:
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed
+
+    def _forget_v(self) -> None:
+        """Make the values of input v unknown."""
+        self._v = NAN

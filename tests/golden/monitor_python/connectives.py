@@ -1,0 +1,37 @@
+# action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v in [-1, 1) and not v = 0 or v != 2; } if e.r then { stop; };
+
+def given(condition: bool, *causes: str) -> tuple[str, ...]:
+    """Return causes if a condition holds, else none."""
+    return causes if condition else ()
+
+def any_of(*parts: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the causes of all parts."""
+    return tuple(cause for part in parts for cause in part)
+
+def all_of(*parts: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the causes of all parts if each of them has some, else none."""
+    return any_of(*parts) if all(parts) else ()
+
+    def _why_e_r(self) -> tuple[str, ...]:
+        """Return why e.r is true."""
+        found = []
+        found += all_of(
+            given(-1.0 <= self._v < 1.0, f'v {shown(self._v)} in [-1, 1)'),
+            given(self._v < 0.0 or self._v > 0.0, f'v {shown(self._v)} != 0'),
+        )
+        if self._v < 2.0 or self._v > 2.0:
+            found.append(f'v {shown(self._v)} != 2')
+        return tuple(found)
+
+    def _judge_odom(self, t: int) -> bool:
+    # 6 lines
+        if -1.0 <= v < 1.0 and (v < 0.0 or v > 0.0) or v < 2.0 or v > 2.0:
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed

@@ -1,0 +1,34 @@
+# action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v > 1.5 for 2 sec; } if e.r then { stop; };
+
+    def _judge_odom(self, t: int) -> bool:
+    # 6 lines
+        e_r_due = self._e_r_due
+        if v > 1.5:
+            if e_r_due is NEVER:
+                e_r_due = t + 2_000_000_000
+                self._e_r_due = e_r_due
+                if e_r_due < self._due:
+                    self._due = e_r_due
+        elif e_r_due is not NEVER:
+            e_r_due = self._e_r_due = NEVER
+        if t >= e_r_due:
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed
+
+    def _earliest(self) -> int:
+    # 2 lines
+        if now < self._e_r_due < due:
+            due = self._e_r_due
+        return due
+
+    def _restart(self, t: int, grace: int) -> None:
+        """Forget all inputs and intervals at t; timeouts count from t + grace."""
+        self._e_r_due = NEVER
+    # 3 lines

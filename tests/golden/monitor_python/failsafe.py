@@ -1,0 +1,25 @@
+# action stop; input v = topic /odom.twist.twist.linear.x timeout 0.5 sec entity e { failsafe r: v > 1; } if e.r then { stop; };
+
+def unknown_of(*reads: tuple) -> str:
+    """Return the cause that some terms have no value."""
+    names = ', '.join(term for term, value in reads if value is None or value != value)
+    return f'unknown: {names}'
+
+    def _why_e_r(self) -> tuple[str, ...]:
+    # 4 lines
+        if not found:
+            found.append(unknown_of(('v', self._v)))
+        return tuple(found)
+
+    def _judge_odom(self, t: int) -> bool:
+    # 8 lines
+        if v > 1.0 or not (v <= 1.0) and (not v_silent or v_missing):
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed

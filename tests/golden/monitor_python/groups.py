@@ -1,0 +1,111 @@
+# action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec input w = topic /imu.orientation timeout 1 sec entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); failsafe u: (r for 1 sec) and not s; } if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };
+
+    def explain(self) -> Explanation:
+        """Return the state of each rule as of the last event, and why each behaviour holds."""
+        rules = (
+            explained(
+                'e.r', 2, 'r: v > 1;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
+            ),
+            explained(
+                'e.s', 2, 's: v.rate() > 1 or v.unknown() or w.tilt().unknown();', self._e_s,
+                self._e_s_since, self._why_e_s, ('v.rate()', self._v_rate),
+                ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
+                ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
+            ),
+            explained(
+                'e.u', 2, 'failsafe u: (r for 1 sec) and not s;', self._e_u, self._e_u_since,
+                self._why_e_u, ('v', self._v), ('v.rate()', self._v_rate),
+                ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
+                ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
+            ),
+        )
+    # 6 lines
+
+    def _why_e_s(self) -> tuple[str, ...]:
+    # 4 lines
+        if self._v_missing or not self._v_silent and not self._v_known:
+            found.append('v.unknown()')
+        if self._w_missing or not self._w_silent and self._w_tilt != self._w_tilt:
+            found.append('w.tilt().unknown()')
+        return tuple(found)
+
+    def _why_e_u(self) -> tuple[str, ...]:
+    # 3 lines
+        found += all_of(
+            given(t >= self._e_u_due, because('e.r for 1 sec: ', self._why_e_r())),
+            given(self._e_s is False, because('not e.s: ', self._why_not_e_s())),
+        )
+        if not found:
+            found.append(
+                unknown_of(('v', self._v), ('v.rate()', self._v_rate), ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)), ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt))),  # noqa: E501
+            )
+        return tuple(found)
+
+    def _why_behaviour_1(self) -> tuple[str, ...]:
+    # 2 lines
+        if self._e_u:
+            found.append(because('e.u: ', self._why_e_u()))
+        if self._e_s:
+            found.append(because('e.s: ', self._why_e_s()))
+        return tuple(found)
+
+    def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
+    # 26 lines
+        changed = False
+        changed |= self._judge_odom(t)
+        changed |= self._judge_odom_and_imu(t)
+        if changed:
+            self._act(t)
+
+    def _judge_odom_and_imu(self, t: int) -> bool:
+    # 12 lines
+        if (
+            v_rate > 1.0
+            or v_missing
+            or not v_silent and not v_known
+            or w_missing
+            or not w_silent and w_tilt != w_tilt
+        ):
+            verdict = True
+        elif (
+            v_rate <= 1.0
+            and not v_missing
+            and (v_silent or v_known)
+            and not w_missing
+            and (w_silent or w_tilt == w_tilt)
+        ):
+            verdict = False
+        else:
+            verdict = None
+    # 19 lines
+        if (
+            t >= e_u_due and e_s is False
+            or not (t < e_u_due < NEVER or e_r is False or e_s) and (not v_silent or v_missing)
+        ):
+            verdict = True
+        elif t < e_u_due < NEVER or e_r is False or e_s:
+            verdict = False
+        else:
+            verdict = None
+    # 6 lines
+
+    def _act(self, t: int) -> None:
+    # 19 lines
+        behaviour_2_due = self._behaviour_2_due
+        if e_r is False:
+            if behaviour_2_due is NEVER:
+                behaviour_2_due = t + 1_000_000_000
+                self._behaviour_2_due = behaviour_2_due
+                if behaviour_2_due < self._due:
+                    self._due = behaviour_2_due
+        elif behaviour_2_due is not NEVER:
+            behaviour_2_due = self._behaviour_2_due = NEVER
+        if t >= behaviour_2_due:
+            if not self._behaviour_2:
+                self._behaviour_2 = True
+                self._stop_active = True
+                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_2', (), 2))
+        elif t < behaviour_2_due < NEVER or e_r:
+            self._behaviour_2 = False
+        else:
+            self._behaviour_2 = None

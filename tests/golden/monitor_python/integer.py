@@ -1,0 +1,25 @@
+# action stop; input v = topic /mode.data entity e { r: v = 0 or v >= 3; } if e.r then { stop; };
+
+    def _why_e_r(self) -> tuple[str, ...]:
+    # 2 lines
+        if self._v == 0:
+            found.append('v = 0')
+        if self._v >= 3:
+            found.append(f'v {shown(self._v)} >= 3')
+        return tuple(found)
+
+    def on_mode(self, t: int, data: int) -> None:
+    # 11 lines
+
+    def _judge_mode(self, t: int) -> bool:
+    # 6 lines
+        if v == 0 or v >= 3:
+            if not self._e_r:
+                self._e_r = True
+                self._e_r_since = t
+                changed = True
+        elif self._e_r:
+            self._e_r = False
+            self._e_r_since = t
+            changed = True
+        return changed

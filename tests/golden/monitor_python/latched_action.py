@@ -1,0 +1,53 @@
+# input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: v > 2; } action stop latched; if e.r then { stop; }; if e.s then { stop; };
+
+    def __init__(
+    # 15 lines
+        self._stop_active = 'stop' in latched
+        self._restart(start, grace)
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """Return the names of the behaviours whose conditions are unknown, so that they refuse."""
+        refusing = (
+            ('behaviour_1', self._behaviour_1),
+            ('behaviour_2', self._behaviour_2),
+        )
+        return tuple(name for name, held in refusing if held is None)
+
+    def reset(self, t: int) -> bool:
+    # 7 lines
+        done = True
+    # 2 lines
+        if self._stop_active:
+            if self._behaviour_1 is False and self._behaviour_2 is False:
+                self._stop_active = False
+                self._emit(Event(t, EventKind.RESET, 'stop', '', (), 2))
+            else:
+                self._refuse(
+                    t, 'stop', 2, ('behaviour_1', self._behaviour_1),
+                    ('behaviour_2', self._behaviour_2),
+                )
+            done = done and not self._stop_active
+        return done
+
+    def _act(self, t: int) -> None:
+    # 9 lines
+                self._stop_active = True
+                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_1', (), 2))
+        elif e_r is False:
+            self._behaviour_1 = False
+        else:
+            self._behaviour_1 = None
+    # 6 lines
+                self._stop_active = True
+                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_2', (), 2))
+        elif e_s is False:
+            self._behaviour_2 = False
+        else:
+            self._behaviour_2 = None
+
+    def _refuse(self, t: int, action: str, line: int, *behaviours: tuple[str, bool | None]) -> None:  # noqa: E501
+        """Emit that an action stays active, and which behaviours hold or are unknown."""
+        holding = tuple(name for name, held in behaviours if held)
+        unknown = tuple(name for name, held in behaviours if held is None)
+        self._emit(Event(t, EventKind.REFUSED, action, '', (), line, holding, unknown))

@@ -1,0 +1,26 @@
+# action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v.rate() > 2 or v.abs() > 2; } if e.r then { stop; };
+
+def rate_per_second(value: float, previous: float, elapsed_ns: int) -> float | None:
+    """Return the change per second; None for two messages of one instant."""
+    if elapsed_ns == 0:
+        return None
+    change = (value - previous) / (elapsed_ns / 1e9)
+    return None if math.isnan(change) else change
+
+    def __init__(
+    # 13 lines
+        self._v_rate_last_t = start
+        self._restart(start, grace)
+
+    def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
+    # 7 lines
+            v_rate = rate_per_second(
+                twist_twist_linear_x, self._v_rate_last, t - self._v_rate_last_t,
+            )
+            self._v_rate_last = twist_twist_linear_x
+            self._v_rate_last_t = t
+    # 11 lines
+
+    def _forget_v(self) -> None:
+    # 3 lines
+        self._v_rate_last = NAN
