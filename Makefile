@@ -31,16 +31,16 @@ demo: $(READY)  ## Generate the feeding robot, start it, play its fifteen test c
 
 .PHONY: test
 test: $(READY)  ## Run the tests, those on the real middleware included
-	@$(TESTS) --slow-share 0
+	@$(TESTS) --slow-share=0
 
 .PHONY: test-all
 test-all: $(READY)  ## Run the slow tests too, and 500 examples of each property instead of 100
-	@$(TESTS) --hypothesis-profile ci
+	@$(TESTS) --hypothesis-profile=ci
 
 .PHONY: test-rest
 test-rest: $(READY)  ## After make test: a tenth of the slow tests, and what lacked a program then
-	@$(TESTS) --slow-share 0.1 --draw $$(git rev-parse HEAD) --hypothesis-profile ci \
-	  --after .tmp/tests.json --record .tmp/tests-rest.json
+	@$(TESTS) --slow-share=0.1 --draw=$$(git rev-parse HEAD) --hypothesis-profile=ci \
+	  --after=.tmp/tests.json --record=.tmp/tests-rest.json
 
 .PHONY: property
 property: $(READY)  ## Compare monitors on 120,000 random pairs; 5,000 examples of each property (nightly)

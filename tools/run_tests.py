@@ -99,7 +99,7 @@ def _run(stage: Stage, options: Options) -> tuple[int, dict[str, Result]]:
 def _pytest(arguments: Sequence[str]) -> tuple[int, dict[str, Result]]:
     with tempfile.TemporaryDirectory(prefix="deros-tests-") as folder:
         record = Path(folder) / "record.json"
-        command = [sys.executable, "-m", "pytest", "--record", str(record), *arguments]
+        command = [sys.executable, "-m", "pytest", f"--record={record}", *arguments]
         code = subprocess.run(command, check=False).returncode
         return code, read(record) if record.exists() else {}
 

@@ -31,6 +31,15 @@ def test_integration_runs_documented_targets() -> None:
     assert {"test", "test-rest", "misra", "sanitize", "prove"} <= targets
 
 
+def test_options_of_pytest_are_single_words() -> None:
+    """A value that is a word of its own, and exists, would be taken for the tests to run."""
+    makefile = (ROOT / "Makefile").read_text("utf-8").replace("\\\n", "")
+    runs = [line for line in makefile.splitlines() if line.startswith("\t@$(TESTS)")]
+    assert len(runs) == 3
+    for line in runs:
+        assert all(word.startswith("--") for word in re.sub(r"\$\$\(.*?\)", "", line).split()[1:])
+
+
 @pytest.fixture
 def steps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     """Let the night have two steps of which one fails; return the folder of its output."""
