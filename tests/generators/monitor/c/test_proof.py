@@ -144,114 +144,50 @@ def test_contracts_are_proved(example: Unit, tmp_path: Path) -> None:
     assert proof.is_complete
 
 
-RATES = """
+INPUTS = "input v = topic /speed.data timeout 1 sec input f = topic /flag.data timeout 1 sec"
+ACTIONS = "action stop reset_by free; action free;"
+
+CONSTRUCTS = {
+    "rates": (
+        """
 input v = topic /speed.data timeout 1 sec
 input q = topic /imu.orientation timeout 1 sec
 entity e { r: v.rate() > 1; s: q.yaw().rate(0.1 sec) > 1; }
 action stop;
 if e.r or e.s then { stop; };
-"""
-
-
-@pytest.mark.slow
-@needs("frama-c", "why3", "z3", "cvc4")
-def test_contracts_of_rates_are_proved(tmp_path: Path) -> None:
-    """A rate is the change over time, and over a span the change since the newest older sample."""
-    source = c_proof.write(rules.program(RATES), tmp_path)
-    functions = ("rate", "unwrapped", "between", "stamp_of", "keep")
-    proof = c_proof.prove(source, functions)
-    assert proof.left == ()
-    assert proof.is_complete
-
-
-NAMED = """
-input v = topic /speed.data timeout 1 sec
-input f = topic /flag.data timeout 1 sec
-entity e {
-  failsafe danger: (fast for 0.5 sec) and not calm;
-  fast: v > 1;
-  calm: fast and f;
-}
-action stop reset_by free;
-action free;
-if e.danger then { stop; };
-if not e.calm then { free; };
-"""
-
-
-@pytest.mark.slow
-@needs("frama-c", "why3", "z3", "cvc4")
-def test_contracts_of_rules_that_name_rules_are_proved(tmp_path: Path) -> None:
-    """A verdict is what the rule means of the verdicts that it names, after each message too."""
-    source = c_proof.write(rules.program(NAMED), tmp_path)
-    judging = [each for each in c_proof.functions_of(source) if "judge" in each]
-    assert len(judging) == 6
-    proof = c_proof.prove(source, (*judging, "evaluate", "after_v", "after_f"))
-    assert proof.left == ()
-    assert proof.is_complete
-
-
-SINCE = """
-input v = topic /speed.data timeout 1 sec
-input f = topic /flag.data timeout 1 sec
-entity e {
-  high: v >= 1 since v > 2;
-  failsafe unanswered: (not f since high) for 1 sec;
-}
-action stop reset_by free;
-action free;
-if e.unanswered then { stop; };
-if not e.high since e.unanswered then { free; };
-"""
-
-
-@pytest.mark.slow
-@needs("frama-c", "why3", "z3", "cvc4")
-def test_contracts_of_since_are_proved(tmp_path: Path) -> None:
-    """Its verdict follows from its parts and the one before; no event without news changes it."""
-    source = c_proof.write(rules.program(SINCE), tmp_path)
-    functions = [
-        each
-        for each in c_proof.functions_of(source)
-        if re.match("judge|behave|after|restart", each)
-    ]
-    assert len(functions) == 9
-    proof = c_proof.prove(source, (*functions, "act", "evaluate", "step_back"))
-    assert proof.left == ()
-    assert proof.is_complete
-
-
-WITHIN = """
-input v = topic /speed.data timeout 1 sec
-input f = topic /flag.data timeout 1 sec
-entity e {
-  moved: v > 1 within 2 sec;
-  failsafe both: (moved and f within 0.5 sec) for 1 sec;
-}
-action stop reset_by free;
-action free;
-if e.both then { stop; };
-if not e.moved within 3 sec then { free; };
-"""
-
-
-@pytest.mark.slow
-@needs("frama-c", "why3", "z3", "cvc4")
-def test_contracts_of_within_are_proved(tmp_path: Path) -> None:
-    """It ends by a deadline, so long after the event at which its operand ceased to be true."""
-    source = c_proof.write(rules.program(WITHIN), tmp_path)
-    functions = [
-        each
-        for each in c_proof.functions_of(source)
-        if re.match("judge|behave|after|restart|recent|earliest", each)
-    ]
-    assert len(functions) == 11
-    proof = c_proof.prove(source, (*functions, "act", "evaluate", "step_back"))
-    assert proof.left == ()
-    assert proof.is_complete
-
-
-ARITHMETIC = """
+""",
+        "rate|unwrapped|between|stamp_of|keep",
+        5,
+    ),
+    "rules that name rules": (
+        f"""{INPUTS} {ACTIONS}
+entity e {{ failsafe danger: (fast for 0.5 sec) and not calm; fast: v > 1; calm: fast and f; }}
+if e.danger then {{ stop; }};
+if not e.calm then {{ free; }};
+""",
+        ".*judge.*|evaluate|after_v|after_f",
+        9,
+    ),
+    "since": (
+        f"""{INPUTS} {ACTIONS}
+entity e {{ high: v >= 1 since v > 2; failsafe unanswered: (not f since high) for 1 sec; }}
+if e.unanswered then {{ stop; }};
+if not e.high since e.unanswered then {{ free; }};
+""",
+        "(judge|behave|after|restart).*|act|evaluate|step_back",
+        12,
+    ),
+    "within": (
+        f"""{INPUTS} {ACTIONS}
+entity e {{ moved: v > 1 within 2 sec; failsafe both: (moved and f within 0.5 sec) for 1 sec; }}
+if e.both then {{ stop; }};
+if not e.moved within 3 sec then {{ free; }};
+""",
+        "(judge|behave|after|restart|recent|earliest).*|act|evaluate|step_back",
+        14,
+    ),
+    "arithmetic": (
+        """
 input v = topic /speed.data timeout 1 sec
 input m = topic /mode.data timeout 1 sec
 entity e {
@@ -260,20 +196,23 @@ entity e {
 }
 action stop;
 if e.r and e.s then { stop; };
-"""
+""",
+        "(compute|previous|forget|judge|observe_m).*",
+        14,
+    ),
+}
+"""Rules by the construct in them, a pattern of the functions that mean it, and their number."""
 
 
 @pytest.mark.slow
 @needs("frama-c", "why3", "z3", "cvc4")
-def test_contracts_of_arithmetic_are_proved(tmp_path: Path) -> None:
-    """It is what its formula says, of operands of two topics, and known while all of them are."""
-    source = c_proof.write(rules.program(ARITHMETIC), tmp_path)
-    functions = [
-        each
-        for each in c_proof.functions_of(source)
-        if re.match("compute|previous|forget|judge|observe_m", each)
-    ]
-    assert len(functions) == 14
+@pytest.mark.parametrize("construct", CONSTRUCTS)
+def test_contracts_of_construct_are_proved(construct: str, tmp_path: Path) -> None:
+    """The functions of the construct do what the rules mean, also when nothing is new."""
+    text, pattern, count = CONSTRUCTS[construct]
+    source = c_proof.write(rules.program(text), tmp_path)
+    functions = [each for each in c_proof.functions_of(source) if re.fullmatch(pattern, each)]
+    assert len(functions) == count
     proof = c_proof.prove(source, functions)
     assert proof.left == ()
     assert proof.is_complete
