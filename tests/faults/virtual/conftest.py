@@ -33,3 +33,9 @@ def robot(classes: Classes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     """Return the robot, without a node yet; locks are in a folder of the test."""
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
     return VirtualRobot(classes, tmp_path)
+
+
+@pytest.fixture
+def node(robot: VirtualRobot) -> VirtualNode:
+    """Return the running safety node."""
+    return robot.start()

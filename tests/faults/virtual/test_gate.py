@@ -26,12 +26,6 @@ LIMIT = 0.1
 
 
 @pytest.fixture
-def node(robot: VirtualRobot) -> VirtualNode:
-    """Return the running safety node."""
-    return robot.start()
-
-
-@pytest.fixture
 def gate(robot: VirtualRobot, node: VirtualNode) -> VirtualNode:
     """Return the running gate."""
     assert node.is_running

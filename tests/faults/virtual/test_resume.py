@@ -19,12 +19,6 @@ RESET, ZERO = "waits for a reset", "waits for a zero command"
 
 
 @pytest.fixture
-def node(robot: VirtualRobot) -> VirtualNode:
-    """Return the running safety node."""
-    return robot.start()
-
-
-@pytest.fixture
 def gate(robot: VirtualRobot, node: VirtualNode) -> VirtualNode:
     """Return the running gate, which has received nothing yet."""
     assert node.is_running
