@@ -90,7 +90,7 @@ def _program(source: Path, name: str, options: argparse.Namespace) -> bool:
     console.print(f"{name}: {known}; to prove: {len(wanted)} {some}", highlight=False)
     proved = [ERRORS] if ERRORS in wanted and _analyse(source, name) else []
     functions = [each for each in wanted if each != ERRORS]
-    size = CHUNK if options.record else len(functions)
+    size = CHUNK if options.record else max(1, len(functions))
     for start in range(0, len(functions), size):
         chunk = functions[start : start + size]
         if _prove(source, name, options, chunk):

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from tests.support import c_proof
+from tests.support.needs import needs
 from tools.ledger import ERRORS, Ledger, digests
-from tools.prove import program_of
+from tools.prove import main, program_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples/intelligent_one/intelligent_one.deros"
 
@@ -44,6 +45,14 @@ def test_what_is_recorded_is_not_open(ledger: Ledger, source: Path) -> None:
     assert ledger.open("example", source) == []
     assert ledger.stale("example", source) == []
     assert set(ledger.open("other", source)) == {*c_proof.functions_of(source), ERRORS}
+
+
+@needs("frama-c", "why3", "z3", "cvc4", "gcc")
+def test_proved_program_needs_no_proof(capsys: pytest.CaptureFixture[str]) -> None:
+    """The ledger of the repository knows all functions of the examples."""
+    assert main(["--new"]) == 0
+    output = capsys.readouterr().out
+    assert output.count("; to prove: 0") == 2
 
 
 def test_changed_body_opens_its_function_alone(ledger: Ledger, source: Path) -> None:
