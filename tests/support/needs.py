@@ -146,7 +146,7 @@ def _audit(event: str, arguments: tuple[Any, ...]) -> None:
     if path in _FREE:
         return
     found = str(Path(folder or "", path)) if os.sep in path else shutil.which(path, path=search)
-    if found is None or not _is_own(Path(found).absolute()):
+    if found is None or not _is_own(Path(found).resolve()):
         _ran.add(Path(path).name)
 
 
@@ -158,4 +158,5 @@ def _is_own(path: Path) -> bool:
 @functools.cache
 def _own_folders() -> tuple[Path, ...]:
     root = Path(__file__).parents[2]
-    return (Path(sys.prefix), Path(sys.base_prefix), Path(tempfile.gettempdir()), root)
+    folders = (Path(sys.prefix), Path(tempfile.gettempdir()), root)
+    return tuple(folder.resolve() for folder in folders)
