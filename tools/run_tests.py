@@ -51,7 +51,7 @@ STAGES = (
 
 @dataclass
 class Options:
-    """How pytest is called in all stages: its arguments, and where tests are."""
+    """What all stages share: arguments of pytest, and the files that are written."""
 
     arguments: Sequence[str]
     record: Path
@@ -60,7 +60,7 @@ class Options:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the stages; return the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)
     parser.add_argument("--record", type=Path, default=RECORD)
     parser.add_argument("--reruns", type=Path, default=reruns.default_path())
     parser.add_argument("--slowest", type=int, default=20, help="how many tests are listed")

@@ -24,13 +24,11 @@ class Result:
         outcome: ``passed``, ``skipped`` or ``failed``, of setup, test and teardown the worst.
         seconds: that it took, with setup and teardown.
         text: why it was skipped or how it failed, in one line.
-        is_ros: whether it is marked to start processes of ROS.
     """
 
     outcome: str = "passed"
     seconds: float = 0.0
     text: str = ""
-    is_ros: bool = False
 
 
 def read(path: Path) -> dict[str, Result]:
@@ -99,7 +97,6 @@ class _Recorder:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         result = self._results.setdefault(report.nodeid, Result())
         result.seconds += report.duration
-        result.is_ros = "ros" in report.keywords
         if report.outcome != "passed" and result.outcome != "failed":
             result.outcome, result.text = report.outcome, _line(report)
 
