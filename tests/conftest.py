@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import signal
+from pathlib import Path
+
+import pytest
 
 from tests.support import profiles
 
@@ -16,6 +19,7 @@ pytest_plugins = (
     "pytester",
     "tests.support.needs",
     "tests.support.record",
+    "tests.support.stages",
     "tests.support.golden",
     "tests.support.killing_pairs",
     "tests.support.ros",
@@ -23,3 +27,9 @@ pytest_plugins = (
 
 collect_ignore = ["golden"]
 """Generated packages have their own tests, which run where they are built."""
+
+
+@pytest.fixture
+def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Work in a folder of the test's own."""
+    monkeypatch.chdir(tmp_path)

@@ -1,4 +1,4 @@
-"""Run the tests in stages: without other programs, with compilers and their like, then on ROS.
+"""Run the tests in stages: without ROS, those that need compilers and their like last; then on ROS.
 
 Nothing else runs beside the tests on ROS. Those of them that fail are run once more, alone; the run
 fails if one fails again, or if more than three needed that. What passed the second time is printed
@@ -35,17 +35,25 @@ NO_TESTS = 5
 
 @dataclass(frozen=True)
 class Stage:
-    """A run of pytest: the tests with some marks, in some processes."""
+    """A run of pytest.
+
+    Attributes:
+        title: what it is called.
+        marks: a test with these is run.
+        jobs: in as many processes.
+        order: how they share the tests: ``load`` keeps the order, ``worksteal`` gives each process
+            a part and moves tests at the end.
+    """
 
     title: str
     marks: str
     jobs: int
+    order: str
 
 
 STAGES = (
-    Stage("without other programs", "not ros and not needs", 2),
-    Stage("with compilers and other programs", "not ros and needs", 2),
-    Stage("on ROS", "ros", 4),
+    Stage("without ROS, compilers last", "not ros", 2, "load"),
+    Stage("on ROS", "ros", 4, "worksteal"),
 )
 
 
@@ -92,7 +100,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(stage: Stage, options: Options) -> tuple[int, dict[str, Result]]:
     """Run a stage; return pytest's exit code, and what became of each test."""
-    jobs = ["-n", str(stage.jobs), "--dist", "worksteal", "-m", stage.marks]
+    jobs = ["-n", str(stage.jobs), "--dist", stage.order, "-m", stage.marks]
     return _pytest([*jobs, *options.arguments])
 
 

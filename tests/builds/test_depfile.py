@@ -15,12 +15,9 @@ from tests.support.cli import Outcome
 from tests.support.cli import deros as run
 from tests.support.needs import needs
 
+pytestmark = pytest.mark.usefixtures("own_folder")
+
 AWKWARD = ["/a b/c.rnd", "/costs $5/x", "/one#two", "/tab\there", "/plain"]
-
-
-@pytest.fixture(autouse=True)
-def _in_own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
 
 
 def _generate(model: str, target: str, *more: str) -> Outcome:

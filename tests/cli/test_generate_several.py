@@ -8,10 +8,7 @@ import pytest
 
 from tests.support.cli import deros
 
-
-@pytest.fixture(autouse=True)
-def _in_own_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
 def _node(path: str, name: str, package: str, port: str = "out", more: str = "") -> None:

@@ -156,7 +156,7 @@ def test_difference_from_another_file_shows_every_change() -> None:
         return {path: "".join(file.text.splitlines(True)[1:]) for path, file in made.items()}
 
     like = "bananas/b_node.cpp.diff"
-    assert kept(f"{renamed}\n") == {like: " 21 lines\n"}
+    assert kept(f"{renamed}\n") == {like: ""}
     changed = renamed.replace("line 7 of b_node", "line 7 of a_node")
     shown = " 7 lines\n-1 lines\n+line 7 of a_node\n 13 lines\n"
     assert kept(f"{changed}\n") == {like: shown}

@@ -20,6 +20,8 @@ from deros.metamodels.system import System
 from deros.monitor.build import build
 from deros.monitor.outline import program_outline
 
+pytestmark = pytest.mark.usefixtures("own_folder")
+
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = sorted(
     path
@@ -46,11 +48,6 @@ topics
   external topic wish
   external topic command
 """
-
-
-@pytest.fixture(autouse=True)
-def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
 
 
 def system_with(statement: str, rules: str = RULES) -> System:

@@ -1,8 +1,9 @@
 """Golden files that differ in little from those of another package: kept as the difference.
 
-Such a file says which one it is like, and what takes the place of which name. Then follow the
-number of lines that both have, the number of lines that only the other one has, and the lines that
-only this one has. So both together have all that the file has, and what they share is read once.
+Such a file says which one it is like, and what takes the place of which name. Unless that is all,
+the number of lines that both have follows, the number of lines that only the other one has, and the
+lines that only this one has. So both together have all that the file has, and what they share is
+read once.
 """
 
 from __future__ import annotations
@@ -95,7 +96,8 @@ def _differences(path: str, part: Part, other: Part) -> Iterator[str]:
         if same and _renamed(like, names) == path:
             changes = ", ".join(f"{old} → {new}" for old, new in list(names.items())[::3])
             changed = f" ({changes})" if changes else ""
-            lines = difference(file.text, _renamed(one.text, names))
+            text = _renamed(one.text, names)
+            lines = difference(file.text, text) if file.text != text else ()
             yield "\n".join([f"like {other.folder}/{like}{changed}", *lines, ""])
 
 

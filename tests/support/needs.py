@@ -88,9 +88,16 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Refuse a module with tests that run programs that they do not declare."""
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Refuse a module with tests that run programs that they do not declare.
+
+    Of several processes of a run, which all collect the same tests, the first one reads them.
+    """
     report = yield
+    if getattr(collector.config, "workerinput", {}).get("workerid", "gw0") != "gw0":
+        return report
     faults = []
     for item in report.result:
         if isinstance(item, pytest.Function):

@@ -18,6 +18,11 @@ from tools.reruns import Rerun
 ROOT = Path(__file__).resolve().parents[2]
 
 PLAIN = "def test_plain(): pass\n"
+NEEDS = """
+from tests.support.needs import needs
+@needs("no-such-program")
+def test_needs(): pass
+"""
 PASSES_ALONE = """
 import pathlib, pytest
 
@@ -34,7 +39,7 @@ NEVER = "import pytest\n@pytest.mark.ros\ndef test_never(): assert False, 'broke
 def folder(tmp_path: Path) -> Path:
     """Return a folder for tests that are run in stages."""
     (tmp_path / "conftest.py").write_text(
-        'pytest_plugins = ("tests.support.needs", "tests.support.record")\n'
+        'pytest_plugins = [f"tests.support.{name}" for name in ("needs", "record", "stages")]\n'
         "def pytest_configure(config):\n"
         "    for mark in ('ros', 'slow'): config.addinivalue_line('markers', mark)\n"
     )
@@ -59,9 +64,7 @@ def run(folder: Path, *arguments: str) -> tuple[int, str]:
 def test_stages_are_counted_and_what_passes_alone_is_kept(folder: Path) -> None:
     """The run passes; a line says how long a rerun took, and at which load it had failed."""
     (folder / "test_a.py").write_text(
-        f"{PASSES_ALONE.format(count=2)}{PLAIN}from tests.support.needs import needs\n"
-        "@needs('no-such-program')\ndef test_needs(): pass\n"
-        "@pytest.mark.ros\ndef test_ros(): pass\n"
+        f"{PASSES_ALONE.format(count=2)}{PLAIN}{NEEDS}@pytest.mark.ros\ndef test_ros(): pass\n"
     )
     code, output = run(folder)
     assert code == 0, output
@@ -103,7 +106,7 @@ def test_what_fails_alone_or_without_ros_fails_the_run(folder: Path) -> None:
 def test_error_in_collection_fails(folder: Path) -> None:
     """No test has failed, and yet not all have run."""
     (folder / "test_a.py").write_text("import no_such_module\n")
-    assert run(folder, "--only", "ros")[0] == 1
+    assert run(folder, "--only", "rest")[0] == 1
 
 
 SLOW = """
@@ -114,12 +117,12 @@ def test_slow(n): pass
 """
 
 
-def selected(folder: Path, *arguments: str) -> set[str]:
-    """Return the tests of a folder that pytest collects."""
+def selected(folder: Path, *arguments: str) -> list[str]:
+    """Return the tests of a folder that pytest collects, and its errors."""
     command = [sys.executable, "-m", "pytest", "--collect-only", "-q", *arguments]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
-    return {line for line in done.stdout.splitlines() if "::" in line}
+    return [line for line in done.stdout.splitlines() if "::" in line]
 
 
 def test_share_of_slow_tests_follows_from_the_draw(folder: Path) -> None:
@@ -128,7 +131,23 @@ def test_share_of_slow_tests_follows_from_the_draw(folder: Path) -> None:
     drawn = [selected(folder, "--slow-share", "0.3", "--draw", draw) for draw in "ab"]
     assert drawn[0] != drawn[1]
     assert all(8 < len(each) < 30 for each in drawn)
-    assert selected(folder, "--slow-share", "0") == {"test_a.py::test_plain"}
+    assert selected(folder, "--slow-share", "0") == ["test_a.py::test_plain"]
+
+
+def test_modules_without_tests_on_ros_are_not_read_for_these(folder: Path) -> None:
+    """A test whose module does not spell the mark would be run by no stage, and is an error."""
+    (folder / "test_a.py").write_text(NEVER)
+    (folder / "test_b.py").write_text("from test_a import test_never\n")
+    assert selected(folder, "-m", "ros") == ["test_a.py::test_never"]
+    message = "test_b.py::test_never is on ROS: write mark.ros in test_b.py"
+    assert message in selected(folder, "-m", "not ros")
+
+
+def test_tests_that_need_programs_come_last(folder: Path) -> None:
+    """The order of modules comes second."""
+    (folder / "test_a.py").write_text(NEEDS)
+    (folder / "test_b.py").write_text(PLAIN)
+    assert selected(folder) == ["test_b.py::test_plain", "test_a.py::test_needs"]
 
 
 def test_missed_tests_are_run_afterwards(folder: Path) -> None:
@@ -140,7 +159,7 @@ def test_missed_tests_are_run_afterwards(folder: Path) -> None:
     results = (missed, skipped, Result())
     recorded = zip((f"test_a.py::test_{name}" for name in names), results, strict=True)
     write(folder / "before.json", dict(recorded))
-    assert selected(folder, "--after", "before.json") == {"test_a.py::test_missed"}
+    assert selected(folder, "--after", "before.json") == ["test_a.py::test_missed"]
 
 
 def test_second_rerun_of_a_week_is_a_defect(

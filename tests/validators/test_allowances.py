@@ -13,6 +13,8 @@ from deros.diagnostics import SourceFile, Span, report
 from deros.validators.allowances import ProjectAllowance, read_allowances
 from tests.support.cli import deros
 
+pytestmark = pytest.mark.usefixtures("own_folder")
+
 MODELS = {
     "units.rnd": (
         "node units : demo\npublishes\n  {before}\n"
@@ -25,11 +27,6 @@ MODELS = {
         "DRS313",
     ),
 }
-
-
-@pytest.fixture(autouse=True)
-def _in_own_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
 
 
 def _codes(*arguments: str) -> list[str]:

@@ -12,10 +12,7 @@ from tests.support.checks import checked
 from tests.support.cli import deros
 from tests.support.hand_wired import DIFFERENCES, RULES, STATEMENT, write_hand_wired
 
-
-@pytest.fixture(autouse=True)
-def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
 def findings(*files: str) -> list[Diagnostic]:

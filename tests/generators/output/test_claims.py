@@ -10,15 +10,13 @@ import pytest
 from tests.support.cli import deros
 from tests.support.needs import may_run
 
-pytestmark = may_run("clang++")  # it reads the user's C++ more exactly
+pytestmark = [
+    may_run("clang++"),
+    pytest.mark.usefixtures("own_folder"),
+]  # it reads the user's C++ more exactly
 
 NODE = "node base : drive publishes topic odom : std_msgs.String"
 SYSTEM = 'system Robot imports import "base.rnd" node BASE : base'
-
-
-@pytest.fixture(autouse=True)
-def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
 
 
 def generate(model: str, target: str, *more: str) -> tuple[int, str]:
