@@ -29,6 +29,8 @@ RECORD = REPOSITORY / ".tmp" / "tests.json"
 """What became of each test of the last run."""
 
 MOST_RERUNS = 3
+MOST_MORE = 4
+"""By so many more processes than on an idle machine the tests run beside other work."""
 NO_TESTS = 5
 """The exit code of pytest that says that no test was selected."""
 
@@ -40,7 +42,7 @@ class Stage:
     Attributes:
         title: what it is called.
         marks: a test with these is run.
-        jobs: in as many processes.
+        jobs: in as many processes, and one more for each that the machine runs already.
         order: how they share the tests: ``load`` keeps the order, ``worksteal`` gives each process
             a part and moves tests at the end.
     """
@@ -100,8 +102,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(stage: Stage, options: Options) -> tuple[int, dict[str, Result]]:
     """Run a stage; return pytest's exit code, and what became of each test."""
-    jobs = ["-n", str(stage.jobs), "--dist", stage.order, "-m", stage.marks]
+    count = stage.jobs + min(_running(), MOST_MORE)
+    jobs = ["-n", str(count), "--dist", stage.order, "-m", stage.marks]
     return _pytest([*jobs, *options.arguments])
+
+
+def _running() -> int:
+    """Return how many other processes run or wait for a processor, which all get equal shares."""
+    text = Path("/proc/loadavg").read_text(encoding="ascii")
+    return int(text.split()[3].partition("/")[0]) - 1
 
 
 def _pytest(arguments: Sequence[str]) -> tuple[int, dict[str, Result]]:
