@@ -14,6 +14,7 @@ import re
 from collections.abc import Iterator
 
 from deros.generators.monitor.python.interface import render_monitor
+from deros.monitor.function_texts import PYTHON
 from tests.support.c_everything import built
 from tests.support.c_snippets import SMALLEST, SMALLEST_RULES, SNIPPETS, STOP
 
@@ -68,10 +69,19 @@ def shapes(text: str) -> set[tuple[str, str]]:
 
 
 def _blocks(text: str) -> list[ast.stmt]:
-    """Return the methods of a monitor, and what stands before the class."""
+    """Return the methods of a monitor, and what stands before the class.
+
+    Functions that the monitor has as they are written in the table of functions are left out.
+    """
     *others, monitor = ast.parse(text).body
     assert isinstance(monitor, ast.ClassDef)
-    return [*others, *monitor.body]
+    return [*(each for each in others if ast.dump(each) not in _written()), *monitor.body]
+
+
+@functools.cache
+def _written() -> frozenset[str]:
+    """Return the functions of the table that are written as Python."""
+    return frozenset(ast.dump(each) for text in PYTHON.values() for each in ast.parse(text).body)
 
 
 def _nodes(block: ast.stmt) -> list[Node]:

@@ -7,6 +7,7 @@ be run by no stage, and is an error in collection. Tests that need other program
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Generator
 from pathlib import Path
 
@@ -38,5 +39,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: item.get_closest_marker("needs") is not None)
 
 
+@functools.cache
 def _spells_mark(path: Path) -> bool:
     return _MARK in path.read_text(encoding="utf-8")

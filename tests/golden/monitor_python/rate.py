@@ -1,12 +1,5 @@
 # action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v.rate() > 2 or v.abs() > 2; } if e.r then { stop; };
 
-def rate_per_second(value: float, previous: float, elapsed_ns: int) -> float | None:
-    """Return the change per second; None for two messages of one instant."""
-    if elapsed_ns == 0:
-        return None
-    change = (value - previous) / (elapsed_ns / 1e9)
-    return None if math.isnan(change) else change
-
     def __init__(
     # 13 lines
         self._v_rate_last_t = start

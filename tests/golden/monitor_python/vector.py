@@ -1,9 +1,5 @@
 # action stop; input v = topic /imu.angular_velocity entity e { r: v.norm() > 1; } if e.r then { stop; };
 
-def vector_norm(x: float, y: float, z: float) -> float:
-    """Return the length of a vector."""
-    return math.sqrt(x * x + y * y + z * z)
-
     def on_imu(
     # 14 lines
             v_norm = vector_norm(angular_velocity_x, angular_velocity_y, angular_velocity_z)
