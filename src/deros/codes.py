@@ -312,6 +312,7 @@ WRAPPING_NOT_AN_ANGLE = _declare(
 )
 RATE_OF_ARRIVALS = _declare(367, "rate-of-arrivals", "rate computed from arrival times", _W)
 RULE_CYCLE = _declare(368, "rule-cycle", "rule that depends on itself")
+AMBIGUOUS_NOT = _declare(369, "ambiguous-not", "'not' that can be read in two ways")
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

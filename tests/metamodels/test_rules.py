@@ -15,6 +15,7 @@ from deros.metamodels.rules import (
     ActionCall,
     And,
     Arithmetic,
+    Begins,
     Behaviour,
     Boolean,
     Call,
@@ -62,6 +63,8 @@ def _words(found: Condition | Term) -> str:
             return f"({_words(found.operand)} for {_words(found.duration)})"
         case Once():
             return f"({_words(found.operand)} within {_words(found.duration)})"
+        case Begins():
+            return f"({_words(found.operand)} begins)"
         case Since():
             return f"({_words(found.operand)} since {_words(found.cause)})"
         case Truth():
@@ -107,6 +110,12 @@ CONDITIONS = (
     ("a > since", "(a > since)"),
     ("a and b within 2 sec", "((a and b) within 2 sec)"),
     ("(a > 3 within 1 sec) since within", "(((a > 3) within 1 sec) since within)"),
+    ("a > 3 begins and b", "(((a > 3) begins) and b)"),
+    ("begins begins since begins", "((begins begins) since begins)"),
+    ("a begins within 1 sec and b", "(((a begins) within 1 sec) and b)"),
+    ("(not a since b > 2 begins) for 1 sec", "(((not a) since ((b > 2) begins)) for 1 sec)"),
+    ("(a or b) begins", "((a or b) begins)"),
+    ("not (a begins)", "(not (a begins))"),
     ("a == 5", "(a = 5)"),
     ("a != 5", "(a != 5)"),
     ("a <= 5 and b >= 4", "((a <= 5) and (b >= 4))"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import cast
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -133,6 +134,8 @@ def _inlined(written: ir.Program) -> ir.Program:
                 operand, cause = inline(condition.operand), inline(condition.cause)
                 sinces += 1
                 return replace(condition, index=sinces - 1, operand=operand, cause=cause)
+            case ir.Begins():
+                return replace(condition, operand=cast(ir.For, inline(condition.operand)))
             case ir.Not() | ir.Failsafe():
                 return replace(condition, operand=inline(condition.operand))
             case ir.And() | ir.Or():
@@ -161,6 +164,8 @@ def _inlined(written: ir.Program) -> ir.Program:
                 operand, cause = shifted(condition.operand), shifted(condition.cause)
                 shift = condition.index + 10_000
                 return replace(condition, index=shift, operand=operand, cause=cause)
+            case ir.Begins():
+                return replace(condition, operand=cast(ir.For, shifted(condition.operand)))
             case ir.Not():
                 return replace(condition, operand=shifted(condition.operand))
             case ir.And() | ir.Or():

@@ -102,7 +102,7 @@ entity doubt {
   failsafe hidden: (attitude.tilt() > 20 deg and state = "automatic") for 0.2 sec;
   failsafe absent: elbow.rate() > 3 or state.missing();
   lasting: (enabled since mode = 3) or not (hidden since absent);
-  recent: (mode = 3 within 2 sec) or (not absent within 0.5 sec);
+  recent: (mode = 3 begins within 2 sec) or (not absent within 0.5 sec);
 }
 if drive.too_fast and controller.auto then { stop; log_state("too fast: don't ünd so"); };
 behaviour tilt: if body.tilted for 0.4 sec then {

@@ -60,6 +60,7 @@ SNIPPETS = {
     "duration": _rule(X, "v > 1.5 for 2 sec", "small_monitor judge_e_r earliest restart"),
     "within": _rule(X, "v > 1.5 within 2 sec", "small_monitor judge_e_r earliest restart"),
     "since": _rule(X, "v > 1.5 since v < 0", "small_monitor judge_e_r restart"),
+    "begins": _rule(X, "v > 1.5 begins", "begun judge_e_r"),
     "named_rule": Snippet(
         f"action stop; {SPEED} entity e {{ q: v > 1; r: v < 2 and not q for 1 sec; }} {STOP}",
         ("judge_e_r", "after_v"),
@@ -101,8 +102,8 @@ SNIPPETS = {
     "turning": _rule("/imu.orientation", "v.yaw().rate() > 2", "small_monitor clear observe_v"),
     "arithmetic": _rule(
         "/battery.percentage",
-        "hypot(v, sqrt(2 * abs(v))) in (0.5, 2) and sin(v) / v < max(v, 0.5) - v",
-        "compute_1 compute_2 compute_3 observe_v",
+        "hypot(v, sqrt(2 * abs(v))) in (0.5, 2) and sin(v) / v < min(max(v, 0.5), 2) - v",
+        "least greatest compute_1 compute_2 compute_3 observe_v",
     ),
     "arithmetic_of_integers": _rule(
         "/mode.data", "abs(v - 1) > v / 2", "compute_1 compute_2 observe_v"
@@ -126,7 +127,7 @@ SNIPPETS = {
     "lasting_behaviour": _acts(
         "action stop; if e.r for 1 sec then { stop; }; "
         "if e.r since e.s then { stop; }; if not e.r within 1 sec then { stop; };",
-        "behave_behaviour_1 behave_behaviour_2 behave_behaviour_3",
+        "behave_behaviour_1 behave_behaviour_2 behave_behaviour_3 after_v",
     ),
 }
 """Constructs by name."""

@@ -102,6 +102,8 @@ class _Writer:
                 return f"({self.condition(condition.operand)}) for {condition.duration_ns} ns"
             case ir.Once():
                 return f"({self.condition(condition.operand)}) within {condition.duration_ns} ns"
+            case ir.Begins():
+                return f"(({self.condition(condition.operand.operand)}) begins)"
             case ir.Since():
                 operand, cause = self.condition(condition.operand), self.condition(condition.cause)
                 return f"(({operand}) since ({cause}))"

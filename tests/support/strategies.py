@@ -35,7 +35,7 @@ def span(line: int) -> Span:
 # Values -------------------------------------------------------------------------------------------
 
 NUMBERS = (-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0)
-floats = st.sampled_from((*NUMBERS, *NUMBERS, math.nan, math.inf, -math.inf)) | st.floats()
+floats = st.sampled_from((*NUMBERS, *NUMBERS, -0.0, math.nan, math.inf, -math.inf)) | st.floats()
 unit_floats = st.sampled_from((-1.0, -0.5, -0.0, 0.0, 0.1, 0.5, 1.0, 1.0, math.nan, math.inf))
 # What 32 bits hold, as numbers of a message with 32 bits are.
 ranges = st.sampled_from((*NUMBERS, *NUMBERS, math.nan, math.inf, -math.inf)) | st.floats(width=32)
@@ -344,8 +344,8 @@ class _Drawing:
             (f"-({a})", f"(-({left}))"),
             (f"sqrt({a} * {a})", f"sqrt({left} * {left})"),
             (f"({a} if {a} > 0.0 else 0.0 - {a})", f"abs({left})"),
-            (_chosen(a, "<", b), f"min({left}, {right})"),
-            (_chosen(a, ">", b), f"max({left}, {right})"),
+            (f"least({a}, {b})", f"min({left}, {right})"),
+            (f"greatest({a}, {b})", f"max({left}, {right})"),
             (f"sqrt({a} * {a} + {b} * {b})", f"hypot({left}, {right})"),
             (f"atan2({a}, {b})", f"atan2({left}, {right})"),
             *((f"{name}({a})", "") for name in functions),
@@ -369,7 +369,7 @@ class _Drawing:
     # Conditions -----------------------------------------------------------------------------------
 
     def condition(self, depth: int, atom: Callable[[], ir.Condition]) -> ir.Condition:
-        choices = ("atom", "atom", "not", "and", "or", "for", "since", "within")
+        choices = ("atom", "atom", "not", "and", "or", "for", "since", "within", "begins")
         choice = "atom" if depth == 0 else self.draw(st.sampled_from(choices))
         if choice == "atom":
             return atom()
@@ -379,6 +379,10 @@ class _Drawing:
             operand = self.condition(depth - 1, atom)
             self.fors += 1
             return ir.For(self.fors - 1, operand, self.draw(durations), span(50))
+        if choice == "begins":
+            operand = self.condition(depth - 1, atom)
+            self.fors += 1
+            return ir.Begins(ir.For(self.fors - 1, operand, 1, span(53)))
         if choice == "within":
             operand = self.condition(depth - 1, atom)
             self.onces += 1
@@ -386,7 +390,7 @@ class _Drawing:
         if choice == "since":
             operand, cause = self.condition(depth - 1, atom), self.condition(depth - 1, atom)
             self.sinces += 1
-            return ir.Since(self.sinces - 1, operand, cause, span(51))
+            return ir.Since(self.sinces - 1, operand, cause, self.inputs_of(cause), span(51))
         size = self.draw(st.integers(2, 3))
         operands = tuple(self.condition(depth - 1, atom) for _ in range(size))
         return ir.And(operands) if choice == "and" else ir.Or(operands)
@@ -473,15 +477,19 @@ class _Drawing:
     def rule(self) -> ir.Rule:
         index = len(self.rules)
         condition = self.condition(self.draw(st.integers(0, 3)), self.atom_or_rule)
-        named = walk.with_named(condition, self.rules)
-        read = (walk.inputs_read(each, self.leaves) for each in named)
-        inputs = tuple(sorted(set().union(*read)))
+        inputs = self.inputs_of(condition)
         timed = all(self.inputs[each].timeout_ns is not None for each in inputs)
         if inputs and timed and self.draw(st.booleans()):
             condition = ir.Failsafe(condition, inputs)
         rule = ir.Rule(index, "entity", f"rule_{index}", condition, span(10 + index))
         self.rules.append(rule)
         return rule
+
+    def inputs_of(self, condition: ir.Condition) -> tuple[int, ...]:
+        """Return the inputs that a condition reads, by the rules that it names, too."""
+        named = walk.with_named(condition, self.rules)
+        read = (walk.inputs_read(each, self.leaves) for each in named)
+        return tuple(sorted(set().union(*read)))
 
     def atom_or_rule(self) -> ir.Condition:
         """Draw a condition on an input, or an earlier rule."""
@@ -518,12 +526,6 @@ class _Drawing:
         return ir.Action(
             index, f"action_{index}", (), None, reset_by, reset == "latched", triggered_by, span(9)
         )
-
-
-def _chosen(first: str, relation: str, second: str) -> str:
-    """Return the formula of the lesser or greater of two numbers."""
-    other = f"({second} if {second} {relation}= {first} else unknown)"
-    return f"({first} if {first} {relation} {second} else {other})"
 
 
 input_names = st.sampled_from(("speed", "in", "t", "x_2", "/odom.twist"))

@@ -17,6 +17,7 @@ from deros.metamodels.rules import (
     Action,
     ActionCall,
     And,
+    Begins,
     Behaviour,
     Binding,
     Comparison,
@@ -263,6 +264,7 @@ class RulesConverter(TermConverter):
     def _condition(self, found: Any) -> Condition:
         operand = self._disjunction(found.operand)
         if found.within is not None:
+            self._refuse_not(found.operand, found, "within")
             return Once(operand, self._number(found.within), self.span(found))
         if found.cause is not None:
             return Since(operand, self._disjunction(found.cause), self.span(found))
@@ -280,6 +282,8 @@ class RulesConverter(TermConverter):
 
     def _negation(self, found: Any) -> Condition:
         condition = self._predicate(found.operand)
+        if found.begins is not None:
+            condition = self._begins(condition, found)
         if len(found.nots) > MAX_DEPTH:
             self.diagnostics.append(too_deep(self.span(found)))
             return condition
@@ -287,6 +291,36 @@ class RulesConverter(TermConverter):
             span = Span(self.source, keyword.start, found._tx_position_end)
             condition = Not(condition, span)
         return condition
+
+    def _begins(self, operand: Condition, found: Any) -> Condition:
+        start, end = found.operand._tx_position, found._tx_position_end
+        span = Span(self.source, start, end)
+        if found.nots:
+            self._ambiguous(found, found.operand, "begins")
+        condition = Begins(operand, span)
+        within = found.begins.within
+        return condition if within is None else Once(condition, self._number(within), span)
+
+    def _refuse_not(self, operand: Any, whole: Any, word: str) -> None:
+        """Report a ``not`` without parentheses before a word that closes a condition."""
+        for conjunction in operand.operands:
+            for negation in conjunction.operands:
+                if negation.nots:
+                    self._ambiguous(whole, negation.operand, word)
+                    return
+
+    def _ambiguous(self, whole: Any, negated: Any, word: str) -> None:
+        """Report a condition whose ``not`` people read in two ways."""
+        span = self.span(whole)
+        written = " ".join(self.span(negated).text.split())
+        written = written if written[0] == "(" else f"({written})"
+        rest = " ".join(self.source.text[self.span(negated).end : span.end].split())
+        self.report(
+            codes.AMBIGUOUS_NOT,
+            f"people read 'not' before '{word}' in two ways",
+            span,
+            f"write 'not ({written[1:-1]} {rest})' or '(not {written[1:-1]}) {rest}'",
+        )
 
     def _predicate(self, found: Any) -> Condition:
         if type(found).__name__ == "Parenthesis":

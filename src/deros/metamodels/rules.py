@@ -189,7 +189,15 @@ class Once:
     span: Span = field(compare=False, repr=False)
 
 
-Condition = Comparison | Membership | Truth | Not | And | Or | For | Since | Once
+@dataclass(frozen=True, slots=True)
+class Begins:
+    """``operand begins``: the event at which the operand turns true."""
+
+    operand: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+Condition = Comparison | Membership | Truth | Not | And | Or | For | Since | Once | Begins
 
 
 # Declarations -----------------------------------------------------------------------------------

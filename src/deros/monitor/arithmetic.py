@@ -22,7 +22,7 @@ from deros.metamodels import rules
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.monitor import formulas, intervals, ir
 from deros.monitor.bounds import rounded
-from deros.monitor.formulas import UNKNOWN, Binary, Choice, Expression, Formula, Name, Relation
+from deros.monitor.formulas import Binary, Choice, Expression, Formula, Name, Relation
 from deros.monitor.intervals import Interval
 from deros.monitor.operations import CALLS, is_arithmetic
 from deros.monitor.reads import strip_comments
@@ -252,7 +252,8 @@ class ArithmeticTerm:
             case "min" | "max" as name:
                 expression = parts[0]
                 for part in parts[1:]:
-                    expression = _chosen(self._assign(expression), part, name)
+                    chosen = "least" if name == "min" else "greatest"
+                    expression = formulas.guarded_call(chosen, (expression, part))
                 pick = intervals.least_of if name == "min" else intervals.greatest_of
                 interval = pick(*ends)
             case "atan2":
@@ -413,13 +414,3 @@ def _absolute(part: Expression) -> Expression:
     """Return the absolute value: of both zeros it is 0, and of what is unknown it is unknown."""
     zero = formulas.Number(0.0)
     return Choice(Relation(">", part, zero), part, Binary("-", zero, part))
-
-
-def _chosen(left: Expression, right: Expression, name: Literal["min", "max"]) -> Expression:
-    """Return the lesser or greater of two numbers, unknown if one is; the second if equal."""
-    first, second = (
-        (Relation("<", left, right), Relation("<=", right, left))
-        if name == "min"
-        else (Relation(">", left, right), Relation(">=", right, left))
-    )
-    return Choice(first, left, Choice(second, right, UNKNOWN))

@@ -14,7 +14,7 @@ from deros.diagnostics import Diagnostic, has_errors
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels import rules
 from deros.metamodels.common import Name
-from deros.monitor import ir, walk
+from deros.monitor import ir
 from deros.monitor.actions import Actions
 from deros.monitor.comparisons import Comparisons
 from deros.monitor.conditions import Conditions
@@ -75,11 +75,11 @@ class _Builder:
         for name in self.scope.constants:
             terms.constant(name)
         self.comparisons = Comparisons(self.scope, terms)
-        self._conditions = Conditions(self.scope, self.comparisons)
         self._actions = Actions(self.scope, terms, program.actions)
         self._gates = GateResolver(self.scope, terms, self._actions)
         self._rule_index: dict[int, int] = {}
         self._built: dict[int, ir.Rule] = {}
+        self._conditions = Conditions(self.scope, self.comparisons, self._built)
         self._behaviours = 0
 
     def build(self) -> ir.Program:
@@ -126,17 +126,15 @@ class _Builder:
         )
         if condition is None or not rule.failsafe:
             return condition
-        inputs: set[int] = set()
-        for each in walk.with_named(condition, self._built):
-            inputs |= walk.inputs_read(each, self.scope.leaves)
+        inputs = self._conditions.inputs_of(condition)
         if not inputs:
             return condition  # it is never unknown
         timed = True
-        for index in sorted(inputs):
+        for index in inputs:
             owner = self.scope.used_inputs[index]
             without = f"'{owner.name}' has no timeout, so no silence of it makes the rule unknown"
             timed &= self.terms.of_functions.has_timeout(owner, without, rule.name.span)
-        return ir.Failsafe(condition, tuple(sorted(inputs))) if timed else None
+        return ir.Failsafe(condition, inputs) if timed else None
 
     def _verdict(self, term: rules.NamePath, entity: str = "") -> ir.RuleRef | None:
         """Resolve the name of a rule; without ``entity`` only ``entity.rule``."""

@@ -16,6 +16,7 @@ from deros.monitor.ir import (
     OPPOSITE,
     Age,
     And,
+    Begins,
     Behaviour,
     Compare,
     Condition,
@@ -87,15 +88,20 @@ class AnyOf:
 
 @dataclass(frozen=True, slots=True)
 class During:
-    """The causes of an interval's operand, which is true while the interval lasts.
+    """The causes of the operand of an interval or of a ``since``.
 
     They are some where the interval has lasted long enough or, if not ``reached``, where it has
-    begun and has not.
+    begun and has not; and where the ``since`` is true, which is always ``reached``.
     """
 
-    interval: For
+    interval: For | Since
     reached: bool
     part: Plan
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the operand is true then; that of a ``since`` need not be, in its cause."""
+        return isinstance(self.interval, For)
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +206,14 @@ def plan_of(
             return Say(condition, True, (f"{written}{suffix}",))
         case Once():
             return plan_of(program, condition.operand, holds, suffix, shortened)
+        case Begins():
+            lasting = condition.operand
+            word = " as of now" if holds else " already"
+            part = plan_of(program, lasting.operand, True, f"{word}{suffix}", shortened)
+            during = During(lasting, not holds, part)
+            if holds:
+                return during
+            return _any_of([during, plan_of(program, lasting.operand, False, suffix, shortened)])
         case Since():
             return _plan_of_since(program, condition, holds, suffix, shortened)
         case Failsafe():
@@ -247,7 +261,7 @@ def _plan_of_since(
     further = _MORE if is_deep else f" since {_shortened(condition.wording)}{suffix}"
     behind = further if holds else suffix
     operand = plan_of(program, condition.operand, holds, behind, shortened)
-    return _any_of([cause, operand])
+    return _any_of([cause, During(condition, True, operand) if holds else operand])
 
 
 def _shortened(text: str) -> str:
@@ -379,8 +393,8 @@ def _tell(program: Program, plan: Plan, state: State, t_ns: int) -> list[str]:
             is_so = all(told) or isinstance(plan, AnyOf)
             return [cause for each in told for cause in each] if is_so else []
         case During():
-            has_begun = plan.interval.index in state.since
             has_lasted = evaluate_condition(plan.interval, state, t_ns) is True
+            has_begun = has_lasted or plan.interval.index in state.since
             is_so = has_begun and has_lasted is plan.reached
             return _tell(program, plan.part, state, t_ns) if is_so else []
         case OrUnknown():

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from deros import codes
 from deros.metamodels import rules
-from deros.monitor import ir
+from deros.monitor import ir, walk
 from deros.monitor.comparisons import Comparisons
 from deros.monitor.reads import strip_comments
 from deros.monitor.scope import Scope
@@ -17,9 +17,18 @@ _Leaf = rules.Comparison | rules.Membership | rules.Truth
 class Conditions:
     """Builds conditions within a scope. ``None`` means that a fault has been reported."""
 
-    def __init__(self, scope: Scope, comparisons: Comparisons) -> None:
-        """Build the operands of logical operators with ``comparisons``."""
+    def __init__(
+        self, scope: Scope, comparisons: Comparisons, built: Mapping[int, ir.Rule]
+    ) -> None:
+        """Build the operands of logical operators with ``comparisons``.
+
+        Args:
+            scope: of the rules.
+            comparisons: builds what the operators connect.
+            built: the rules built so far, by index.
+        """
         self._scope = scope
+        self._built = built
         self._comparisons = comparisons
         self._durations = 0
         self._onces = 0
@@ -101,6 +110,20 @@ class Conditions:
                     return None
                 self._sinces += 1
                 written = strip_comments(condition.cause.span.text)
-                return ir.Since(self._sinces - 1, inner, cause, condition.span, written)
+                read = self.inputs_of(cause)
+                return ir.Since(self._sinces - 1, inner, cause, read, condition.span, written)
+            case rules.Begins():
+                inner = self._build(condition.operand, leaf)
+                if inner is None:
+                    return None
+                self._durations += 1
+                return ir.Begins(ir.For(self._durations - 1, inner, 1, condition.span))
             case _:
                 return leaf(condition)
+
+    def inputs_of(self, condition: ir.Condition) -> tuple[int, ...]:
+        """Return the inputs whose values or ages a condition reads, by the rules it names too."""
+        found: set[int] = set()
+        for each in walk.with_named(condition, self._built):
+            found |= walk.inputs_read(each, self._scope.leaves)
+        return tuple(sorted(found))

@@ -15,6 +15,7 @@ from deros.monitor.ir import (
     Age,
     And,
     Apply,
+    Begins,
     Compare,
     Compute,
     Condition,
@@ -123,6 +124,10 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             return _once(condition, state, t_ns)
         case Since():
             return _since(condition, state, t_ns)
+        case Begins():
+            lasts = evaluate_condition(condition.operand, state, t_ns)
+            began = condition.operand.index in state.since
+            return None if lasts is None else began and not lasts
         case Failsafe():
             verdict = evaluate_condition(condition.operand, state, t_ns)
             awaited = any(state.inputs[index].awaited for index in condition.inputs)
@@ -180,10 +185,10 @@ def _once(condition: Once, state: State, t_ns: int) -> Verdict:
 def _since(condition: Since, state: State, t_ns: int) -> Verdict:
     operand = evaluate_condition(condition.operand, state, t_ns)
     cause = evaluate_condition(condition.cause, state, t_ns)
-    before = state.kept.get(condition.index, False)
-    verdict = _any([cause, conjunction((operand, before))])
-    state.kept[condition.index] = verdict
-    return verdict
+    lasts = conjunction((operand, state.kept.get(condition.index, False)))
+    has_come = all(state.inputs[index].counted_ns is not None for index in condition.inputs)
+    state.kept[condition.index] = _any([cause if has_come else cause is True, lasts])
+    return _any([cause, lasts])
 
 
 def _lasting(condition: For, state: State, t_ns: int) -> Verdict:

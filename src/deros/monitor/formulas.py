@@ -215,7 +215,7 @@ def guarded_call(name: str, arguments: tuple[Expression, ...]) -> Expression:
     Raises:
         ValueError: there is no such function, or it takes another number of arguments.
     """
-    taken = CALLS.get(name, 1 if name in SHARED else 0)
+    taken = CALLS.get(name, len(SHARED[name][0]) if name in SHARED else 0)
     if not taken or len(arguments) != taken:
         raise ValueError(f"a formula cannot call {name}() with {len(arguments)} arguments")
     found = Call(name, arguments)
@@ -412,4 +412,15 @@ SHARED: dict[str, tuple[tuple[str, ...], Formula]] = {}
 SHARED["clamped"] = (
     ("sine",),
     parse("1.0 if sine > 1.0 else (-1.0 if sine < -1.0 else sine)"),
+)
+# Of zeros the one with the sign minus is the lesser, as in IEEE 754-2019, minimum and maximum.
+SHARED["least"] = (
+    ("a", "b"),
+    parse(
+        "a if a < b else (b if b < a else (unknown if a != b else (a if a != 0.0 else -(-a - b))))"
+    ),
+)
+SHARED["greatest"] = (
+    ("a", "b"),
+    parse("a if a > b else (b if b > a else (unknown if a != b else (a if a != 0.0 else a + b)))"),
 )

@@ -185,15 +185,29 @@ class Once:
 class Since:
     """``cause or (operand and before)``, where *before* is its own verdict at the last event.
 
-    At the start, and after a backward step of the clock, *before* is false. An event that changes
-    neither the cause nor the operand does not change it.
+    At the start, and after a backward step of the clock, *before* is false. While one of ``inputs``
+    has had no message that counts since then, a cause that is unknown counts as false for *before*:
+    no message of another topic can make it unknown. ``inputs`` are those whose values or ages the
+    cause reads. An event that changes neither the cause nor the operand does not change it.
     """
 
     index: int  # its place among all Since of the program, in the order they are evaluated
     operand: Condition
     cause: Condition
+    inputs: tuple[int, ...]
     span: Span = field(compare=False, repr=False)
     wording: str = field(default="", compare=False, repr=False)  # the cause, as written
+
+
+@dataclass(frozen=True, slots=True)
+class Begins:
+    """True at the event at which its condition turns true, and for one nanosecond from there.
+
+    ``operand`` is that condition with ``for`` the shortest time there is: that it has lasted so
+    long is what makes this false. It is unknown where the condition is.
+    """
+
+    operand: For
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,6 +246,7 @@ Condition = (
     | For
     | Once
     | Since
+    | Begins
     | Failsafe
     | RuleRef
 )

@@ -160,7 +160,7 @@ def names_alone(condition: rules.Condition) -> Iterator[rules.NamePath]:
     match condition:
         case rules.Truth(operand=rules.NamePath() as term):
             yield term
-        case rules.Not() | rules.For() | rules.Once():
+        case rules.Not() | rules.For() | rules.Once() | rules.Begins():
             yield from names_alone(condition.operand)
         case rules.And(operands=operands) | rules.Or(operands=operands):
             for operand in operands:

@@ -46,7 +46,8 @@ class State:
         memories: of each function with a ``state`` number.
         since: of each ``For``, since when its operand has been true without a break.
         ceased: of each ``Once``, when its operand ceased to be true; ``None`` while it is true.
-        kept: of each ``Since``, its verdict as of the last event; false before the first.
+        kept: of each ``Since``, its verdict as of the last event, as the next one remembers it;
+            false before the first.
         verdicts: of each rule, as of the last event.
         turned_ns: of each rule, when it last became true or ceased to be; the start, or the last
             step of the clock, if it did not since.

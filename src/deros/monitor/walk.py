@@ -8,6 +8,7 @@ from deros.monitor.ir import (
     Age,
     And,
     Apply,
+    Begins,
     Behaviour,
     Compare,
     Compute,
@@ -58,6 +59,16 @@ def refusing(program: Program) -> frozenset[int]:
     return frozenset(found)
 
 
+def awaited_by_behaviours(program: Program) -> frozenset[int]:
+    """Return the inputs that causes of a ``since`` in a behaviour read.
+
+    That such an input has come may change what is remembered, without any verdict of a rule.
+    """
+    everything = (parts(each.condition) for each in behaviours(program))
+    sinces = (part for each in everything for part in each if isinstance(part, Since))
+    return frozenset(index for each in sinces for index in each.inputs)
+
+
 def conditions(program: Program) -> Iterator[Condition]:
     """Yield every condition of the rules, then of the behaviours, operands before the whole."""
     for rule in program.rules:
@@ -69,7 +80,7 @@ def conditions(program: Program) -> Iterator[Condition]:
 def parts(condition: Condition) -> Iterator[Condition]:
     """Yield a condition's operands, theirs first, and then the condition itself."""
     match condition:
-        case Not() | For() | Once() | Failsafe():
+        case Not() | For() | Once() | Begins() | Failsafe():
             yield from parts(condition.operand)
         case And(operands=operands) | Or(operands=operands):
             for operand in operands:

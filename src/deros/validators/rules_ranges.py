@@ -12,6 +12,7 @@ from deros.diagnostics import Code, Diagnostic, report
 from deros.interfaces.units import Unit
 from deros.metamodels.rules import (
     And,
+    Begins,
     Comparison,
     Condition,
     For,
@@ -89,7 +90,7 @@ class _Ranges:
                 return _Solution(found.comparison, found.possible & found.values.complement())
             case And() | Or():
                 return self._together(condition)
-            case For() | Once():
+            case For() | Once() | Begins():
                 self.solve(condition.operand)
             case Since():
                 self.solve(condition.operand)

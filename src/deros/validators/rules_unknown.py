@@ -209,7 +209,7 @@ def _while_unknown(condition: ir.Condition, key: _Key, verdicts: _Verdicts) -> t
             return _while_unknown(condition.operand, key, verdicts)[0], False
         case ir.Since():  # it may be false, or true, from before
             return False, False
-        case ir.Failsafe():
+        case ir.Begins() | ir.Failsafe():
             return _while_unknown(condition.operand, key, verdicts)
         case ir.RuleRef():
             return verdicts[condition.rule]
@@ -336,7 +336,7 @@ def _signed(condition: rules.Condition, negated: bool) -> Iterator[tuple[rules.N
             yield term, negated
         case rules.Not(operand=operand):
             yield from _signed(operand, not negated)
-        case rules.For() | rules.Once():
+        case rules.For() | rules.Once() | rules.Begins():
             yield from _signed(condition.operand, negated)
         case rules.And(operands=operands) | rules.Or(operands=operands):
             for operand in operands:

@@ -8,6 +8,7 @@ from deros.metamodels.common import Name
 from deros.metamodels.rules import (
     And,
     Arithmetic,
+    Begins,
     Behaviour,
     Call,
     Comparison,
@@ -104,7 +105,7 @@ def terms_of(condition: Condition) -> Iterator[Term]:
         case And() | Or():
             for operand in condition.operands:
                 yield from terms_of(operand)
-        case Not() | For() | Once():
+        case Not() | For() | Once() | Begins():
             yield from terms_of(condition.operand)
         case Since():
             yield from terms_of(condition.operand)

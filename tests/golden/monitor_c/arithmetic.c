@@ -1,4 +1,14 @@
-/* action stop; input v = topic /battery.percentage entity e { r: hypot(v, sqrt(2 * abs(v))) in (0.5, 2) and sin(v) / v < max(v, 0.5) - v; } if e.r then { stop; }; */
+/* action stop; input v = topic /battery.percentage entity e { r: hypot(v, sqrt(2 * abs(v))) in (0.5, 2) and sin(v) / v < min(max(v, 0.5), 2) - v; } if e.r then { stop; }; */
+
+static double least(double a, double b)
+{
+  return (a < b) ? a : ((b < a) ? b : ((a != b) ? NAN : ((a != 0.0) ? a : (-((-a) - b)))));
+}
+
+static double greatest(double a, double b)
+{
+  return (a > b) ? a : ((b > a) ? b : ((a != b) ? NAN : ((a != 0.0) ? a : (a + b))));
+}
 
 /* hypot(v, sqrt(2 * abs(v))) */
 static double compute_1(double v)
@@ -17,8 +27,8 @@ static double compute_2(double v)
 
 static double compute_3(double v)
 {
-  const double part_1 = (v > 0.5) ? v : ((0.5 >= v) ? 0.5 : NAN);
-  return part_1 - v;
+  const double part_1 = greatest(v, 0.5);
+  return least(part_1, 2.0) - v;
 }
 
 static bool observe_v(small_monitor *m, double percentage)

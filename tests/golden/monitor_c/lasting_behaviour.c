@@ -19,8 +19,8 @@ static void behave_behaviour_3(small_monitor *m)
 
 static void behave_behaviour_2(small_monitor *m)
 {
-  m->behaviour_2_kept = either(m->e_s, both(m->e_r, m->behaviour_2_kept));
-  const small_verdict condition = m->behaviour_2_kept;
+  m->behaviour_2_kept = either(heard(m->e_s, m->v_came), both(m->e_r, m->behaviour_2_kept));
+  const small_verdict condition = either(m->e_s, m->behaviour_2_kept);
   /* 4 lines of reset_by */
     small_emit(m->owner, m->now, SMALL_TRIGGER, 1U);  /* stop */
   }
@@ -36,4 +36,12 @@ static void behave_behaviour_1(small_monitor *m)
     &m->due);
   const small_verdict condition = for_1;
   /* 6 lines of smallest */
+}
+
+static void after_v(small_monitor *m, bool news)
+{
+  /* 3 lines of smallest */
+    (void)judge_by_v(m);
+    act(m, true);
+  /* 2 lines of smallest */
 }

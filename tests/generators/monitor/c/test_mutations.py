@@ -88,6 +88,8 @@ SLIPS: dict[str, tuple[Slip, ...]] = {
     "a within survives a clock step": (Slip("statement", "restart", "m->$_until$ = 0;"),),
     "since forgets": (Slip("value", "judge_$ behave_$", "m->$_kept$", "0"),),
     "a since survives a clock step": (Slip("statement", "restart", "m->$_kept$ = $_FALSE;"),),
+    "a cause that was never heard is kept": (Slip("value", "heard", "!come", "false"),),
+    "a begins does not end": (Slip("value", "begun", "since == $_UNSET", "true"),),
     "arithmetic is of what was before": (
         Slip("statement", "observe_$", "m->computed_$ = compute_$($$);"),
     ),

@@ -80,6 +80,10 @@ SLIPS: dict[str, tuple[Slip, ...]] = {
     "a within survives a clock step": (Slip("once", "_restart", "self._$_until$ = 0"),),
     "since forgets its cause": (Slip("target", "$", "self._$_kept$", "", "$_kept$ = @ = True"),),
     "a since survives a clock step": (Slip("once", "_restart", "self._$_kept$ = False"),),
+    "a cause that was never heard is kept": (
+        Slip("value", "_judge_$", "not self._$_came", "False"),
+    ),
+    "a begins does not end": (Slip("value", "_judge_$", "t < $_due$ < NEVER", "True"),),
     "arithmetic is of what was before": (
         Slip("statement", "$", "self._computed_$ = _compute_$($$)"),
     ),

@@ -15,6 +15,7 @@ from deros.generators.monitor.c.value_types import compared
 from deros.monitor.ir import (
     Age,
     And,
+    Begins,
     Compare,
     Condition,
     Const,
@@ -86,7 +87,15 @@ class AcslSemantics:
             case Once():
                 return self._once(condition, truth)
             case Since():
-                return f"m->{self._layout.kept[condition.index]} == {self._verdict(truth)}"
+                kept = f"m->{self._layout.kept[condition.index]} == {self._verdict(truth)}"
+                if truth or not condition.inputs:
+                    return kept
+                return f"({kept} && {self.false(condition.cause)})"
+            case Begins(operand=lasting):
+                runs, lasted = self.runs(lasting), self.lasted(lasting)
+                if truth:
+                    return f"({runs} && !{lasted})"
+                return f"({self.false(lasting.operand)} || ({runs} && {lasted}))"
             case Failsafe():
                 return self._failsafe(condition) if truth else self.false(condition.operand)
             case RuleRef():
@@ -116,7 +125,7 @@ class AcslSemantics:
         results = []
         for truth in (True, False):
             verdict = self._verdict(truth)
-            cause = self._is(condition.cause, truth)
+            cause = self.true(condition.cause) if truth else self._is_none(condition)
             operand = f"({self._is(condition.operand, truth)})"
             was = f"{before} == {verdict}"
             meant = (
@@ -126,6 +135,14 @@ class AcslSemantics:
             )
             results.append(iff(f"{kept} == {verdict}", f"({meant})"))
         return results
+
+    def _is_none(self, condition: Since) -> str:
+        """Return that there is no cause: it is false, or unknown and not all it reads has come."""
+        false = self.false(condition.cause)
+        come = [f"m->{self._layout.inputs[index].came} == 0" for index in condition.inputs]
+        if not come:
+            return false
+        return f"{false} || ({_joined(' || ', come)} && !({self.true(condition.cause)}))"
 
     def _interval(self, condition: For, truth: bool) -> str:
         operand = self._is(condition.operand, truth)

@@ -15,6 +15,7 @@ from deros.monitor.ir import (
     Age,
     And,
     Apply,
+    Begins,
     Compare,
     Compute,
     Condition,
@@ -99,7 +100,15 @@ class Conditions:
                 timed = condition.index in self._layout.until
                 return self.interval(condition) if timed else self.verdict(condition.operand)
             case Since():
-                return f"m->{self._layout.kept[condition.index]}"
+                kept = f"m->{self._layout.kept[condition.index]}"
+                return (
+                    Call("either", (self.verdict(condition.cause), kept))
+                    if condition.inputs
+                    else kept
+                )
+            case Begins(operand=lasting):
+                since = f"m->{self._layout.since[lasting.index]}"
+                return Call("begun", (self.interval(lasting), since))
             case Failsafe():
                 return self._failsafe(condition)
             case RuleRef():
@@ -110,6 +119,14 @@ class Conditions:
         due = come if len(come) == 1 else [f"({each})" for each in come]
         operand = self.verdict(condition.operand)
         return Call("failsafe", (operand, Infix("&&", tuple(due))))
+
+    def cause(self, condition: Since) -> Expression:
+        """Return the cause of a ``since``; unknown, it is none before its inputs have come."""
+        cause = self.verdict(condition.cause)
+        if not condition.inputs:
+            return cause
+        come = [f"m->{self._layout.inputs[index].came}" for index in condition.inputs]
+        return Call("heard", (cause, Infix("&&", tuple(come))))
 
     def _has_come(self, index: int) -> str:
         """Return whether an input is not awaited: it has come, or is missing."""

@@ -371,12 +371,11 @@ class _Writer:
         return present(term.value, self._program, self._arguments) or "true"
 
     def _heard(self, each: Input, fields: InputFields) -> Iterator[str]:
-        if not fields.base:
-            return
-        yield f"  m->{fields.base} = m->now;"
+        if fields.base:
+            yield f"  m->{fields.base} = m->now;"
         if fields.awaits:
             yield from _news(fields.came, "true")
-        else:
+        elif fields.came:
             yield f"  m->{fields.came} = true;"
         if fields.missing:
             yield from _news(fields.missing, "false")

@@ -145,6 +145,19 @@ static @_verdict failsafe(@_verdict operand, bool due)
 }
 """
 
+_HEARD = """\
+/* The cause of a 'since': one that is unknown is none before all that it reads has come. */
+/*@ requires is_verdict(cause);
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> cause == $_TRUE;
+    ensures \\result == $_FALSE <==> cause == $_FALSE || (cause == $_UNKNOWN && come == 0); */
+static @_verdict heard(@_verdict cause, bool come)
+{
+  return ((cause == $_UNKNOWN) && (!come)) ? $_FALSE : cause;
+}
+"""
+
 _LASTING = """\
 /* 'for': true once the operand has been true without a break for so long, since *since. */
 /*@ requires \\valid(since) && \\valid(due) && \\separated(since, due);
@@ -173,6 +186,21 @@ static @_verdict lasting(
     verdict = ((now - *since) >= duration) ? $_TRUE : $_FALSE;
   }
   return verdict;
+}
+"""
+
+_BEGUN = """\
+/* 'begins': true while the operand, true since *since, has not lasted the shortest time. */
+/*@ requires is_verdict(lasts);
+    requires since != $_UNSET ==> lasts == $_TRUE || lasts == $_FALSE;
+    requires since == $_UNSET ==> lasts != $_TRUE;
+    assigns \\nothing;
+    ensures is_verdict(\\result);
+    ensures \\result == $_TRUE <==> since != $_UNSET && lasts == $_FALSE;
+    ensures \\result == $_UNKNOWN <==> since == $_UNSET && lasts == $_UNKNOWN; */
+static @_verdict begun(@_verdict lasts, int64_t since)
+{
+  return (since == $_UNSET) ? lasts : negated(lasts);
 }
 """
 
@@ -342,7 +370,9 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     yield "both", _BOTH
     yield "either", _EITHER
     yield "failsafe", _FAILSAFE
+    yield "heard", _HEARD
     yield "lasting", _LASTING
+    yield "begun", _BEGUN
     yield "recent", _RECENT
     yield "turned", _TURNED
 

@@ -246,17 +246,23 @@ def _name_inputs(program: Program, layout: Layout) -> None:
         for each in walk.conditions(program)
         if isinstance(each, Unknown) and each.operand is None
     }
-    awaited = _awaited(program)
+    awaited, causes = _awaited(program), _of_causes(program)
     for each in program.inputs:
         timed = each.timeout_ns is not None
         new = layout.names.new
         layout.inputs[each.index] = InputFields(
             known=new(each.name, "known") if each.index in read else "",
             base=new(each.name, "base") if timed or each.index in asked else "",
-            came=new(each.name, "came") if timed or each.index in asked else "",
+            came=new(each.name, "came") if timed or each.index in asked | causes else "",
             missing=new(each.name, "missing") if timed else "",
-            awaits=each.index in awaited,
+            awaits=each.index in awaited | causes,
         )
+
+
+def _of_causes(program: Program) -> set[int]:
+    """Return the inputs that the causes of ``since`` read: one may be unheard."""
+    sinces = (each for each in walk.conditions(program) if isinstance(each, Since))
+    return {index for each in sinces for index in each.inputs}
 
 
 def _awaited(program: Program) -> set[int]:

@@ -73,10 +73,12 @@ class MessageContracts:
         contract.cases["first"] = "m->started == 0"
         contract.of_case["first"] = list(DONE)
         contract.cases["news"] = "m->started != 0 && news != 0"
-        contract.of_case["news"] = [
-            *(f"{changed} ==> {each}" for each in DONE),
-            f"!{changed} ==> {NOTHING_DONE}",
-        ]
+        contract.of_case["news"] = list(DONE)
+        if not message.acts:
+            contract.of_case["news"] = [
+                *(f"{changed} ==> {each}" for each in DONE),
+                f"!{changed} ==> {NOTHING_DONE}",
+            ]
         contract.cases["none"] = "m->started != 0 && news == 0"
         contract.of_case["none"] = [NOTHING_DONE]
         return contract
@@ -205,6 +207,7 @@ class MessageContracts:
         fields = self._layout.inputs[each.index]
         if fields.base:
             yield f"m->{fields.base} == m->now"
+        if fields.came:
             yield f"m->{fields.came} == 1"
         if fields.missing:
             yield f"m->{fields.missing} == 0"

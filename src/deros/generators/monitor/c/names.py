@@ -8,15 +8,16 @@ from collections.abc import Iterable
 from deros.generators.text.identifiers import python_identifier
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.keywords import CPP_20, C
+from deros.monitor.formulas import SHARED
 
 _STANDARD = """assert errno main NULL NAN INFINITY INT64_MAX INT64_C abs fabs hypot sqrt sin cos
 tan atan2 asin fmod remainder fmin fmax index time signal"""
 _OURS = """m t now due owner started count verdict condition held rises changed done grace
-enabled value both either negated truth_of failsafe lasting earlier ahead is_number bounded arrive
-step_back reach_deadline catch_up earliest judge_all evaluate act restart
+enabled value both either negated truth_of failsafe heard begun lasting earlier ahead is_number
+bounded arrive step_back reach_deadline catch_up earliest judge_all evaluate act restart
 clear pass move_to rate emitted after follows same"""
 
-RESERVED = C | CPP_20 | frozenset(f"{_STANDARD} {_OURS}".split())
+RESERVED = C | CPP_20 | frozenset(f"{_STANDARD} {_OURS}".split()) | frozenset(SHARED)
 """Names that nothing made from a model gets."""
 
 

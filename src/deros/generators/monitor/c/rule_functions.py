@@ -94,7 +94,7 @@ def _intervals(conditions: Conditions, layout: Layout, condition: Condition) -> 
         elif isinstance(part, Since):
             kept = f"m->{layout.kept[part.index]}"
             lasts = Call("both", (conditions.verdict(part.operand), kept))
-            result = Call("either", (conditions.verdict(part.cause), lasts))
+            result = Call("either", (conditions.cause(part), lasts))
             yield from lay_out(2, f"{kept} = ", result)
 
 

@@ -50,6 +50,7 @@ def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
         if fields.base:
             what = "when its timeout began" if fields.missing else "when its last message came"
             yield Field("int64_t ", fields.base, what, 8, "", "from")
+        if fields.came:
             yield Field("bool ", fields.came, "whether a message has counted", 1, "", "false")
         if fields.missing:
             yield Field("bool ", fields.missing, "whether its timeout has passed", 1, "", "false")

@@ -91,6 +91,7 @@ class MessageView:
         rules: the indices of the rules that a message can change; ``judges`` their functions.
         judge: the function that evaluates them all; empty if there are none.
         after: the function that does so if a value has changed; empty if there are none.
+        acts: whether it then runs the behaviours though no verdict of a rule has changed.
     """
 
     handler: Handler
@@ -98,6 +99,7 @@ class MessageView:
     judges: tuple[str, ...]
     judge: str
     after: str
+    acts: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -313,13 +315,15 @@ def ends(program: Program, layout: Layout) -> Iterator[End]:
 
 def _messages(program: Program, layout: Layout) -> Iterator[MessageView]:
     inputs = inputs_of_rules(program)
+    awaited = walk.awaited_by_behaviours(program)
     for handler in handlers(program, layout):
         taken = set(handler.inputs)
         rules = tuple(rule.index for rule in program.rules if inputs[rule.index] & taken)
         judges = tuple(layout.judges[index] for index in rules)
         after = handler.observer.replace("observe", "after", 1) if judges else ""
         judge = handler.observer.replace("observe", "judge_by", 1) if judges else ""
-        yield MessageView(handler, rules, judges, judges[0] if len(judges) == 1 else judge, after)
+        one = judges[0] if len(judges) == 1 else judge
+        yield MessageView(handler, rules, judges, one, after, bool(taken & awaited))
 
 
 def inputs_of_rules(program: Program) -> list[set[int]]:

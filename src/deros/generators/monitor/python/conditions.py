@@ -20,6 +20,7 @@ from deros.monitor.ir import (
     Age,
     And,
     Apply,
+    Begins,
     Compare,
     Compute,
     Condition,
@@ -79,6 +80,8 @@ class Conditions:
                 return Atom(f"t < {self._layout.untils[condition.index]}")
             case Since():
                 return Atom(self._layout.kept[condition.index])
+            case Begins():
+                return Atom(f"t < {self._layout.dues[condition.operand.index]} < NEVER")
             case Failsafe():
                 unknown = [NoneOf(self.false(condition.operand))]
                 expected = [self._is_not_awaited(index) for index in condition.inputs]
@@ -115,7 +118,11 @@ class Conditions:
                 over = Atom(f"t >= {self._layout.untils[condition.index]}")
                 return all_of((over, self.false(condition.operand)))
             case Since():
-                return Atom(f"{self._layout.kept[condition.index]} is False")
+                ended = Atom(f"{self._layout.kept[condition.index]} is False")
+                return all_of((ended, self.false(condition.cause)))
+            case Begins(operand=lasting):
+                over = Atom(f"t >= {self._layout.dues[lasting.index]}")
+                return any_of((over, self.false(lasting.operand)))
             case Failsafe():
                 return self.false(condition.operand)
             case RuleRef():

@@ -10,6 +10,7 @@ from deros.generators.monitor.python.formulas import function_name, is_printed
 from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.monitor.python.rules import Judge
+from deros.generators.monitor.python.slots import Slot
 from deros.generators.text.document import LINE, SOFTLINE, concat, group, join, nest, render_lines
 from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment
@@ -18,6 +19,7 @@ from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
+from deros.monitor.formulas import calls
 from deros.monitor.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
 from deros.monitor.ir import (
     Age,
@@ -63,6 +65,7 @@ class Handler:
         signature: its first line or lines.
         lines: what it does to the inputs.
         judges: the methods that it calls then, for the rules that depend on the topic.
+        acts: whether it then runs the behaviours though no verdict of a rule has changed.
     """
 
     topic: str
@@ -72,6 +75,7 @@ class Handler:
     signature: tuple[str, ...]
     lines: tuple[str, ...]
     judges: tuple[str, ...]
+    acts: bool
 
 
 _FRESH = "fresh = True"
@@ -102,9 +106,17 @@ class _Writer:
         self._layout = layout
         self._topic = topic
         self._inputs = [each for each in program.inputs if each.topic == topic]
+        self._awaited = walk.awaited_by_behaviours(program)
         self._names = UniqueNames(RESERVED)
         self._parameters = self._name_parameters()
         self._locals: dict[ValueExpression, str] = {}
+        self._signed = {
+            operand
+            for value in layout.computed
+            if "atan2" in calls(value.formula)  # it alone tells 0.0 from -0.0
+            for operand in value.operands
+            if self._has_signed_zero(operand)
+        }
         ages = any(each.index in layout.counted for each in self._inputs)
         self._tells_news = not ages and not at_first
         """Whether a message that says nothing new can be told; an age always changes."""
@@ -127,6 +139,7 @@ class _Writer:
             tuple(lay_out_call(4, f"def {method}(", signature, ") -> None:")),
             tuple(lines),
             judges,
+            not self._awaited.isdisjoint(each.index for each in self._inputs),
         )
 
     def _name_parameters(self) -> dict[tuple[str | int, ...], Parameter]:
@@ -283,12 +296,15 @@ class _Writer:
             soonest = min(self._changes(each), default=None)
             statements += _call_at(soonest) if soonest is not None else []
         slots = [
-            (f"self._{slot.name}", self._local(value))
+            Slot(f"self._{slot.name}", self._local(value), value in self._signed)
             for value, slot in layout.values.items()
             if not isinstance(value, Compute) and index in inputs_of(self._program, value)
         ]
-        if index in layout.known:
-            slots.append((f"self._{layout.known[index]}", "True"))
+        slots += [
+            Slot(f"self._{flags[index]}", "True")
+            for flags in (layout.known, layout.came)
+            if index in flags
+        ]
         if each.timeout_ns is not None:
             statements += self._heard(each, each.timeout_ns, bool(slots))
         lines = [f"{' ' * indent}{statement}" for statement in statements]
@@ -322,19 +338,17 @@ class _Writer:
             return [*lines, f"    {_FRESH}"]
         return [*lines, "else:", "    return"] if self._tells_news else lines
 
-    def _news(
-        self, slots: Sequence[tuple[str, str]], computed: Sequence[str], indent: int
-    ) -> list[str]:
+    def _news(self, slots: Sequence[Slot], computed: Sequence[str], indent: int) -> list[str]:
         """Return the statements that store the values if they differ, and compute with them."""
         blank = " " * indent
-        stores = [*(f"{blank}{attribute} = {local}" for attribute, local in slots), *computed]
+        stores = [*(f"{blank}{each.attribute} = {each.local}" for each in slots), *computed]
         if not slots or not self._tells_news:
             return stores
         if self._counts_news:
-            test: Logic = any_of(_is_new(attribute, local) for attribute, local in slots)
+            test: Logic = any_of(part for each in slots for part in each.is_new())
             inner = [*stores, f"{blank}{_FRESH}"]
             return [*lay_out(indent, "if ", test, ":"), *(f"    {line}" for line in inner)]
-        test = all_of(_is_old(attribute, local) for attribute, local in slots)
+        test = all_of(part for each in slots for part in each.is_old())
         return [*lay_out(indent, "if ", test, ":"), f"{blank}    return", *stores]
 
     def _local(self, value: ValueExpression) -> str:
@@ -349,9 +363,16 @@ class _Writer:
             if isinstance(condition, Age) and condition.input == each.index:
                 yield from (change for change in age_changes(condition) if change > 0)
 
+    def _has_signed_zero(self, value: Read | Apply) -> bool:
+        """Return whether -0.0 is one of a value's numbers."""
+        if isinstance(value, Apply):
+            return FUNCTIONS[value.function].result in (Result.FLOAT, Result.ELEMENT)
+        return self._program.leaves[value.leaf].type.base in FLOAT_TYPES
+
     def _is_observed(self, each: Input) -> bool:
-        has_values = each.index in self._layout.forget
-        return has_values or each.timeout_ns is not None or each.index in self._layout.counted
+        layout, index = self._layout, each.index
+        has_values = any(index in names for names in (layout.forget, layout.came, layout.counted))
+        return has_values or each.timeout_ns is not None
 
     def _functions_of(self, each: Input) -> list[Apply]:
         return [
@@ -396,14 +417,6 @@ def _lay_out_length(indent: int, parts: Sequence[str]) -> list[str]:
     squares = join(concat(LINE, "+ "), (f"{part} * {part}" for part in parts))
     document = group("length = math.sqrt(", nest(4, SOFTLINE, squares), SOFTLINE, ")")
     return render_lines(document, LINE_LENGTH, indent)
-
-
-def _is_new(attribute: str, local: str) -> Logic:
-    return Atom(f"not {attribute}" if local == "True" else f"{local} != {attribute}")
-
-
-def _is_old(attribute: str, local: str) -> Logic:
-    return Atom(attribute if local == "True" else f"{local} == {attribute}")
 
 
 def _call_at(wait_ns: int) -> list[str]:

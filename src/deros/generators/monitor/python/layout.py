@@ -14,6 +14,7 @@ from deros.monitor.functions import FUNCTIONS, Function, Result
 from deros.monitor.ir import (
     Age,
     Apply,
+    Begins,
     Compute,
     Condition,
     Failsafe,
@@ -61,7 +62,9 @@ class Layout:
         counted: of an input that an ``age()`` asks for, when its last counted message came.
         dues: of each ``For``, when it becomes true.
         untils: of each ``Once``, until when it is true.
-        kept: of each ``Since``, its verdict.
+        kept: of each ``Since``, its verdict as the next event remembers it.
+        came: of an input that the cause of a ``since`` reads, whether it has come since the start
+            or the last step of the clock.
         verdicts: of each rule.
         since: of each rule, when it last became true or ceased to be.
         three_valued: the rules whose falsehood matters, not only their truth.
@@ -88,6 +91,7 @@ class Layout:
     dues: dict[int, str] = field(default_factory=dict)
     untils: dict[int, str] = field(default_factory=dict)
     kept: dict[int, str] = field(default_factory=dict)
+    came: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
     since: dict[int, str] = field(default_factory=dict)
     three_valued: frozenset[int] = frozenset()
@@ -159,6 +163,9 @@ def _name_inputs(program: Program, layout: Layout) -> None:
         if isinstance(condition, Age) and condition.input not in layout.counted:
             name = program.inputs[condition.input].name
             layout.counted[condition.input] = layout.names.new(name, "counted")
+        for index in condition.inputs if isinstance(condition, Since) else ():
+            if index not in layout.came:
+                layout.came[index] = layout.names.new(program.inputs[index].name, "came")
 
 
 def _name_verdicts(program: Program, layout: Layout) -> None:
@@ -246,7 +253,7 @@ def _three_valued(program: Program) -> set[int]:
                 found.add(rule)
             case Not(operand=operand):
                 ask(operand, for_falsehood, for_truth)
-            case For(operand=operand) | Once(operand=operand):
+            case For(operand=operand) | Once(operand=operand) | Begins(operand=operand):
                 ask(operand, True, for_falsehood)
             case Failsafe(operand=operand):
                 ask(operand, True, True)

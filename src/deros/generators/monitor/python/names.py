@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from deros.generators.monitor.python.formulas import function_name
 from deros.generators.text.identifiers import PYTHON_WORDS
+from deros.monitor.formulas import SHARED
 from deros.monitor.functions import FUNCTIONS
 
 MODULE_NAMES = frozenset(
@@ -29,7 +30,9 @@ LOCAL_NAMES = frozenset(
     }
 )
 
-_FUNCTION_NAMES = {function_name(row) for row in FUNCTIONS.values()} | {
-    row.guard.python_call for row in FUNCTIONS.values() if row.guard
+_FUNCTION_NAMES = {
+    *(function_name(row) for row in FUNCTIONS.values()),
+    *(row.guard.python_call for row in FUNCTIONS.values() if row.guard),
+    *SHARED,
 }
 RESERVED = MODULE_NAMES | METHOD_NAMES | LOCAL_NAMES | _FUNCTION_NAMES | PYTHON_WORDS

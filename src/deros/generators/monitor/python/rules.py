@@ -173,15 +173,17 @@ def interval_lines(conditions: Conditions, layout: Layout, condition: Condition)
 
 
 def _kept_lines(conditions: Conditions, layout: Layout, part: Since) -> list[str]:
-    """Return the statements that compute the verdict of a ``since`` from the one before."""
+    """Return the statements that compute what a ``since`` remembers from what it remembered."""
     kept = layout.kept[part.index]
     lasts = all_of((conditions.true(part.operand), Atom(kept)))
     ends = any_of((conditions.false(part.operand), Atom(f"{kept} is False")))
+    awaited = (Atom(f"not self._{layout.came[index]}") for index in part.inputs)
+    is_none = any_of((conditions.false(part.cause), *awaited))
     return [
         f"        {kept} = self._{kept}",
         *lay_out(8, "if ", any_of((conditions.true(part.cause), lasts)), ":"),
         f"            {kept} = self._{kept} = True",
-        *lay_out(8, "elif ", all_of((conditions.false(part.cause), ends)), ":"),
+        *lay_out(8, "elif ", all_of((is_none, ends)), ":"),
         f"            {kept} = self._{kept} = False",
         "        else:",
         f"            {kept} = self._{kept} = None",

@@ -228,7 +228,7 @@ def _restarted(layout: Layout) -> tuple[tuple[str, str], ...]:
     pairs = [(name, "NAN") for name in layout.counted.values()]
     pairs += [(name, "NEVER") for name in layout.dues.values()]
     pairs += [(name, "0") for name in layout.untils.values()]
-    pairs += [(name, "False") for name in layout.kept.values()]
+    pairs += [(name, "False") for name in (*layout.kept.values(), *layout.came.values())]
     pairs += [(name, "t") for name in layout.since.values()]
     return tuple(pairs)
 

@@ -25,7 +25,7 @@ from deros.monitor.causes import (
     plan_of_behaviour,
     plan_of_rule,
 )
-from deros.monitor.ir import Program
+from deros.monitor.ir import Program, Since
 from deros.monitor.reads import term_name
 
 _TIME = re.compile(r"(?<![\w.])t [<>-]")
@@ -112,7 +112,7 @@ class _Emitter:
             case During():
                 if not known:
                     yield text(self._test(plan))
-                yield from self._tests(plan.part)
+                yield from self._tests(plan.part, plan.is_sure)
             case OrUnknown():
                 yield from self._tests(plan.part, False)
 
@@ -129,7 +129,7 @@ class _Emitter:
                     *self._block(indent + 4, plan, True),
                 ]
             case During():
-                return self._block(indent, plan.part, True)
+                return self._block(indent, plan.part, plan.is_sure)
             case AllOf() if not known:
                 lines: list[str] = []
                 parts = [self._expression(indent, each, False, lines) for each in plan.parts]
@@ -155,11 +155,12 @@ class _Emitter:
                 return f"given({test}, {self._cause(plan)})"
             case During():
                 if known:
-                    return self._expression(indent, plan.part, True, before)
+                    return self._expression(indent, plan.part, plan.is_sure, before)
                 test = text(self._test(plan))
-                if isinstance(plan.part, Say | SayRule):
+                if plan.is_sure and isinstance(plan.part, Say | SayRule):
                     return f"given({test}, {self._cause(plan.part)})"
-                return f"given({test}, *{self._expression(indent, plan.part, True, before)})"
+                part = self._expression(indent, plan.part, plan.is_sure, before)
+                return f"given({test}, *{part})"
             case AllOf() | AnyOf():
                 sure = known and isinstance(plan, AllOf)
                 head = "all_of" if isinstance(plan, AllOf) else "any_of"
@@ -179,6 +180,8 @@ class _Emitter:
             case SayRule():
                 verdict = f"self._{self._layout.verdicts[plan.rule]}"
                 return Atom(verdict if plan.holds else f"{verdict} is False")
+            case During(interval=Since() as interval):
+                return self._conditions.true(interval)
             case During():
                 due = self._own.dues[plan.interval.index]
                 return Atom(f"t >= {due}" if plan.reached else f"t < {due} < NEVER")

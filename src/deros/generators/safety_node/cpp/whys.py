@@ -42,6 +42,7 @@ from deros.monitor.ir import (
     Once,
     Program,
     RuleRef,
+    Since,
     Truth,
     Unknown,
     Within,
@@ -121,7 +122,7 @@ class _Emitter:
                 yield from self._block(indent + 2, plan, True)
                 yield f"{blank}}}"
             case During():
-                yield from self._block(indent, plan.part, True)
+                yield from self._block(indent, plan.part, plan.is_sure)
             case AllOf() if not known:
                 yield from _called(
                     "runtime::append", ("causes", self._expression(plan, False)), indent
@@ -145,7 +146,7 @@ class _Emitter:
                 test = "true" if known else _text(self._test(plan))
                 return Call("runtime::cause_if", (test, self._cause(plan)))
             case During():
-                part = self._expression(plan.part, True)
+                part = self._expression(plan.part, plan.is_sure)
                 test = _text(self._test(plan))
                 return part if known else Call("runtime::causes_if", (test, part))
             case AllOf() | AnyOf():
@@ -163,10 +164,12 @@ class _Emitter:
             case SayRule():
                 verdict = f"m.{self._layout.verdicts[plan.rule]}"
                 return Atom(f"{verdict} == {macro}_{str(plan.holds).upper()}")
-            case During():
-                since = f"m.{self._layout.since[plan.interval.index]}"
+            case During(interval=interval):
+                if isinstance(interval, Since):
+                    return Atom(f"m.{self._layout.kept[interval.index]} == {macro}_TRUE")
+                since = f"m.{self._layout.since[interval.index]}"
                 relation = ">=" if plan.reached else "<"
-                lasted = f"m.now - {since} {relation} {integer(plan.interval.duration_ns)}"
+                lasted = f"m.now - {since} {relation} {integer(interval.duration_ns)}"
                 return all_of((Atom(f"{since} != {macro}_UNSET"), Atom(lasted)))
 
     def _cause(self, part: Say | SayRule) -> Expression:
