@@ -151,7 +151,7 @@ def _shared(formula: Formula) -> Iterable[str]:
     for name in calls(formula):
         if name in SHARED:
             parameters, shared = SHARED[name]
-            yield _function(name, parameters, shared, f"Return the value of {name}().")
+            yield _function(name, parameters, shared, f"Return the {name} value; NaN is unknown.")
 
 
 def _function(name: str, parameters: tuple[str, ...], formula: Formula, says: str) -> str:
