@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
+from deros.diagnostics import has_errors
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
@@ -102,7 +103,7 @@ entity doubt {
   failsafe hidden: (attitude.tilt() > 20 deg and state = "automatic") for 0.2 sec;
   failsafe absent: elbow.rate() > 3 or state.missing();
   lasting: (enabled since mode = 3) or not (hidden since absent);
-  recent: (mode = 3 begins within 2 sec) or (not absent within 0.5 sec);
+  recent: (mode = 3 begins within 2 sec) or ((not absent) within 0.5 sec);
 }
 if drive.too_fast and controller.auto then { stop; log_state("too fast: don't ünd so"); };
 behaviour tilt: if body.tilted for 0.4 sec then {
@@ -145,8 +146,10 @@ def built(rules: str, name: str, folder: Path | None = None) -> Program:
             (Path(made) / "robot.system").write_text(SYSTEM, encoding="utf-8")
             return built(rules, name, Path(made))
     repository = Repository()
-    model = repository.load_text(folder / f"{name}.deros", rules).model
-    assert isinstance(model, Rules), repository.diagnostics
+    loaded = repository.load_text(folder / f"{name}.deros", rules)
+    model = loaded.model
+    assert isinstance(model, Rules), loaded.diagnostics
+    assert not has_errors(loaded.diagnostics), loaded.diagnostics
     result = build(model, InterfaceStore())
     assert result.program is not None, result.diagnostics
     return result.program

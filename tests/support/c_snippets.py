@@ -126,7 +126,7 @@ SNIPPETS = {
     ),
     "lasting_behaviour": _acts(
         "action stop; if e.r for 1 sec then { stop; }; "
-        "if e.r since e.s then { stop; }; if not e.r within 1 sec then { stop; };",
+        "if e.r since e.s then { stop; }; if (not e.r) within 1 sec then { stop; };",
         "behave_behaviour_1 behave_behaviour_2 behave_behaviour_3 after_v",
     ),
 }

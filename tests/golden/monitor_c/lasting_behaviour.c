@@ -1,4 +1,4 @@
-/* input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: v > 2; } action stop; if e.r for 1 sec then { stop; }; if e.r since e.s then { stop; }; if not e.r within 1 sec then { stop; }; */
+/* input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: v > 2; } action stop; if e.r for 1 sec then { stop; }; if e.r since e.s then { stop; }; if (not e.r) within 1 sec then { stop; }; */
 
 static void behave_behaviour_3(small_monitor *m)
 {

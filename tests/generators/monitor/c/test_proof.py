@@ -174,14 +174,14 @@ entity e {{ high: v >= 1 since v > 2; failsafe unanswered: (not f since high) fo
 if e.unanswered then {{ stop; }};
 if not e.high since e.unanswered then {{ free; }};
 """,
-        "(judge|behave|after|restart).*|act|evaluate|step_back",
+        "(judge|behave|after|take|restart).*|act|evaluate|step_back",
         12,
     ),
     "within": (
         f"""{INPUTS} {ACTIONS}
 entity e {{ moved: v > 1 within 2 sec; failsafe both: (moved and f within 0.5 sec) for 1 sec; }}
 if e.both then {{ stop; }};
-if not e.moved within 3 sec then {{ free; }};
+if (not e.moved) within 3 sec then {{ free; }};
 """,
         "(judge|behave|after|restart|recent|earliest).*|act|evaluate|step_back",
         14,

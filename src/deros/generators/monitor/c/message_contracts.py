@@ -65,7 +65,8 @@ class MessageContracts:
         names = self._layout.verdicts
         others = [f"judged_{name}(m)" for each, name in names.items() if each not in message.rules]
         touched = [f"judged_{names[each]}(m)" for each in message.rules]
-        contract.requires.append(f"m->started != 0 ==> {all_of([*others, 'acted(m)'])}")
+        (touched if message.acts else others).append("acted(m)")
+        contract.requires += [f"m->started != 0 ==> {all_of(others)}"] if others else []
         contract.requires.append(f"m->started != 0 && news == 0 ==> {all_of(touched)}")
         contract.requires.append("(m->started == 0 ==> unacted(m))")
         contract.ensures += [*self._settled(), KEPT_BY_JUDGING, VERDICTS_DATED, INTERVALS_RUN_ON]
