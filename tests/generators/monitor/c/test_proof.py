@@ -175,7 +175,7 @@ if e.unanswered then {{ stop; }};
 if not e.high since e.unanswered then {{ free; }};
 """,
         "(judge|behave|after|take|restart).*|act|evaluate|step_back",
-        12,
+        14,
     ),
     "within": (
         f"""{INPUTS} {ACTIONS}
