@@ -313,13 +313,14 @@ class RulesConverter(TermConverter):
         """Report a condition whose ``not`` people read in two ways."""
         span = self.span(whole)
         written = " ".join(self.span(negated).text.split())
-        written = written if written[0] == "(" else f"({written})"
+        if type(negated).__name__ == "Parenthesis":
+            written = written[1:-1].strip()
         rest = " ".join(self.source.text[self.span(negated).end : span.end].split())
         self.report(
             codes.AMBIGUOUS_NOT,
             f"people read 'not' before '{word}' in two ways",
             span,
-            f"write 'not ({written[1:-1]} {rest})' or '(not {written[1:-1]}) {rest}'",
+            f"write 'not ({written} {rest})' or '(not {written}) {rest}'",
         )
 
     def _predicate(self, found: Any) -> Condition:
