@@ -486,10 +486,8 @@ class _Drawing:
         return rule
 
     def inputs_of(self, condition: ir.Condition) -> tuple[int, ...]:
-        """Return the inputs that a condition reads, by the rules that it names, too."""
-        named = walk.with_named(condition, self.rules)
-        read = (walk.inputs_read(each, self.leaves) for each in named)
-        return tuple(sorted(set().union(*read)))
+        """Return the inputs that a condition reads, and the rules that it names."""
+        return walk.inputs_behind(condition, self.rules, self.leaves)
 
     def atom_or_rule(self) -> ir.Condition:
         """Draw a condition on an input, or an earlier rule."""

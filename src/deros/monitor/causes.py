@@ -394,8 +394,8 @@ def _tell(program: Program, plan: Plan, state: State, t_ns: int) -> list[str]:
             return [cause for each in told for cause in each] if is_so else []
         case During():
             has_lasted = evaluate_condition(plan.interval, state, t_ns) is True
-            has_begun = has_lasted or plan.interval.index in state.since
-            is_so = has_begun and has_lasted is plan.reached
+            is_short = not has_lasted and plan.interval.index in state.since
+            is_so = has_lasted if plan.reached else is_short
             return _tell(program, plan.part, state, t_ns) if is_so else []
         case OrUnknown():
             names = [term_name(program, each) for each in plan.terms if _is_unknown(each, state)]

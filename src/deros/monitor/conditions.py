@@ -122,8 +122,5 @@ class Conditions:
                 return leaf(condition)
 
     def inputs_of(self, condition: ir.Condition) -> tuple[int, ...]:
-        """Return the inputs whose values or ages a condition reads, by the rules it names too."""
-        found: set[int] = set()
-        for each in walk.with_named(condition, self._built):
-            found |= walk.inputs_read(each, self._scope.leaves)
-        return tuple(sorted(found))
+        """Return the inputs that a condition reads, and the rules that it names."""
+        return walk.inputs_behind(condition, self._built, self._scope.leaves)

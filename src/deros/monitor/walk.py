@@ -59,14 +59,19 @@ def refusing(program: Program) -> frozenset[int]:
     return frozenset(found)
 
 
+def inputs_of_causes(conditions: Iterable[Condition]) -> frozenset[int]:
+    """Return the inputs that the causes of every ``since`` among the conditions read."""
+    sinces = (each for each in conditions if isinstance(each, Since))
+    return frozenset(index for each in sinces for index in each.inputs)
+
+
 def awaited_by_behaviours(program: Program) -> frozenset[int]:
     """Return the inputs that causes of a ``since`` in a behaviour read.
 
     That such an input has come may change what is remembered, without any verdict of a rule.
     """
-    everything = (parts(each.condition) for each in behaviours(program))
-    sinces = (part for each in everything for part in each if isinstance(part, Since))
-    return frozenset(index for each in sinces for index in each.inputs)
+    conditions = (each.condition for each in behaviours(program))
+    return inputs_of_causes(part for each in conditions for part in parts(each))
 
 
 def conditions(program: Program) -> Iterator[Condition]:
@@ -172,6 +177,14 @@ def inputs_read(condition: Condition, leaves: Sequence[Leaf]) -> set[int]:
         elif isinstance(value, Read):
             found.add(leaves[value.leaf].input)
     return found
+
+
+def inputs_behind(
+    condition: Condition, rules: Mapping[int, Rule] | Sequence[Rule], leaves: Sequence[Leaf]
+) -> tuple[int, ...]:
+    """Return the inputs that a condition reads, and the rules that it names, in order."""
+    read = (inputs_read(each, leaves) for each in with_named(condition, rules))
+    return tuple(sorted(set().union(*read)))
 
 
 def terminals(condition: Condition) -> list[Read | Apply]:

@@ -101,11 +101,9 @@ class Conditions:
                 return self.interval(condition) if timed else self.verdict(condition.operand)
             case Since():
                 kept = f"m->{self._layout.kept[condition.index]}"
-                return (
-                    Call("either", (self.verdict(condition.cause), kept))
-                    if condition.inputs
-                    else kept
-                )
+                if not condition.inputs:
+                    return kept
+                return Call("either", (self.verdict(condition.cause), kept))
             case Begins(operand=lasting):
                 since = f"m->{self._layout.since[lasting.index]}"
                 return Call("begun", (self.interval(lasting), since))

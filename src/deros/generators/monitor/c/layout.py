@@ -246,7 +246,7 @@ def _name_inputs(program: Program, layout: Layout) -> None:
         for each in walk.conditions(program)
         if isinstance(each, Unknown) and each.operand is None
     }
-    awaited, causes = _awaited(program), _of_causes(program)
+    awaited, causes = _awaited(program), walk.inputs_of_causes(walk.conditions(program))
     for each in program.inputs:
         timed = each.timeout_ns is not None
         new = layout.names.new
@@ -257,12 +257,6 @@ def _name_inputs(program: Program, layout: Layout) -> None:
             missing=new(each.name, "missing") if timed else "",
             awaits=each.index in awaited | causes,
         )
-
-
-def _of_causes(program: Program) -> set[int]:
-    """Return the inputs that the causes of ``since`` read: one may be unheard."""
-    sinces = (each for each in walk.conditions(program) if isinstance(each, Since))
-    return {index for each in sinces for index in each.inputs}
 
 
 def _awaited(program: Program) -> set[int]:

@@ -10,7 +10,7 @@ from deros.generators.monitor.python.formulas import function_name, is_printed
 from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.monitor.python.rules import Judge
-from deros.generators.monitor.python.slots import Slot
+from deros.generators.monitor.python.slots import Slot, signed_values
 from deros.generators.text.document import LINE, SOFTLINE, concat, group, join, nest, render_lines
 from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment
@@ -19,7 +19,6 @@ from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
 from deros.monitor import walk
 from deros.monitor.engine import age_changes
-from deros.monitor.formulas import calls
 from deros.monitor.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
 from deros.monitor.ir import (
     Age,
@@ -90,9 +89,13 @@ def handlers(
     then the first message, whatever its values, is the first event.
     """
     methods = UniqueNames(frozenset())
+    signed = signed_values(program, layout)
+    acting = {program.inputs[index].topic for index in walk.awaited_by_behaviours(program)}
     return tuple(
-        _Writer(program, layout, topic, known_at_start).handler(
-            methods.new("on", topic), tuple(each.method for each in judges if topic in each.topics)
+        _Writer(program, layout, topic, known_at_start, signed).handler(
+            methods.new("on", topic),
+            tuple(each.method for each in judges if topic in each.topics),
+            topic in acting,
         )
         for topic in program.topics
     )
@@ -101,29 +104,29 @@ def handlers(
 class _Writer:
     """Writes the handler of one topic."""
 
-    def __init__(self, program: Program, layout: Layout, topic: str, at_first: bool) -> None:
+    def __init__(
+        self,
+        program: Program,
+        layout: Layout,
+        topic: str,
+        at_first: bool,
+        signed: frozenset[ValueExpression],
+    ) -> None:
         self._program = program
         self._layout = layout
         self._topic = topic
         self._inputs = [each for each in program.inputs if each.topic == topic]
-        self._awaited = walk.awaited_by_behaviours(program)
         self._names = UniqueNames(RESERVED)
         self._parameters = self._name_parameters()
         self._locals: dict[ValueExpression, str] = {}
-        self._signed = {
-            operand
-            for value in layout.computed
-            if "atan2" in calls(value.formula)  # it alone tells 0.0 from -0.0
-            for operand in value.operands
-            if self._has_signed_zero(operand)
-        }
+        self._signed = signed
         ages = any(each.index in layout.counted for each in self._inputs)
         self._tells_news = not ages and not at_first
         """Whether a message that says nothing new can be told; an age always changes."""
         read = [each for each in self._inputs if self._is_observed(each)]
         self._counts_news = self._tells_news and len(read) > 1
 
-    def handler(self, method: str, judges: tuple[str, ...]) -> Handler:
+    def handler(self, method: str, judges: tuple[str, ...], acts: bool) -> Handler:
         lines: list[str] = []
         for each in self._inputs:
             lines += self._input(each)
@@ -139,7 +142,7 @@ class _Writer:
             tuple(lay_out_call(4, f"def {method}(", signature, ") -> None:")),
             tuple(lines),
             judges,
-            not self._awaited.isdisjoint(each.index for each in self._inputs),
+            acts,
         )
 
     def _name_parameters(self) -> dict[tuple[str | int, ...], Parameter]:
@@ -362,12 +365,6 @@ class _Writer:
         for condition in walk.conditions(self._program):
             if isinstance(condition, Age) and condition.input == each.index:
                 yield from (change for change in age_changes(condition) if change > 0)
-
-    def _has_signed_zero(self, value: Read | Apply) -> bool:
-        """Return whether -0.0 is one of a value's numbers."""
-        if isinstance(value, Apply):
-            return FUNCTIONS[value.function].result in (Result.FLOAT, Result.ELEMENT)
-        return self._program.leaves[value.leaf].type.base in FLOAT_TYPES
 
     def _is_observed(self, each: Input) -> bool:
         layout, index = self._layout, each.index

@@ -163,9 +163,8 @@ def _name_inputs(program: Program, layout: Layout) -> None:
         if isinstance(condition, Age) and condition.input not in layout.counted:
             name = program.inputs[condition.input].name
             layout.counted[condition.input] = layout.names.new(name, "counted")
-        for index in condition.inputs if isinstance(condition, Since) else ():
-            if index not in layout.came:
-                layout.came[index] = layout.names.new(program.inputs[index].name, "came")
+    for index in sorted(walk.inputs_of_causes(walk.conditions(program))):
+        layout.came[index] = layout.names.new(program.inputs[index].name, "came")
 
 
 def _name_verdicts(program: Program, layout: Layout) -> None:

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from deros.generators.monitor.python.layout import Layout
 from deros.generators.text.logic import Atom, Logic
+from deros.interfaces.types import FLOAT_TYPES
+from deros.monitor.formulas import calls
+from deros.monitor.functions import FUNCTIONS, Result
+from deros.monitor.ir import Apply, Program, Read, ValueExpression
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,3 +35,21 @@ class Slot:
     def _signs(self, operator: str) -> list[Logic]:
         signs = [f"math.copysign(1.0, {each})" for each in (self.local, self.attribute)]
         return [Atom(f" {operator} ".join(signs))] if self.is_signed else []
+
+
+def signed_values(program: Program, layout: Layout) -> frozenset[ValueExpression]:
+    """Return the values of which -0.0 is another one than 0.0: ``atan2`` alone tells them apart."""
+    return frozenset(
+        operand
+        for value in layout.computed
+        if "atan2" in calls(value.formula)
+        for operand in value.operands
+        if _has_signed_zero(program, operand)
+    )
+
+
+def _has_signed_zero(program: Program, value: Read | Apply) -> bool:
+    """Return whether -0.0 is one of a value's numbers."""
+    if isinstance(value, Apply):
+        return FUNCTIONS[value.function].result in (Result.FLOAT, Result.ELEMENT)
+    return program.leaves[value.leaf].type.base in FLOAT_TYPES
