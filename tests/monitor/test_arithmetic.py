@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from deros import codes
+from deros.diagnostics import Diagnostic
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
@@ -16,7 +17,7 @@ from deros.monitor.build import BuildResult, build
 from deros.monitor.engine import Engine
 from deros.monitor.function_forms import strict
 from deros.monitor.operations import usage_table
-from tests.support.rules import program
+from tests.support.rules import build_rules, program
 
 HEAD = """
 input v = topic /odom.twist.twist.linear.x timeout 1 sec
@@ -39,6 +40,13 @@ def side(condition: str, declared: str = "") -> ir.Compute:
     assert isinstance(compare, ir.Compare)
     assert isinstance(compare.left, ir.Compute)
     return compare.left
+
+
+def refused(condition: str, declared: str = "") -> tuple[Diagnostic, ...]:
+    """Return the findings of a rule that is refused."""
+    found = build_rules(f"{HEAD}{declared} entity e {{ r: {condition}; }}")
+    assert found.program is None
+    return tuple(found.diagnostics)
 
 
 def value(text: str, *operands: float, declared: str = "") -> float | None:
@@ -132,7 +140,7 @@ def test_constant_terms_are_exact() -> None:
 def test_unit_ends_before_what_is_declared() -> None:
     """In the place of a unit stands an input, unless the whole text is a unit."""
     assert value("0.5 sec * v", 3.0) == 1.5
-    found = side("0.5 sec * v * 2 / m > 1 m")
+    found = side("0.5 sec * v * 2 / n > 1 m", "input n = topic /mode.data [dimensionless]")
     assert len(found.operands) == 2
     compare = rule("v > 0.5 m / s", "input s = topic /speed.data").rules[0].condition
     assert isinstance(compare, ir.Compare)
@@ -141,25 +149,87 @@ def test_unit_ends_before_what_is_declared() -> None:
 
 def test_defined_units_count_where_a_unit_ends() -> None:
     """A unit of the file is one before what is declared in it, wherever it is defined."""
-    declared = "unit lap = 400 m input laps = topic /mode.data"
-    assert value("2 lap * laps / 1 m", 3.0, declared=declared) == 2400.0
+    declared = "unit lap = 400 m input laps = topic /mode.data [dimensionless]"
+    assert value("2 lap * laps + 0 m", 3.0, declared=declared) == 6.0
 
 
-def test_operand_without_a_known_unit_is_in_base_units() -> None:
-    """Constants beside it are converted, and so is what the result is compared with."""
-    assert value("m * 500 ms", 3.0) == 1.5
-    assert value("m + 30 cm", 1.0) == 1.3
-    assert value("500 ms / (m)", 2.0) == 0.25
-    found = rule("m * 2 > 5 cm").rules[0].condition
-    assert isinstance(found, ir.Compare)
-    assert found.right == ir.Const(0.05)
-    found = rule("m * 2 in [5 cm, 1 km] and x / 2 not in [1 in, 2 in]").rules[0].condition
-    assert isinstance(found, ir.And)
-    found = found.operands[0]
-    assert isinstance(found, ir.Within)
-    assert (found.lower, found.upper) == (ir.Const(0.05), ir.Const(1000.0))
-    found = rule("x * 100 / 1 m > m * 1 deg").rules[0].condition
-    assert isinstance(found, ir.Compare)
+@pytest.mark.parametrize(
+    "condition",
+    [
+        "{} * 500 ms > 0",
+        "{} + 30 cm > 1",
+        "500 ms / ({}) > 0",
+        "{} * 2 > 5 cm",
+        "{} * 2 in [5 cm, 1 km]",
+        "x > abs({})",
+        "abs({}) < x",
+        "max({}, 1 m) > 2 m",
+        "{}.abs() > 1 m",
+        "{}.previous() > 1 m",
+        "hypot({}, x) > 1 m",
+    ],
+)
+def test_operand_without_a_known_unit_beside_a_quantity_is_refused(condition: str) -> None:
+    """Its unit would be one that nobody sees; declared at the input, it is known."""
+    (fault,) = refused(condition.format("m"))
+    assert fault.code is codes.UNIT_NOT_DECLARED
+    assert rule(condition.format("k"), "input k = topic /mode.data [m]").rules
+
+
+def test_declared_unit_is_that_of_a_field_everywhere() -> None:
+    """Functions and arithmetic have it, and what is compared is converted into it."""
+    declared = "input p = topic /speed.data [bar] timeout 1 sec"
+    for term in ("p", "p.abs()", "p.previous()", "abs(p)", "p * 1", "p + 0 bar", "max(p, 0 bar)"):
+        compare = rule(f"{term} > 600 kPa", declared).rules[0].condition
+        assert isinstance(compare, ir.Compare)
+        assert compare.right == ir.Const(6.0)
+    assert value("p + 50 kPa", 1.0, declared=declared) == 1.5
+
+
+def test_plain_numbers_beside_a_field_without_a_unit() -> None:
+    """Such a field counts as a plain number everywhere."""
+    assert value("m * 2 + 3", 2.0) == 7.0
+    assert value("m + sin(w * 1 s)", 2.0, 0.0) == 2.0
+    (fault,) = refused("m * 2 > 3 and m > 1 m")
+    assert fault.code is codes.FIELD_IN_TWO_UNITS
+    assert rule("m > 1 m and m > 0 and m in [0, 2 m]").rules
+
+
+def test_fields_that_are_compared_have_one_unit() -> None:
+    """What is known of one is known of the other, in whichever order the rules stand."""
+    other = "input n = topic /speed.data timeout 1 sec"
+    (fault,) = refused("m > n and m > 6 bar and n > 6 kPa", other)
+    assert fault.code is codes.FIELD_IN_TWO_UNITS
+    (fault,) = refused("m > 6 bar and n > 6 kPa and m > n", other)
+    assert fault.code is codes.FIELD_IN_TWO_UNITS
+    assert rule("m > n and m > 6 bar and n > 6 bar", other).rules
+    (fault,) = refused("m > x and m > 1 km")
+    assert fault.code is codes.FIELD_IN_TWO_UNITS
+
+
+@pytest.mark.parametrize(
+    "condition",
+    ["b - b.previous() > 5 degC", "b - 20 degC not in [-9 degF, 9 K]", "b > b - 20 degC"],
+)
+def test_difference_of_temperatures_is_no_temperature(condition: str) -> None:
+    """It is in K; 5 degC would be 278.15 K."""
+    (fault,) = refused(condition)
+    assert fault.code is codes.INCOMPATIBLE_UNITS
+    assert "difference of temperatures" in fault.message + fault.hint
+
+
+def test_difference_of_temperatures_is_in_kelvin() -> None:
+    """Whatever scale the sensor has; a plain number beside it is in K where that is its degree."""
+    compare = rule("b - b.previous() > 5 K").rules[0].condition
+    assert isinstance(compare, ir.Compare)
+    assert compare.right == ir.Const(5.0)
+    assert value("b - 68 degF", 25.0) == 5.0
+    fahrenheit = "input f = topic /speed.data [degF] timeout 1 sec"
+    compare = rule("f - f.previous() > 5 K", fahrenheit).rules[0].condition
+    assert isinstance(compare, ir.Compare)
+    assert compare.right == ir.Const(9.0)
+    (fault,) = refused("f - f.previous() > 5", fahrenheit)
+    assert fault.code is codes.PLAIN_BESIDE_COMPUTED
 
 
 def test_equal_operands_are_one() -> None:

@@ -71,7 +71,7 @@ def rule(condition: str) -> str:
         ("limit < v", "/speed", {"data": 3.25}, "v 3.25 > 2.5"),
         ("not v <= limit", "/speed", {"data": 3.25}, "v 3.25 > 2.5"),
         ("not v != 3.25", "/speed", {"data": 3.25}, "v = 3.25"),
-        ("v != 2", "/speed", {"data": -0.0}, "v -0.0 != 2"),
+        ("v != 2", "/speed", {"data": -0.0}, "v 0.0 != 2"),
         ("v > 2", "/speed", {"data": math.inf}, "v inf > 2"),
         ("v in (2, 4]", "/speed", {"data": 3.0}, "v 3.0 in (2, 4]"),
         ("v not in [0, 2]", "/speed", {"data": 3.0}, "v 3.0 not in [0, 2]"),

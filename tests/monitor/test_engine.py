@@ -297,7 +297,7 @@ def test_explain_shows_terms_as_written() -> None:
     action stop;
     input scan = topic /scan
     input q = topic /imu.orientation
-    input v = topic /speed.data
+    input v = topic /speed.data [rad]
     entity e {  // a comment
       r: scan.nearest(-1 rad, 0.5 rad) < 1 or q.roll() > v  // another
          or v.rate() > 2;

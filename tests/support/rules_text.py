@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import re
 
+from deros.interfaces.rep103 import unit_of
 from deros.monitor import ir
 from deros.monitor.functions import FUNCTIONS, Argument
+from tests.support.rules import embedded_store
 from tests.support.strategies import KINDS
 
 NODE_TEXT = "node robot : robot\npublishes\n" + "".join(
@@ -52,7 +54,17 @@ class _Writer:
 
     def input(self, each: ir.Input) -> str:
         timeout = "" if each.timeout_ns is None else f" timeout {each.timeout_ns} ns"
-        return f"input {each.name} = topic {each.topic}{_path(each.path)}{timeout}"
+        unit = " [dimensionless]" if self._lacks_unit(each) else ""
+        return f"input {each.name} = topic {each.topic}{_path(each.path)}{unit}{timeout}"
+
+    def _lacks_unit(self, each: ir.Input) -> bool:
+        """Return whether an input is a field, or an array, of numbers whose unit nothing tells."""
+        numbers = (
+            leaf.path == each.path and leaf.type.element.is_number
+            for leaf in self._program.leaves
+            if leaf.input == each.index
+        )
+        return any(numbers) and unit_of(embedded_store(), each.type, each.path) is None
 
     def rule(self, rule: ir.Rule) -> str:
         failsafe = "failsafe " if isinstance(rule.condition, ir.Failsafe) else ""

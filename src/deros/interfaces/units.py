@@ -34,7 +34,9 @@ _TOKEN = re.compile(
     r"\s*(?:(?P<word>[^\W\d]\w*|°\w*|%)|(?P<one>1(?![\d.]))|(?P<power>\*\*|\^)"
     r"|(?P<times>[*·⋅])|(?P<over>/)|(?P<open>\()|(?P<close>\))|(?P<integer>-?\d+))"
 )
+_NAMED = re.compile(r"[^\W\d]\w*|°\w*|%")
 _SUPERSCRIPT_RUN = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
+_ZERO = Fraction(0)
 _MAX_EXPONENT = 99
 _MAX_DEPTH = 50
 _MOST_BITS = 20_000
@@ -241,11 +243,16 @@ _ONE = Unit("1", (), Fraction(1))
 
 def product(left: Unit, right: Unit) -> Unit | None:
     """Return the unit of a product; ``None`` if its factor would fill the memory."""
+    for one, other in ((left, right), (right, left)):
+        if is_one(one):
+            return without_offset(other)
     return _named(_combine(left, right, 1), f"{left}*{_grouped(right)}")
 
 
 def quotient(left: Unit, right: Unit) -> Unit | None:
     """Return the unit of a quotient; ``None`` if its factor would fill the memory."""
+    if is_one(right):
+        return without_offset(left)
     return _named(_combine(left, right, -1), f"{left}/{_grouped(right)}")
 
 
@@ -258,6 +265,41 @@ def root(unit: Unit) -> Unit:
 def in_bases(unit: Unit) -> Unit:
     """Return the unit of the same dimension that is made of base units (SI, and the radian)."""
     return Unit(_in_bases(unit.exponents), unit.exponents, Fraction(1))
+
+
+def without_offset(unit: Unit) -> Unit:
+    """Return the unit of a difference: of two temperatures in degC it is K."""
+    if not unit.offset:
+        return unit
+    return in_bases(unit) if unit.factor == 1 else replace(unit, text=f"delta {unit}", offset=_ZERO)
+
+
+def is_difference_of(unit: Unit | None, scale: Unit | None) -> bool:
+    """Return whether a unit is one of differences on a scale with a zero of its own: K on degC."""
+    if unit is None or scale is None or not scale.offset or unit.offset:
+        return False
+    return unit.exponents == scale.exponents
+
+
+def is_seen(unit: Unit) -> bool:
+    """Return whether readers know the unit of what is computed: coherent SI, or one that is named.
+
+    A plain number beside it is then read as the author means it: beside ``w * 1 s`` as metres, but
+    beside ``w * 1 ms`` not as millimetres.
+    """
+    return (unit.factor == 1 and not unit.offset) or _NAMED.fullmatch(unit.text) is not None
+
+
+def is_one(unit: Unit) -> bool:
+    """Return whether a unit is that of plain numbers."""
+    return not unit.exponents and unit.factor == 1
+
+
+def is_same(one: Unit | None, other: Unit | None) -> bool:
+    """Return whether two units are one, however they are written."""
+    if one is None or other is None:
+        return one is other
+    return (one.exponents, one.factor, one.offset) == (other.exponents, other.factor, other.offset)
 
 
 def without_angles(unit: Unit) -> Unit:

@@ -14,6 +14,7 @@ from deros.interfaces.names import not_text
 from deros.interfaces.types import MOST_DIGITS, InterfaceKind, InterfaceType
 from deros.interfaces.units import UnitRegistry
 from deros.metamodels.common import Interval, Name, QosProfile, Scalar, Value
+from deros.metamodels.node import FieldUnit
 from deros.metamodels.reading import forbidden_character
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ _EXPONENT = re.compile(r"[eE]([+-]?\d+)\Z")
 _GREATEST_COUNT = 2**31 - 1
 _LONGEST_S = 2**31 - 1  # the limit of DDS; rmw would shorten longer times
 _TIME_UNITS = UnitRegistry()
+_WRAPPING = "wrapping"
 _KINDS: dict[str, InterfaceKind] = {"msg": "msg", "srv": "srv", "action": "action"}
 
 
@@ -147,6 +149,18 @@ class Converter:
     def unit(self, token: Token | None) -> str | None:
         """Return a unit as written, without spaces."""
         return "".join(token.split()) if token is not None else None
+
+    def field_unit(self, found: Any) -> FieldUnit:
+        """Return the unit of a field of a topic, and whether the field wraps around."""
+        *unit, last = str(found.unit).split()
+        wrapping = last == _WRAPPING and bool(unit)
+        return FieldUnit(
+            "".join(found.path.split()),
+            "".join(unit if wrapping else [*unit, last]),
+            self.token_span(found.path),
+            self.token_span(found.unit),
+            wrapping,
+        )
 
     def duration_ns(self, found: Any) -> int:
         """Return a duration in nanoseconds, or 0 after reporting why it is invalid."""

@@ -12,7 +12,6 @@ from deros.interfaces.types import InterfaceKind
 from deros.metamodels.common import Interval, Name, Scalar, Value
 from deros.metamodels.convert import Converter, Sections
 from deros.metamodels.node import (
-    FieldUnit,
     NodeType,
     Parameter,
     ParameterType,
@@ -47,8 +46,6 @@ _INTERFACE_KINDS: dict[PortKind, InterfaceKind] = {
     PortKind.ACTION: "action",
     PortKind.ACTION_CLIENT: "action",
 }
-_WRAPPING = "wrapping"
-"""The word after the unit of an angle that wraps around after a full turn."""
 
 _WORDS = {
     "ParameterUnit": "unit",
@@ -233,7 +230,7 @@ class NodeConverter(Converter):
             if not attributes.once(_WORDS[what], self.span(attribute)):
                 continue
             if what == "FieldUnits":
-                settings["units"] = tuple(map(self._field_unit, attribute.fields))
+                settings["units"] = tuple(map(self.field_unit, attribute.fields))
             elif what == "Via":
                 settings |= {
                     "via": self.written(attribute.parameter),
@@ -251,17 +248,6 @@ class NodeConverter(Converter):
             self.token_span(found.name),
             self.token_span(found.type),
             **settings,
-        )
-
-    def _field_unit(self, found: Any) -> FieldUnit:
-        *unit, last = str(found.unit).split()
-        wrapping = last == _WRAPPING and bool(unit)
-        return FieldUnit(
-            "".join(found.path.split()),
-            "".join(unit if wrapping else [*unit, last]),
-            self.token_span(found.path),
-            self.token_span(found.unit),
-            wrapping,
         )
 
     def _timer(self, found: Any) -> Timer:

@@ -149,6 +149,8 @@ class RulesConverter(TermConverter):
             self.span(found),
             None if found.timeout is None else self._number(found.timeout),
             self.text(found.description),
+            self.unit(found.unit),
+            None if found.unit is None else self.token_span(found.unit),
         )
 
     def _action(self, found: Any) -> Action:

@@ -37,6 +37,7 @@ _WORDS = {
     "Respawn": "respawn",
     "LogLevel": "log_level",
     "Qos": "qos",
+    "FieldUnits": "field units",
     "NodeName": "as",
     "Target": "target",
     "Package": "package",
@@ -132,6 +133,13 @@ class SystemConverter(Converter):
                     continue
                 if what == "qos":
                     settings["qos"] = self._pin(attribute)
+                elif what == "field units":
+                    if found.type is None:
+                        message = "fields have units where the topic has a type"
+                        hint = f"write 'topic {found.name} : PACKAGE.TYPE {{ ... }}'"
+                        self.report(codes.SYNTAX_ERROR, message, self.span(attribute), hint)
+                        continue
+                    settings["units"] = tuple(map(self.field_unit, attribute.fields))
                 else:
                     settings["description"] = self.text(attribute.text)
         return Topic(

@@ -11,7 +11,7 @@ from deros.diagnostics import Span
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.standard_topics import standard_topic
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.node import PortKind
+from deros.metamodels.node import FieldUnit, PortKind
 from deros.metamodels.safety_qos import Offers
 
 if TYPE_CHECKING:
@@ -75,25 +75,20 @@ class KnownTopic:
         return self.untyped[0].wiring.target_span
 
     def unit_of(self, path: FieldPath) -> str | None:
-        """Return the unit that a node description annotates for a field, or ``None``.
-
-        Annotations of publishers take precedence over those of subscriptions.
-        """
-        wanted = _without_indices(format_path(path))
-        for flat in (*self.publishers, *self.subscriptions):
-            for each in flat.port.units:
-                if _without_indices(each.path) == wanted:
-                    return each.unit
-        return None
+        """Return the unit that the systems and their nodes declare for a field, or ``None``."""
+        return next((each.unit for each in self._declared(path)), None)
 
     def is_wrapping(self, path: FieldPath) -> bool:
-        """Return whether a node description annotates a field as wrapping."""
+        """Return whether a field is declared as wrapping."""
+        return any(each.wrapping for each in self._declared(path))
+
+    def _declared(self, path: FieldPath) -> Iterator[FieldUnit]:
+        """Yield what is declared for a field: of the topic, by publishers, by subscriptions."""
         wanted = _without_indices(format_path(path))
-        return any(
-            each.wrapping and _without_indices(each.path) == wanted
-            for flat in (*self.publishers, *self.subscriptions)
-            for each in flat.port.units
-        )
+        ports = (flat.port.units for flat in (*self.publishers, *self.subscriptions))
+        topics = (each.declaration.units for each in self.declarations)
+        for units in (*topics, *ports):
+            yield from (each for each in units if _without_indices(each.path) == wanted)
 
 
 class TopicTable:

@@ -258,13 +258,15 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """``input NAME = topic TOPIC.FIELD [timeout T]``."""
+    """``input NAME = topic TOPIC.FIELD [UNIT] timeout T``; unit and timeout may be absent."""
 
     name: Name
     term: TopicPath
     span: Span = field(compare=False, repr=False)
     timeout: Number | None = None
     description: str = ""
+    unit: str | None = None
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import QosProfile, Value
-from deros.metamodels.node import NodeType, PortKind
+from deros.metamodels.node import FieldUnit, NodeType, PortKind
 
 if TYPE_CHECKING:
     from deros.metamodels.rules import Rules
@@ -39,6 +39,7 @@ class Topic:
     qos: QosProfile | None = None
     external: bool = False
     description: str = ""
+    units: tuple[FieldUnit, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

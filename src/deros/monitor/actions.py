@@ -110,7 +110,7 @@ class Actions:
     ) -> ir.Binding | None:
         """Assign the value to the first field of the message that can hold it."""
         candidates = [
-            (name, kind, self._scope.unit_of(topic, binding.type, (name,)))
+            (name, kind, self._scope.field_units.unit_of(topic, binding.type, (name,)))
             for name, kind in definition.fields
             if isinstance(kind.base, str) and not kind.is_array
         ]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
@@ -21,40 +21,22 @@ from deros.interfaces.units import Unit
 from deros.metamodels import rules
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.monitor import formulas, intervals, ir
+from deros.monitor.arithmetic_number import Number, constant
 from deros.monitor.bounds import rounded
+from deros.monitor.field_units import plain_beside
 from deros.monitor.formulas import Binary, Choice, Expression, Formula, Name, Relation
-from deros.monitor.intervals import Interval
 from deros.monitor.operations import CALLS, is_arithmetic
 from deros.monitor.reads import strip_comments
-from deros.monitor.resolved import AgeOf, DeclaredInput, Quantity, Resolved, Value, family
+from deros.monitor.resolved import (
+    AgeOf,
+    DeclaredInput,
+    Quantity,
+    Resolved,
+    Value,
+    family,
+)
 from deros.monitor.scope import Scope
 from deros.monitor.term_names import describe
-
-
-@dataclass(frozen=True, slots=True)
-class _Number:
-    """A part of a term.
-
-    Attributes:
-        expression: its value.
-        unit: ``None`` where it is not known.
-        interval: between which ends its value lies.
-        span: where it is written.
-        constant: its exact value in ``unit``, if it is one.
-        plain: whether it is a constant without a unit, which is in any unit.
-    """
-
-    expression: Expression
-    unit: Unit | None
-    interval: Interval
-    span: Span
-    constant: Fraction | None = None
-    plain: bool = False
-
-    @property
-    def offset(self) -> Fraction:
-        """The zero of its scale, if that is not the zero of what it measures."""
-        return self.unit.offset if self.unit is not None else Fraction(0)
 
 
 class _FaultError(Exception):
@@ -92,9 +74,16 @@ class ArithmeticTerm:
         wording = f"({written})" if isinstance(term, rules.Arithmetic) else written
         computed = ir.Compute(formula, tuple(self._operands), wording)
         ends = intervals.ends_of(found.interval)
-        return Value(computed, FieldType("float64"), found.unit, self._inputs[0], ends)
+        return Value(
+            computed,
+            FieldType("float64"),
+            found.unit,
+            self._inputs[0],
+            ends,
+            undeclared=found.undeclared,
+        )
 
-    def _number(self, term: rules.Term) -> _Number:
+    def _number(self, term: rules.Term) -> Number:
         if self._scope.nesting > MAX_DEPTH:
             self._scope.diagnostics.append(too_deep(term.span))
             raise _FaultError
@@ -103,11 +92,13 @@ class ArithmeticTerm:
             match term:
                 case rules.Arithmetic():
                     left, right = self._number(term.left), self._number(term.right)
-                    return self._operation(term, left, right)
+                    return _open(self._operation(term, left, right), [left, right])
                 case rules.Negative():
-                    return self._negative(self._number(term.operand), term.span)
+                    operand = self._number(term.operand)
+                    return _open(self._negative(operand, term.span), [operand])
                 case rules.Call() if is_arithmetic(term):
-                    return self._call(term, self._arguments(term))
+                    numbers = self._arguments(term)
+                    return _open(self._call(term, numbers), numbers)
             return self._operand(term, self._resolve(term))
         finally:
             self._scope.nesting -= 1
@@ -119,29 +110,34 @@ class ArithmeticTerm:
 
     # Operands -----------------------------------------------------------------------------------
 
-    def _operand(self, term: rules.Term, found: Resolved | None) -> _Number:
+    def _operand(self, term: rules.Term, found: Resolved | None) -> Number:
         match found:
             case None:
                 raise _FaultError
             case Quantity():
                 unit = found.shown_in or self._one
                 number = found.in_unit(found.shown_in)
-                return _constant(number, unit, term.span, found.unit is None)
+                return constant(number, unit, term.span, found.unit is None)
             case Value(expression=ir.Read() | ir.Apply() as expression) if (
                 family(found.type) == "number"
             ):
                 if expression not in self._operands:
                     self._operands[expression] = f"x{len(self._operands) + 1}"
                     self._inputs.append(found.input)
-                name = Name(self._operands[expression])
-                return _Number(name, found.unit, intervals.interval_of(found.bounds), term.span)
+                return Number(
+                    Name(self._operands[expression]),
+                    found.unit,
+                    intervals.interval_of(found.bounds),
+                    term.span,
+                    undeclared=found.undeclared,
+                )
             case AgeOf():
                 message = "'age()' is compared with a constant only"
                 raise self._fault(codes.AGE_NOT_CONSTANT, message, term.span)
         message = f"arithmetic needs numbers, '{term.span.text}' is {describe(found)}"
         raise self._fault(codes.FIELD_NOT_NUMERIC, message, term.span)
 
-    def _arguments(self, call: rules.Call) -> list[_Number]:
+    def _arguments(self, call: rules.Call) -> list[Number]:
         name, given = call.function.text, len(call.arguments)
         least, greatest = CALLS[name]
         if not least <= given <= greatest:
@@ -155,7 +151,7 @@ class ArithmeticTerm:
 
     # Operators ----------------------------------------------------------------------------------
 
-    def _operation(self, term: rules.Arithmetic, left: _Number, right: _Number) -> _Number:
+    def _operation(self, term: rules.Arithmetic, left: Number, right: Number) -> Number:
         match term.operator:
             case "+" | "-" as operator:
                 return self._sum(operator, left, right, term)
@@ -165,63 +161,63 @@ class ArithmeticTerm:
                 return self._quotient(left, right, term)
 
     def _sum(
-        self, operator: Literal["+", "-"], left: _Number, right: _Number, term: rules.Arithmetic
-    ) -> _Number:
+        self, operator: Literal["+", "-"], left: Number, right: Number, term: rules.Arithmetic
+    ) -> Number:
         word = "added" if operator == "+" else "subtracted from one another"
         scales = [each.offset for each in (left, right)]
         if operator == "+" or not all(scales):  # of two temperatures there is a difference
             self._refuse_offsets(left, right)
         left, right = self._in_one_unit([left, right], term.operator_span, f"be {word}")
-        unit = left.unit and replace(left.unit, offset=Fraction(0))
+        unit = left.unit and units.without_offset(left.unit)
         if left.constant is not None and right.constant is not None:
             signed = right.constant if operator == "+" else -right.constant
-            return _constant(left.constant + signed, unit, term.span, left.plain and right.plain)
+            return constant(left.constant + signed, unit, term.span, left.plain and right.plain)
         if operator == "-" and left.expression == right.expression:
             ends = (0.0, 0.0)
         else:
             second = right.interval if operator == "+" else intervals.negated(right.interval)
             ends = intervals.added(left.interval, second)
         expression = Binary(operator, self._part(left), self._part(right))
-        return _Number(expression, unit, ends, term.span)
+        return Number(expression, unit, ends, term.span)
 
-    def _product(self, left: _Number, right: _Number, term: rules.Arithmetic) -> _Number:
-        left, right = self._factors(left, right)
+    def _product(self, left: Number, right: Number, term: rules.Arithmetic) -> Number:
+        self._factors(left, right)
         unit = self._combined(units.product, left, right, term)
         if left.constant is not None and right.constant is not None:
             plain = left.plain and right.plain
-            return _constant(left.constant * right.constant, unit, term.span, plain)
+            return constant(left.constant * right.constant, unit, term.span, plain)
         if left.expression == right.expression:
             ends = intervals.squared(left.interval)
         else:
             ends = intervals.multiplied(left.interval, right.interval)
         expression = Binary("*", self._part(left), self._part(right))
-        return _Number(expression, unit, ends, term.span)
+        return Number(expression, unit, ends, term.span)
 
-    def _quotient(self, left: _Number, right: _Number, term: rules.Arithmetic) -> _Number:
+    def _quotient(self, left: Number, right: Number, term: rules.Arithmetic) -> Number:
         if right.constant == 0:
             message = f"'{term.span.text}' has no value: it divides by zero"
             raise self._fault(codes.WRONG_OPERAND, message, term.operator_span)
-        left, right = self._factors(left, right)
+        self._factors(left, right)
         unit = self._combined(units.quotient, left, right, term)
         if left.constant is not None and right.constant is not None:
             plain = left.plain and right.plain
-            return _constant(left.constant / right.constant, unit, term.span, plain)
+            return constant(left.constant / right.constant, unit, term.span, plain)
         if right.interval[0] <= 0.0 <= right.interval[1]:
             self.unknown_while = f"'{right.span.text}' is zero"
         divided = Binary("/", self._part(left), self._named(right))
         ends = intervals.divided(left.interval, right.interval)
-        return _Number(formulas.guarded_division(divided), unit, ends, term.span)
+        return Number(formulas.guarded_division(divided), unit, ends, term.span)
 
-    def _negative(self, operand: _Number, span: Span) -> _Number:
+    def _negative(self, operand: Number, span: Span) -> Number:
         self._refuse_offsets(operand)
         if operand.constant is not None:
-            return _constant(-operand.constant, operand.unit, span, operand.plain)
+            return constant(-operand.constant, operand.unit, span, operand.plain)
         expression = formulas.Negative(self._part(operand))
-        return _Number(expression, operand.unit, intervals.negated(operand.interval), span)
+        return Number(expression, operand.unit, intervals.negated(operand.interval), span)
 
     # Functions ----------------------------------------------------------------------------------
 
-    def _call(self, call: rules.Call, numbers: list[_Number]) -> _Number:
+    def _call(self, call: rules.Call, numbers: list[Number]) -> Number:
         name, place = call.function.text, call.function.span
         if name in ("sin", "cos", "tan"):
             found = self._of_angle(call, numbers[0])
@@ -239,9 +235,9 @@ class ArithmeticTerm:
             message = f"'{call.span.text}' has no value"
             raise self._fault(codes.WRONG_OPERAND, message, call.span)
         plain = all(each.plain for each in numbers)
-        return _constant(Fraction(value), found.unit, call.span, plain)
+        return constant(Fraction(value), found.unit, call.span, plain)
 
-    def _of_like(self, call: rules.Call, numbers: list[_Number]) -> _Number:
+    def _of_like(self, call: rules.Call, numbers: list[Number]) -> Number:
         """Return a function of numbers in one unit."""
         parts = [self._named(each) for each in numbers]
         ends = [each.interval for each in numbers]
@@ -266,12 +262,14 @@ class ArithmeticTerm:
                     interval = intervals.added(interval, intervals.squared(each))
                 expression = formulas.guarded_call("sqrt", (expression,))
                 interval = intervals.root(interval)
-        return _Number(expression, unit, interval, call.span)
+        return Number(expression, unit, interval, call.span)
 
-    def _of_angle(self, call: rules.Call, angle: _Number) -> _Number:
+    def _of_angle(self, call: rules.Call, angle: Number) -> Number:
         name, unit = call.function.text, angle.unit
-        if unit is not None and unit.exponents:
-            assert self._radian is not None
+        assert self._radian is not None
+        if unit is None:
+            self._scope.field_units.use(angle.undeclared, self._radian, angle.span)
+        elif unit.exponents:
             if not self._scope.units.compatible(unit, self._radian):
                 message = f"'{angle.span.text}' is in {unit} ({unit.dimension}), not an angle"
                 hint = f"'{name}()' takes an angle, or a plain number of radians"
@@ -279,9 +277,9 @@ class ArithmeticTerm:
             angle = self._converted(angle, self._radian)
         expression = formulas.guarded_call(name, (self._named(angle),))
         ends = intervals.ALL if name == "tan" else (-1.0, 1.0)
-        return _Number(expression, self._one, ends, call.span)
+        return Number(expression, self._one, ends, call.span)
 
-    def _root(self, call: rules.Call, operand: _Number) -> _Number:
+    def _root(self, call: rules.Call, operand: Number) -> Number:
         self._refuse_offsets(operand)
         if operand.interval[1] < 0.0:
             message = f"'{call.span.text}' has no value: '{operand.span.text}' is below zero"
@@ -293,25 +291,37 @@ class ArithmeticTerm:
             operand = self._converted(operand, replace(unit, factor=Fraction(1)))
             unit = units.root(unit)
         expression = formulas.guarded_call("sqrt", (self._named(operand),))
-        return _Number(expression, unit, intervals.root(operand.interval), call.span)
+        return Number(expression, unit, intervals.root(operand.interval), call.span)
 
     # Units --------------------------------------------------------------------------------------
 
-    def _in_one_unit(self, numbers: list[_Number], place: Span, what: str) -> list[_Number]:
+    def _in_one_unit(self, numbers: list[Number], place: Span, what: str) -> list[Number]:
         """Return numbers in the unit of the first that has one; ``what`` others cannot do."""
         known = [each for each in numbers if each.unit is not None and not each.plain]
         if not known:
             return numbers
         first, unit = known[0], known[0].unit
         assert unit is not None
-        if any(each.unit is None for each in numbers):
-            unit = units.in_bases(unit)
-        for each in known:
-            assert each.unit is not None
-            if not self._scope.units.compatible(each.unit, unit):
+        for each in numbers:
+            if each.plain:
+                self._refuse_hidden(each, first)
+            elif each.unit is None and units.is_one(unit):
+                self._scope.field_units.use(each.undeclared, None, each.span)
+            elif each.unit is None:
+                raise self._undeclared_beside(each, first)
+            elif not self._scope.units.compatible(each.unit, unit):
                 message = (
                     f"'{first.span.text}' is in {unit} ({unit.dimension}), '{each.span.text}' in"
                     f" {each.unit} ({each.unit.dimension}): they cannot {what}"
+                )
+                raise self._fault(codes.INCOMPATIBLE_UNITS, message, place)
+            elif any(
+                one.is_computed and units.is_difference_of(one.unit, other.unit)
+                for one, other in ((each, first), (first, each))
+            ):
+                message = (
+                    f"one of '{first.span.text}' and '{each.span.text}' is a temperature, the"
+                    f" other a difference of temperatures: they cannot {what}"
                 )
                 raise self._fault(codes.INCOMPATIBLE_UNITS, message, place)
         return [
@@ -321,13 +331,13 @@ class ArithmeticTerm:
             for each in numbers
         ]
 
-    def _converted(self, number: _Number, unit: Unit) -> _Number:
+    def _converted(self, number: Number, unit: Unit) -> Number:
         source = number.unit
         assert source is not None
         scale = source.factor / unit.factor
         offset = (source.offset - unit.offset) / unit.factor
         if number.constant is not None:
-            return _constant(number.constant * scale + offset, unit, number.span)
+            return constant(number.constant * scale + offset, unit, number.span)
         expression, interval = number.expression, number.interval
         if scale != 1:
             factor = rounded(scale)
@@ -339,20 +349,36 @@ class ArithmeticTerm:
             interval = intervals.added(interval, (shift, shift))
         return replace(number, expression=expression, unit=unit, interval=interval)
 
-    def _factors(self, left: _Number, right: _Number) -> tuple[_Number, _Number]:
-        """Return two factors; beside one whose unit is not known, the other is in base units."""
+    def _factors(self, left: Number, right: Number) -> None:
+        """Report two numbers of which there is no product."""
         self._refuse_offsets(left, right)
-        if left.unit is None and right.unit is not None:
-            return left, self._converted(right, units.in_bases(right.unit))
-        if right.unit is None and left.unit is not None:
-            return self._converted(left, units.in_bases(left.unit)), right
-        return left, right
+        for one, other in ((left, right), (right, left)):
+            unit = other.unit
+            if one.unit is None and unit is not None and not units.is_one(unit):
+                raise self._undeclared_beside(one, other)
+
+    def _undeclared_beside(self, number: Number, quantity: Number) -> _FaultError:
+        """Report a number without a known unit beside one that has one."""
+        units_of = self._scope.field_units
+        self._scope.diagnostics += units_of.undeclared(
+            number.undeclared, quantity.span.text, number.span
+        )
+        return _FaultError()
+
+    def _refuse_hidden(self, plain: Number, other: Number) -> None:
+        """Report a plain number beside what is computed in a unit that nobody sees."""
+        unit, number = other.unit, plain.constant
+        assert unit is not None
+        assert number is not None
+        if number and other.is_computed and not units.is_seen(unit):
+            self._scope.diagnostics.append(plain_beside(number, other.span.text, unit, plain.span))
+            raise _FaultError
 
     def _combined(
         self,
         combine: Callable[[Unit, Unit], Unit | None],
-        left: _Number,
-        right: _Number,
+        left: Number,
+        right: Number,
         term: rules.Arithmetic,
     ) -> Unit | None:
         """Return the unit of a product or quotient; a radian beside a length is 1."""
@@ -365,7 +391,7 @@ class ArithmeticTerm:
         bases = {base for base, _ in found.exponents}
         return units.without_angles(found) if {"m", "rad"} <= bases else found
 
-    def _refuse_offsets(self, *numbers: _Number) -> None:
+    def _refuse_offsets(self, *numbers: Number) -> None:
         """Report a number on a scale with a zero of its own."""
         for each in numbers:
             if each.offset:
@@ -375,12 +401,12 @@ class ArithmeticTerm:
 
     # Formulas -----------------------------------------------------------------------------------
 
-    def _part(self, number: _Number) -> Expression:
+    def _part(self, number: Number) -> Expression:
         """Return a number as an operand; a choice gets a name, so that it is not nested."""
         found = number.expression
         return self._assign(found) if isinstance(found, Choice) else found
 
-    def _named(self, number: _Number) -> Expression:
+    def _named(self, number: Number) -> Expression:
         """Return a number as an operand that is written more than once."""
         return self._assign(number.expression)
 
@@ -395,6 +421,14 @@ class ArithmeticTerm:
         return Name(name)
 
 
+def _open(number: Number, operands: list[Number]) -> Number:
+    """Return what is computed of operands, with the fields whose units keep its own unknown."""
+    if number.unit is not None:
+        return number
+    fields = dict.fromkeys(field for each in operands for field in each.undeclared)
+    return replace(number, undeclared=tuple(fields))
+
+
 def scaled(value: ir.Compute, factor: float, offset: float) -> ir.Compute:
     """Return arithmetic whose result is converted to another unit."""
     formula, name = value.formula, "converted"
@@ -403,11 +437,6 @@ def scaled(value: ir.Compute, factor: float, offset: float) -> ir.Compute:
         converted = Binary("+", converted, formulas.Number(offset))
     assignments = (*formula.assignments, (name, formula.result))
     return replace(value, formula=Formula(assignments, converted))
-
-
-def _constant(number: Fraction, unit: Unit | None, span: Span, plain: bool = False) -> _Number:
-    value = rounded(number)
-    return _Number(formulas.Number(value), unit, (value, value), span, number, plain)
 
 
 def _absolute(part: Expression) -> Expression:

@@ -94,6 +94,7 @@ class _Builder:
             if (built := self._behaviour(each, None)) is not None
         )
         gates = self._gates.build(self._program.gates)
+        self.scope.diagnostics += self.scope.field_units.conflicts()
         return ir.Program(
             self._program.name,
             tuple(self.scope.leaves),

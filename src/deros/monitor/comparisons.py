@@ -10,12 +10,11 @@ from deros import codes
 from deros.diagnostics import Span
 from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.types import FieldType
-from deros.interfaces.units import Unit, in_bases
 from deros.metamodels import rules
 from deros.monitor import ir
 from deros.monitor.arithmetic import scaled
 from deros.monitor.bounds import Bounds, bounds_of, exact, integer_bound, rounded
-from deros.monitor.function_terms import compatible
+from deros.monitor.compared_units import ComparedUnits
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.resolved import (
     AgeOf,
@@ -52,6 +51,7 @@ class Comparisons:
         """Look up names in a scope."""
         self._scope = scope
         self._terms = terms
+        self._units = ComparedUnits(scope)
         self.found: list[ResolvedComparison] = []
 
     def build(
@@ -152,9 +152,9 @@ class Comparisons:
     ) -> ir.Condition | None:
         kind = family(value.type)
         if isinstance(constant, Quantity):
-            if not self._is_number(value, left) or not self._convertible(constant, value, right):
+            if not self._is_number(value, left) or not self._units.fit(constant, value, right):
                 return None
-            number = constant.in_unit(_unit_of(value, constant))
+            number = constant.in_unit(value.unit)
             return self._with_number(node, value, operator, number, constant)
         scalar: ir.Scalar
         if isinstance(constant, Plain):
@@ -189,12 +189,6 @@ class Comparisons:
         self._scope.fault(codes.FIELD_NOT_NUMERIC, message, term.span)
         return False
 
-    def _convertible(self, found: Quantity | Value, value: Value, term: rules.Term) -> bool:
-        unit = found.shown_in if isinstance(found, Quantity) else found.unit
-        if unit is None or value.unit is None:
-            return True
-        return compatible(self._scope, unit, value.unit, term)
-
     def _with_number(
         self,
         node: rules.Comparison,
@@ -227,7 +221,7 @@ class Comparisons:
         if kind != "number" and operator not in _EQUALITY:
             self._not_ordered(node, operator, f"a {kind}")
             return None
-        if not self._convertible(right, left, node.right):
+        if not self._units.fit(right, left, node.right):
             return None
         if kind == "number":
             # A value and the one before it are not computed: nothing is rounded.
@@ -238,7 +232,7 @@ class Comparisons:
 
     def _scaled(self, value: Value, wanted: Value) -> ir.ValueExpression:
         """Return the value converted to the unit of ``wanted``."""
-        source, target = _unit_of(value, wanted), _unit_of(wanted, value)
+        source, target = value.unit, wanted.unit
         if source is None or target is None:
             return value.expression
         factor, offset = self._scope.units.factor(source, target)
@@ -292,7 +286,7 @@ class Comparisons:
         if not all(fit):
             return None
         if isinstance(lower, Quantity) and isinstance(upper, Quantity):
-            least, greatest = (each.in_unit(_unit_of(operand, each)) for each in (lower, upper))
+            least, greatest = (each.in_unit(operand.unit) for each in (lower, upper))
             if self._is_empty(node, least, greatest):
                 return None
         within = self._within(node, operand, lower, upper)
@@ -300,9 +294,9 @@ class Comparisons:
 
     def _is_end(self, end: Resolved, operand: Value, term: rules.Term) -> bool:
         if isinstance(end, Quantity):
-            return self._convertible(end, operand, term)
+            return self._units.fit(end, operand, term)
         if isinstance(end, Value) and family(end.type) == "number":
-            return self._convertible(end, operand, term)
+            return self._units.fit(end, operand, term)
         message = f"the end of an interval is a number, '{term.span.text}' is {describe(end)}"
         self._scope.fault(codes.WRONG_OPERAND, message, term.span)
         return False
@@ -340,7 +334,7 @@ class Comparisons:
         if isinstance(end, Value):
             return self._scaled(end, operand), closed
         assert isinstance(end, Quantity)
-        number = end.in_unit(_unit_of(operand, end))
+        number = end.in_unit(operand.unit)
         if not operand.is_integer:
             return ir.Const(rounded(number)), closed
         if number.denominator == 1:
@@ -420,13 +414,6 @@ class Comparisons:
             self._scope.fault(codes.INCOMPATIBLE_UNITS, message, span)
             return None
         return self._scope.nanoseconds(bound.in_unit(second), span)
-
-
-def _unit_of(value: Value, other: Value | Quantity) -> Unit | None:
-    """Return the unit of a value; if it is not known, arithmetic has base units."""
-    if value.unit is None and other.unit is not None and isinstance(value.expression, ir.Compute):
-        return in_bases(other.unit)
-    return value.unit
 
 
 def _is_previous(*values: Value) -> bool:

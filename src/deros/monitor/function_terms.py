@@ -252,7 +252,8 @@ class FunctionTerms:
             )
         applied = self._applied(row.name, arguments, operand)
         self.found.append(AppliedFunction(applied, operand.type, call.span))
-        return Value(applied, kind, unit, operand.input, bounds)
+        fields = operand.undeclared if unit is None else ()
+        return Value(applied, kind, unit, operand.input, bounds, undeclared=fields)
 
     def _applied(
         self, function: str, arguments: Iterable[ir.ValueExpression], operand: Value
@@ -294,14 +295,17 @@ class FunctionTerms:
         arguments += self._scope.constants_of(row.parameters, parameters)
         applied = ir.Apply(row.name, tuple(arguments), owner)
         first = (*part.path, row.leaves[0]) if row.leaves[0] else part.path
-        unit = self._unit(row, self._scope.unit_of(part.input.topic, part.input.type, first))
+        unit = self._unit(
+            row, self._scope.field_units.unit_of(part.input.topic, part.input.type, first)
+        )
         kind = _RESULT_TYPES.get(row.result, part.type.element)
         bounds = result_bounds(row, kind, *leaf_bounds)
         if row.argument is Argument.ARRAY and part.type.size is not None:
             least = part.type.size if part.type.array == "fixed" else 0
             bounds = Fraction(least), Fraction(part.type.size)
-        turn = self._scope.full_turn(unit) if row.turns else None
-        return Value(applied, kind, unit, part.input, bounds, turn=turn)
+        turn = self._scope.field_units.full_turn(unit) if row.turns else None
+        fields = ((part.input.topic, first),) if unit is None else ()
+        return Value(applied, kind, unit, part.input, bounds, turn=turn, undeclared=fields)
 
     def _unit(self, row: Function, operand: Unit | None) -> Unit | None:
         match row.unit_rule:

@@ -163,7 +163,7 @@ class GateResolver:
                     codes.DUPLICATE_RULE_NAME, message, limit.path_span, related=place
                 )
             field = self._field(limit, gate)
-            ends = self._ends(limit, field, self._unit(limit, gate, topics)) if field else None
+            ends = self._ends(limit, field, gate, topics) if field else None
             if field and ends:
                 yield ir.Limit(limit.path, field.type, *ends)
 
@@ -196,15 +196,19 @@ class GateResolver:
         """Return the unit of the field: from node descriptions, else from REP 103."""
         for topic in topics:
             if self._scope.topics.get(topic) is not None:
-                unit = self._scope.unit_of(topic, gate.type, limit.path)
+                unit = self._scope.field_units.unit_of(topic, gate.type, limit.path)
                 if unit is not None:
                     return unit
-        return self._scope.unit_of(topics[0], gate.type, limit.path)
+        return self._scope.field_units.unit_of(topics[0], gate.type, limit.path)
 
     def _ends(
-        self, limit: rules.GateLimit, field: ResolvedField, unit: Unit | None
+        self,
+        limit: rules.GateLimit,
+        field: ResolvedField,
+        gate: rules.Gate,
+        topics: tuple[str, str],
     ) -> tuple[int | float, int | float] | None:
-        common = None
+        unit, common = self._unit(limit, gate, topics), None
         if limit.unit is not None:
             common = self._common_unit(limit, limit.unit, unit)
             if common is None:
@@ -219,6 +223,10 @@ class GateResolver:
             if given and wanted and not compatible(self._scope, given, wanted, term):
                 return None
         least, greatest = lower.in_unit(wanted), upper.in_unit(wanted)
+        if unit is None and (wanted is not None or least or greatest):
+            fields = tuple((topic, limit.path) for topic in topics)
+            self._scope.field_units.compare(fields[:1], fields[1:])
+            self._scope.field_units.use(fields[:1], wanted, limit.interval_span)
         if not self._is_limit(limit, field.type, least, greatest):
             return None
         return _held(least, field.type), _held(greatest, field.type)

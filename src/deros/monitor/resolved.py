@@ -22,6 +22,9 @@ from deros.metamodels import rules
 from deros.monitor import ir
 from deros.monitor.bounds import Bounds
 
+FieldKey = tuple[str, FieldPath]
+"""A field of all messages of a topic: the topic, and the path from the root of its message."""
+
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
@@ -104,6 +107,7 @@ class Value:
         bounds: least and greatest value that it can have.
         message: the message whose constants may be compared with it by name.
         turn: of an angle that jumps by a full turn where it begins anew, that turn in its unit.
+        undeclared: where no unit is known, the fields whose units are not.
     """
 
     expression: ir.ValueExpression
@@ -113,6 +117,7 @@ class Value:
     bounds: tuple[Fraction | float, Fraction | float]
     message: MessageDefinition | None = None
     turn: float | None = None
+    undeclared: tuple[FieldKey, ...] = ()
 
     @property
     def is_integer(self) -> bool:

@@ -15,7 +15,6 @@ from deros.diagnostics import Code, Diagnostic, Fix, Related, Span, report
 from deros.interfaces.durations import whole_nanoseconds
 from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
 from deros.interfaces.names import check_identifier, check_topic_name, did_you_mean, near
-from deros.interfaces.rep103 import is_wrapping, unit_of
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.interfaces.units import Unit, UnitRegistry
@@ -24,6 +23,7 @@ from deros.metamodels.common import Name
 from deros.metamodels.flatten import resolve_name
 from deros.monitor import ir
 from deros.monitor.bounds import rounded
+from deros.monitor.field_units import FieldUnits
 from deros.monitor.resolved import DeclaredInput, Quantity
 from deros.monitor.topics import SystemTopics
 
@@ -55,6 +55,7 @@ class Scope:
         systems = [use.system for use in program.uses if use.system]
         self.topics = SystemTopics(systems, self.systems_known)
         self.units = self._read_units(program.units)
+        self.field_units = FieldUnits(store, self.topics, self.units)
         constants = [each.name for each in program.constants]
         inputs = [each.name for each in program.inputs]
         self.check_duplicates([*constants, *inputs], "constant or input '{}'")
@@ -161,26 +162,6 @@ class Scope:
             self.fault(codes.BAD_DURATION, f"the duration '{span.text}' {error}", span)
             return None
 
-    def unit_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> Unit | None:
-        """Return a field's unit: as a node description annotates it, else according to REP 103."""
-        known = self.topics.get(topic)
-        text = (known.unit_of(path) if known else None) or unit_of(self.store, kind, path)
-        return self.units.parse(text) if text else None
-
-    def full_turn(self, unit: Unit | None) -> float | None:
-        """Return a full turn in a unit of angles; ``None`` for any other."""
-        degree = self.units.parse("deg")
-        if unit is None or degree is None or not self.units.compatible(unit, degree):
-            return None
-        return rounded(360 * degree.factor / unit.factor)
-
-    def turn_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> float | None:
-        """Return the full turn by which a field wraps around, if it does."""
-        known = self.topics.get(topic)
-        if (known is not None and known.is_wrapping(path)) or is_wrapping(self.store, kind, path):
-            return self.full_turn(self.unit_of(topic, kind, path))
-        return None
-
     # Topics and inputs --------------------------------------------------------------------------
 
     def _declare(self, each: rules.Input) -> DeclaredInput | None:
@@ -192,7 +173,26 @@ class Scope:
                 each.timeout.span,
             )
         declared = self._input(each.name.text, each.term, timeout_ns, each.span)
+        if declared is not None:
+            self._declare_unit(each, declared)
         return None if each.timeout and not timeout_ns else declared
+
+    def _declare_unit(self, each: rules.Input, declared: DeclaredInput) -> None:
+        if each.unit is None or each.unit_span is None:
+            return
+        unit = self.unit(each.unit, each.unit_span)
+        if unit is None:
+            return
+        found = resolve(self.store, declared.type, declared.path)
+        kind = None if isinstance(found, FieldError) or not declared.path else found.type
+        if kind is None or not kind.element.is_number:
+            message = f"a unit is that of a number, '{each.term.span.text}' is not one"
+            hint = "name the field: 'topic TOPIC.FIELD [UNIT]'"
+            self.fault(codes.FIELD_NOT_NUMERIC, message, each.unit_span, hint)
+            return
+        self.diagnostics += self.field_units.declare(
+            declared.topic, declared.type, declared.path, unit, each.unit_span
+        )
 
     def anonymous(self, term: rules.TopicPath) -> DeclaredInput | None:
         """Return the input that a topic term in a rule stands for: one for all equal terms."""

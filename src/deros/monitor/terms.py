@@ -198,12 +198,15 @@ class Terms:
         return self._value(owner, path, found)
 
     def _value(self, owner: DeclaredInput, path: FieldPath, found: ResolvedField) -> Value:
+        units = self._scope.field_units
+        unit = units.unit_of(owner.topic, owner.type, path)
         return Value(
             self._scope.read(owner, path, found.type),
             found.type,
-            self._scope.unit_of(owner.topic, owner.type, path),
+            unit,
             owner,
             type_bounds(found.type),
             found.parent,
-            self._scope.turn_of(owner.topic, owner.type, path),
+            units.turn_of(owner.topic, owner.type, path),
+            ((owner.topic, path),) if unit is None else (),
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from deros.interfaces.units import Unit
+from deros.interfaces.units import is_same
 from deros.monitor import ir
 from deros.monitor.bounds import rounded
 from deros.monitor.resolved import MessageConstant, Plain, Quantity, Resolved, Value
@@ -14,11 +14,17 @@ _GREATEST_WHOLE = 10**16  # beyond that, a number is written with an exponent
 
 
 def wording(operator: ir.Operator, left: Value, *right: Resolved, brackets: str = "") -> ir.Wording:
-    """Return the text of a comparison of a value with its right side."""
+    """Return the text of a comparison of a value with its right side.
+
+    What is computed has its unit, if no other side has one.
+    """
     units = [each.unit for each in right if isinstance(each, Quantity | Value)]
-    differ = any(each and not _same(each, left.unit) for each in units)
+    differ = any(each and not is_same(each, left.unit) for each in units)
     shown = tuple(_side(each, units_differ=differ) for each in right)
-    return ir.Wording(operator, str(left.unit) if differ and left.unit else "", shown, brackets)
+    told = any(isinstance(each, Quantity) and each.unit for each in right)
+    computed = isinstance(left.expression, ir.Compute) and not told
+    unit = str(left.unit) if left.unit and (differ or (computed and left.unit.exponents)) else ""
+    return ir.Wording(operator, unit, shown, brackets)
 
 
 def quoted(text: str) -> str:
@@ -31,6 +37,8 @@ def constant(value: ir.Scalar) -> str:
     """Return a constant as text."""
     if isinstance(value, str):
         return quoted(value)
+    if isinstance(value, float):
+        return str(value + 0.0)  # which makes 0.0 of -0.0
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
@@ -52,12 +60,3 @@ def _number(number: Fraction) -> str:
     if number.denominator == 1 and abs(number) < _GREATEST_WHOLE:
         return str(number.numerator)
     return str(rounded(number))
-
-
-def _same(one: Unit, other: Unit | None) -> bool:
-    """Return whether two units are one, however they are written."""
-    return other is not None and (one.exponents, one.factor, one.offset) == (
-        other.exponents,
-        other.factor,
-        other.offset,
-    )

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
-from deros.interfaces import names, rep103
-from deros.interfaces.fields import FieldError, resolve
 from deros.interfaces.names import (
     check_node_name,
     check_package_name,
@@ -19,8 +17,9 @@ from deros.interfaces.names import (
 )
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.units import UnitRegistry
-from deros.metamodels.node import FieldUnit, NodeType, Parameter, ParameterType, Port, PortKind
+from deros.metamodels.node import NodeType, Parameter, ParameterType, Port, PortKind
 from deros.validators.context import CheckContext
+from deros.validators.field_units import check_field_unit, unknown_unit
 from deros.validators.files import check_defaults
 from deros.validators.hints import did_you_mean
 from deros.validators.interfaces import type_finding
@@ -101,7 +100,7 @@ def _parameter(node: NodeType, parameter: Parameter, units: UnitRegistry) -> Ite
     name = re.sub(r"<[^<>]*>", "x", parameter.name)
     yield from _refused(check_parameter_name(name), parameter.name, parameter.name_span)
     if parameter.unit is not None and units.parse(parameter.unit) is None:
-        yield _unknown_unit(units, parameter.unit, parameter.unit_span or parameter.span)
+        yield unknown_unit(units, parameter.unit, parameter.unit_span or parameter.span)
     faults = list(_constraints(parameter))
     yield from faults
     if parameter.default is None:
@@ -232,15 +231,6 @@ def _bad_constraint(parameter: Parameter, fault: str, span: Span) -> Diagnostic:
     return report(codes.BAD_CONSTRAINT, f"constraint of '{parameter.name}': {fault}", span)
 
 
-def _unknown_unit(units: UnitRegistry, text: str, span: Span) -> Diagnostic:
-    return report(
-        codes.UNKNOWN_UNIT,
-        f"unknown unit '{text}'",
-        span,
-        hint=names.did_you_mean(units.suggest(text)),
-    )
-
-
 # Ports ------------------------------------------------------------------------------------------
 
 
@@ -254,7 +244,7 @@ def _port(
         yield from _via(node, port)
     if port.units and not missing and port.kind in (PortKind.PUBLISHER, PortKind.SUBSCRIPTION):
         for annotation in port.units:
-            yield from _field_unit(port, annotation, store, units)
+            yield from check_field_unit(port.type, annotation, store, units)
 
 
 def _via(node: NodeType, port: Port) -> Iterator[Diagnostic]:
@@ -280,44 +270,3 @@ def _via(node: NodeType, port: Port) -> Iterator[Diagnostic]:
     elif isinstance(parameter.default, str) and parameter.default:
         place = parameter.default_span or parameter.span
         yield from _refused(check_topic_name(parameter.default), parameter.default, place)
-
-
-def _field_unit(
-    port: Port, annotation: FieldUnit, store: InterfaceStore, units: UnitRegistry
-) -> Iterator[Diagnostic]:
-    path = _parts(annotation.path)
-    found = resolve(store, port.type, path)
-    if isinstance(found, FieldError):
-        yield report(
-            codes.UNKNOWN_FIELD_OF_PORT,
-            f"{port.type.short}: {found.message}",
-            annotation.span,
-            hint=names.did_you_mean(found.candidates),
-        )
-    unit = units.parse(annotation.unit)
-    if unit is None:
-        yield _unknown_unit(units, annotation.unit, annotation.unit_span)
-        return
-    if annotation.wrapping and dict(unit.exponents) != {"rad": 1}:
-        yield report(
-            codes.WRAPPING_NOT_AN_ANGLE,
-            f"'{annotation.path}' is in {unit.text} ({unit.dimension}): only an angle wraps around"
-            " after a full turn",
-            annotation.unit_span,
-            f"write '[{annotation.unit}]'",
-        )
-    usual = rep103.unit_of(store, port.type, path)
-    expected = units.parse(usual) if usual is not None else None
-    if expected is not None and not units.compatible(unit, expected):
-        yield report(
-            codes.UNIT_CONFLICTS_WITH_REP103,
-            f"REP 103 gives '{annotation.path}' of {port.type.short} in {expected.text}, and"
-            f" {unit.text} has another dimension",
-            annotation.unit_span,
-            hint=f"publish the field in {expected.text}, and omit the unit",
-        )
-
-
-def _parts(path: str) -> tuple[str | int, ...]:
-    """Split a field path as written, ``covariance[3]`` becoming ``("covariance", 3)``."""
-    return tuple(int(part) if part.isdecimal() else part for part in re.findall(r"\w+", path))

@@ -13,8 +13,10 @@ from deros.interfaces.names import (
     is_too_long,
 )
 from deros.interfaces.store import InterfaceStore
+from deros.interfaces.units import UnitRegistry
 from deros.metamodels.flatten import FlatNode, FlatSystem, FlatTopic
 from deros.metamodels.system import NodeInstance, Subsystem, System
+from deros.validators.field_units import check_field_unit
 from deros.validators.interfaces import type_finding
 
 
@@ -68,6 +70,7 @@ def _members(
 def _topics(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
     """Check the topics that this file declares: names, pinned types, each declared once."""
     seen: dict[str, FlatTopic] = {}
+    units = UnitRegistry()
     for topic in flat.topics:
         declaration = topic.declaration
         if declaration.span.source is not flat.system.source:
@@ -77,7 +80,11 @@ def _topics(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]:
             fault = "is private ('~'), and only a topic of a node can be"
         yield from _refused(fault, declaration.name, declaration.name_span)
         if declaration.type is not None and declaration.type_span is not None:
-            yield from type_finding(store, declaration.type, declaration.type_span)
+            missing = list(type_finding(store, declaration.type, declaration.type_span))
+            yield from missing
+            if not missing:
+                for each in declaration.units:
+                    yield from check_field_unit(declaration.type, each, store, units)
         first = seen.setdefault(topic.name, topic)
         if first is not topic:
             yield report(

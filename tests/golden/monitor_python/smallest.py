@@ -85,6 +85,8 @@ def shown(value: bool | float | str) -> str:
     if isinstance(value, str):
         line = ''.join(each if each.isprintable() else '?' for each in value[:60])
         return f'"{line}{"…" if len(value) > 60 else ""}"'
+    if isinstance(value, float):
+        return str(value + 0.0)  # which makes 0.0 of -0.0
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

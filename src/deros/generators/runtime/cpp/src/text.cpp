@@ -50,7 +50,7 @@ std::string to_text(double value)
   if (std::isnan(value)) {
     return "nan";
   }
-  const std::string sign = std::signbit(value) ? "-" : "";
+  const std::string sign = value < 0.0 ? "-" : "";
   if (std::isinf(value)) {
     return sign + "inf";
   }

@@ -159,4 +159,6 @@ def shown(value: object) -> str:
     """Return a value as text."""
     if value is None:
         return 'unknown'
+    if isinstance(value, float):
+        return str(value + 0.0)  # which makes 0.0 of -0.0
     return str(value).lower() if isinstance(value, bool) else str(value)
