@@ -16,6 +16,7 @@ from pathlib import Path
 from deros.interfaces.fields import FieldPath
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
+from deros.interfaces.units import Unit, UnitRegistry
 
 _WRAPPING = " wrapping"
 
@@ -27,6 +28,14 @@ def unit_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str 
     """
     text = _text_of(store, kind, path)
     return text.removesuffix(_WRAPPING) if text is not None else None
+
+
+def usual_unit(
+    store: InterfaceStore, units: UnitRegistry, kind: InterfaceType, path: FieldPath
+) -> Unit | None:
+    """Return the unit of a field as :func:`unit_of` does, read."""
+    text = unit_of(store, kind, path)
+    return units.parse(text) if text is not None else None
 
 
 def is_wrapping(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> bool:

@@ -36,7 +36,6 @@ _TOKEN = re.compile(
 )
 _NAMED = re.compile(r"[^\W\d]\w*|°\w*|%")
 _SUPERSCRIPT_RUN = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
-_ZERO = Fraction(0)
 _MAX_EXPONENT = 99
 _MAX_DEPTH = 50
 _MOST_BITS = 20_000
@@ -271,7 +270,11 @@ def without_offset(unit: Unit) -> Unit:
     """Return the unit of a difference: of two temperatures in degC it is K."""
     if not unit.offset:
         return unit
-    return in_bases(unit) if unit.factor == 1 else replace(unit, text=f"delta {unit}", offset=_ZERO)
+    return (
+        in_bases(unit)
+        if unit.factor == 1
+        else replace(unit, text=f"delta {unit}", offset=Fraction(0))
+    )
 
 
 def is_difference_of(unit: Unit | None, scale: Unit | None) -> bool:

@@ -29,6 +29,8 @@ _GREATEST_COUNT = 2**31 - 1
 _LONGEST_S = 2**31 - 1  # the limit of DDS; rmw would shorten longer times
 _TIME_UNITS = UnitRegistry()
 _WRAPPING = "wrapping"
+"""The word after the unit of an angle that wraps around after a full turn."""
+
 _KINDS: dict[str, InterfaceKind] = {"msg": "msg", "srv": "srv", "action": "action"}
 
 

@@ -367,11 +367,13 @@ class ArithmeticTerm:
 
     def _refuse_hidden(self, plain: Number, other: Number) -> None:
         """Report a plain number beside what is computed in a unit that nobody sees."""
-        unit, number = other.unit, plain.constant
-        assert unit is not None
-        assert number is not None
-        if number and other.is_computed and not units.is_seen(unit):
-            self._scope.diagnostics.append(plain_beside(number, other.span.text, unit, plain.span))
+        assert other.unit is not None
+        assert plain.constant is not None
+        if not other.is_computed:
+            return
+        found = list(plain_beside(plain.constant, other.span.text, other.unit, plain.span))
+        if found:
+            self._scope.diagnostics += found
             raise _FaultError
 
     def _combined(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from deros import codes
 from deros.diagnostics import Span
-from deros.interfaces.units import Unit, is_difference_of, is_one, is_seen
+from deros.interfaces.units import Unit, is_difference_of, is_one
 from deros.metamodels import rules
 from deros.monitor import ir
 from deros.monitor.field_units import plain_beside
@@ -41,12 +41,12 @@ class ComparedUnits:
     def _plain(self, number: Quantity, value: Value, term: rules.Term) -> bool:
         if number.value:
             self._scope.field_units.use(value.undeclared, None, term.span)
-        unit = value.unit
-        if not number.value or unit is None or not _is_computed(value) or is_seen(unit):
+        if value.unit is None or not isinstance(value.expression, ir.Compute):
             return True
-        computed = value.expression.wording if isinstance(value.expression, ir.Compute) else ""
-        self._scope.diagnostics.append(plain_beside(number.value, computed, unit, term.span))
-        return False
+        computed = value.expression.wording
+        found = list(plain_beside(number.value, computed, value.unit, term.span))
+        self._scope.diagnostics += found
+        return not found
 
     def _undeclared(
         self, side: Quantity | Value, unit: Unit | None, value: Value, term: rules.Term

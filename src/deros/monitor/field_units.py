@@ -14,10 +14,10 @@ from fractions import Fraction
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.interfaces.fields import FieldPath, format_path
-from deros.interfaces.rep103 import is_wrapping, unit_of
+from deros.interfaces.rep103 import is_wrapping, usual_unit
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
-from deros.interfaces.units import Unit, UnitRegistry, in_bases, is_same
+from deros.interfaces.units import Unit, UnitRegistry, in_bases, is_same, is_seen
 from deros.monitor.bounds import rounded
 from deros.monitor.resolved import FieldKey
 from deros.monitor.topics import SystemTopics
@@ -55,9 +55,14 @@ class FieldUnits:
         for key in ((topic, path), (topic, _without_indices(path))):
             if key in self._declared:
                 return self._declared[key].unit
+        told = self._told(topic, path)
+        return told if told is not None else usual_unit(self._store, self._units, kind, path)
+
+    def _told(self, topic: str, path: FieldPath) -> Unit | None:
+        """Return a field's unit as the system or a node declares it."""
         known = self._topics.get(topic)
-        text = (known.unit_of(path) if known else None) or unit_of(self._store, kind, path)
-        return self._units.parse(text) if text else None
+        text = known.unit_of(path) if known is not None else None
+        return self._units.parse(text) if text is not None else None
 
     def full_turn(self, unit: Unit | None) -> float | None:
         """Return a full turn in a unit of angles; ``None`` for any other."""
@@ -80,15 +85,12 @@ class FieldUnits:
     ) -> Iterator[Diagnostic]:
         """Take the unit that an input declares, and yield how others contradict it."""
         use, key = _Use(unit, span), (topic, path)
-        known = self._topics.get(topic)
-        text = known.unit_of(path) if known else None
-        told = self._units.parse(text) if text else None
+        told = self._told(topic, path)
         if told is not None and not is_same(told, unit):
             message = f"'{_shown(key)}' is in {unit} here, and in {told} in the system"
             hint = "omit the unit here, or declare the same one in both places"
             yield report(codes.FIELD_IN_TWO_UNITS, message, span, hint)
-        usual = unit_of(self._store, kind, path)
-        expected = self._units.parse(usual) if usual is not None else None
+        expected = usual_unit(self._store, self._units, kind, path)
         if told is None and expected is not None and not self._units.compatible(unit, expected):
             yield report(
                 codes.UNIT_CONFLICTS_WITH_REP103,
@@ -138,15 +140,20 @@ class FieldUnits:
                 yield _two_units(key, first, use)
 
 
-def plain_beside(number: Fraction, computed: str, unit: Unit, place: Span) -> Diagnostic:
-    """Return the finding that a plain number would be taken in a unit that nobody sees."""
+def plain_beside(number: Fraction, computed: str, unit: Unit, place: Span) -> Iterator[Diagnostic]:
+    """Yield that a plain number beside what is computed would be in a unit that nobody sees.
+
+    Zero is the same in every unit.
+    """
+    if not number or is_seen(unit):
+        return
     bases = in_bases(unit).text
     base = "" if bases == "1" else f" {bases}"
     readings = (
         f"'{place.text}{base}'",
         f"'{place.text} {unit}' ({_decimal(number * unit.factor)}{base})",
     )
-    return report(
+    yield report(
         codes.PLAIN_BESIDE_COMPUTED,
         f"the plain number '{place.text}' stands beside '{computed}', which is in {unit}",
         place,

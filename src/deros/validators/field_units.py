@@ -40,8 +40,7 @@ def check_field_unit(
             annotation.unit_span,
             f"write '[{annotation.unit}]'",
         )
-    usual = rep103.unit_of(store, kind, path)
-    expected = units.parse(usual) if usual is not None else None
+    expected = rep103.usual_unit(store, units, kind, path)
     if expected is not None and not units.compatible(unit, expected):
         yield report(
             codes.UNIT_CONFLICTS_WITH_REP103,
