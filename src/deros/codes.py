@@ -314,7 +314,10 @@ RATE_OF_ARRIVALS = _declare(367, "rate-of-arrivals", "rate computed from arrival
 RULE_CYCLE = _declare(368, "rule-cycle", "rule that depends on itself")
 AMBIGUOUS_NOT = _declare(369, "ambiguous-not", "'not' that can be read in two ways")
 UNIT_NOT_DECLARED = _declare(
-    370, "unit-not-declared", "field without a known unit, computed with beside a quantity"
+    370,
+    "unit-not-declared",
+    "field without a known unit, computed with beside a quantity",
+    absence=True,
 )
 FIELD_IN_TWO_UNITS = _declare(371, "field-in-two-units", "field that is read in two units")
 PLAIN_BESIDE_COMPUTED = _declare(

@@ -177,6 +177,17 @@ def test_empty_import_glob_does_not_block_generation() -> None:
     assert deros("generate", "robot.deros", "--target", "python", "-o", "out").code == 0
 
 
+def test_import_glob_with_a_misspelt_folder_is_not_blamed_on_the_safety_node() -> None:
+    """The folder that is meant exists; it has the descriptions of all other nodes."""
+    write_hand_wired()
+    Path("nodes").mkdir()
+    edit("robot.system", ('import "robot_safety_node.rnd"', 'import "node/*.rnd"'))
+    found = findings()
+    assert [(each.code.name, each.hint) for each in found] == [
+        ("DRS201", "did you mean 'nodes/*.rnd'?")
+    ]
+
+
 def test_other_missing_import_is_still_an_error() -> None:
     """The description of a sensor is not generated from the rules."""
     write_hand_wired()
@@ -231,6 +242,21 @@ def with_statement(statement: str, more: str = "") -> None:
     text = text[: text.index("subsystem Safety")].replace('  import "robot_safety_node.rnd"\n', "")
     text = text.replace('  import "command_gate.rnd"\n', "").replace("imports\n", "")
     Path("robot.system").write_text(f"{text}{statement}\n{more}", encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("modifier", "code"),
+    [
+        ("respawn delay 1", "DRS006"),
+        ("respawn max -1", "DRS003"),
+        ("log_level verbose", "DRS003"),
+        ("respawn delay", "DRS003"),
+    ],
+)
+def test_slip_in_a_statement_is_the_only_finding(modifier: str, code: str) -> None:
+    """What the statement would have connected is not reported as missing."""
+    with_statement(STATEMENT.replace(" as safety", f" as safety {modifier}"))
+    assert codes() == [code]
 
 
 @pytest.mark.parametrize("file", ["robot.system", "robot.deros"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.options import interfaces_option
+from deros.cli.streams import say
 from deros.metamodels.languages import listed
 from deros.pipeline.outcome import exit_code
 
@@ -115,9 +117,7 @@ def _compared(found: Found, path: Path, *, write: bool) -> Found:
     try:
         if write:
             count = baseline.write(path, found.findings, found.named)
-            click.echo(
-                f"wrote {count} {'finding' if count == 1 else 'findings'} to {path}", err=True
-            )
+            say(f"wrote {count} {'finding' if count == 1 else 'findings'} to {path}", to=sys.stderr)
         listed = baseline.read(path)
     except baseline.Unusable as unusable:
         return replace(found, findings=(*found.findings, unusable.diagnostic))
@@ -151,12 +151,12 @@ def report(found: Found, output_format: str, *, show_allowed: bool = False) -> N
 
     shown = found.allowed if show_allowed else ()
     if output_format == "json":
-        click.echo(formats.render_json(found.findings, shown), nl=False)
+        say(formats.render_json(found.findings, shown), end="")
     elif output_format == "sarif":
-        click.echo(formats.render_sarif(found.findings, found.allowed, found.compared), nl=False)
+        say(formats.render_sarif(found.findings, found.allowed, found.compared), end="")
     elif output_format == "github":
-        click.echo(formats.render_github(found.findings), nl=False)
+        say(formats.render_github(found.findings), end="")
     else:
         render.print_text(found.findings, allowed=shown)
         known = len(found.compared.known) if found.compared else 0
-        click.echo(render.summary(found.findings, found.files, len(found.allowed), known))
+        say(render.summary(found.findings, found.files, len(found.allowed), known))

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from deros.cli.streams import say
+
 
 @click.command("cmake-dir")
 def cmake_dir() -> None:
@@ -15,4 +17,4 @@ def cmake_dir() -> None:
 
       cmake -B build -Dderos_DIR=$(deros cmake-dir)
     """
-    click.echo(Path(__file__).resolve().parents[1] / "cmake")
+    say(str(Path(__file__).resolve().parents[1] / "cmake"))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from deros.cli.streams import say
 from deros.pipeline.outcome import UNUSABLE
 
 if TYPE_CHECKING:
@@ -37,12 +38,12 @@ def explain(ctx: click.Context, codes: tuple[str, ...]) -> None:
     CODE, all of them are listed.
     """
     if not codes:
-        click.echo(_listing(), nl=False)
+        say(_listing(), end="")
         return
     known = [(each, find(each)) for each in codes]
     for word, code in known:
         if code is None:
-            click.echo(_unknown(word), err=True)
+            say(_unknown(word), to=sys.stderr)
     if any(code is None for _, code in known):
         ctx.exit(UNUSABLE)
     show("\n".join(page(code) for _, code in known if code is not None))
@@ -66,7 +67,7 @@ def page(code: Code) -> str:
 def show(text: str) -> None:
     """Write Markdown to standard output, laid out if that is a terminal."""
     if not sys.stdout.isatty():
-        click.echo(text, nl=False)
+        say(text, end="")
         return
     from rich.console import Console
     from rich.markdown import Markdown

@@ -10,6 +10,7 @@ import click
 
 from deros.cli.findings import show
 from deros.cli.options import interfaces_option
+from deros.cli.streams import say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -139,7 +140,7 @@ def generate(
     except ValueError as error:
         raise click.UsageError(str(error)) from error
     show([*written.diagnostics, *lacking])
-    click.echo(report_written(written))
+    say(report_written(written))
 
 
 def _apart(arguments: Sequence[str]) -> tuple[list[str], dict[str, str]]:

@@ -11,6 +11,7 @@ import click
 
 from deros.cli.findings import show, wrong_language
 from deros.cli.options import interfaces_option
+from deros.cli.streams import say
 from deros.pipeline.outcome import exit_code
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def graph(ctx: click.Context, file: str, form: str, interfaces: tuple[Path, ...]
             "mermaid": as_mermaid,
             "dot": as_dot,
         }
-        click.echo("\n".join(write[form](wiring)))
+        say("\n".join(write[form](wiring)))
     elif loaded.model is not None:
         raise wrong_language(file, ROSSYSTEM)
     ctx.exit(code)

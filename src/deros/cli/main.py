@@ -7,7 +7,6 @@ reader of our output went away.
 
 from __future__ import annotations
 
-import os
 import sys
 import traceback
 from collections.abc import Sequence
@@ -17,6 +16,7 @@ from typing import NoReturn
 import click
 
 from deros import __version__
+from deros.cli.streams import discard_output, is_lost_output, write_readably
 from deros.metamodels.languages import listed
 
 INTERRUPTED = 130
@@ -88,11 +88,14 @@ def deros(debug: bool) -> None:
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run ``deros`` and exit; no input ends in a traceback."""
     given = list(sys.argv[1:] if arguments is None else arguments)
+    write_readably()
     code = run(given)
     try:
         sys.stdout.flush()
     except BrokenPipeError:
         code = _reader_gone()
+    except OSError as error:
+        code = _output_lost(error)
     sys.exit(code)
 
 
@@ -103,16 +106,20 @@ def run(arguments: list[str]) -> int:
         result = deros.main(arguments, prog_name="deros", standalone_mode=False)
         return result if isinstance(result, int) else 0
     except click.exceptions.NoArgsIsHelpError as error:
-        error.show()
+        error.show(sys.stderr)
         return error.exit_code
     except click.ClickException as error:
-        error.show()
+        error.show(sys.stderr)
         return 2
     except (click.Abort, KeyboardInterrupt):
         sys.stderr.write("\nderos: interrupted\n")
         return INTERRUPTED
     except BrokenPipeError:
         return _reader_gone()
+    except OSError as error:
+        if is_lost_output(error):
+            return _output_lost(error)
+        return _bug(error, debug="--debug" in arguments)
     except SystemExit as ended:
         if (
             sys.stdout is not out
@@ -124,9 +131,14 @@ def run(arguments: list[str]) -> int:
 
 
 def _reader_gone() -> int:
-    """Discard further output: flushing the closed pipe at exit would raise."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    discard_output()
     return BROKEN_PIPE
+
+
+def _output_lost(error: OSError) -> int:
+    discard_output()
+    sys.stderr.write(f"deros: cannot write the output: {error.strerror or error}\n")
+    return 2
 
 
 def _bug(error: Exception, *, debug: bool) -> int:

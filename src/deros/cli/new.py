@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from deros.cli.scaffolds import KINDS, scaffold
+from deros.cli.streams import say
 
 
 @click.command()
@@ -26,6 +27,8 @@ def new(kind: str, name: str, package: str | None, output: Path) -> None:
     A node is one file; a system comes with two nodes, rules with a system that they monitor. If one
     of the files exists already, nothing is written.
     """
+    from deros.generators.api.protocol import File, Owner
+    from deros.generators.output.writer import WriteError, write
     from deros.interfaces.names import check_node_name, check_package_name
 
     package = package if package is not None else name.lower()
@@ -35,16 +38,14 @@ def new(kind: str, name: str, package: str | None, output: Path) -> None:
     ):
         if fault is not None:
             raise click.UsageError(f"ROS 2 rejects '{text}' as {word}: it {fault}")
-    files = {output / path: text for path, text in scaffold(kind, name, package).items()}
+    texts = scaffold(kind, name, package)
+    files = [output / path for path in texts]
     if there := [str(path) for path in files if path.exists() or path.is_symlink()]:
         raise click.UsageError(f"not overwriting {', '.join(there)}")
     try:
-        output.mkdir(parents=True, exist_ok=True)
-        for path, text in files.items():
-            with path.open("x", encoding="utf-8") as file:
-                file.write(text)
-    except OSError as error:
-        raise click.ClickException(f"cannot write {error.filename}: {error.strerror}") from error
+        write({name: File(text, Owner.USER) for name, text in texts.items()}, output)
+    except WriteError as error:
+        raise click.ClickException(str(error)) from error
     for path in files:
-        click.echo(f"wrote {path}")
-    click.echo(f"next: deros check {next(iter(files))}")
+        say(f"wrote {path}")
+    say(f"next: deros check {files[0]}")

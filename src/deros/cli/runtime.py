@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from deros.cli.streams import say
+
 
 @click.command()
 @click.argument("directory", type=click.Path(file_okay=False, path_type=Path))
@@ -26,4 +28,4 @@ def runtime(directory: Path, overwrite: bool) -> None:
     except WriteError as error:
         raise click.ClickException(str(error)) from error
     show(written.diagnostics)
-    click.echo(report_written(written))
+    say(report_written(written))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -10,6 +11,7 @@ import click
 
 from deros.cli.findings import show, wrong_language
 from deros.cli.options import interfaces_option
+from deros.cli.streams import say
 from deros.metamodels.safety_nodes import FASTEST_PUBLISH_HZ, PUBLISH_HZ
 from deros.pipeline.outcome import exit_code
 
@@ -195,15 +197,15 @@ def _show(happenings: Iterable[Explained | GateAnswer], as_text: bool) -> None:
         if isinstance(each, events.Explained):
             event = each.event
             if event.kind == "clock_step":
-                click.echo(f"the clock stepped back to {events.seconds(event.t_ns)}", err=True)
+                say(f"the clock stepped back to {events.seconds(event.t_ns)}", to=sys.stderr)
             elif as_text:
-                click.echo(events.event_line(event, each.causes))
+                say(events.event_line(event, each.causes))
             else:
-                click.echo(json.dumps(events.event_record(event, each.causes)))
+                say(json.dumps(events.event_record(event, each.causes)))
         elif as_text:
-            click.echo(events.answer_line(each))
+            say(events.answer_line(each))
         else:
-            click.echo(json.dumps(events.answer_record(each)))
+            say(json.dumps(events.answer_record(each)))
 
 
 def _fail(ctx: click.Context, findings: Sequence[Diagnostic]) -> NoReturn:

@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 def add_commands(textx: click.Group) -> None:
     """Offer ``deros`` and its commands as ``textx deros …``."""
     from deros.cli.main import deros
+    from deros.cli.streams import write_readably
 
+    write_readably()
     textx.add_command(deros)
 
 

@@ -61,3 +61,13 @@ def duration_text(nanoseconds: int) -> str:
 def seconds_text(nanoseconds: int) -> str:
     """Return a duration in seconds, with as many digits as it needs: ``0.5 sec``."""
     return f"{nanoseconds / NS_PER_S:.9g} sec"
+
+
+def with_unit_of_time(number: str) -> str:
+    """Return the hint for a duration without a unit: the readings, the likelier one first."""
+    likely, other = ("ms", "sec") if abs(float(number)) >= _LIKELY_MS else ("sec", "ms")
+    return f"write '{number} {likely}' or '{number} {other}'"
+
+
+_LIKELY_MS = 10
+"""From here on a number without a unit is more often one of milliseconds than of seconds."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, SourceFile, Span, report
-from deros.interfaces.durations import NS_PER_S
+from deros.interfaces.durations import NS_PER_S, with_unit_of_time
 from deros.interfaces.names import not_text
 from deros.interfaces.types import MOST_DIGITS, InterfaceKind, InterfaceType
 from deros.interfaces.units import UnitRegistry
@@ -167,7 +167,7 @@ class Converter:
     def duration_ns(self, found: Any) -> int:
         """Return a duration in nanoseconds, or 0 after reporting why it is invalid."""
         if found.unit is None:
-            hint = f"write '{found.value} sec' or '{found.value} ms'"
+            hint = with_unit_of_time(str(found.value))
             self.report(codes.UNKNOWN_UNIT, "a duration needs a unit", self.span(found), hint)
             return 0
         text = self.unit(found.unit) or ""

@@ -284,7 +284,7 @@ _ROWS = (
     _row(
         r"=\s*(?P<at>)(?P<word>[A-Za-z_][\w/]*)(?![\w.(])",
         r'= "\g<word>"',
-        r"write '\"\g<word>\"': strings are written in quotes",
+        r"""write '"\g<word>"': strings are written in quotes""",
         languages=_NODE + _SYSTEM,
     ),
     # System descriptions

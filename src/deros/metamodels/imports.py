@@ -33,14 +33,17 @@ def find_files(
             return report(codes.UNKNOWN_IMPORT, f"'{pattern}' {error}", span, "name the folder")
         if found:
             return tuple(map(shown_path, found))
-        return report(codes.UNKNOWN_IMPORT, f"no file matches '{pattern}'", span)
+        return report(
+            codes.UNKNOWN_IMPORT, f"no file matches '{pattern}'", span, _alike(importer, pattern)
+        )
     if not pattern.endswith(suffixes):
         wanted = " or ".join(suffixes)
         message = f"'{pattern}' cannot be imported here: its name does not end in {wanted}"
         return report(codes.UNKNOWN_LANGUAGE, message, span)
     if not _is_file(path):
         message = f"there is no file '{pattern}'"
-        return report(codes.UNKNOWN_IMPORT, message, span, _hint(Path(path), suffixes))
+        hint = _alike(importer, pattern) or _hint(Path(path), suffixes)
+        return report(codes.UNKNOWN_IMPORT, message, span, hint)
     return (shown_path(path),)
 
 
@@ -78,6 +81,24 @@ def _is_file(path: str) -> bool:
         return Path(path).is_file()
     except OSError:  # a name longer than the file system allows
         return False
+
+
+def _alike(importer: str, pattern: str) -> str:
+    """Return a hint with folders for the first one in ``pattern`` that does not exist."""
+    folder, parts = Path(importer).parent, PurePath(pattern).parts
+    for number, part in enumerate(parts[:-1]):
+        if glob.has_magic(part):
+            return ""
+        try:
+            if (folder / part).is_dir():
+                folder /= part
+                continue
+            others = near(part, sorted(each.name for each in folder.iterdir() if each.is_dir()))
+        except OSError:
+            return ""
+        meant = (PurePath(*parts[:number], each, *parts[number + 1 :]) for each in others)
+        return did_you_mean([each.as_posix() for each in meant])
+    return ""
 
 
 def _hint(path: Path, suffixes: tuple[str, ...]) -> str:

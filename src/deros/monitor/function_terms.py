@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Span
+from deros.interfaces.durations import with_unit_of_time
 from deros.interfaces.fields import format_path, leaves
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.types import FieldType
@@ -268,7 +269,7 @@ class FunctionTerms:
         """Return the span of time of a rate; report a term that is not a duration."""
         if span.unit is None:
             message = f"the duration '{term.span.text}' has no unit"
-            hint = f"write '{term.span.text} sec'"
+            hint = with_unit_of_time(term.span.text)
             self._scope.fault(codes.BAD_DURATION, message, term.span, hint)
             return None
         span_ns = self._scope.nanoseconds(span.in_unit(self._scope.units.parse("s")), term.span)

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Fix, Related, Span, report
-from deros.interfaces.durations import whole_nanoseconds
+from deros.interfaces.durations import whole_nanoseconds, with_unit_of_time
 from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
 from deros.interfaces.names import check_identifier, check_topic_name, did_you_mean, near
 from deros.interfaces.store import InterfaceStore
@@ -142,7 +142,7 @@ class Scope:
         """Return a duration in nanoseconds; report a term that is not a duration."""
         if number.unit is None:
             message = f"the duration '{number.value}' has no unit"
-            hint = f"write '{number.value} sec'"
+            hint = with_unit_of_time(number.span.text)
             self.fault(codes.BAD_DURATION, message, number.span, hint)
             return None
         unit = self.unit(number.unit, number.unit_span or number.span)

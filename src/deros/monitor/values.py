@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
-from deros.interfaces.types import FieldType, InterfaceType
+from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
 from deros.monitor.formulas import Formula
 
 Scalar = bool | int | float | str
@@ -34,6 +34,11 @@ class Leaf:
     path: tuple[str | int, ...]
     type: FieldType
     nan_is_unknown: bool = True
+
+    @property
+    def can_be_nan(self) -> bool:
+        """Whether a value of the field can make the input unknown."""
+        return self.nan_is_unknown and self.type.base in FLOAT_TYPES
 
 
 @dataclass(frozen=True, slots=True)

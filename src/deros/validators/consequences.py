@@ -18,7 +18,9 @@ from deros.metamodels.node import NodeType
 
 _QUOTED = re.compile(r"'([^']+)'|\"([^\"]+)\"")
 _WORD = re.compile(r"\w+")
-_IMPORTING = frozenset({"import", "use"})
+_ADDING = frozenset({"import", "use", "safety"})
+"""Statements that may add anything: a file, or the node and the gates of some rules."""
+
 _DID_YOU_MEAN = "did you mean"
 _UNKNOWN_IMPORT = frozenset({codes.UNKNOWN_IMPORT, codes.CYCLIC_IMPORT})
 _REFUSED_NAME = frozenset(
@@ -87,8 +89,8 @@ def _lost_words(files: list[LoadedFile]) -> set[str]:
     With a lost node instance, the ports of its type are lost, too.
     """
     lost = {word for each in files if each.source is not None for word in each.source.lost}
-    if not lost.isdisjoint(_IMPORTING):
-        lost.add(ANY_NAME)  # the file may have anything that is missing
+    if not lost.isdisjoint(_ADDING):
+        lost.add(ANY_NAME)  # it may have anything that is missing
     if lost:
         for each in files:
             if isinstance(each.model, NodeType) and each.model.name in lost:

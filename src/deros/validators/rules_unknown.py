@@ -242,18 +242,28 @@ def _unasked(written: rules.Rules, program: ir.Program, used: _Used) -> Iterator
     for each in program.inputs:
         if each.timeout_ns is None or each.name not in names:
             continue
-        if each.index in (firmly if each.index in read_firmly else everywhere):
+        noticed = firmly if each.index in read_firmly else everywhere
+        if each.index in noticed:
             continue
         # Before the first message there is no age, so age() does not detect that none arrives.
-        when = "never arrive" if each.index in aged else "stop"
+        when = f"messages on {each.topic} {'never arrive' if each.index in aged else 'stop'}"
+        if _stops_with(each, [program.inputs[index] for index in noticed]):
+            if not any(leaf.can_be_nan for leaf in program.leaves if leaf.input == each.index):
+                continue
+            when = "it is NaN"
         yield report(
             codes.UNUSED_TIMEOUT,
-            f"no rule uses the timeout of '{each.name}': when messages on {each.topic} {when},"
-            " nothing reacts",
+            f"no rule notices that '{each.name}' is unknown: when {when}, nothing reacts",
             names[each.name].span,
             f"react to '{each.name}.missing()' or '{each.name}.unknown()', or declare a rule on it"
             " 'failsafe'",
         )
+
+
+def _stops_with(silent: ir.Input, noticed: list[ir.Input]) -> bool:
+    """Return whether the silence of another input of the same topic is noticed as early."""
+    timeouts = [each.timeout_ns for each in noticed if each.topic == silent.topic]
+    return any(each is not None and each <= (silent.timeout_ns or 0) for each in timeouts)
 
 
 def _asked(condition: ir.Condition) -> tuple[int, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
+from glob import has_magic
 from pathlib import Path, PurePath
 
 from deros import codes
@@ -115,7 +116,8 @@ def adapt_to_generated(
         if finding.code in (codes.UNKNOWN_IMPORT, codes.UNKNOWN_NODE_TYPE):
             pattern = PurePath(text).name if finding.code is codes.UNKNOWN_IMPORT else f"{text}.rnd"
             name = next((each for each in names if fnmatchcase(f"{each}.rnd", pattern)), None)
-            if name is not None:
+            is_elsewhere = has_magic(text) and finding.hint  # the hint is a folder that exists
+            if name is not None and not is_elsewhere:
                 yield _not_generated(finding, name, names[name][0])
                 continue
         if not _only_follows(finding, names, outdated):

@@ -207,13 +207,13 @@ class _Writer:
 
     def _is_read(self, leaf: Leaf) -> bool:
         """Return whether the value of a leaf is used, or must not be NaN."""
-        if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
+        if leaf.can_be_nan:
             return True
         return Read(leaf.index) in walk.values(walk.conditions(self._program))
 
     def _reads_elements(self, leaf: Leaf) -> bool:
         """Return whether more than the length of an array is read."""
-        if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
+        if leaf.can_be_nan:
             return True
         return any(
             isinstance(value, Apply)
@@ -270,7 +270,7 @@ class _Writer:
                 tests[f"{parameter.name}_given"] = None
             if parameter.form == "array":
                 tests[f"({parameter.name}_count <= {self._layout.macro}_MOST_ELEMENTS)"] = None
-            if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
+            if leaf.can_be_nan:
                 array = f"are_numbers_{leaf.type.base}({self._arguments.leaves[index]})"
                 single = f"is_number({parameter.name})"
                 tests[array if leaf.type.is_array else single] = None

@@ -302,7 +302,7 @@ class MessageContracts:
                 tests.append(f"{parameter.name}_given != 0")
             if parameter.form == "array":
                 tests.append(f"{parameter.name}_count <= {self._predicates.macro('MOST_ELEMENTS')}")
-            if leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown:
+            if leaf.can_be_nan:
                 is_all &= not leaf.type.is_array
                 tests += [] if leaf.type.is_array else [f"!\\is_NaN({parameter.name})"]
         for value in self._functions_of(each):

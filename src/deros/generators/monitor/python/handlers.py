@@ -184,12 +184,11 @@ class _Writer:
         for index in each.leaves:
             leaf = self._program.leaves[index]
             name = self._parameters[leaf.path].name
-            is_float = leaf.type.base in FLOAT_TYPES and leaf.nan_is_unknown
-            if leaf.type.is_array and is_float:
+            if leaf.type.is_array and leaf.can_be_nan:
                 tests.append(Atom(f"not np.isnan({name}).any()"))
             elif leaf.type.is_array and _has_index(leaf):
                 tests.append(Atom(f"not isinstance({name}, float)"))
-            elif not leaf.type.is_array and (is_float or _has_index(leaf)):
+            elif not leaf.type.is_array and (leaf.can_be_nan or _has_index(leaf)):
                 tests.append(Atom(f"{name} == {name}"))
         return tests
 
