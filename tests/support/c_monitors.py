@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any, cast
 
 from deros.generators.monitor.c.handlers import Parameter
+from deros.monitor import early
 from deros.monitor.engine import Engine, Event, EventKind
 from deros.monitor.evaluate import evaluate_value
 from deros.monitor.ir import Scalar
@@ -122,14 +123,12 @@ class CMonitor:
 
     def _refused(self, event: Event, action: int, answer: Iterator[int]) -> Event:
         """Add what the conditions of the behaviours were when the reset was refused."""
-        conditions = [next(answer) for _ in self._view.layout.conditions]
+        holds = [(False, None, True)[next(answer)] for _ in self._view.layout.conditions]
         names = [name for name, _ in self._view.behaviour_names]
         callers = self._program.actions[action].triggered_by
-        unknown, holding = (
-            tuple(names[each] for each in callers if conditions[each] == verdict)
-            for verdict in (1, 2)
-        )
-        return replace(event, holding=holding, unknown=unknown)
+        found = early.refusing(callers, early.early_ones(self._view.program), holds)
+        holding, unknown, coming = (tuple(names[each] for each in kind) for kind in found)
+        return replace(event, holding=holding, unknown=unknown, coming=coming)
 
     def _knowledge(self, answer: Iterator[int]) -> Known:
         layout = self._view.layout

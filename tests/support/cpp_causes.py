@@ -12,9 +12,10 @@ from typing import cast
 from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.cpp.rule_metadata import table
 from deros.generators.safety_node.cpp.rule_state import rule_states
-from deros.generators.safety_node.cpp.whys import cause_functions, why_behaviour, why_rule
+from deros.generators.safety_node.cpp.whys import cause_functions, told, why_rule
 from deros.generators.text.cpp import call, expression
 from deros.generators.text.templates import environment
+from deros.monitor.early import early_ones
 from deros.monitor.engine import Engine
 from tests.support.c_harness import Unit
 from tests.support.c_library import LIMIT, Loaded
@@ -38,9 +39,8 @@ extern "C" std::size_t tell_{prefix}(const {prefix}_monitor * m, char * out, std
     }}
     text += '\\n';
   }}
-  for (const std::size_t behaviour : state.holding) {{
-    text += std::to_string(behaviour) + '\\t';
-    text += deros_runtime_cpp::cause_of(behaviour, state) + '\\n';
+  for (const auto & [behaviour, causes] : state.causes) {{
+    text += std::to_string(behaviour) + '\\t' + causes + '\\n';
   }}
   return text.copy(out, room);
 }}
@@ -126,6 +126,7 @@ def _source(units: Sequence[Unit]) -> str:
 def _told_in_cpp(unit: Unit) -> str:
     """Return what the node has in its ``_rule_metadata.cpp``, without the tables."""
     layout, program = unit.view.layout, unit.program
+    early = early_ones(unit.view.program)
     rules = zip(program.rules, rule_states(program, layout), strict=True)
     view = SimpleNamespace(
         package="told",
@@ -135,13 +136,17 @@ def _told_in_cpp(unit: Unit) -> str:
         prefix=unit.prefix,
         macro=layout.macro,
         rule_metadata=["0"],
-        cause_functions=list(cause_functions(program, layout)),
+        cause_functions=list(cause_functions(unit.view.program, layout)),
         rule_states=[
             (state, layout.verdicts[rule.index], why_rule(layout, rule.index))
             for rule, state in rules
         ],
         conditions=[
-            (str(number), layout.conditions[number], why_behaviour(layout, number))
+            (
+                str(number),
+                *told(layout, number),
+                *(told(layout, early[number]) if number in early else ("", "")),
+            )
             for number, _ in enumerate(unit.view.behaviour_names)
         ],
     )

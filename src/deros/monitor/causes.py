@@ -7,6 +7,7 @@ which does not depend on values; the reference interprets it, and the generators
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros.interfaces.durations import seconds_text
@@ -158,21 +159,33 @@ def _named(condition: Condition) -> set[int]:
     return {part.rule for part in walk.parts(condition) if isinstance(part, RuleRef)}
 
 
-def negated_rules(program: Program) -> frozenset[int]:
-    """Return the rules whose falsehood is a cause in some plan."""
-    found: set[int] = set()
-    plans = [plan_of_behaviour(program, each) for each in walk.behaviours(program)]
-    plans += [plan_of_rule(program, each.index, True) for each in program.rules]
-    while plans:
-        match plans.pop():
-            case AllOf(parts=parts) | AnyOf(parts=parts):
-                plans += parts
-            case During(part=part) | OrUnknown(part=part):
-                plans.append(part)
-            case SayRule(rule=rule, holds=False) if rule not in found:
-                found.add(rule)
-                plans.append(plan_of_rule(program, rule, False))
+def told_rules(program: Program) -> frozenset[tuple[int, bool]]:
+    """Return the rules, and which verdict of each, whose causes somebody may ask for.
+
+    Those are the causes of each rule as written, while it is true, and what the plans of these and
+    of the behaviours name.
+    """
+    open_ = [(each.index, True) for each in program.rules if each.early_of is None]
+    for behaviour in walk.behaviours(program):
+        open_ += _rules_in(plan_of_behaviour(program, behaviour))
+    found: set[tuple[int, bool]] = set()
+    while open_:
+        asked = open_.pop()
+        if asked not in found:
+            found.add(asked)
+            open_ += _rules_in(plan_of_rule(program, *asked))
     return frozenset(found)
+
+
+def _rules_in(plan: Plan) -> Iterator[tuple[int, bool]]:
+    match plan:
+        case AllOf(parts=parts) | AnyOf(parts=parts):
+            for each in parts:
+                yield from _rules_in(each)
+        case During(part=part) | OrUnknown(part=part):
+            yield from _rules_in(part)
+        case SayRule(rule=rule, holds=holds):
+            yield rule, holds
 
 
 def plan_of(
@@ -220,7 +233,8 @@ def plan_of(
             part = plan_of(program, condition.operand, holds, suffix, shortened)
             return OrUnknown(part, terms(program, condition.operand)) if holds else part
         case RuleRef():
-            name = program.rules[condition.rule].full_name
+            rule = program.rules[condition.rule]
+            name = (rule if rule.early_of is None else program.rules[rule.early_of]).full_name
             head = f"{'' if holds else 'not '}{name}{suffix}"
             if condition.rule in shortened:
                 return Say(condition, holds, (head,))

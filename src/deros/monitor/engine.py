@@ -6,7 +6,8 @@ monitor must emit the same events at the same nanosecond. In short:
 * The monitor is driven by messages and by deadlines. The start is no event.
 * An event is: the deadlines of one instant, or one message, or a backward step of the clock. At
   each, all rules are evaluated, then all behaviours, top to bottom; then resets are processed.
-* An action is reset only if every condition that triggers it is known to be false.
+* An action is reset only if every condition that triggers it is known to be false, and not on its
+  way (:mod:`deros.monitor.early`).
 * Deadlines that are due at a call are processed first, in time order, with the old values.
 * A call with an earlier time than the one before shows a backward step of the clock.
 * To enable or disable an optional behaviour is an event too, after which the inputs are as before.
@@ -23,10 +24,22 @@ from typing import Literal
 
 from deros.diagnostics import Span
 from deros.monitor import walk
+from deros.monitor.early import early_ones, refusing, with_early
 from deros.monitor.evaluate import conjunction, evaluate_condition, evaluate_value, is_nan
 from deros.monitor.explain import Explanation, explain
 from deros.monitor.functions import FUNCTIONS
-from deros.monitor.ir import Age, Apply, Behaviour, For, Input, Once, Program, Scalar, Trigger
+from deros.monitor.ir import (
+    Action,
+    Age,
+    Apply,
+    Behaviour,
+    For,
+    Input,
+    Once,
+    Program,
+    Scalar,
+    Trigger,
+)
 from deros.monitor.state import LeafValue, State, Verdict
 
 EventKind = Literal["trigger", "reset", "refused", "clock_step"]
@@ -45,6 +58,7 @@ class Event:
         span: the call in the behaviour, or the action's declaration.
         holding: the behaviours whose conditions hold, and so refused a reset.
         unknown: the behaviours whose conditions are unknown, and so refused a reset.
+        coming: the behaviours whose conditions are on their way, and so refused a reset.
     """
 
     t_ns: int
@@ -55,6 +69,7 @@ class Event:
     span: Span | None = field(default=None, compare=False, repr=False)
     holding: tuple[str, ...] = ()
     unknown: tuple[str, ...] = ()
+    coming: tuple[str, ...] = ()
 
 
 class Engine:
@@ -81,7 +96,8 @@ class Engine:
                 were when an earlier run ended. Other names are ignored.
         """
         self.events: list[Event] = []
-        self._program = program
+        self._written = program
+        self._program = program = with_early(program)
         self._now_ns = start_ns
         conditions = tuple(walk.conditions(program))
         self._fors = [each for each in conditions if isinstance(each, For)]
@@ -92,6 +108,7 @@ class Engine:
         behaviours = tuple(walk.behaviours(program))
         self._state = State(program, start_ns, len(behaviours), grace_ns)
         self._names = [each.name for each in behaviours]
+        self._early = early_ones(program)
         self._optional = {each.name: each.index for each in behaviours if each.optional}
         self._ran: set[int] = set()
         for action in program.actions:
@@ -168,7 +185,7 @@ class Engine:
 
     def explain(self) -> Explanation:
         """Return the verdict of each rule as of the last event, and why each behaviour holds."""
-        return explain(self._program, self._state, self._now_ns)
+        return explain(self._written, self._program, self._state, self._now_ns)
 
     # Time ---------------------------------------------------------------------------------------
 
@@ -275,7 +292,8 @@ class Engine:
 
     def _behave(self, behaviour: Behaviour, enclosing: Verdict) -> None:
         verdict = evaluate_condition(behaviour.condition, self._state, self._now_ns)
-        holds = conjunction((enclosing, self._state.enabled[behaviour.index], verdict))
+        enabled = all(self._state.enabled[index] for index in behaviour.switches)
+        holds = conjunction((enclosing, enabled, verdict))
         rises = holds is True and self._state.holds[behaviour.index] is not True
         self._state.holds[behaviour.index] = holds
         for item in behaviour.body:
@@ -301,17 +319,18 @@ class Engine:
         action = self._program.actions[index]
         if not self._state.active[index]:
             return True
-        holding, unknown = (
-            tuple(self._names[n] for n in action.triggered_by if self._state.holds[n] is verdict)
-            for verdict in (True, None)
-        )
-        refused = bool(holding or unknown)
+        found = self._refusing(action)
+        refused = any(found)
         self._state.active[index] = refused
         kind: EventKind = "refused" if refused else "reset"
-        self.events.append(
-            Event(self._now_ns, kind, action.name, None, (), action.span, holding, unknown)
-        )
+        self.events.append(Event(self._now_ns, kind, action.name, None, (), action.span, *found))
         return not refused
+
+    def _refusing(self, action: Action) -> tuple[tuple[str, ...], ...]:
+        """Return the behaviours that refuse a reset: those that hold, are unknown, are coming."""
+        callers = self._written.actions[action.index].triggered_by
+        found = refusing(callers, self._early, self._state.holds)
+        return tuple(tuple(self._names[index] for index in each) for each in found)
 
 
 def age_changes(age: Age) -> tuple[int, ...]:

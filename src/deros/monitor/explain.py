@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from deros.monitor import walk
 from deros.monitor.causes import causes_of_behaviour, causes_of_rule
+from deros.monitor.early import early_ones
 from deros.monitor.ir import Program, Rule, Scalar
 from deros.monitor.reads import Term, strip_comments, term_name, term_value, terms_of_rules
 from deros.monitor.state import State
@@ -41,23 +42,35 @@ class Explanation(NamedTuple):
 
     Attributes:
         rules: all of them.
-        causes: of each behaviour that holds, the rules that make it hold, with their causes.
+        causes: of each behaviour that holds, the rules that make it hold, with their causes; of one
+            that is on its way, those that would if no ``for`` had to last.
     """
 
     rules: tuple[RuleState, ...]
     causes: Mapping[str, tuple[str, ...]]
 
 
-def explain(program: Program, state: State, t_ns: int) -> Explanation:
-    """Return the verdicts and causes as of the last event."""
+def explain(program: Program, running: Program, state: State, t_ns: int) -> Explanation:
+    """Return the verdicts and causes as of the last event.
+
+    Args:
+        program: the rules as written.
+        running: the same with what is early, which ``state`` is of.
+        state: of the monitor.
+        t_ns: the time.
+    """
     rules = tuple(
         _explain_rule(program, rule, read, state, t_ns) for rule, read in terms_of_rules(program)
     )
-    causes = {
-        each.name: causes_of_behaviour(program, each, state, t_ns)
-        for each in walk.behaviours(program)
-        if state.holds[each.index] is True
-    }
+    everyone = tuple(walk.behaviours(running))
+    early = early_ones(running)
+    causes = {}
+    for each in walk.behaviours(program):
+        coming = everyone[early.get(each.index, each.index)]
+        if state.holds[each.index] is True:
+            causes[each.name] = causes_of_behaviour(running, each, state, t_ns)
+        elif state.holds[each.index] is False and state.holds[coming.index] is True:
+            causes[each.name] = causes_of_behaviour(running, coming, state, t_ns)
     return Explanation(rules, causes)
 
 

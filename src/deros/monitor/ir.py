@@ -257,13 +257,14 @@ Condition = (
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A rule of an entity."""
+    """A rule of an entity; ``early_of`` numbers the one that it is the early rule of."""
 
     index: int
     entity: str
     name: str
     condition: Condition
     span: Span = field(compare=False, repr=False)
+    early_of: int | None = None
 
     @property
     def full_name(self) -> str:
@@ -286,7 +287,9 @@ class Behaviour:
 
     ``index`` numbers all behaviours in the order written, outer before inner; ``name`` is the given
     name or ``behaviour_N`` (N from 1). An ``optional`` one can be disabled at run time: its
-    condition then counts as false, while the intervals in it go on being evaluated.
+    condition then counts as false, while the intervals in it go on being evaluated. So does that of
+    one that is ``switched_by`` others. ``early_of`` is the index of the behaviour that this one is
+    the early one of (:mod:`deros.monitor.early`).
     """
 
     index: int
@@ -296,6 +299,13 @@ class Behaviour:
     parent: int | None
     span: Span = field(compare=False, repr=False)
     optional: bool = False
+    switched_by: tuple[int, ...] = ()
+    early_of: int | None = None
+
+    @property
+    def switches(self) -> tuple[int, ...]:
+        """The optional behaviours that have to be enabled, this one among them."""
+        return (self.index,) if self.optional else self.switched_by
 
 
 @dataclass(frozen=True, slots=True)
@@ -322,7 +332,7 @@ class Action:
     binding: Binding | None
     reset_by: int | None
     latched: bool
-    triggered_by: tuple[int, ...]  # indices of the behaviours whose bodies name it
+    triggered_by: tuple[int, ...]  # the behaviours whose bodies name it; then their early ones
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

@@ -173,6 +173,7 @@ def event_record(event: Event, causes: Mapping[str, str] | None = None) -> dict[
         record["arguments"] = list(event.arguments)
     if event.kind == "refused":
         record |= {"holding": list(event.holding), "unknown": list(event.unknown)}
+        record |= {"coming": list(event.coming)}
         if causes:
             record["causes"] = dict(causes)
     if event.span is not None:
@@ -187,6 +188,9 @@ def event_line(event: Event, causes: Mapping[str, str]) -> str:
     elif event.kind == "refused":
         holding = [_because(name, causes) for name in event.holding]
         reasons = [f"called for by {', '.join(holding)}"] if holding else []
+        if event.coming:
+            coming = [_because(name, causes) for name in event.coming]
+            reasons.append(f"on its way: {', '.join(coming)}")
         if event.unknown:
             reasons.append(f"not known to be false: {', '.join(event.unknown)}")
         text = f"{event.action} stays active, {'; '.join(reasons)}"

@@ -1,7 +1,7 @@
 # action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec input w = topic /imu.orientation timeout 1 sec entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); failsafe u: (r for 1 sec) and not s; } if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };
 
     def explain(self) -> Explanation:
-        """Return the state of each rule as of the last event, and why each behaviour holds."""
+        """Return the state of each rule, and why behaviours hold or are on their way."""
         rules = (
             explained(
                 'e.r', 2, 'r: v > 1;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
@@ -19,7 +19,16 @@
                 ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
             ),
         )
-    # 6 lines
+        causes = {}
+        if self._behaviour_1:
+            causes['behaviour_1'] = self._why_behaviour_1()
+        elif self._behaviour_1 is False and self._behaviour_1_early:
+            causes['behaviour_1'] = self._why_behaviour_1_early()
+        if self._behaviour_2:
+            causes['behaviour_2'] = self._why_behaviour_2()
+        elif self._behaviour_2 is False and self._behaviour_2_early:
+            causes['behaviour_2'] = self._why_behaviour_2_early()
+        return Explanation(rules, causes)
 
     def _why_e_s(self) -> tuple[str, ...]:
     # 4 lines
@@ -40,6 +49,14 @@
                 unknown_of(('v', self._v), ('v.rate()', self._v_rate), ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)), ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt))),  # noqa: E501
             )
         return tuple(found)
+
+    def _why_e_u_early(self) -> tuple[str, ...]:
+    # 2 lines
+        found += all_of(
+            given(self._e_r, because('e.r: ', self._why_e_r())),
+            given(self._e_s is False, because('not e.s: ', self._why_not_e_s())),
+        )
+    # 5 lines
 
     def _why_behaviour_1(self) -> tuple[str, ...]:
     # 2 lines
@@ -87,10 +104,10 @@
             verdict = False
         else:
             verdict = None
-    # 6 lines
+    # 20 lines
 
     def _act(self, t: int) -> None:
-    # 19 lines
+    # 20 lines
         behaviour_2_due = self._behaviour_2_due
         if e_r is False:
             if behaviour_2_due is NEVER:
@@ -109,3 +126,4 @@
             self._behaviour_2 = False
         else:
             self._behaviour_2 = None
+    # 20 lines

@@ -1,5 +1,17 @@
 # input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: v > 2; } action stop latched; if e.r then { stop; }; if e.s then { stop; };
 
+def refusing(*behaviours: tuple) -> tuple[tuple[str, ...], ...]:
+    """
+    Return the behaviours that hold, those that are unknown, and those that are on their way.
+
+    Each comes with the verdict of its condition, and with the same as if no 'for' had to last.
+    """
+    holding = tuple(name for name, held, _ in behaviours if held)
+    unknown = tuple(
+        name for name, held, early in behaviours if not held and None in (held, early))
+    coming = tuple(name for name, held, early in behaviours if held is False and early)
+    return holding, unknown, coming
+
     def __init__(
     # 15 lines
         self._stop_active = 'stop' in latched
@@ -8,11 +20,18 @@
     @property
     def unknown(self) -> tuple[str, ...]:
         """Return the names of the behaviours whose conditions are unknown, so that they refuse."""
-        refusing = (
-            ('behaviour_1', self._behaviour_1),
-            ('behaviour_2', self._behaviour_2),
+        return self._refusing()[1]
+
+    @property
+    def coming(self) -> tuple[str, ...]:
+        """Return the names of the behaviours whose conditions are on their way, and so refuse."""
+        return self._refusing()[2]
+
+    def _refusing(self) -> tuple[tuple[str, ...], ...]:
+        return refusing(
+            ('behaviour_1', self._behaviour_1, False),
+            ('behaviour_2', self._behaviour_2, False),
         )
-        return tuple(name for name, held in refusing if held is None)
 
     def reset(self, t: int) -> bool:
     # 7 lines
@@ -24,8 +43,8 @@
                 self._emit(Event(t, EventKind.RESET, 'stop', '', (), 2))
             else:
                 self._refuse(
-                    t, 'stop', 2, ('behaviour_1', self._behaviour_1),
-                    ('behaviour_2', self._behaviour_2),
+                    t, 'stop', 2, ('behaviour_1', self._behaviour_1, False),
+                    ('behaviour_2', self._behaviour_2, False),
                 )
             done = done and not self._stop_active
         return done
@@ -46,8 +65,6 @@
         else:
             self._behaviour_2 = None
 
-    def _refuse(self, t: int, action: str, line: int, *behaviours: tuple[str, bool | None]) -> None:  # noqa: E501
-        """Emit that an action stays active, and which behaviours hold or are unknown."""
-        holding = tuple(name for name, held in behaviours if held)
-        unknown = tuple(name for name, held in behaviours if held is None)
-        self._emit(Event(t, EventKind.REFUSED, action, '', (), line, holding, unknown))
+    def _refuse(self, t: int, action: str, line: int, *behaviours: tuple) -> None:
+        """Emit that an action stays active, and which behaviours refuse its reset."""
+        self._emit(Event(t, EventKind.REFUSED, action, '', (), line, *refusing(*behaviours)))

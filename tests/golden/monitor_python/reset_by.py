@@ -16,4 +16,4 @@
                 self._stop_active = False
                 self._emit(Event(t, EventKind.RESET, 'stop', '', (), 2))
             else:
-                self._refuse(t, 'stop', 2, ('behaviour_1', self._behaviour_1))
+                self._refuse(t, 'stop', 2, ('behaviour_1', self._behaviour_1, False))

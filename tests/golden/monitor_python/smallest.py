@@ -41,6 +41,7 @@ class Event(NamedTuple):
     line: int  # in the rules
     holding: tuple[str, ...] = ()  # the behaviours that refuse a reset, as their conditions hold
     unknown: tuple[str, ...] = ()  # those that refuse it, as their conditions are unknown
+    coming: tuple[str, ...] = ()  # those that refuse it, as their conditions are on their way
 
 
 class Reading(NamedTuple):
@@ -63,7 +64,7 @@ class RuleState(NamedTuple):
 
 
 class Explanation(NamedTuple):
-    """The verdict of each rule, and why each behaviour holds, of those that do."""
+    """The verdict of each rule, and why behaviours hold or are on their way, of those that do."""
 
     rules: tuple[RuleState, ...]
     causes: dict[str, tuple[str, ...]]
@@ -145,12 +146,17 @@ class Monitor:
         return ()
 
     @property
+    def coming(self) -> tuple[str, ...]:
+        """Return the names of the behaviours whose conditions are on their way, and so refuse."""
+        return ()
+
+    @property
     def waiting(self) -> bool:
         """Return whether an input has yet to come for the first time, and is not missing yet."""
         return False
 
     def explain(self) -> Explanation:
-        """Return the state of each rule as of the last event, and why each behaviour holds."""
+        """Return the state of each rule, and why behaviours hold or are on their way."""
         rules = (
             explained(
                 'e.r', 2, 'r: v;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
@@ -179,8 +185,8 @@ class Monitor:
         """
         Reset the latched actions whose causes are all known to be over; tell whether none is left.
 
-        An action stays active while a condition that triggers it holds or is unknown. Before the
-        first event all are unknown.
+        An action stays active while a condition that triggers it holds, is on its way or is
+        unknown. Before the first event all are unknown.
         """
         self.advance(t)
         return True

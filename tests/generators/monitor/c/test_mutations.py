@@ -53,6 +53,9 @@ SLIPS: dict[str, tuple[Slip, ...]] = {
         Slip("value", "behave_$", "m->$_condition", "2", "both(@, $$)"),
     ),
     "a reset is never refused": (Slip("value", "settle_$", "m->$_condition == $_FALSE", "true"),),
+    "a reset is granted on its way": (
+        Slip("value", "settle_$", "m->$_early_condition == $_FALSE", "true"),
+    ),
     "a reset succeeds while unknown": (
         Slip("comparison", "settle_$", "m->$_condition == $_FALSE", "!="),
         Slip("constant", "settle_$", "$_FALSE", "$_TRUE", "m->$_condition == @"),

@@ -166,7 +166,7 @@ if e.danger then {{ stop; }};
 if not e.calm then {{ free; }};
 """,
         ".*judge.*|evaluate|after_v|after_f",
-        9,
+        10,
     ),
     "since": (
         f"""{INPUTS} {ACTIONS}
@@ -175,7 +175,7 @@ if e.unanswered then {{ stop; }};
 if not e.high since e.unanswered then {{ free; }};
 """,
         "(judge|behave|after|take|restart).*|act|evaluate|step_back",
-        14,
+        17,
     ),
     "within": (
         f"""{INPUTS} {ACTIONS}
@@ -184,7 +184,7 @@ if e.both then {{ stop; }};
 if (not e.moved) within 3 sec then {{ free; }};
 """,
         "(judge|behave|after|restart|recent|earliest).*|act|evaluate|step_back",
-        14,
+        17,
     ),
     "arithmetic": (
         """

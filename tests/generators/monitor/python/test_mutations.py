@@ -42,6 +42,9 @@ SLIPS: dict[str, tuple[Slip, ...]] = {
         Slip("value", "_act", "self._behaviour_$", "True", "@ and $$"),
     ),
     "a reset is never refused": (Slip("value", "reset", "self._behaviour_$ is False", "True"),),
+    "a reset is granted on its way": (
+        Slip("value", "reset _act", "self._behaviour_$_early is False", "True"),
+    ),
     "a reset is always refused": (Slip("value", "reset", "self._behaviour_$ is False", "False"),),
     "messages do not renew the timeout": (Slip("statement", "on_$", "self._$_heard = t"),),
     "intervals survive a clock step": (Slip("once", "_restart", "self._$_due$ = NEVER"),),

@@ -48,6 +48,7 @@ class Event(NamedTuple):
     line: int = 1
     holding: tuple[str, ...] = ()
     unknown: tuple[str, ...] = ()
+    coming: tuple[str, ...] = ()
 
 
 class PublishedDiagnostics:

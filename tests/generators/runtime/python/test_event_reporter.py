@@ -25,6 +25,7 @@ class Event(NamedTuple):
     line: int = 3
     holding: tuple[str, ...] = ()
     unknown: tuple[str, ...] = ()
+    coming: tuple[str, ...] = ()
 
 
 class Rule(NamedTuple):

@@ -53,6 +53,7 @@ class Event(NamedTuple):
     line: int = 7
     holding: tuple[str, ...] = ()
     unknown: tuple[str, ...] = ()
+    coming: tuple[str, ...] = ()
 
 
 class Explanation(NamedTuple):
@@ -73,6 +74,7 @@ class Monitor:
         self.waiting = False
         self.holding: tuple[str, ...] = ()
         self.unknown: tuple[str, ...] = ()
+        self.coming: tuple[str, ...] = ()
         self.next_deadline: int | None = None
         self.enabled: dict[str, bool] = {}
 

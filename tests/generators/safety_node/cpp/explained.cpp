@@ -4,6 +4,7 @@
 #include <iostream>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "every_thing_safety_cpp/runtime/text.hpp"
 #include "every_thing_safety_node_messages.hpp"
@@ -27,6 +28,16 @@ sensor_msgs::msg::JointState joints(double last, int count)
   return msg;
 }
 
+void tell(
+  const char * kind, const std::vector<std::size_t> & behaviours,
+  const told::runtime::MonitorSnapshot & state)
+{
+  for (const std::size_t behaviour : behaviours) {
+    std::cout << kind << '\t' << told::rule_metadata().behaviours[behaviour].name << '\t' <<
+      told::runtime::cause_of(behaviour, state) << '\n';
+  }
+}
+
 void tell(const every_thing_monitor & monitor)
 {
   const told::runtime::MonitorSnapshot state = told::monitor_snapshot(monitor);
@@ -42,10 +53,8 @@ void tell(const every_thing_monitor & monitor)
     }
     std::cout << '\n';
   }
-  for (const std::size_t behaviour : state.holding) {
-    std::cout << "holds\t" << told::rule_metadata().behaviours[behaviour].name << '\t' <<
-      told::runtime::cause_of(behaviour, state) << '\n';
-  }
+  tell("holding", state.holding, state);
+  tell("coming", state.coming, state);
   std::cout << "." << std::endl;
 }
 

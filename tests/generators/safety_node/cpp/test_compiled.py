@@ -85,8 +85,12 @@ def _explained(model: Rules, context: Context) -> list[str]:
             reads = (f"{term}={_shown(read)}" for term, read in rule.reads)
             words = (rule.name, str(rule.line), rule.text, _shown(rule.value), str(rule.since))
             output.append("\t".join((*words, *reads, *rule.causes)) + "\n")
-        assert tuple(state.causes) == monitor.holding
-        output += [f"holds\t{name}\t{' and '.join(why)}\n" for name, why in state.causes.items()]
+        assert {*state.causes} == {*monitor.holding, *monitor.coming}
+        for kind in ("holding", "coming"):
+            output += [
+                f"{kind}\t{name}\t{' and '.join(state.causes[name])}\n"
+                for name in getattr(monitor, kind)
+            ]
         output.append(".\n")
     return output
 

@@ -234,8 +234,8 @@ class Predicates:
             outer = f"m->{self._layout.conditions[behaviour.parent]}"
             holds.append(f"{outer} == {true}")
             fails.append(f"{outer} == {false}")
-        if behaviour.optional:
-            enabled = f"m->{self._layout.enabled[behaviour.index]}"
+        for index in behaviour.switches:
+            enabled = f"m->{self._layout.enabled[index]}"
             holds.append(f"{enabled} != 0")
             fails.append(f"{enabled} == 0")
         condition = f"m->{self._layout.conditions[behaviour.index]}"

@@ -199,8 +199,7 @@ class RuleContracts:
         for each in group:
             if each.parent is not None:
                 yield self._layout.conditions[each.parent]
-            if each.optional:
-                yield self._layout.enabled[each.index]
+            yield from (self._layout.enabled[index] for index in each.switches)
 
     def _touched(self, group: list[Behaviour]) -> list[str]:
         names: dict[str, None] = {}

@@ -103,8 +103,8 @@ def behave(program: Program, layout: Layout, behaviour: Behaviour, places: Sites
     conditions = Conditions(program, layout)
     field = f"m->{layout.conditions[behaviour.index]}"
     verdict = conditions.verdict(behaviour.condition)
-    if behaviour.optional:
-        enabled = Call("truth_of", ("true", f"m->{layout.enabled[behaviour.index]}"))
+    for index in behaviour.switches:
+        enabled = Call("truth_of", ("true", f"m->{layout.enabled[index]}"))
         verdict = Call("both", (enabled, verdict))
     if behaviour.parent is not None:
         verdict = Call("both", (f"m->{layout.conditions[behaviour.parent]}", verdict))

@@ -15,6 +15,7 @@ from deros.generators.monitor.c.unsupported import refuse_unsupported
 from deros.generators.monitor.c.value_types import compared, inputs_of
 from deros.generators.text.c import comment
 from deros.monitor import walk
+from deros.monitor.early import with_early
 from deros.monitor.engine import age_changes
 from deros.monitor.ir import Age, For, Missing, Program, RuleRef, Unknown
 from deros.monitor.memories import SAMPLES
@@ -239,6 +240,8 @@ def monitor_view(program: Program) -> MonitorView:
         GenerationError: the rules need more than a monitor of fixed size, or C, can do.
     """
     refuse_unsupported(program)
+    written = walk.behaviours(program)
+    program = with_early(program)
     layout = lay_out(program)
     places = sites(program)
     rules = tuple(judge(program, layout, rule) for rule in program.rules)
@@ -260,7 +263,7 @@ def monitor_view(program: Program) -> MonitorView:
         behaviours=tuple(behave(program, layout, each, places) for each in reversed(behaviours)),
         outer=tuple(layout.behave[each.index] for each in program.behaviours),
         behaviour_names=tuple(
-            (each.name, f"{layout.macro}_BEHAVIOUR_{each.name.upper()}") for each in behaviours
+            (each.name, f"{layout.macro}_BEHAVIOUR_{each.name.upper()}") for each in written
         ),
         messages=tuple(_messages(program, layout)),
         actions=tuple(_actions(program, layout, places)),

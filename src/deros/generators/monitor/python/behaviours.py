@@ -12,6 +12,7 @@ from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment, header
 from deros.generators.text.python import lay_out_call
 from deros.monitor import walk
+from deros.monitor.early import early_ones
 from deros.monitor.ir import Action, Behaviour, Program, RuleRef, Trigger
 
 
@@ -30,6 +31,7 @@ class _Writer:
         self._program = program
         self._layout = layout
         self._conditions = Conditions(program, layout)
+        self._early = early_ones(program)
         self._names = [each.name for each in walk.behaviours(program)]
 
     def act(self) -> list[str]:
@@ -97,14 +99,14 @@ class _Writer:
 
     def _true(self, behaviour: Behaviour, outer: str | None) -> Logic:
         parts = [Atom(outer)] if outer else []
-        if behaviour.optional:
-            parts.append(Atom(f"{behaviour.name!r} not in self._disabled"))
+        names = (self._names[index] for index in behaviour.switches)
+        parts += [Atom(f"{name!r} not in self._disabled") for name in names]
         return all_of([*parts, self._conditions.true(behaviour.condition)])
 
     def _false(self, behaviour: Behaviour, outer: str | None) -> Logic:
         parts = [Atom(f"{outer} is False")] if outer else []
-        if behaviour.optional:
-            parts.append(Atom(f"{behaviour.name!r} in self._disabled"))
+        names = (self._names[index] for index in behaviour.switches)
+        parts += [Atom(f"{name!r} in self._disabled") for name in names]
         return any_of([*parts, self._conditions.false(behaviour.condition)])
 
     def _trigger(self, indent: int, trigger: Trigger, behaviour: Behaviour) -> list[str]:
@@ -148,9 +150,11 @@ class _Writer:
         ]
         if not holds:
             return reset
+        held = dict(zip(action.triggered_by, holds, strict=True))
         calls = [
-            f"({self._names[index]!r}, {held})"
-            for index, held in zip(action.triggered_by, holds, strict=True)
+            f"({self._names[index]!r}, {text}, {held.get(self._early.get(index, -1), False)})"
+            for index, text in held.items()
+            if index not in self._early.values()
         ]
         return [
             *lay_out(12, "if ", all_of(Atom(f"{held} is False") for held in holds), ":"),

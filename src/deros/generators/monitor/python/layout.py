@@ -198,10 +198,11 @@ def _name_actions(program: Program, layout: Layout) -> None:
 
 
 def _name_causes(program: Program, layout: Layout) -> None:
-    negated = causes.negated_rules(program)
+    asked = causes.told_rules(program)
     for rule in program.rules:
-        layout.why[rule.index] = layout.names.new("why", rule.entity, rule.name)
-        if rule.index in negated:
+        if (rule.index, True) in asked:
+            layout.why[rule.index] = layout.names.new("why", rule.entity, rule.name)
+        if (rule.index, False) in asked:
             layout.why_not[rule.index] = layout.names.new("why_not", rule.entity, rule.name)
     for behaviour in walk.behaviours(program):
         layout.why_holds[behaviour.index] = layout.names.new("why", behaviour.name)

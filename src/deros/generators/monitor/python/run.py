@@ -99,6 +99,7 @@ class GeneratedMonitor:
                 span,
                 event.holding,
                 event.unknown,
+                event.coming,
             )
         )
 

@@ -14,6 +14,7 @@ from deros.generators.monitor.python.rule_state import rule_state_lines, rules_o
 from deros.generators.monitor.python.rules import Judge, judges
 from deros.generators.monitor.python.whys import Why, whys
 from deros.monitor import walk
+from deros.monitor.early import early_ones, with_early
 from deros.monitor.engine import age_changes
 from deros.monitor.evaluate import evaluate_condition
 from deros.monitor.function_texts import PYTHON
@@ -66,12 +67,13 @@ class MonitorView:
         handlers: one per topic.
         judges: the methods that evaluate rules, and by topic which of them a message calls.
         behaviours: the name of each, and the flag that its condition holds.
-        refusing: the same of those that can refuse a reset.
+        refusing: the same of those that can refuse a reset, and the flag of the early one, if any.
         rules_of: the name of each, and the rules that its condition names.
         optional: the names of those that can be disabled.
         explained: the lines of the rule states that ``explain()`` returns.
         whys: the methods that return why rules are true or false, and why behaviours hold.
-        why_holds: the name of each behaviour, its attribute, and the method that returns why.
+        why_holds: the name of each behaviour, its attribute, and the method that returns why; then
+            both of its early one, if there is one.
         says_unknown: whether one of them names the terms without a value.
         joins_causes: whether one of them combines the causes of several parts.
         waiting: the lines of what ``waiting`` returns.
@@ -95,12 +97,12 @@ class MonitorView:
     handlers: tuple[Handler, ...]
     judges: tuple[Judge, ...]
     behaviours: tuple[tuple[str, str], ...]
-    refusing: tuple[tuple[str, str], ...]
+    refusing: tuple[tuple[str, str, str], ...]
     rules_of: tuple[tuple[str, tuple[str, ...]], ...]
     optional: tuple[str, ...]
     explained: tuple[str, ...]
     whys: tuple[Why, ...]
-    why_holds: tuple[tuple[str, str, str], ...]
+    why_holds: tuple[tuple[str, str, str, str, str], ...]
     says_unknown: bool
     joins_causes: bool
     waiting: tuple[str, ...]
@@ -117,15 +119,17 @@ def monitor_view(program: Program) -> MonitorView:
         GenerationError: if a rule calls a function that does not exist in Python.
     """
     refuse_unknown(program, knows, "Python")
-    layout = lay_out_memory(program)
+    running = with_early(program)
+    layout = lay_out_memory(running)
     functions = _function_texts(layout)
-    methods = judges(program, layout)
-    known_at_start = _known_at_start(program, layout)
-    made = handlers(program, layout, methods, known_at_start)
+    methods = judges(running, layout)
+    known_at_start = _known_at_start(running, layout)
+    made = handlers(running, layout, methods, known_at_start)
     annotations = [each.annotation for handler in made for each in handler.parameters]
     arrays = [*functions, *(line for handler in made for line in handler.lines)]
-    told = tuple(whys(program, layout))
-    initial = _initial(program, layout, known_at_start)
+    told = tuple(whys(running, layout))
+    early = early_ones(running)
+    initial = _initial(running, layout, known_at_start)
     restarted = _restarted(layout)
     forgets = _forgets(program, layout)
     timeouts = _timeouts(program, layout)
@@ -157,26 +161,31 @@ def monitor_view(program: Program) -> MonitorView:
             (each.name, layout.holds[each.index]) for each in walk.behaviours(program)
         ),
         refusing=tuple(
-            (each.name, layout.holds[each.index])
+            (each.name, layout.holds[each.index], layout.holds.get(early.get(each.index, -1), ""))
             for each in walk.behaviours(program)
             if each.index in layout.refusing
         ),
-        act=tuple(act_lines(program, layout)),
-        ends=_ends(program, layout),
+        act=tuple(act_lines(running, layout)),
+        ends=_ends(running, layout),
         known_at_start=known_at_start,
-        latched=tuple(latched_lines(program, layout)),
+        latched=tuple(latched_lines(running, layout)),
         rules_of=tuple(rules_of(program)),
         optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
         explained=tuple(rule_state_lines(program, layout)),
         whys=told,
         why_holds=tuple(
-            (each.name, layout.holds[each.index], layout.why_holds[each.index])
+            (each.name, *_flags(layout, each.index), *_flags(layout, early.get(each.index)))
             for each in walk.behaviours(program)
         ),
         joins_causes=any("found += " in line for each in told for line in each.lines),
         says_unknown=any("unknown_of(" in line for each in told for line in each.lines),
         waiting=tuple(waiting_lines(layout)),
     )
+
+
+def _flags(layout: Layout, behaviour: int | None) -> tuple[str, str]:
+    """Return the attribute of a behaviour and the method that returns why it holds."""
+    return ("", "") if behaviour is None else (layout.holds[behaviour], layout.why_holds[behaviour])
 
 
 def _title(name: str) -> str:

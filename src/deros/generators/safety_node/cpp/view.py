@@ -15,7 +15,7 @@ from deros.generators.safety_node.cpp.rule_state import rule_states
 from deros.generators.safety_node.cpp.whys import (
     CauseFunction,
     cause_functions,
-    why_behaviour,
+    told,
     why_rule,
 )
 from deros.generators.safety_node.messages import is_stamped
@@ -48,6 +48,7 @@ from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.rules import Rules
 from deros.metamodels.safety_nodes import DIAGNOSTICS_TYPE, RESET, enabled_parameter
+from deros.monitor.early import early_ones
 from deros.monitor.ir import Action, Binding, Program, Scalar
 
 _PARAMETER_TYPES = {
@@ -171,13 +172,19 @@ class SafetyView:
         return f"{self.stem}_actions"
 
     @property
-    def conditions(self) -> list[tuple[str, str, str]]:
-        """The enumerator of each behaviour, its condition's field, and its cause function."""
-        layout = self.monitor.layout
+    def conditions(self) -> list[tuple[str, str, str, str, str]]:
+        """The enumerator of each behaviour, its condition's field, and its cause function.
+
+        Then the field and the function of its early behaviour, if there is one.
+        """
+        early = early_ones(self.monitor.program)
         return [
-            (name, layout.conditions[i], why_behaviour(layout, i))
-            for i, (_, name) in enumerate(self.monitor.behaviour_names)
+            (name, *self._told(index), *self._told(early.get(index)))
+            for index, (_, name) in enumerate(self.monitor.behaviour_names)
         ]
+
+    def _told(self, behaviour: int | None) -> tuple[str, str]:
+        return ("", "") if behaviour is None else told(self.monitor.layout, behaviour)
 
     @property
     def bound(self) -> list[tuple[str, str]]:
@@ -234,7 +241,7 @@ def safety_view(
             (state, monitor.layout.verdicts[rule.index], why_rule(monitor.layout, rule.index))
             for rule, state in zip(program.rules, rule_states(program, monitor.layout), strict=True)
         ),
-        cause_functions=tuple(cause_functions(program, monitor.layout)),
+        cause_functions=tuple(cause_functions(monitor.program, monitor.layout)),
         rule_metadata=rule_metadata_view(model, program, monitor, f"{stem}_actions.cpp"),
         latched=tuple((a.name, a.enumerator) for a in monitor.actions if a.latched),
         optional=tuple(_optional(monitor)),

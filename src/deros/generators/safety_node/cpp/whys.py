@@ -28,9 +28,9 @@ from deros.monitor.causes import (
     Plan,
     Say,
     SayRule,
-    negated_rules,
     plan_of_behaviour,
     plan_of_rule,
+    told_rules,
 )
 from deros.monitor.ir import (
     OPPOSITE,
@@ -78,23 +78,23 @@ def why_rule(layout: Layout, rule: int, holds: bool = True) -> str:
     return f"why_{str(holds).lower()}_{layout.verdicts[rule]}"
 
 
-def why_behaviour(layout: Layout, behaviour: int) -> str:
-    """Return the name of the function that returns why a behaviour holds."""
-    return f"why_holds_{layout.conditions[behaviour]}"
+def told(layout: Layout, behaviour: int) -> tuple[str, str]:
+    """Return the field of a behaviour's condition, and the function that returns why it holds."""
+    return layout.conditions[behaviour], f"why_holds_{layout.conditions[behaviour]}"
 
 
 def cause_functions(program: Program, layout: Layout) -> Iterator[CauseFunction]:
-    """Yield the functions of all rules, then of all behaviours; the monitor's struct is ``m``."""
+    """Yield the functions of rules, then of all behaviours; the monitor's struct is ``m``."""
     emitter = _Emitter(program, layout)
-    negated = negated_rules(program)
+    asked = told_rules(program)
     for rule in program.rules:
-        for holds in (True, False) if rule.index in negated else (True,):
+        for holds in (each for each in (True, False) if (rule.index, each) in asked):
             plan = plan_of_rule(program, rule.index, holds)
             subject = f"{rule.full_name} is {str(holds).lower()}"
             yield CauseFunction(why_rule(layout, rule.index, holds), subject, emitter.body(plan))
     for behaviour in walk.behaviours(program):
         plan = plan_of_behaviour(program, behaviour)
-        name = why_behaviour(layout, behaviour.index)
+        _, name = told(layout, behaviour.index)
         yield CauseFunction(name, f"{behaviour.name} holds", emitter.body(plan))
 
 

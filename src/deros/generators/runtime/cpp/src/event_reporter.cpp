@@ -136,12 +136,16 @@ void EventReporter::report_monitor_event(
   if (event.kind == EventKind::Refused) {
     const std::vector<std::size_t> holding = callers(*site.action, after.holding);
     const std::vector<std::size_t> unknown = callers(*site.action, after.unknown);
+    const std::vector<std::size_t> coming = callers(*site.action, after.coming);
     set(values, "holding", names(holding));
     set(values, "unknown", names(unknown));
-    for (const std::size_t behaviour : holding) {
-      set(values, "cause " + metadata_.behaviours[behaviour].name, cause_of(behaviour, after));
+    set(values, "coming", names(coming));
+    for (const auto & caused : {holding, coming}) {
+      for (const std::size_t behaviour : caused) {
+        set(values, "cause " + metadata_.behaviours[behaviour].name, cause_of(behaviour, after));
+      }
     }
-    for (const auto & refusing : {holding, unknown}) {
+    for (const auto & refusing : {holding, unknown, coming}) {
       for (const std::size_t behaviour : refusing) {
         add_values(values, metadata_.behaviours[behaviour], after);
       }
@@ -171,6 +175,10 @@ std::string EventReporter::refusal(std::size_t action, const MonitorSnapshot & p
   for (const std::size_t caller : callers(action, present.holding)) {
     holding.push_back(origin_holding(caller, present));
   }
+  std::vector<std::string> coming;
+  for (const std::size_t caller : callers(action, present.coming)) {
+    coming.push_back(origin_holding(caller, present));
+  }
   std::vector<std::string> unknown;
   for (const std::size_t caller : callers(action, present.unknown)) {
     unknown.push_back(origin_unknown(caller, present));
@@ -178,6 +186,9 @@ std::string EventReporter::refusal(std::size_t action, const MonitorSnapshot & p
   std::vector<std::string> reasons;
   if (!holding.empty()) {
     reasons.push_back("called for by " + joined(holding, ", "));
+  }
+  if (!coming.empty()) {
+    reasons.push_back("on its way: " + joined(coming, ", "));
   }
   if (!unknown.empty()) {
     reasons.push_back("not known to be false: " + joined(unknown, ", "));

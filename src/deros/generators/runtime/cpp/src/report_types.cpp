@@ -71,9 +71,8 @@ void append(Causes & causes, const Causes & further)
 
 std::string cause_of(std::size_t behaviour, const MonitorSnapshot & snapshot)
 {
-  const auto found = std::find(snapshot.holding.begin(), snapshot.holding.end(), behaviour);
-  return found == snapshot.holding.end() ? "" :
-         snapshot.causes[static_cast<std::size_t>(found - snapshot.holding.begin())];
+  const auto found = snapshot.causes.find(behaviour);
+  return found == snapshot.causes.end() ? "" : found->second;
 }
 
 }  // namespace deros_runtime_cpp

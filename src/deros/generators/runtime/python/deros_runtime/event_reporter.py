@@ -55,8 +55,10 @@ class EventReporter:
             told |= self._values(event.behaviour, after)
         if event.kind == EventKind.REFUSED:
             told |= {'holding': ', '.join(event.holding), 'unknown': ', '.join(event.unknown)}
-            told |= {f'cause {name}': cause(name, after) for name in event.holding}
-            for name in (*event.holding, *event.unknown):
+            told |= {'coming': ', '.join(event.coming)}
+            for name in (*event.holding, *event.coming):
+                told[f'cause {name}'] = cause(name, after)
+            for name in (*event.holding, *event.unknown, *event.coming):
                 told |= self._values(name, after)
         self.report(event.kind.value, level, message, **told)
 
@@ -78,24 +80,33 @@ class EventReporter:
         found = self._behaviours[behaviour]
         return f'{behaviour} ({found.origin}: if {found.condition})'
 
-    def refusal(self, holding: Sequence[str], unknown: Sequence[str], present: Explanation) -> str:
+    def refusal(
+        self,
+        holding: Sequence[str],
+        unknown: Sequence[str],
+        coming: Sequence[str],
+        present: Explanation,
+    ) -> str:
         """
         Return why a reset is refused; empty if it is not.
 
-        holding and unknown are the behaviours that trigger the action and whose conditions hold or
-        are unknown; present is the monitor's explanation.
+        holding, unknown and coming are the behaviours that trigger the action and whose conditions
+        hold, are unknown or are on their way; present is the monitor's explanation.
         """
         reasons = []
         if holding:
             told = (self._origin_holding(name, present) for name in holding)
             reasons.append(f'called for by {", ".join(told)}')
+        if coming:
+            told = (self._origin_holding(name, present) for name in coming)
+            reasons.append(f'on its way: {", ".join(told)}')
         if unknown:
             told = (self._origin_unknown(name, present) for name in unknown)
             reasons.append(f'not known to be false: {", ".join(told)}')
         return '; '.join(reasons)
 
     def _origin_holding(self, behaviour: str, present: Explanation) -> str:
-        """Return a behaviour with its place in the rules, and what makes it hold."""
+        """Return a behaviour with its place in the rules, and why it holds or is on its way."""
         found = cause(behaviour, present)
         if not found:
             return self.origin(behaviour)
@@ -139,7 +150,7 @@ class EventReporter:
         if event.kind == EventKind.RESET:
             return f'{event.action} is reset', OK
         if event.kind == EventKind.REFUSED:
-            why = self.refusal(event.holding, event.unknown, after)
+            why = self.refusal(event.holding, event.unknown, event.coming, after)
             return f'{event.action} stays active, {why}', WARN
         what = event.arguments[0] if event.action == 'log_state' else event.action
         return f'{what}, by {self._origin_holding(event.behaviour, after)}', WARN

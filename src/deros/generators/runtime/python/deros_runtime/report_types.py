@@ -63,6 +63,10 @@ class Event(ActionCall, Protocol):
     def unknown(self) -> tuple[str, ...]:
         """Return the behaviours that refused a reset because their conditions are unknown."""
 
+    @property
+    def coming(self) -> tuple[str, ...]:
+        """Return the behaviours that refused a reset because their conditions are on their way."""
+
 
 class RuleState(Protocol):
     """The verdict of a rule, and the values behind it."""
@@ -105,7 +109,7 @@ class Explanation(Protocol):
 
     @property
     def causes(self) -> Mapping[str, Sequence[str]]:
-        """Return what makes each behaviour hold, of those that do."""
+        """Return why behaviours hold or are on their way, of those that do."""
 
 
 class Monitor(Protocol):
@@ -126,6 +130,10 @@ class Monitor(Protocol):
     @property
     def unknown(self) -> Sequence[str]:
         """Return the behaviours whose conditions are unknown."""
+
+    @property
+    def coming(self) -> Sequence[str]:
+        """Return the behaviours whose conditions are on their way."""
 
     def explain(self) -> Explanation:
         """Return the verdict of each rule since the last event."""

@@ -299,11 +299,11 @@ class SafetyNodeCore:
         """Return why a reset of an action is refused now; empty if it is not."""
         monitor = self.runner.monitor
         behaviours = self._metadata.actions[action].triggered_by
-        return self._events.refusal(
-            [name for name in behaviours if name in monitor.holding],
-            [name for name in behaviours if name in monitor.unknown],
-            monitor.explain(),
+        holding, unknown, coming = (
+            [name for name in behaviours if name in refusing]
+            for refusing in (monitor.holding, monitor.unknown, monitor.coming)
         )
+        return self._events.refusal(holding, unknown, coming, monitor.explain())
 
     # States and heartbeat
 

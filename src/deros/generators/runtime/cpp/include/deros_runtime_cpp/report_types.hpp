@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -182,11 +183,12 @@ struct MonitorSnapshot
 {
   std::vector<RuleState> rules;
   std::vector<std::size_t> holding;  // the behaviours whose conditions hold
-  std::vector<std::string> causes;  // the causes of each of these
   std::vector<std::size_t> unknown;  // the behaviours whose conditions are unknown
+  std::vector<std::size_t> coming;  // the behaviours whose conditions are on their way
+  std::map<std::size_t, std::string> causes;  // of each that holds or is on its way
 };
 
-/// Return the causes of a behaviour; an empty text if its condition does not hold any more.
+/// Return the causes of a behaviour; an empty text if it neither holds nor is on its way any more.
 /**
  * A message may reveal that the clock has stepped back, and change at once what the step caused.
  */
