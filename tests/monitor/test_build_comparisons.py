@@ -15,7 +15,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
 from deros.monitor import ir
-from deros.monitor.bounds import integer_bound
+from deros.monitor.bounds import as_float32, integer_bound
 from deros.monitor.build import build
 from deros.monitor.evaluate import COMPARE
 from tests.support.profiles import scaled
@@ -65,7 +65,7 @@ def test_user_defined_unit_is_converted() -> None:
 
 def test_temperature_units_have_an_offset() -> None:
     """A field in degrees Celsius is compared with kelvins and degrees Fahrenheit."""
-    assert bound("topic /battery.temperature > 300 K") == 26.85
+    assert bound("topic /battery.temperature > 300 K") == as_float32(26.85)
     assert bound("topic /battery.temperature > 68 degF") == 20.0
 
 
@@ -250,7 +250,7 @@ def test_nearest_reads_ranges_and_geometry() -> None:
     leaves = [ir.Read(leaf) for leaf in range(5)]
     bearings = ir.Const(-0.5235987755982989), ir.Const(0.5)
     nearest = ir.Apply("nearest", (*leaves, *bearings), 0)
-    assert built.rules[0].condition == ir.Compare(nearest, "<", ir.Const(0.4))
+    assert built.rules[0].condition == ir.Compare(nearest, "<", ir.Const(as_float32(0.4)))
 
 
 def test_count_ignores_nan_unless_another_function_does_not() -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from deros.generators.monitor.python.run import GeneratedMonitor
+from deros.monitor.bounds import as_float32
 from deros.monitor.engine import Engine
 from deros.monitor.ir import Program
 from deros.monitor.state import LeafValue
@@ -27,6 +28,8 @@ input m = topic /mode.data
 input n = topic /name.data
 input q = topic /imu.orientation
 input s = topic /status
+input c = topic /battery.percentage
+input scan = topic /scan
 """
 
 monitors = pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])
@@ -56,6 +59,9 @@ class Driver:
     def why(self, behaviour: str = "b") -> tuple[str, ...]:
         """Return the causes of a behaviour."""
         return self.monitor.explain().causes[behaviour]
+
+
+TENTH = as_float32(0.1)
 
 
 def rule(condition: str) -> str:
@@ -98,6 +104,23 @@ def rule(condition: str) -> str:
             "q.roll() 3.141592653589793 rad not in [-10 deg, 10 deg]",
         ),
         ("true", "/flag", {"data": True}, "true"),
+        ("c <= 0.2", "/battery", {"percentage": as_float32(0.2)}, "c 0.2 <= 0.2"),
+        ("c >= 0.7", "/battery", {"percentage": as_float32(0.7)}, "c 0.7 >= 0.7"),
+        ("c = 0.1", "/battery", {"percentage": as_float32(0.1)}, "c = 0.1"),
+        ("c in [10 %, 0.3]", "/battery", {"percentage": as_float32(0.1)}, "c 0.1 in [10 %, 0.3]"),
+        ("c.abs() < 0.7", "/battery", {"percentage": as_float32(0.3)}, "c.abs() 0.3 < 0.7"),
+        ("c * 1 > 0.1", "/battery", {"percentage": as_float32(0.1)}, f"(c * 1) {TENTH} > 0.1"),
+        (
+            "scan.nearest(-30 deg, 30 deg) <= 0.4 m",
+            "/scan",
+            {
+                "ranges": [as_float32(0.4)] * 3,
+                "angle_min": -0.5,
+                "angle_increment": 0.5,
+                "range_max": 9.0,
+            },
+            "scan.nearest(-0.523599, 0.523599) 0.4 <= 0.4 m",
+        ),
     ],
 )
 def test_comparison_shows_its_value(

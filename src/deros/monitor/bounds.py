@@ -71,6 +71,25 @@ def rounded(value: Fraction) -> float:
         return math.inf if value > 0 else -math.inf
 
 
+def rounded_as(value: Fraction, kind: FieldType) -> float:
+    """Return the number of a floating-point type that is nearest to a value, ties to even.
+
+    Beyond the range of a ``float32`` it is a double: no number of that type is as great.
+    """
+    if kind.base != "float32" or not value:
+        return rounded(value)
+    exponent = value.numerator.bit_length() - value.denominator.bit_length()
+    exponent -= abs(value) < Fraction(2) ** exponent
+    step = Fraction(2) ** max(exponent - 23, -149)
+    return rounded(round(value / step) * step)
+
+
+def shortest_decimal(value: float) -> float:
+    """Return the shortest decimal number that gives a ``float32``: 0.1 for 0.10000000149."""
+    decimals = (float(f"{value:.{digits}g}") for digits in range(1, 10))
+    return next((each for each in decimals if as_float32(each) == value), value)
+
+
 def as_float32(value: float) -> float:
     """Return the nearest number that a ``float32`` holds; infinity beyond their range."""
     try:

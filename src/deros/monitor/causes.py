@@ -393,7 +393,7 @@ def _tell(program: Program, plan: Plan, state: State, t_ns: int) -> list[str]:
             if evaluate_condition(plan.condition, state, t_ns) is not plan.holds:
                 return []
             texts = (
-                each if isinstance(each, str) else constant(_known(each, state, t_ns))
+                each if isinstance(each, str) else constant(_known(program, each, state, t_ns))
                 for each in plan.pieces
             )
             return ["".join(texts)]
@@ -412,16 +412,13 @@ def _tell(program: Program, plan: Plan, state: State, t_ns: int) -> list[str]:
             is_so = has_lasted if plan.reached else is_short
             return _tell(program, plan.part, state, t_ns) if is_so else []
         case OrUnknown():
-            names = [term_name(program, each) for each in plan.terms if _is_unknown(each, state)]
+            open_ = (each for each in plan.terms if term_value(program, each, state, 0) is None)
+            names = [term_name(program, each) for each in open_]
             unknown = f"unknown: {', '.join(names)}"
             return _tell(program, plan.part, state, t_ns) or [unknown]
 
 
-def _is_unknown(term: Term, state: State) -> bool:
-    return term_value(term, state, 0) is None
-
-
-def _known(term: Term, state: State, t_ns: int) -> bool | int | float | str:
-    value = term_value(term, state, t_ns)
+def _known(program: Program, term: Term, state: State, t_ns: int) -> bool | int | float | str:
+    value = term_value(program, term, state, t_ns)
     assert value is not None, "what makes a condition true or false has a value"
     return value

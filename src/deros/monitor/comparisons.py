@@ -13,7 +13,7 @@ from deros.interfaces.types import FieldType
 from deros.metamodels import rules
 from deros.monitor import ir
 from deros.monitor.arithmetic import scaled
-from deros.monitor.bounds import Bounds, bounds_of, exact, integer_bound, rounded
+from deros.monitor.bounds import Bounds, bounds_of, exact, integer_bound, rounded_as
 from deros.monitor.compared_units import ComparedUnits
 from deros.monitor.functions import FUNCTIONS
 from deros.monitor.resolved import (
@@ -203,7 +203,7 @@ class Comparisons:
         if value.is_integer:
             operator, bound = integer_bound(operator, number)
         else:
-            bound = rounded(number)
+            bound = rounded_as(number, value.type)
         self._note(node, value, bounds_of(operator, exact(bound)), operator in _EQUALITY)
         return ir.Compare(value.expression, operator, ir.Const(bound), shown)
 
@@ -336,7 +336,7 @@ class Comparisons:
         assert isinstance(end, Quantity)
         number = end.in_unit(operand.unit)
         if not operand.is_integer:
-            return ir.Const(rounded(number)), closed
+            return ir.Const(rounded_as(number, operand.type)), closed
         if number.denominator == 1:
             return ir.Const(int(number)), closed
         return ir.Const(inwards(number)), True

@@ -77,7 +77,9 @@ def explain(program: Program, running: Program, state: State, t_ns: int) -> Expl
 def _explain_rule(
     program: Program, rule: Rule, read: Sequence[Term], state: State, t_ns: int
 ) -> RuleState:
-    reads = tuple((term_name(program, each), term_value(each, state, t_ns)) for each in read)
+    reads = tuple(
+        (term_name(program, each), term_value(program, each, state, t_ns)) for each in read
+    )
     value: bool | None = state.verdicts[rule.index] is True
     if not value and any(each is None for _, each in reads):
         value = None

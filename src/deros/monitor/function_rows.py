@@ -94,6 +94,8 @@ class Function:
         turns: whether it is an angle that jumps by a full turn.
         is_written: whether rules call it; others are parts of those that rules call.
         nan_is_unknown: whether a NaN in the first leaf makes the input unknown.
+        is_single: whether it is one of the ``float32`` of its message, and so is told by a shorter
+            decimal.
         bounds: least and greatest result, where the function itself bounds it.
         bounds_from: computes the bounds from those of the leaves.
         bearings: whether its parameters are the ends of a sector, counter-clockwise.
@@ -130,6 +132,7 @@ class Function:
     turns: bool = False
     is_written: bool = True
     nan_is_unknown: bool = True
+    is_single: bool = False
     bounds: tuple[float, float] = (-math.inf, math.inf)
     bounds_from: Callable[..., Ends] | None = None
     bearings: bool = False

@@ -300,6 +300,8 @@ class FunctionTerms:
             row, self._scope.field_units.unit_of(part.input.topic, part.input.type, first)
         )
         kind = _RESULT_TYPES.get(row.result, part.type.element)
+        if row.is_single:
+            kind = FieldType("float32")
         bounds = result_bounds(row, kind, *leaf_bounds)
         if row.argument is Argument.ARRAY and part.type.size is not None:
             least = part.type.size if part.type.array == "fixed" else 0

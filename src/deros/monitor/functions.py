@@ -287,6 +287,7 @@ total
         parameters=(("start", "rad"), ("end", "rad")),
         evaluate=values.nearest,
         nan_is_unknown=False,
+        is_single=True,
         bounds=(0.0, math.inf),
         bearings=True,
         guard=Guard(

@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping
 
 from deros.interfaces.durations import seconds_text
 from deros.monitor import walk
+from deros.monitor.bounds import shortest_decimal
 from deros.monitor.evaluate import evaluate_condition, evaluate_value
-from deros.monitor.functions import FUNCTIONS
+from deros.monitor.functions import FUNCTIONS, Result
 from deros.monitor.ir import (
     Age,
     Apply,
@@ -97,8 +98,20 @@ def term_name(program: Program, term: Term) -> str:
             return term.wording
 
 
-def term_value(term: Term, state: State, t_ns: int) -> Scalar | None:
-    """Return the value of a term; ``None`` is unknown, an age is in seconds."""
+def is_single(program: Program, term: Term | ValueExpression) -> bool:
+    """Return whether a term has values of ``float32``, which are told by shorter decimals."""
+    match term:
+        case Read():
+            return program.leaves[term.leaf].type.base == "float32"
+        case Apply():
+            row = FUNCTIONS[term.function]
+            of_elements = row.result is Result.ELEMENT and is_single(program, term.arguments[0])
+            return row.is_single or of_elements
+    return False
+
+
+def term_value(program: Program, term: Term, state: State, t_ns: int) -> Scalar | None:
+    """Return the value of a term as it is told; ``None`` is unknown, an age is in seconds."""
     match term:
         case Missing() | Unknown():
             return evaluate_condition(term, state, t_ns)
@@ -107,6 +120,8 @@ def term_value(term: Term, state: State, t_ns: int) -> Scalar | None:
             return None if counted_ns is None else (t_ns - counted_ns) / 1e9
         case Read() | Apply() | Compute():
             value: Scalar | None = evaluate_value(term, state)
+            if isinstance(value, float) and is_single(program, term):
+                return shortest_decimal(value)
             return value
 
 

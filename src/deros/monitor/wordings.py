@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from deros.interfaces.units import is_same
+from deros.interfaces.units import is_one, is_same
 from deros.monitor import ir
 from deros.monitor.bounds import rounded
 from deros.monitor.resolved import MessageConstant, Plain, Quantity, Resolved, Value
@@ -22,8 +22,8 @@ def wording(operator: ir.Operator, left: Value, *right: Resolved, brackets: str 
     differ = any(each and not is_same(each, left.unit) for each in units)
     shown = tuple(_side(each, units_differ=differ) for each in right)
     told = any(isinstance(each, Quantity) and each.unit for each in right)
-    computed = isinstance(left.expression, ir.Compute) and not told
-    unit = str(left.unit) if left.unit and (differ or (computed and left.unit.exponents)) else ""
+    differ |= isinstance(left.expression, ir.Compute) and not told
+    unit = str(left.unit) if differ and left.unit and not is_one(left.unit) else ""
     return ir.Wording(operator, unit, shown, brackets)
 
 

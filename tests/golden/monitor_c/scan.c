@@ -85,6 +85,6 @@ static bool observe_v(
       ranges, ranges_count, angle_min, angle_increment, range_min, range_max, -0.5235987755982989,
       0.5235987755982989);
     news = store_truth(&m->v_nearest_known, is_number(m->v_nearest), news);
-    news = store_truth(&m->v_nearest_below_0_4, m->v_nearest < 0.4, news);
+    news = store_truth(&m->v_nearest_below_0_4, m->v_nearest < 0.4000000059604645, news);
   /* 4 lines of vector */
 }

@@ -51,6 +51,14 @@ std::string number(const std::string & bits)
   return deros_runtime_cpp::to_text(value);
 }
 
+std::string single(const std::string & bits)
+{
+  const auto integer = static_cast<std::uint32_t>(std::stoul(bits, nullptr, 16));
+  float value = 0.0F;
+  std::memcpy(&value, &integer, sizeof(value));
+  return deros_runtime_cpp::to_text(value);
+}
+
 std::string claimed(const std::string & folder, const std::string & domain, const std::string & name)
 {
   static std::vector<deros_runtime_cpp::Descriptor> locks;
@@ -78,6 +86,9 @@ std::string answer(const std::vector<std::string> & words)
   const std::string & what = words.at(0);
   if (what == "number") {
     return number(words.at(1));
+  }
+  if (what == "single") {
+    return single(words.at(1));
   }
   if (what == "digest") {
     return deros_runtime_cpp::sha256(words.size() > 1 ? words.at(1) : "");

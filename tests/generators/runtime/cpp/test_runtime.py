@@ -16,6 +16,7 @@ import pytest
 from deros.generators.runtime.python.deros_runtime.instance import Refusal, claim, file_stem
 from deros.generators.runtime.python.deros_runtime.latches import LatchFile, default_path
 from deros.generators.runtime.python.deros_runtime.start_order import StartOrder
+from deros.monitor.bounds import shortest_decimal
 from tests.support.needs import needs
 from tests.support.safety_cpp import RUNTIME, Harness, compiled
 
@@ -47,6 +48,15 @@ def test_numbers_are_formatted_like_python(harness: Harness) -> None:
     for value in numbers:
         bits = struct.pack(">d", value).hex()
         assert harness.ask("number", bits) == str(value + 0.0)
+
+
+def test_floats_are_formatted_as_the_monitor_does(harness: Harness) -> None:
+    """A float32 is told by the shortest decimal that gives it."""
+    drawn = random.Random(3)
+    bits = [drawn.randbytes(4) for _ in range(500)] + [struct.pack(">f", 51.2), b"\x7f\x7f\xff\xff"]
+    for each in bits:
+        (value,) = struct.unpack(">f", each)
+        assert harness.ask("single", each.hex()) == str(shortest_decimal(value) + 0.0)
 
 
 def test_duplicate_detection_agrees_with_python(harness: Harness) -> None:

@@ -9,7 +9,7 @@ from deros.generators.text.logic import Atom, all_of, any_of, lay_out
 from deros.generators.text.python import lay_out_call
 from deros.monitor import walk
 from deros.monitor.ir import Age, Missing, Program, RuleRef, Unknown
-from deros.monitor.reads import Term, strip_comments, term_name, terms_of_rules
+from deros.monitor.reads import Term, is_single, strip_comments, term_name, terms_of_rules
 
 
 def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -27,7 +27,9 @@ def rule_state_lines(program: Program, layout: Layout) -> list[str]:
     """Return the items of the tuple that ``explain()`` returns, one call per rule."""
     lines: list[str] = []
     for rule, read in terms_of_rules(program):
-        reads = [f"({term_name(program, each)!r}, {value_text(each, layout)})" for each in read]
+        reads = [
+            f"({term_name(program, each)!r}, {value_text(program, each, layout)})" for each in read
+        ]
         arguments = [
             repr(rule.full_name),
             str(rule.span.line),
@@ -50,7 +52,7 @@ def waiting_lines(layout: Layout) -> list[str]:
     return lay_out(8, "return ", any_of(inputs) if inputs else Atom("False"))
 
 
-def value_text(term: Term, layout: Layout) -> str:
+def value_text(program: Program, term: Term, layout: Layout) -> str:
     """Return the expression of a term's value, with NaN or None for unknown."""
     match term:
         case Missing():
@@ -66,4 +68,5 @@ def value_text(term: Term, layout: Layout) -> str:
         case Age():
             return f"(self._now - self._{layout.counted[term.input]}) / 1e9"
         case _:
-            return f"self._{layout.values[term].name}"
+            value = f"self._{layout.values[term].name}"
+            return f"decimal({value})" if is_single(program, term) else value

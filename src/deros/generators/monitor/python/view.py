@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from deros.generators.monitor.functions import refuse_unknown
@@ -60,6 +61,7 @@ class MonitorView:
         uses_sequences: whether an array comes into a handler or a function.
         uses_numpy: whether its numbers are read.
         uses_cache: whether a result that depends on it is cached.
+        has_singles: whether a float32 is told.
         slots: the names of the attributes, in order.
         initial: pairs of attribute and value at the start, for those that a clock step keeps.
         restarted: the same for those that it resets.
@@ -89,6 +91,7 @@ class MonitorView:
     uses_sequences: bool
     uses_numpy: bool
     uses_cache: bool
+    has_singles: bool
     slots: tuple[str, ...]
     initial: tuple[tuple[str, str], ...]
     restarted: tuple[tuple[str, str], ...]
@@ -128,6 +131,7 @@ def monitor_view(program: Program) -> MonitorView:
     annotations = [each.annotation for handler in made for each in handler.parameters]
     arrays = [*functions, *(line for handler in made for line in handler.lines)]
     told = tuple(whys(running, layout))
+    explained = tuple(rule_state_lines(program, layout))
     early = early_ones(running)
     initial = _initial(running, layout, known_at_start)
     restarted = _restarted(layout)
@@ -150,6 +154,7 @@ def monitor_view(program: Program) -> MonitorView:
         uses_sequences=any("Sequence" in each for each in (*functions, *annotations)),
         uses_numpy=any("np." in each for each in arrays),
         uses_cache=any("functools." in each for each in functions),
+        has_singles=any("decimal(" in line for line in (*explained, *_lines(told))),
         slots=tuple(dict.fromkeys(attributes)),
         initial=initial,
         restarted=restarted,
@@ -171,16 +176,21 @@ def monitor_view(program: Program) -> MonitorView:
         latched=tuple(latched_lines(running, layout)),
         rules_of=tuple(rules_of(program)),
         optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
-        explained=tuple(rule_state_lines(program, layout)),
+        explained=explained,
         whys=told,
         why_holds=tuple(
             (each.name, *_flags(layout, each.index), *_flags(layout, early.get(each.index)))
             for each in walk.behaviours(program)
         ),
-        joins_causes=any("found += " in line for each in told for line in each.lines),
+        joins_causes=any("found += " in line for line in _lines(told)),
         says_unknown=any("unknown_of(" in line for each in told for line in each.lines),
         waiting=tuple(waiting_lines(layout)),
     )
+
+
+def _lines(told: Sequence[Why]) -> Iterator[str]:
+    for each in told:
+        yield from each.lines
 
 
 def _flags(layout: Layout, behaviour: int | None) -> tuple[str, str]:

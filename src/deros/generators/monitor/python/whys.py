@@ -191,7 +191,7 @@ class _Emitter:
             method = (self._layout.why if part.holds else self._layout.why_not)[part.rule]
             return f"because({part.head!r}, self._{method}())"
         values = [
-            f"shown({value_text(each, self._layout)})"
+            f"shown({value_text(self._program, each, self._layout)})"
             for each in part.pieces
             if not isinstance(each, str)
         ]
@@ -200,7 +200,7 @@ class _Emitter:
 
     def _unknown(self, plan: OrUnknown) -> str:
         reads = (
-            f"({term_name(self._program, each)!r}, {value_text(each, self._layout)})"
+            f"({term_name(self._program, each)!r}, {value_text(self._program, each, self._layout)})"
             for each in plan.terms
         )
         return f"unknown_of({', '.join(reads)})"

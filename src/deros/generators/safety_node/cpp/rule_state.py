@@ -8,7 +8,7 @@ from deros.generators.monitor.c.interface import Layout, known_of
 from deros.generators.monitor.c.interface import Term as Field
 from deros.generators.text.cpp import Call, Expression, Text, cpp_double, cpp_string
 from deros.monitor.ir import Age, Missing, Program, Rule, Scale, Unknown
-from deros.monitor.reads import Term, strip_comments, term_name, terms_of_rules
+from deros.monitor.reads import Term, is_single, strip_comments, term_name, terms_of_rules
 from deros.monitor.wordings import quoted
 
 
@@ -33,10 +33,10 @@ def _arguments(
 def reading(program: Program, layout: Layout, term: Term) -> Expression:
     """Return the expression of a term with its value."""
     name = cpp_string(term_name(program, term))
-    return Call("runtime::Reading", (name, _value(layout, term)))
+    return Call("runtime::Reading", (name, _value(program, layout, term)))
 
 
-def shown_text(layout: Layout, term: Term) -> str:
+def shown_text(program: Program, layout: Layout, term: Term) -> str:
     """Return the expression of the text of a term in a cause."""
     if isinstance(term, Age):
         fields = layout.inputs[term.input]
@@ -44,10 +44,10 @@ def shown_text(layout: Layout, term: Term) -> str:
     field, scale = _field(layout, term)
     if field.texts:
         return _chosen(f"m.{field.name}", map(quoted, field.texts))
-    return f"runtime::to_text({_unscaled(field, scale)})"
+    return f"runtime::to_text({_told(program, term, field, scale)})"
 
 
-def _value(layout: Layout, term: Term) -> str:
+def _value(program: Program, layout: Layout, term: Term) -> str:
     match term:
         case Missing():
             return f"runtime::value_of(true, m.{layout.inputs[term.input].missing})"
@@ -59,7 +59,7 @@ def _value(layout: Layout, term: Term) -> str:
             fields = layout.inputs[term.input]
             return f"runtime::value_of(m.{fields.came}, runtime::seconds(m.now - m.{fields.base}))"
         case _:
-            return _known(*_field(layout, term))
+            return _known(program, term, *_field(layout, term))
 
 
 def _field(layout: Layout, term: Term) -> tuple[Field, Scale | None]:
@@ -73,8 +73,8 @@ def _field(layout: Layout, term: Term) -> tuple[Field, Scale | None]:
     )
 
 
-def _known(field: Field, scale: Scale | None) -> str:
-    value = _unscaled(field, scale)
+def _known(program: Program, term: Term, field: Field, scale: Scale | None) -> str:
+    value = _told(program, term, field, scale)
     if field.texts:
         value = _chosen(value, field.texts)
     return f"runtime::value_of(m.{field.known}, {value})"
@@ -82,6 +82,12 @@ def _known(field: Field, scale: Scale | None) -> str:
 
 def _chosen(place: str, texts: Iterable[str]) -> str:
     return f"runtime::known_text({place}, {{{', '.join(map(cpp_string, texts))}}})"
+
+
+def _told(program: Program, term: Term, field: Field, scale: Scale | None) -> str:
+    """Return a value in its own unit, as a float if it is one in the message."""
+    value = _unscaled(field, scale)
+    return f"static_cast<float>({value})" if is_single(program, term) else value
 
 
 def _unscaled(field: Field, scale: Scale | None) -> str:

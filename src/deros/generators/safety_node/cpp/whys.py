@@ -177,7 +177,9 @@ class _Emitter:
             why = why_rule(self._layout, part.rule, part.holds)
             return Call("runtime::rule_cause", (cpp_string(part.head), f"{why}(m)"))
         pieces = (
-            cpp_string(each) if isinstance(each, str) else shown_text(self._layout, each)
+            cpp_string(each)
+            if isinstance(each, str)
+            else shown_text(self._program, self._layout, each)
             for each in part.pieces
         )
         return Chain("", tuple(pieces), " + ")

@@ -19,6 +19,7 @@ namespace
 
 constexpr int MIN_PLAIN = -4;  // decimal exponents of numbers that are written without one
 constexpr int MAX_PLAIN = 16;
+constexpr int FLOAT_DIGITS = 9;  // with so many decimal digits every float is told from all others
 
 /// Return digits in positional notation; the first one counts 10 to the power of exponent.
 std::string plain(const std::string & digits, int exponent)
@@ -66,6 +67,22 @@ std::string to_text(double value)
   const int exponent = std::stoi(text.substr(mark + 1));
   const bool is_plain = MIN_PLAIN <= exponent && exponent < MAX_PLAIN;
   return sign + (is_plain ? plain(digits, exponent) : scientific(digits, exponent));
+}
+
+std::string to_text(float value)
+{
+  std::array<char, 64> buffer{};
+  for (int digits = 1; digits <= FLOAT_DIGITS; ++digits) {
+    const auto end = std::to_chars(
+      buffer.data(), buffer.data() + buffer.size(), static_cast<double>(value),
+      std::chars_format::general, digits);
+    double found = 0.0;
+    std::from_chars(buffer.data(), end.ptr, found);
+    if (static_cast<float>(found) == value) {
+      return to_text(found);
+    }
+  }
+  return to_text(static_cast<double>(value));
 }
 
 std::string to_text(std::int64_t value)

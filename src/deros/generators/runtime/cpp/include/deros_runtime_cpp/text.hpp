@@ -13,6 +13,9 @@ namespace deros_runtime_cpp
 /// Return a number with as few digits as identify it, as Python prints it: 0.9, 1e-05, nan.
 std::string to_text(double value);
 
+/// Return a float as the shortest decimal number that gives it: 0.1 for 0.10000000149.
+std::string to_text(float value);
+
 /// Return a value as text.
 std::string to_text(std::int64_t value);
 std::string to_text(std::uint64_t value);
