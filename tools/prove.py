@@ -62,7 +62,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for path in options.rules:
             if path.suffix == ".c":
                 functions = [each for each in options.functions.split(",") if each]
-                results.append(_prove(path.resolve(), path.stem, options, functions))
+                functions = functions or c_proof.parts_of(path)
+                proved = _prove(path.resolve(), path.stem, options, functions)
+                results.append(set(proved) == set(functions))
             else:
                 folder = (options.output or Path(temporary)) / path.stem
                 source = c_proof.write(program_of(path), folder)
@@ -93,8 +95,7 @@ def _program(source: Path, name: str, options: argparse.Namespace) -> bool:
     size = CHUNK if options.record else max(1, len(functions))
     for start in range(0, len(functions), size):
         chunk = functions[start : start + size]
-        if _prove(source, name, options, chunk):
-            proved += chunk
+        proved += _prove(source, name, options, chunk)
         if options.record:
             ledger.record(name, source, proved)
     is_listed = not options.check or _check(ledger, source, name, console)
@@ -111,9 +112,9 @@ def _check(ledger: Ledger, source: Path, name: str, console: Console) -> bool:
 
 
 def _prove(
-    source: Path, name: str, options: argparse.Namespace, functions: Sequence[str] = ()
-) -> bool:
-    """Prove functions of one program, and report the outcome."""
+    source: Path, name: str, options: argparse.Namespace, functions: Sequence[str]
+) -> list[str]:
+    """Prove functions of one program, and report the outcome; return those that are proved."""
     console = Console()
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, TimeElapsedColumn(), console=console) as progress:
@@ -133,7 +134,7 @@ def _prove(
     for complaint in proof.complaints:
         console.print(f"  assumed: {complaint}", style="red", highlight=False)
     console.print(f"{name}: {proof.proved} of {proof.all} goals proved", highlight=False)
-    return proof.is_complete
+    return proof.proved_of(functions)
 
 
 def _analyse(source: Path, name: str) -> bool:

@@ -93,6 +93,13 @@ instantiated for two addresses and a range: with the fields of a monitor, millio
 """
 
 _PLAIN = "auto_config=false smt.mbqi=false smt.relevancy=0 smt.random_seed=42"
+_OTHERWISE = _PLAIN.replace("42", "7")
+"""Z3 with another seed, for functions of which it leaves a goal. Of the thousands of facts about a
+monitor it needs a few; which it tries first is chance, and decides between a second and an hour.
+"""
+
+_FIRST_TRY_S = 60
+"""Seconds for a goal with the first seed; with the other one it gets all that was asked for."""
 
 
 def settings() -> str:
@@ -121,6 +128,21 @@ class Proof:
     def is_complete(self) -> bool:
         """Whether every goal is proved, and nothing is assumed."""
         return 0 < self.all == self.proved and not self.left and not self.complaints
+
+    def proved_of(self, functions: Sequence[str]) -> list[str]:
+        """Return the functions that are proved, of those that were asked for, or :data:`LEMMAS`.
+
+        None is, where something would be assumed, or where it is not known what a goal is of.
+        """
+        if self.complaints or not self.all:
+            return []
+        open_ = set[str]()
+        for goal in self.left:
+            of = {LEMMAS} if "_lemma_" in goal else {f for f in functions if f"_{f}_" in goal}
+            if not of:
+                return []
+            open_ |= of
+        return [each for each in functions if each not in open_]
 
 
 @dataclass(frozen=True)
@@ -164,40 +186,53 @@ def prove(
     Most of the time goes into the simplifier, which works on one goal after the other: so several
     processes share the functions.
     """
-    names = list(functions) or [*functions_of(source), *([LEMMAS] if has_lemmas(source) else [])]
+    names = list(functions) or parts_of(source)
     bodies = [name for name in names if name != LEMMAS]
     groups = [bodies[i : i + _AT_ONCE] for i in range(0, len(bodies), _AT_ONCE)]
     asked = [["-wp-fct", ",".join(group)] for group in groups]
     asked += [["-wp-prop", LEMMAS]] if LEMMAS in names else []
-    options = [
-        *OPTIONS,
-        *("-wp-prover", PROVERS, "-wp-timeout", str(timeout_s), "-wp-par", "1"),
-    ]
+    options = [*OPTIONS, *("-wp-prover", PROVERS, "-wp-par", "1")]
     done = 0
-    with provers() as environment, ThreadPoolExecutor(jobs) as pool:
+    with provers() as first, provers(_OTHERWISE) as second, ThreadPoolExecutor(jobs) as pool:
+        tries = ((first, min(_FIRST_TRY_S, timeout_s)), (second, timeout_s))
 
-        def prove_group(group: Sequence[str]) -> str:
-            return "".join(_run([*options, *group, source.name], source.parent, environment))
+        def prove_group(group: Sequence[str]) -> list[str]:
+            logs: list[str] = []
+            for environment, seconds in tries:
+                words = [*options, "-wp-timeout", str(seconds), *group, source.name]
+                logs.append("".join(_run(words, source.parent, environment)))
+                if not _LEFT.search(logs[-1]):
+                    break
+            return logs
 
         running = [pool.submit(prove_group, group) for group in asked]
         for _ in as_completed(running):
             done += 1
             if progress is not None:
                 progress(done, len(asked))
-        log = "".join(each.result() for each in running)
-    matches = list(_PROVED.finditer(log))
+        return outcome([each.result() for each in running])
+
+
+def outcome(groups: Sequence[Sequence[str]]) -> Proof:
+    """Return what became of groups of functions, by what was printed at each try."""
+    goals, left = 0, list[str]()
+    log = "".join(each for tries in groups for each in tries)
     complaints = [
         line.strip() for line in log.splitlines() if any(each in line for each in _UNTOLD)
     ]
-    if len(matches) != len(asked):
-        complaints.append("Frama-C has not come to its end")
-    return Proof(
-        sum(int(each["proved"]) for each in matches),
-        sum(int(each["all"]) for each in matches),
-        tuple(dict.fromkeys(each["name"] for each in _LEFT.finditer(log))),
-        tuple(dict.fromkeys(complaints)),
-        log,
-    )
+    for tries in groups:
+        matches = [_PROVED.search(each) for each in tries]
+        if None in matches:
+            complaints.append("Frama-C has not come to its end")
+        goals += max((int(each["all"]) for each in matches if each is not None), default=0)
+        open_ = [{each["name"]: None for each in _LEFT.finditer(text)} for text in tries]
+        left += [name for name in open_[0] if all(name in each for each in open_)]
+    return Proof(goals - len(left), goals, tuple(left), tuple(dict.fromkeys(complaints)), log)
+
+
+def parts_of(source: Path) -> list[str]:
+    """Return all of a source that has goals: its functions, and :data:`LEMMAS` if there are any."""
+    return [*functions_of(source), *([LEMMAS] if has_lemmas(source) else [])]
 
 
 def has_lemmas(source: Path) -> bool:
@@ -256,8 +291,12 @@ def _run(arguments: Sequence[str], folder: Path, environment: dict[str, str]) ->
 
 
 @contextlib.contextmanager
-def provers() -> Iterator[dict[str, str]]:
-    """Give an environment in which Why3 knows the provers of this machine, with memory for them."""
+def provers(plain: str = _PLAIN) -> Iterator[dict[str, str]]:
+    """Give an environment in which Why3 knows the provers of this machine, with memory for them.
+
+    Args:
+        plain: the options of Z3.
+    """
     with tempfile.TemporaryDirectory(prefix="deros-why3-") as folder:
         path = Path(folder) / "why3.conf"
         quiet = subprocess.DEVNULL
@@ -272,7 +311,7 @@ def provers() -> Iterator[dict[str, str]]:
         drivers = os.path.relpath(Path(data) / "drivers", path.parent)  # imports are relative
         driver.write_text(_DRIVER.format(drivers=drivers), encoding="utf-8")
         own = _PROVERS.format(
-            cvc4=shutil.which("cvc4"), z3=shutil.which("z3"), plain=_PLAIN, driver=driver
+            cvc4=shutil.which("cvc4"), z3=shutil.which("z3"), plain=plain, driver=driver
         )
         path.write_text(text + own, encoding="utf-8")
         yield {**os.environ, "WHY3CONFIG": str(path)}

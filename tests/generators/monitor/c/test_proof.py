@@ -285,3 +285,36 @@ def test_every_function_has_a_contract() -> None:
 def test_contracts_are_not_compiled(example: Unit) -> None:
     """Without Frama-C the compiler sees nothing of the contracts."""
     assert '#ifdef __FRAMAC__\n#include "intelligent_one_contracts.h"\n#endif' in example.source
+
+
+LOGS = {
+    "all": "[wp] Proved goals:   3 / 3\n",
+    "one left": "[wp] [Failed] Goal typed_f_ensures\n[wp] Proved goals:   2 / 3\n",
+    "another left": "[wp] [Timeout] Goal typed_ff_ensures\n[wp] Proved goals:   2 / 3\n",
+    "a lemma left": "[wp] [Failed] Goal typed_lemma_le\n[wp] Proved goals:   2 / 3\n",
+    "a stranger left": "[wp] [Failed] Goal typed_g_ensures\n[wp] Proved goals:   2 / 3\n",
+    "no end": "[wp] [Failed] Goal typed_ff_ensures\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("tries", "left", "proved"),
+    [
+        (["all"], 0, ["f", "ff", c_proof.LEMMAS]),
+        (["one left", "all"], 0, ["f", "ff", c_proof.LEMMAS]),
+        (["one left", "another left"], 0, ["f", "ff", c_proof.LEMMAS]),
+        (["one left", "one left"], 1, ["ff", c_proof.LEMMAS]),
+        (["another left", "another left"], 1, ["f", c_proof.LEMMAS]),
+        (["a lemma left", "a lemma left"], 1, ["f", "ff"]),
+        (["a stranger left", "a stranger left"], 1, []),
+        (["one left", "no end"], 0, []),
+        (["no end", "all"], 0, []),
+    ],
+    ids=lambda each: " and ".join(each) if isinstance(each, list) else "",
+)
+def test_what_several_tries_prove(tries: list[str], left: int, proved: list[str]) -> None:
+    """A goal is proved if one try proves it; a try that ends early proves nothing."""
+    proof = c_proof.outcome([[LOGS[each] for each in tries]])
+    assert len(proof.left) == left
+    assert proof.proved_of(["f", "ff", c_proof.LEMMAS]) == proved
+    assert proof.is_complete == (len(proved) == 3)
