@@ -65,8 +65,70 @@ def test_table_is_read(tmp_path: Path) -> None:
     )
 
 
+GROUP = """\
+# Title
+```deros
+action stop;
+action ok;
+input v = topic /speed.data
+input f = topic /flag.data
+```
+```rossystem
+system Robot
+```
+## group
+### name
+why
+```deros
+action stop publishes true on /stop : std_msgs.Bool;
+entity e { r: v > 0.5 or f; }
+if e.r then { stop; };
+```
+**As meant.** It acts.
+
+| time | message | effect |
+|---|---|---|
+| 1 s to 1.2 s every 0.1 s | v = 0.1 | |
+| 1.1 s | f = true | stop |
+
+**Sensor lost: it dies**
+| time | message | effect |
+|---|---|---|
+| 1 s | f = false | |
+"""
+
+
+def test_labelled_tables_are_timelines_of_their_own(tmp_path: Path) -> None:
+    """They share the rules, in groups of level 2; a range of times is that many messages."""
+    path = tmp_path / "t.md"
+    path.write_text(GROUP)
+    first, second = timelines.read(path)
+    assert timelines.system(path) == "system Robot\n"
+    assert (first.name, first.label, first.why) == ("name, As meant", "As meant", "It acts.")
+    assert (second.name, second.label) == ("name, Sensor lost: it dies", "Sensor lost: it dies")
+    assert [json.loads(each)["t"] for each in first.trace] == ["1", "1.1", "1.1", "1.2"]
+    assert [json.loads(each)["topic"] for each in first.trace[1:3]] == ["/speed", "/flag"]
+    assert (first.until, first.expect) == ("1.2", ((1_100_000_000, "stop", "trigger"),))
+    assert (second.until, second.expect) == ("1", ())
+    assert first.rules == second.rules
+    assert "action stop;" not in first.rules, "declared by the timeline itself"
+    assert "action ok;" not in first.rules, "nothing names it"
+
+
+def test_label_without_a_table_is_rejected(tmp_path: Path) -> None:
+    """The error names the line of the label."""
+    path = tmp_path / "t.md"
+    path.write_text(f"{GROUP}\n**As it is abused**\n")
+    with pytest.raises(timelines.TableError, match=r"t\.md:31: a label without a table"):
+        timelines.read(path)
+
+
 MALFORMED = (
-    (7, "### name", "level 1 or 2"),
+    (7, "### name", "below one of level 2"),
+    (7, "## group\n#### name", "level 1 to 3"),
+    (7, "## name\n```rossystem", "a second block"),
+    (14, "|---|---|---|\n**As meant.**", "a label below a table without one"),
+    (8, "**One.**\n| time | message | effect |\n|---|---|---|\n\n**One**", "a second table"),
     (9, "```yaml", "not one of ```deros"),
     (13, "| time until 9 s | message | cause |", "the columns are not"),
     (13, "| time until nine | message | effect |", "'nine' is not a time"),
@@ -92,6 +154,11 @@ MALFORMED = (
     (16, "| back to 0.5 s | | stop |", "not in order of time"),
     (16, "| back to 2 s | v = 0.1 | stop |", "not in order of time"),
     (16, "\n| 2 s | | stop |", "a row apart"),
+    (16, "| 2 s to 3 s every 0.1 s | v = 1 | stop |", "an effect of several times"),
+    (16, "| 2 s to 3 s every 0.1 s | | |", "no message"),
+    (16, "| 2 s to 3 s every 0 s | v = 1 | |", "a range of less than two times"),
+    (16, "| 2 s to 2 s every 0.1 s | v = 1 | |", "a range of less than two times"),
+    (16, "| 0.5 s to 3 s every 0.1 s | v = 1 | |", "not in order of time"),
 )
 
 
