@@ -109,6 +109,8 @@ subsystem Robot {
 subsystem Safety {
   // The safety node of these rules and its gate, connected as they say.
   safety "$name.deros"
+  parameters
+    param startup_grace = 5.0   // within it, the robot is held until the sensors have come
 }
 """
 
@@ -126,11 +128,12 @@ input resume_button = topic /resume.data timeout 1 sec
 
 entity drive {
   too_fast: speed.abs() > max_speed for 2 sec;
-  blind: speed.missing();
+  blind: speed.unknown();
 }
 
 entity operator {
-  resumes: resume_button;
+  // A press, seen from released to pressed: a button that is stuck resumes nothing.
+  resumes: resume_button begins and ((not resume_button) within 1 sec);
   away: resume_button.missing();
 }
 

@@ -14,9 +14,10 @@ from itertools import islice
 from arpeggio import ParsingExpression
 
 from deros.interfaces.names import did_you_mean, near
+from deros.metamodels.durations_inside import missing_parentheses
 from deros.metamodels.grammar import literal_of, words_of
 from deros.metamodels.habits import habits
-from deros.metamodels.languages import Language
+from deros.metamodels.languages import DEROS, Language
 from deros.metamodels.recogniser import Attempt, Place, Recogniser, Trace, skip_blanks
 from deros.metamodels.repaired_text import RepairedText
 from deros.metamodels.syntax import found_at
@@ -154,6 +155,7 @@ class Repair:
 
 def repairs(fault: Fault) -> Iterator[Repair]:
     """Yield repairs of a fault, the likeliest first."""
+    yield from _parentheses(fault)
     yield from _by_habit(fault)
     yield from islice(_misspelt(fault), 1)
     yield from _only(_other_sign(fault))
@@ -167,6 +169,19 @@ def _only(found: Iterable[Repair]) -> Iterator[Repair]:
     edits = list(found)
     if len(edits) == 1:
         yield edits[0]
+
+
+def _parentheses(fault: Fault) -> Iterator[Repair]:
+    """Put what a duration covers in parentheses, where the condition goes on behind it."""
+    if fault.language is not DEROS:
+        return
+    found = missing_parentheses(fault.text, fault.position, fault.start)
+    if found is None or not fault.gets_on_by(found.start, found.end, found.text):
+        return
+    if found.is_certain:
+        yield Repair(found.hint, found.start, found.end, found.text, found.message)
+    else:
+        yield Repair(found.hint, message=found.message)
 
 
 def _by_habit(fault: Fault) -> Iterator[Repair]:

@@ -1,0 +1,152 @@
+"""A condition that goes on behind a duration gives one finding, whose hint is a condition."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from deros.diagnostics import Diagnostic
+from tests.support.checks import checked
+
+SYSTEM = """\
+system Courier
+topics
+  external topic /imu : sensor_msgs.Imu
+  external topic /odom : nav_msgs.Odometry
+  external topic /release : std_msgs.Bool
+"""
+RULES = """\
+use "c.system" import Courier
+action stop;
+input orientation = topic /imu.orientation timeout 0.2 sec
+input speed = topic /odom.twist.twist.linear.x timeout 0.2 sec
+input button = topic /release.data timeout 1 sec
+entity e {
+  a: orientation.roll() > 0.2;
+  b: speed > 0.5 m/s;
+  c: button;
+  blind: orientation.roll().unknown() or speed.missing() or button.missing();
+  d: button;
+}
+if e.a or e.b or e.c or e.blind then { stop; };
+if e.d then { log_state("pressed"); };
+"""
+
+
+def _found(folder: Path, old: str, new: str) -> list[Diagnostic]:
+    assert old in RULES
+    (folder / "c.system").write_text(SYSTEM, encoding="utf-8")
+    (folder / "c.deros").write_text(RULES.replace(old, new), encoding="utf-8")
+    return checked(folder / "c.deros")
+
+
+BEHAVIOUR = "e.a or e.b or e.c or e.blind"
+RULE = "d: button;"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "hint"),
+    [
+        (
+            BEHAVIOUR,
+            "e.a for 0.4 sec or e.b or e.c or e.blind",
+            "write '(e.a for 0.4 sec) or e.b'",
+        ),
+        (
+            BEHAVIOUR,
+            "e.a within 500 ms and e.b or e.c or e.blind",
+            "write '(e.a within 500 ms) and e.b'",
+        ),
+        (
+            BEHAVIOUR,
+            "not e.a for 1 sec\n  or (e.b and e.c) or e.blind",
+            "write '(not e.a for 1 sec) or (e.b and e.c)'",
+        ),
+        (
+            BEHAVIOUR,
+            "e.a for 1 sec or e.b or e.c for 2 sec or e.blind",
+            "write '(e.a for 1 sec) or e.b or (e.c for 2 sec)'",
+        ),
+        (
+            BEHAVIOUR,
+            "e.blind or (e.a for 1 sec or e.b) or e.c",
+            "write '(e.a for 1 sec) or e.b'",
+        ),
+        (
+            BEHAVIOUR,
+            "e.a or e.b for 1 sec or e.c or e.blind",
+            "write '(e.a or e.b for 1 sec) or e.c', or 'e.a or (e.b for 1 sec) or e.c'",
+        ),
+        (
+            BEHAVIOUR,
+            "(e.a or e.b or e.c or e.blind) for 1 sec within 2 sec",
+            "write '((e.a or e.b or e.c or e.blind) for 1 sec) within …'",
+        ),
+        (
+            RULE,
+            "d: button since speed > 1 m/s for 1 sec;",
+            "write '(button since speed > 1 m/s) for …'",
+        ),
+        (
+            RULE,
+            'd "for 1 sec: so": abs(speed * 2) > 0.1 m/s for 2 sec and button;',
+            "write '(abs(speed * 2) > 0.1 m/s for 2 sec) and button'",
+        ),
+        (
+            RULE,
+            "failsafe d: (speed.rate(0.1 sec) > 3 m/s^2 for 2 sec or button) and button;",
+            "write '(speed.rate(0.1 sec) > 3 m/s^2 for 2 sec) or button'",
+        ),
+        (
+            RULE,
+            "d: button since speed > 1 m/s and button for 1 sec or button;",
+            "write '(button since speed > 1 m/s and button) for …'",
+        ),
+    ],
+)
+def test_condition_behind_a_duration(tmp_path: Path, old: str, new: str, hint: str) -> None:
+    """One finding at the statement, and none that only follows from it."""
+    findings = _found(tmp_path, old, new)
+    first = findings[0]
+    assert (first.code.name, first.hint) == ("DRS003", hint)
+    assert "closes a condition" in first.message
+    assert all(each.code.name == "DRS003" for each in findings), findings
+    if "since" not in new:
+        assert len(findings) == 1
+
+
+@pytest.mark.parametrize(
+    "new",
+    [
+        "e.a for 0.4 sec or e.b or e.c or e.blind",
+        "e.a or e.b for 1 sec or e.c or e.blind",
+        "e.a within 1 sec and e.b for 2 sec or e.c or e.blind",
+    ],
+)
+def test_hint_checks_clean(tmp_path: Path, new: str) -> None:
+    """What each hint says to write, in place of what it shows, is a condition without findings."""
+    (finding,) = _found(tmp_path, BEHAVIOUR, new)
+    readings = re.findall(r"'([^']*)'", finding.hint)
+    assert readings
+    for reading in readings:
+        shown = reading.replace("(", "").replace(")", "")
+        assert _found(tmp_path, BEHAVIOUR, new.replace(shown, reading)) == []
+
+
+@pytest.mark.parametrize(
+    ("new", "hint"),
+    [
+        ("e.a) for 1 sec or e.b or e.c or e.blind", ""),
+        ("e.blind and e.b or e.c or e.a for 1 sec or", "write '(e.blind and e.b or e.c or e.a"),
+        ("e.blind for 1 sec or", "write '(e.blind for 1 sec) or …'"),
+        ("for 1 sec or e.blind", ""),
+    ],
+)
+def test_other_faults_beside_a_duration(tmp_path: Path, new: str, hint: str) -> None:
+    """A condition that is broken elsewhere, too, is an error as any other."""
+    findings = _found(tmp_path, BEHAVIOUR, new)
+    errors = [each for each in findings if each.code.name == "DRS003"]
+    assert errors
+    assert errors[0].hint.startswith(hint)
