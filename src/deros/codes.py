@@ -208,7 +208,10 @@ RULE_TOPIC_NOT_PUBLISHED = _declare(
     318, "rule-topic-not-published", "topic of the rules that no node publishes", absence=True
 )
 MISSING_NEEDS_TIMEOUT = _declare(
-    319, "missing-needs-timeout", "missing() on an input without a timeout", absence=True
+    319,
+    "missing-needs-timeout",
+    "missing() or age() of an input without a timeout",
+    absence=True,
 )
 AGE_NOT_CONSTANT = _declare(
     320, "age-not-constant", "age() compared with a value that is not constant"
@@ -280,7 +283,7 @@ UNHANDLED_UNKNOWN = _declare(
     348, "unhandled-unknown", "rule that may become unknown without any reaction", _W, absence=True
 )
 UNUSED_TIMEOUT = _declare(349, "unused-timeout", "timeout that no rule uses", _W, absence=True)
-FAILSAFE_NEGATED = _declare(350, "failsafe-negated", "failsafe rule under not", _W)
+FAILSAFE_NEGATED = _declare(350, "failsafe-negated", "failsafe rule that acts upside down", _W)
 FAILSAFE_WITHOUT_EFFECT = _declare(
     351, "failsafe-without-effect", "failsafe rule that is never unknown", _W
 )
@@ -322,6 +325,17 @@ UNIT_NOT_DECLARED = _declare(
 FIELD_IN_TWO_UNITS = _declare(371, "field-in-two-units", "field that is read in two units")
 PLAIN_BESIDE_COMPUTED = _declare(
     372, "plain-beside-computed", "plain number in a unit that nobody sees"
+)
+SINCE_WITHOUT_MEMORY = _declare(373, "since-without-memory", "'since' that remembers nothing", _W)
+HIDDEN_BY_UNKNOWN = _declare(
+    374, "hidden-by-unknown", "value that is hidden while another one is unknown", _I
+)
+ROUNDED_INTEGER = _declare(375, "rounded-integer", "64-bit integer that arithmetic rounds", _I)
+DURATION_TOO_SHORT = _declare(
+    376, "duration-too-short", "duration that is probably not intended", _W
+)
+INTERVAL_STARTS_OVER = _declare(
+    377, "interval-starts-over", "interval that a NaN starts over unnoticed", _I
 )
 
 # Generation

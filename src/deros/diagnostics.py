@@ -16,6 +16,7 @@ from functools import cached_property
 
 _LONGEST_TEXT = 1000
 _END = 300
+_END_OF_LINE = re.compile(r"\s*(//[^\n]*)?\n\s*")
 _WORD = re.compile(r"\w+")
 
 ANY_NAME = "*"
@@ -202,10 +203,13 @@ def last_word(name: str) -> str:
 
 
 def _readable(text: str) -> str:
-    """Return the text in an encodable form, without its middle if it is very long.
+    """Return the text in one line, in an encodable form, without its middle if it is very long.
 
-    Names and texts of a model come into it as they are, and file names as the system has them.
+    Names and texts of a model come into it as they are, over several lines and with comments at
+    their ends, and file names as the system has them.
     """
+    if "\n" in text:
+        text = _END_OF_LINE.sub(" ", text)
     if len(text) > _LONGEST_TEXT:
         text = f"{text[: _LONGEST_TEXT - _END]} … {text[-_END:]}"
     return encodable(text)

@@ -47,7 +47,7 @@ const limit = 0.5 m/s
 input speed = topic /odom.twist.twist.linear.x timeout 0.5 sec
 entity drive {
   fast: (speed.abs() > limit for 2 sec) or not speed in [-limit, limit);
-  blind: speed.missing();
+  blind: speed.unknown();
 }
 behaviour halt: if drive.fast or drive.blind for 100 ms then {
   stop; if drive.blind then { log_state("blind"); };

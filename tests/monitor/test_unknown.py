@@ -164,11 +164,14 @@ def test_failsafe_is_a_valid_rule_name(rule: str, name: str, failsafe: bool) -> 
         ("failsafe r: v > 1", "r"),
         ("r: v.unknown()", "v.unknown()"),
         ("r: v.rate().unknown()", "v.rate().unknown()"),
-        ("failsafe r: v.age() > 1 sec", "r"),
+        ("r: v.age() > 1 sec", "v.age()"),
+        ("r: not v.age() < 1 sec", "v.age()"),
+        ("r: v.age() in [0 sec, 1 sec]", "v.age()"),
+        ("r: topic /speed.data.age() > 1 sec", "topic /speed.data.age()"),
     ],
 )
-def test_unknown_and_failsafe_need_a_timeout(rule: str, place: str) -> None:
-    """Without one, silence does not make the value unknown, and waiting never ends."""
+def test_what_asks_for_silence_needs_a_timeout(rule: str, place: str) -> None:
+    """Without one, nothing notices a sensor that never sends, and waiting never ends."""
     reported = findings(f"input v = topic /speed.data entity e {{ {rule}; }}")
     assert ("DRS319", place) in [each[:2] for each in reported]
 

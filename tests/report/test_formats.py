@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -27,7 +28,9 @@ FINDING = report(
     hint="did you mean 'base'?",
     related=(Related(_span("Demo"), "in this system"),),
 )
-WARNING = report(codes.UNUSED_TOPIC, "100% unused,\nreally: yes", _span("café"))
+WARNING = replace(
+    report(codes.UNUSED_TOPIC, "", _span("café")), message="100% unused,\nreally: yes"
+)
 
 
 def test_text_shows_line_caret_hint_and_related_places() -> None:

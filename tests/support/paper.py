@@ -201,10 +201,10 @@ entity imu_sensor_system {
 // FILLED
 entity drive_system { moving: speed not in [-0.05 m/s, 0.05 m/s]; fast: speed > 0.5 m/s; }
 entity PLC_system {
-  stop_button_activated: plc = 1;
+  stop_button_activated: plc in [5, 6];
   manual_mode: plc = 2;
-  learn_mode: plc = 3;
-  auto_mode: plc = 4;
+  learn_mode: plc in [3, 5];
+  auto_mode: plc in [6, 8];
 }
 if drive_system.fast then { low_speed; };
 // FILLED

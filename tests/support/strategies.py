@@ -403,7 +403,7 @@ class _Drawing:
             return ir.Missing(index)
         if choice > 9 and self.inputs[index].timeout_ns is not None:
             return self.unknown(index)
-        if choice == 1:
+        if choice == 1 and self.inputs[index].timeout_ns is not None:
             operator = self.draw(orders if self.writable else operators)
             return ir.Age(index, operator, self.draw(st.integers(-1 + self.writable, 10)))
         if choice == 2:

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
+import math
+import random
+from collections.abc import Iterator
+
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from deros.interfaces.durations import NS_PER_S
+from deros.monitor.engine import Engine, Event
+from deros.monitor.ir import Program
 from tests.support.profiles import scaled
-from tests.support.rules import findings
+from tests.support.rules import findings, program
 
 DECLARED = """
 action stop;
@@ -17,15 +25,21 @@ input scan = topic /scan timeout 1 sec
 input odom = topic /odom timeout 1 sec
 input joints = topic /joints timeout 1 sec
 input bytes = topic /bytes timeout 1 sec
+input flag = topic /flag.data timeout 1 sec
+"""
+NAMED = """
+entity fast { real: v > 5; failsafe safe: v > 5; }
+entity other { faster: v > 6 for 1 sec; lasting: fast.real for 1 sec; }
 """
 
 
 def decided(condition: str) -> list[tuple[str, str]]:
     """Return code and place of the decided parts of a condition."""
-    inputs = ("mode", "v", "q", "scan", "odom", "joints", "bytes")
+    inputs = ("mode", "v", "q", "scan", "odom", "joints", "bytes", "flag")
     used = " or ".join(f"{each}.missing()" for each in inputs)
-    statements = f"""{DECLARED} entity e {{ failsafe r: {condition}; s: {used}; }}
-        if e.r or e.s then {{ stop; }};"""
+    statements = f"""{DECLARED} entity e {{ failsafe r: {condition}; s: {used}; }} {NAMED}
+        if e.r or e.s or fast.real or fast.safe then {{ stop; }};
+        if other.faster or other.lasting then {{ stop; }};"""
     results = ((code, place) for code, place, _ in findings(statements))
     return [each for each in results if each[0] != "DRS367"]  # the finding on rate() itself
 
@@ -41,7 +55,13 @@ UNDECIDED = (
     "v > 5 and mode < 3",
     "v.abs() <= 0",
     "q.roll() > 179 deg",
-    "(v > 5 for 1 sec) and v < 3",
+    "(v > 5 within 1 sec) and v < 3",
+    "(v > 5 since v > 6) and v < 5.5",
+    "not (v > 5 for 1 sec) and v > 6",
+    "(v > 5 begins) or v < 3",
+    "flag and not (flag for 1 sec)",
+    "fast.safe and v < 3",
+    "fast.real or v < 3",
     "v > 5 and v.abs() < 3",
     "scan.nearest(-1.0, 1.0) > 0",
     "scan.nearest(-1.0, 1.0) <= 0",
@@ -111,6 +131,16 @@ DECIDED = (
     ("mode < 3 or mode > 2", "DRS309", "mode < 3 or mode > 2"),
     ("not (v > 5 and v < 3) for 1 sec", "DRS308", "v > 5 and v < 3"),
     ("q.tilt() < 0", "DRS308", "q.tilt() < 0"),
+    ("(v > 5 for 1 sec) and v < 3", "DRS308", "(v > 5 for 1 sec) and v < 3"),
+    ("(v > 5 begins) and v < 3", "DRS308", "(v > 5 begins) and v < 3"),
+    ("(v > 5 since v > 6) and v < 3", "DRS308", "(v > 5 since v > 6) and v < 3"),
+    ("(v > 5 within 1 sec) or v < 6", "DRS309", "(v > 5 within 1 sec) or v < 6"),
+    ("flag and not flag", "DRS308", "flag and not flag"),
+    ("flag or not flag", "DRS309", "flag or not flag"),
+    ("fast.real and v < 3", "DRS308", "fast.real and v < 3"),
+    ("not fast.real and v > 6", "DRS308", "not fast.real and v > 6"),
+    ("other.faster and not fast.real", "DRS308", "other.faster and not fast.real"),
+    ("other.lasting and v < 3", "DRS308", "other.lasting and v < 3"),
     ("q.pitch() > 91 deg", "DRS308", "q.pitch() > 91 deg"),
 )
 
@@ -132,3 +162,77 @@ def test_decided_pairs_agree_with_enumeration(low: int, high: int, both: bool) -
     word = "and" if both else "or"
     results = decided(f"mode >= {low} {word} mode <= {high}")
     assert bool(results) == any(len(set(each)) == 1 for each in [*parts, verdicts])
+
+
+def test_nested_behaviour_that_contradicts_the_outer_one_is_reported() -> None:
+    """An inner condition that cannot hold where the outer one does never acts."""
+    statements = f"""{DECLARED} {NAMED} entity low {{ is: v < 3; was: v < 3 within 1 sec; }}
+        if fast.real then {{ if low.is then {{ stop; }}; if low.was then {{ stop; }}; }};
+        if fast.safe then {{ if low.is then {{ stop; }}; }};"""
+    found = [each[:2] for each in findings(statements) if each[0] in ("DRS308", "DRS309")]
+    assert found == [("DRS308", "low.is")]
+
+
+ATOMS = ("v > 2", "v <= 2", "v in [1, 2]")
+FORMS = (
+    "{}",
+    "not ({})",
+    "({}) for 1 sec",
+    "not (({}) for 1 sec)",
+    "({}) within 1 sec",
+    "not (({}) within 1 sec)",
+    "({}) begins",
+    "({}) since v > 1",
+    "flag since ({})",
+    "v <= 1 since ({})",
+    "n.{}",
+    "not f.{}",
+    "f.{} for 1 sec",
+)
+VALUES = {"v": (0.0, 1.0, 1.5, 2.0, 3.0, math.nan), "flag": (False, True)}
+
+
+def _conditions() -> Iterator[str]:
+    """Yield every pair of forms, joined by ``and`` and by ``or``."""
+    names = {atom: f"p{number}" for number, atom in enumerate(ATOMS)}
+    every = [form.format(names[atom] if "." in form else atom) for form in FORMS for atom in ATOMS]
+    for word in ("and", "or"):
+        for left, right in itertools.combinations(every, 2):
+            yield f"({left}) {word} ({right})"
+
+
+def test_no_trace_contradicts_what_is_decided() -> None:
+    """What is said to be never, or always, true is so through operators, names and failsafe."""
+    named = "".join(f" p{number}: {atom};" for number, atom in enumerate(ATOMS))
+    inputs = "input v = topic /speed.data timeout 3 sec input flag = topic /flag.data"
+    common = f"{inputs} entity n {{ {named} }} entity f {{ {named.replace(' p', ' failsafe p')} }}"
+    rules = dict(enumerate(_conditions()))
+    entity = " ".join(f"r{number}: {condition};" for number, condition in rules.items())
+    signs: dict[int, str] = {}
+    for code, place, _ in findings(f"{common} entity e {{ {entity} }}"):
+        if code in ("DRS308", "DRS309"):
+            signs |= {
+                number: "" if code == "DRS308" else "not "
+                for number, condition in rules.items()
+                if condition == place
+            }
+    assert len(signs) > len(rules) // 20
+    sworn = " ".join(f"r{number}: {signs[number]}({rules[number]});" for number in signs)
+    acts = "".join(f"if e.r{number} then {{ a{number}; }};" for number in signs)
+    actions = " ".join(f"action a{number};" for number in signs)
+    asked = program(f"{actions} {common} entity e {{ {sworn} }} {acts}")
+    for seed in range(scaled(50)):
+        acted = {each.action for each in _played(asked, random.Random(seed))}
+        assert {rules[int(each[1:])] for each in acted} == set(), seed
+
+
+def _played(asked: Program, chance: random.Random) -> list[Event]:
+    """Return what a random trace triggers."""
+    engine = Engine(asked)
+    now_ns = 0
+    for _ in range(10):
+        now_ns += chance.choice((0, 1, 2)) * NS_PER_S
+        each = chance.choice(asked.inputs)
+        engine.message(now_ns, each.topic, {each.leaves[0]: chance.choice(VALUES[each.name])})
+    engine.advance(now_ns + 10 * NS_PER_S)
+    return engine.events

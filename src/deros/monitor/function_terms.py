@@ -179,10 +179,15 @@ class FunctionTerms:
         owner = operand.input
         if isinstance(operand, Part):
             self._watch(operand)
-        if row.result is Result.DURATION:
-            return AgeOf(owner)
-        never = f"'{owner.name}' has no timeout, so it is never missing"
-        return MissingOf(owner) if self.has_timeout(owner, never, call.span) else None
+        is_age = row.result is Result.DURATION
+        without = (
+            "so nothing notices a sensor that never sends: it has no age"
+            if is_age
+            else "so it is never missing"
+        )
+        if not self.has_timeout(owner, f"'{owner.name}' has no timeout, {without}", call.span):
+            return None
+        return AgeOf(owner) if is_age else MissingOf(owner)
 
     def _of_any(self, call: rules.Call, row: Function, operand: Resolved) -> UnknownOf | None:
         if not isinstance(operand, (Value, Part)):

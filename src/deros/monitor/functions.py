@@ -312,7 +312,7 @@ total
         unit="s",
         usage="i.age()",
         gives="the time since its last message; compared with a constant only",
-        subject="any input",
+        subject="an input with a timeout",
         bounds=(0.0, math.inf),
     ),
     Function(

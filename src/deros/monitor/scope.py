@@ -16,6 +16,7 @@ from deros.interfaces.durations import whole_nanoseconds, with_unit_of_time
 from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
 from deros.interfaces.names import check_identifier, check_topic_name, did_you_mean, near
 from deros.interfaces.store import InterfaceStore
+from deros.interfaces.topic_likeness import likely_topics
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.interfaces.units import Unit, UnitRegistry
 from deros.metamodels import rules
@@ -235,7 +236,9 @@ class Scope:
         known = self.topics.get(topic)
         if known is None:
             if self.systems_known:
-                hint = did_you_mean(near(topic, self.topics.names))
+                names = self.topics.names
+                within = [each for each in names if topic.startswith(f"{each}/")]
+                hint = did_you_mean(likely_topics(topic, names) or within)
                 message = f"no used system has a topic '{topic}'"
                 if not self._uses:
                     hint = "'use \"FILE.system\" import NAME' names the system that has it"

@@ -25,6 +25,7 @@ from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.interfaces.durations import LONGEST_NS, NS_PER_S
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.store import InterfaceStore
+from deros.interfaces.topic_likeness import likely_topics
 from deros.monitor import walk
 from deros.monitor.commands import Message
 from deros.monitor.ir import Leaf, Program
@@ -222,7 +223,7 @@ class _Reader:
         if topic in self._unread:
             return
         self._unread.add(topic)
-        hint = did_you_mean(near(topic, self._topics))
+        hint = did_you_mean(likely_topics(topic, self._topics))
         text = f"no rule reads '{topic}', so its messages are left out"
         self.diagnostics.append(report(codes.UNREAD_TRACE_TOPIC, text, _find(span, topic), hint))
 

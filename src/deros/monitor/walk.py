@@ -84,18 +84,22 @@ def conditions(program: Program) -> Iterator[Condition]:
 
 def parts(condition: Condition) -> Iterator[Condition]:
     """Yield a condition's operands, theirs first, and then the condition itself."""
+    for operand in operands(condition):
+        yield from parts(operand)
+    yield condition
+
+
+def operands(condition: Condition) -> tuple[Condition, ...]:
+    """Return the conditions that a condition is made of, in the order written."""
     match condition:
         case Not() | For() | Once() | Begins() | Failsafe():
-            yield from parts(condition.operand)
-        case And(operands=operands) | Or(operands=operands):
-            for operand in operands:
-                yield from parts(operand)
-        case Since(operand=operand, cause=cause):
-            yield from parts(operand)
-            yield from parts(cause)
+            return (condition.operand,)
+        case And() | Or():
+            return condition.operands
+        case Since():
+            return condition.operand, condition.cause
         case _:
-            pass
-    yield condition
+            return ()
 
 
 def with_named(condition: Condition, rules: Mapping[int, Rule] | Sequence[Rule]) -> list[Condition]:

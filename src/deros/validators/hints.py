@@ -10,6 +10,9 @@ from functools import cached_property
 from deros import codes
 from deros.interfaces import names
 
+SHOWN = 3
+"""The number of names, or of places, that a finding lists."""
+
 _FEW = 300
 """The number of names up to which all are compared; that takes microseconds each."""
 

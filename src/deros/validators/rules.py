@@ -8,9 +8,11 @@ from deros.diagnostics import Diagnostic
 from deros.metamodels.rules import Rules
 from deros.monitor.build import BuildResult
 from deros.validators.context import CheckContext
+from deros.validators.rules_failsafe import check_failsafe
 from deros.validators.rules_gates import check_gates
 from deros.validators.rules_heartbeat import check_input_timeouts
 from deros.validators.rules_ranges import check_ranges
+from deros.validators.rules_surprises import check_surprises
 from deros.validators.rules_timeouts import check_timeouts
 from deros.validators.rules_topics import check_topics
 from deros.validators.rules_unknown import check_unknown
@@ -33,4 +35,6 @@ def check_rules(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
     yield from check_input_timeouts(result)
     yield from check_ranges(rules, result.comparisons)
     yield from check_unknown(rules, result)
+    yield from check_failsafe(rules, result)
+    yield from check_surprises(rules, result)
     yield from check_users(rules)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.interfaces.fields import format_path
-from deros.interfaces.names import did_you_mean, near
+from deros.interfaces.names import did_you_mean
+from deros.interfaces.topic_likeness import likely_topics
 from deros.metamodels.common import Name
 from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, resolve_name
 from deros.metamodels.node import PortKind
@@ -202,7 +203,7 @@ def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic
     read = {resolve_name(each.source.text, "/") for each in rules.gates}
     known = topics.get(source)
     if known is None:
-        hint = did_you_mean(near(source, topics.names))
+        hint = did_you_mean(likely_topics(source, topics.names))
         message = f"no used system has a topic '{source}'"
         if not rules.uses:
             hint = "'use \"FILE.system\" import NAME' names the system that has it"
@@ -223,7 +224,7 @@ def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic
         codes.GATE_UNREAD,
         f"no node in the system subscribes to '{target}'",
         gate.target.span,
-        did_you_mean(near(target, subscribed))
+        did_you_mean(likely_topics(target, subscribed))
         or f"if it is read outside the model, declare 'external topic {target}'",
         (Related(known.place, "the topic"),) if known is not None else (),
     )

@@ -19,9 +19,8 @@ from deros.metamodels.rules import (
     TopicPath,
 )
 from deros.monitor.functions import WRITTEN, Argument
+from deros.validators.hints import SHOWN
 from deros.validators.rules_walk import rules_of, terms_of
-
-_SHOWN = 3
 
 
 @dataclass(slots=True)
@@ -50,9 +49,9 @@ def check_timeouts(rules: Rules) -> Iterator[Diagnostic]:
                     found.setdefault(untimed.name, untimed).rules.setdefault(full_name)
     for each in found.values():
         names = [f"'{name}'" for name in each.rules]
-        shown = ", ".join(names[:_SHOWN])
-        if len(names) > _SHOWN:
-            shown += f" and {len(names) - _SHOWN} more"
+        shown = ", ".join(names[:SHOWN])
+        if len(names) > SHOWN:
+            shown += f" and {len(names) - SHOWN} more"
         yield report(
             codes.INPUT_WITHOUT_TIMEOUT,
             f"'{each.name}' has no timeout: when messages on {each.topic} stop,"

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
-from deros.interfaces.names import did_you_mean, near
+from deros.interfaces.names import did_you_mean
+from deros.interfaces.topic_likeness import likely_topics
 from deros.metamodels.common import Name
 from deros.metamodels.flatten import FlatPort, resolve_name
 from deros.metamodels.rules import Rules
@@ -48,12 +49,12 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
     known = topics.get(topic)
     if known is None or _has_end(known, known.publishers):
         return
-    fed = [each.name for each in topics if _has_end(each, each.publishers)]
+    fed = [each for each in topics if _has_end(each, each.publishers)]
     yield report(
         codes.RULE_TOPIC_NOT_PUBLISHED,
         f"no node in the system publishes '{topic}'",
         name.span,
-        did_you_mean(near(topic, fed))
+        did_you_mean(_meant(topic, known, fed))
         or f"if it is published outside the model, declare 'external topic {topic}'",
         (Related(known.place, "the topic"),),
     )
@@ -68,12 +69,18 @@ def _unread(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic
     known = topics.get(topic)
     if known is not None and _has_end(known, known.subscriptions):
         return
-    subscribed = [each.name for each in topics if _has_end(each, each.subscriptions)]
+    subscribed = [each for each in topics if _has_end(each, each.subscriptions)]
     yield report(
         codes.ACTION_TOPIC_NOT_IN_SYSTEM,
         f"no node in the system subscribes to '{topic}'",
         name.span,
-        did_you_mean(near(topic, subscribed))
+        did_you_mean(_meant(topic, known, subscribed))
         or f"if it is read outside the model, declare 'external topic {topic}'",
         (Related(known.place, "the topic"),) if known else (),
     )
+
+
+def _meant(topic: str, known: KnownTopic | None, others: Iterable[KnownTopic]) -> list[str]:
+    """Return the other topics that one was probably meant to be: of its type, if that is known."""
+    kind = known.type if known else None
+    return likely_topics(topic, (each.name for each in others if kind in (None, each.type)))

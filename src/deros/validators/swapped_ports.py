@@ -8,11 +8,11 @@ from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
+from deros.interfaces.topic_likeness import words_of
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem
 from deros.metamodels.safety_nodes import is_safety_node
 from deros.validators.graph import CHANNEL, SOURCES, VertexKind
-from deros.validators.topic_likeness import words_of
 
 _COMPARED = 64
 """So many ports of a node and type are compared with each other."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
-from deros.validators.topic_likeness import LikelyTopics
+from deros.interfaces.topic_likeness import LikelyTopics
 
 if TYPE_CHECKING:
     from deros.interfaces.types import InterfaceType

@@ -13,12 +13,12 @@ from deros.interfaces.standard_topics import (
     is_shown_only,
     standard_topic,
 )
+from deros.interfaces.topic_likeness import LikelyTopics
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem
 from deros.metamodels.node import PortKind
 from deros.validators.graph import CHANNEL, Vertex
 from deros.validators.topic_channels import Channel
-from deros.validators.topic_likeness import LikelyTopics
 from deros.validators.topic_partners import Partners
 
 _SEEKS_A_PARTNER = {

@@ -42,7 +42,7 @@ input attitude = topic /imu.orientation timeout 0.1 sec
 input turn = topic /imu.angular_velocity
 input mode = topic /mode.data timeout 1 sec
 input enabled = topic /flag.data
-input scan = topic /scan
+input scan = topic /scan timeout 2 sec
 entity drive {
   // the comment stays with the rule
   too_fast: speed > max_speed for 2 sec;

@@ -84,6 +84,11 @@ def words_of(name: str) -> frozenset[str]:
     return frozenset((*space, *last))
 
 
+def likely_topics(name: str, candidates: Iterable[str]) -> list[str]:
+    """Return up to three of the candidates that a topic was probably meant to be, best first."""
+    return LikelyTopics(candidates).best(name, lambda _: 0.0)
+
+
 class LikelyTopics:
     """Finds, among very many names, those that one was probably meant to be.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deros.validators.topic_likeness import LIKELY, LikelyTopics, is_mistyped, likeness
+from deros.interfaces.topic_likeness import LIKELY, LikelyTopics, is_mistyped, likeness
 from tests.support.work import calls
 
 # Subscribed topic, topics published with the same type, expected suggestions with the best first.
