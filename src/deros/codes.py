@@ -328,14 +328,18 @@ PLAIN_BESIDE_COMPUTED = _declare(
 )
 SINCE_WITHOUT_MEMORY = _declare(373, "since-without-memory", "'since' that remembers nothing", _W)
 HIDDEN_BY_UNKNOWN = _declare(
-    374, "hidden-by-unknown", "value that is hidden while another one is unknown", _I
+    374,
+    "hidden-by-unknown",
+    "value that is hidden while another one is unknown",
+    _I,
+    absence=True,
 )
 ROUNDED_INTEGER = _declare(375, "rounded-integer", "64-bit integer that arithmetic rounds", _I)
 DURATION_TOO_SHORT = _declare(
     376, "duration-too-short", "duration that is probably not intended", _W
 )
 INTERVAL_STARTS_OVER = _declare(
-    377, "interval-starts-over", "interval that a NaN starts over unnoticed", _I
+    377, "interval-starts-over", "interval that a NaN starts over unnoticed", _I, absence=True
 )
 
 # Generation

@@ -27,7 +27,7 @@ entity e {
   a: orientation.roll() > 0.2;
   b: speed > 0.5 m/s;
   c: button;
-  blind: orientation.roll().unknown() or speed.missing() or button.missing();
+  blind: orientation.roll().unknown() or speed.unknown() or button.missing();
   d: button;
 }
 if e.a or e.b or e.c or e.blind then { stop; };
