@@ -250,7 +250,7 @@ def test_behaviour_shows_its_rules(monitor: Monitor) -> None:
     driver.send(200, "/speed", data=2.0)
     assert driver.monitor.explain().causes == {}
     driver.monitor.advance(300 * MS)
-    fast = "e.fast for 0.1 sec: v 2.0 > 1 and f is true"
+    fast = "e.fast for 0.1 sec: v 2.0 > 1; f is true"
     assert driver.why("outer") == (fast,)
     assert driver.why("inner") == (fast, "not e.slow: u 3.0 >= 1", "not e.off: m 1 != 0")
     driver.send(310, "/mode", data=0)

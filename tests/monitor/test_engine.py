@@ -75,11 +75,12 @@ def test_deadlines_come_before_a_reset() -> None:
 
 
 def test_events_have_their_span(latched: Program) -> None:
-    """A trigger has the span of its call in the behaviour, a reset that of the action."""
+    """A trigger has the span of its behaviour, a reset that of the action."""
     engine = Engine(latched)
     (trigger,) = _speed(engine, 1, 0.6)
     assert trigger.span is not None
-    assert (trigger.behaviour, trigger.span.line, trigger.span.text) == ("behaviour_1", 7, "stop;")
+    assert (trigger.behaviour, trigger.span.line) == ("behaviour_1", 7)
+    assert trigger.span.text.startswith("if ")
     _speed(engine, 2, 0.1)
     engine.reset(3)
     reset = engine.events[-1]

@@ -107,6 +107,58 @@ def test_each_trigger_has_its_cause(monitor: Any) -> None:
 
 
 @monitors
+def test_trigger_is_at_its_behaviour(monitor: Any) -> None:
+    """Wherever its call stands, also in a behaviour within another; a reset is at the action."""
+    text = """
+    action stop publishes true on /stop : std_msgs.Bool latched;
+    input v = topic /speed.data timeout 1 sec
+    entity drive {
+      fast: v > 30;
+      faster: v > 40;
+    }
+    behaviour protect: if drive.fast
+    then {
+      log_state("fast");
+      behaviour cut:
+        if drive.faster
+        then {
+          stop;
+        };
+      log_state("very fast");
+    };
+    """
+    running = monitor(program(text))
+    lines = read(speed("0.1", 45), {"t": "0.2", "reset": True}, speed("0.3", 5)).lines
+    events = list(play(running, (*lines, *read({"t": "0.4", "reset": True}).lines)))
+    records = [
+        event_record(each.event, each.causes) for each in events if isinstance(each, Explained)
+    ]
+    assert [(each["event"], each["action"], each["line"]) for each in records] == [
+        ("trigger", "log_state", 9),
+        ("trigger", "stop", 12),
+        ("trigger", "log_state", 9),
+        ("refused", "stop", 3),
+        ("reset", "stop", 3),
+    ]
+
+
+@monitors
+def test_parts_of_an_or_are_not_told_with_and(monitor: Any) -> None:
+    """Two true parts of an 'or' are two causes."""
+    text = """
+    action stop publishes true on /stop : std_msgs.Bool latched;
+    input v = topic /speed.data timeout 1 sec
+    entity drive { bad: v > 30 or v < 60; far: v > 40; }
+    if drive.bad or drive.far then { stop; };
+    """
+    (event,) = play(monitor(program(text)), read(speed("0.1", 45)).lines)
+    assert isinstance(event, Explained)
+    assert event.causes == {
+        "behaviour_1": "drive.bad: v 45.0 > 30; v 45.0 < 60; drive.far: v 45.0 > 40"
+    }
+
+
+@monitors
 def test_reset_is_refused_with_causes_then_done(monitor: Any) -> None:
     """The refusal lists holding conditions with values, and unknown ones."""
     events = played(
@@ -153,7 +205,9 @@ def test_event_record_contains_its_cause() -> None:
     """It is listed next to action and behaviour, or next to each behaviour that refuses a reset."""
     lines = read(speed("0.1", 31.2), {"t": "0.7", "reset": True}).lines
     events = [each for each in play(Engine(PROGRAM), lines) if isinstance(each, Explained)]
-    records = [event_record(each.event, each.causes) for each in events]
+    records = [
+        event_record(each.event, each.causes) for each in events if isinstance(each, Explained)
+    ]
     cause = "drive.fast: v 31.2 > 30 for 0.5 sec"
     assert (records[1]["action"], records[1]["cause"]) == ("stop", cause)
     assert (records[3]["event"], records[3]["causes"]) == ("refused", {"protect": cause})

@@ -105,7 +105,7 @@ def _told(engine: Engine, unit: Unit) -> str:
         lines.append("\t".join((f"{rule.name}{value}", *rule.causes)))
     names = [name for name, _ in unit.view.behaviour_names]
     for name, causes in state.causes.items():
-        lines.append(f"{names.index(name)}\t{' and '.join(causes)}")
+        lines.append(f"{names.index(name)}\t{'; '.join(causes)}")
     return "".join(f"{line}\n" for line in lines)
 
 

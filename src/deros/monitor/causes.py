@@ -401,7 +401,7 @@ def _tell(program: Program, plan: Plan, state: State, t_ns: int) -> list[str]:
             if state.verdicts[plan.rule] is not plan.holds:
                 return []
             causes = causes_of_rule(program, plan.rule, plan.holds, state, t_ns)
-            return [plan.head + " and ".join(causes)]
+            return [plan.head + "; ".join(causes)]
         case AllOf() | AnyOf():
             told = [_tell(program, each, state, t_ns) for each in plan.parts]
             is_so = all(told) or isinstance(plan, AnyOf)

@@ -55,7 +55,7 @@ class Event:
         action: the action's name; empty for a ``clock_step``.
         behaviour: the name of the behaviour that triggered it; ``None`` for all but triggers.
         arguments: of the action.
-        span: the call in the behaviour, or the action's declaration.
+        span: the behaviour of a trigger, else the action's declaration.
         holding: the behaviours whose conditions hold, and so refused a reset.
         unknown: the behaviours whose conditions are unknown, and so refused a reset.
         coming: the behaviours whose conditions are on their way, and so refused a reset.
@@ -307,7 +307,7 @@ class Engine:
         self._state.active[trigger.action] = True
         name = self._program.actions[trigger.action].name
         self.events.append(
-            Event(self._now_ns, "trigger", name, behaviour.name, trigger.arguments, trigger.span)
+            Event(self._now_ns, "trigger", name, behaviour.name, trigger.arguments, behaviour.span)
         )
 
     def _try_reset(self, index: int) -> bool:

@@ -143,7 +143,7 @@ class _Player:
             causes = self._monitor.explain().causes
             for event in events:
                 names = (event.behaviour or "", *event.holding)
-                told = {name: " and ".join(causes[name]) for name in names if name in causes}
+                told = {name: "; ".join(causes[name]) for name in names if name in causes}
                 yield Explained(event, told)
         if self._gates is not None:
             yield from self._gates.settle(t_ns, events, self._monitor.waiting, stepped)

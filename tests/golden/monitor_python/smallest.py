@@ -93,7 +93,7 @@ def shown(value: bool | float | str) -> str:
 
 def because(head: str, causes: tuple[str, ...]) -> str:
     """Return a cause that is a rule, with its own causes."""
-    return head + ' and '.join(causes)
+    return head + '; '.join(causes)
 
 
 class Monitor:

@@ -142,7 +142,7 @@ def test_action_shows_cause_and_start() -> None:
     assert values == {
         "runs": "2",
         "cause": "stopping",
-        "because": "a.a: speed 2.0 > 1 and b.b: lidar.missing()",
+        "because": "a.a: speed 2.0 > 1; b.b: lidar.missing()",
         "since": "1.000 s ago",
         "since_ns": "5000000000",
     }
@@ -160,7 +160,7 @@ def test_true_rule_shows_its_true_parts() -> None:
         for value in PublishedDiagnostics(rule).publish()["drive.fast"].values
     }
     assert values["speed"] == "2.0"
-    assert values["cause"] == "speed 2.0 > 1 and lidar.missing()"
+    assert values["cause"] == "speed 2.0 > 1; lidar.missing()"
 
 
 def test_fault_is_an_error_until_it_ends() -> None:

@@ -78,7 +78,7 @@ def reported(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
 def test_trigger_shows_its_cause() -> None:
     """The log shows it instead of the condition, the topic shows both."""
     line, values = reported(Event(EventKind.TRIGGER, behaviour="halt"), HOLDING)
-    cause = "drive.fast: speed 2.0 > 1 and body.near: x"
+    cause = "drive.fast: speed 2.0 > 1; body.near: x"
     assert line == f"stop, by halt (robot.deros:7): {cause}"
     assert (values["cause"], values["condition"]) == (cause, "drive.fast or body.near")
     assert (values["rule drive.fast"], values["value speed"]) == ("true", "2.0")
@@ -94,7 +94,7 @@ def test_trigger_of_a_past_cause_shows_its_condition() -> None:
 def test_refused_reset_lists_holding_and_unknown_behaviours() -> None:
     """Each has its cause, or the terms without a value."""
     line, values = reported(Event(EventKind.REFUSED, holding=("halt",), unknown=("back",)), HOLDING)
-    cause = "drive.fast: speed 2.0 > 1 and body.near: x"
+    cause = "drive.fast: speed 2.0 > 1; body.near: x"
     assert line == (
         f"stop stays active, called for by halt (robot.deros:7): {cause}; not known to be false:"
         " back (robot.deros:9: if body.near), unknown: scan.nearest(-1, 1)"

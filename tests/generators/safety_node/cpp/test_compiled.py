@@ -88,7 +88,7 @@ def _explained(model: Rules, context: Context) -> list[str]:
         assert {*state.causes} == {*monitor.holding, *monitor.coming}
         for kind in ("holding", "coming"):
             output += [
-                f"{kind}\t{name}\t{' and '.join(state.causes[name])}\n"
+                f"{kind}\t{name}\t{'; '.join(state.causes[name])}\n"
                 for name in getattr(monitor, kind)
             ]
         output.append(".\n")

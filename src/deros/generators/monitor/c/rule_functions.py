@@ -16,7 +16,10 @@ from deros.monitor.ir import Action, Behaviour, Condition, For, Once, Program, R
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """A place in the rules that emits an event: a call, or the declaration of an action."""
+    """A place in the rules that emits an event: a call in a behaviour, or an action's declaration.
+
+    ``line`` is that of the behaviour, or of the declaration.
+    """
 
     action: int
     behaviour: int | None
@@ -41,7 +44,7 @@ def sites(program: Program) -> Sites:
         for place, item in enumerate(behaviour.body):
             if isinstance(item, Trigger):
                 calls[behaviour.index, place] = len(rows)
-                line = item.span.line
+                line = behaviour.span.line
                 rows.append(Site(item.action, behaviour.index, line, item.arguments))
     declarations: dict[int, int] = {}
     for action in program.actions:

@@ -120,7 +120,7 @@ class _Writer:
         return lines + _emit(
             indent,
             ["t", "EventKind.TRIGGER", repr(name), repr(behaviour.name)],
-            [repr(trigger.arguments), str(trigger.span.line)],
+            [repr(trigger.arguments), str(behaviour.span.line)],
         )
 
     # Resets -------------------------------------------------------------------------------------

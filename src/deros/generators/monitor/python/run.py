@@ -115,5 +115,5 @@ def _spans(program: Program) -> dict[tuple[str, str, int], Span]:
         for item in behaviour.body:
             if isinstance(item, Trigger):
                 name = program.actions[item.action].name
-                spans[name, behaviour.name, item.span.line] = item.span
+                spans[name, behaviour.name, behaviour.span.line] = behaviour.span
     return spans

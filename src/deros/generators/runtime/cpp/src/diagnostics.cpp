@@ -207,7 +207,7 @@ Diagnostics::Status Diagnostics::rule_status(const RuleState & rule, bool is_bla
     values.emplace_back(reading.term, reading.value.value_or("unknown"));
   }
   if (!rule.causes.empty()) {
-    values.emplace_back("cause", joined(rule.causes, " and "));
+    values.emplace_back("cause", joined(rule.causes, "; "));
   }
   add_since(values, rule.since, now);
   values.emplace_back("line", std::to_string(rule.line));

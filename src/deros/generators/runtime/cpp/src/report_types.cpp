@@ -40,7 +40,7 @@ std::string known_text(std::uint32_t number, const std::vector<std::string> & te
 
 std::string rule_cause(const std::string & head, const Causes & causes)
 {
-  return head + joined(causes, " and ");
+  return head + joined(causes, "; ");
 }
 
 std::string unknown_terms_among(const std::vector<Reading> & reads)

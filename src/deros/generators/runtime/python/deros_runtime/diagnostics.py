@@ -175,7 +175,7 @@ def _rule_status(name: str, rule: RuleState, blamed: bool, now: int) -> Diagnost
     level = {None: STALE, False: ERROR if blamed else OK, True: true}[rule.value]
     values = {term: shown(value) for term, value in rule.reads}
     if rule.causes:
-        values['cause'] = ' and '.join(rule.causes)
+        values['cause'] = '; '.join(rule.causes)
     return _status(
         level,
         name,

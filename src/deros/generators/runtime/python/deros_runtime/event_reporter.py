@@ -163,7 +163,7 @@ def cause(behaviour: str, explained: Explanation) -> str:
     Empty if it no longer holds: a message may show that the clock has stepped back, and at once
     change what the step caused.
     """
-    return ' and '.join(explained.causes.get(behaviour, ()))
+    return '; '.join(explained.causes.get(behaviour, ()))
 
 
 def shown(value: object) -> str:
