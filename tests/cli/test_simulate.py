@@ -74,6 +74,33 @@ def test_grace_is_that_of_the_node(folder: Path) -> None:
     assert times == ["1.000000000", "3.500000000"]
 
 
+@pytest.mark.parametrize("style", ["text", "json"])
+def test_it_says_that_nothing_happened(style: str) -> None:
+    """It says until when, and what was not played, beside the output; but only if it is so."""
+    command = ("simulate", "rules.deros", "--trace", "trace.jsonl", "--format", style)
+    quiet = deros(*command, "--until", "0.25")
+    assert quiet.out == ""
+    assert quiet.err.splitlines() == [
+        "no action was triggered or reset until 0.25 s",
+        "2 lines lie after --until 0.25 and were not played",
+    ]
+    assert (
+        "1 line lies after --until 0.5 and was not played" in deros(*command, "--until", "0.5").err
+    )
+    acting = deros(*command, "--until", "1")
+    assert len(acting.out.splitlines()) == 2
+    assert acting.err == ""
+
+
+def test_last_line_ends_a_run_without_until(folder: Path) -> None:
+    """A trace without lines ends at 0; what a gate does is no action."""
+    for trace, end in (("", "0"), (TRACE.splitlines()[0], "0.2")):
+        (folder / "trace.jsonl").write_text(trace)
+        done = deros("simulate", "rules.deros", "--trace", "trace.jsonl", "--gates")
+        assert done.err == f"no action was triggered or reset until {end} s\n"
+        assert done.code == 0
+
+
 def test_gates_are_shown_on_request() -> None:
     """Either the changes of a gate are shown, or every command that it publishes."""
     assert not any("gate" in json.loads(line) for line in simulate())

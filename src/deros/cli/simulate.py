@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from deros.monitor.gate_simulation import GateAnswer
     from deros.monitor.ir import Program
     from deros.monitor.simulate import Explained, Monitor
+    from deros.monitor.trace import TraceLine
     from deros.pipeline.workspace import Workspace
 
 MONITORS = ("reference", "python")
@@ -123,7 +124,8 @@ def simulate(
         {"t": "6", "heartbeat": false}
 
     Prints each event (trigger, reset, refused) with its cause: the parts of the rules that are
-    true, and their values. Steps of the clock and findings go to standard error. Exits with 0, with
+    true, and their values. Steps of the clock, findings, and what was not played go to standard
+    error, and a word if no action was triggered or reset. Exits with 0, with
     1 if the rules or the trace have errors, with 2 if one of them cannot be read.
     """  # noqa: D301 - click knows a block by the character itself
     from deros.monitor.simulate import play
@@ -148,7 +150,8 @@ def simulate(
 
         gates = GateSimulation(program, store, grace_ns, publish_hz, report_all=all_commands)
     happenings = play(_monitor(engine, program, grace_ns), trace.lines, until_ns, gates)
-    _show(happenings, output_format == "text")
+    has_acted = _show(happenings, output_format == "text")
+    _tell_rest(trace.lines, until_ns, has_acted)
 
 
 def _load(path: str, workspace: Workspace) -> tuple[Program | None, list[Diagnostic]]:
@@ -190,15 +193,19 @@ def _monitor(engine: str, program: Program, grace_ns: int) -> Monitor:
     return Engine(program, grace_ns=grace_ns)
 
 
-def _show(happenings: Iterable[Explained | GateAnswer], as_text: bool) -> None:
+def _show(happenings: Iterable[Explained | GateAnswer], as_text: bool) -> bool:
+    """Print what happens; return whether an action was triggered or reset, or its reset refused."""
     from deros.monitor import simulate as events
 
+    has_acted = False
     for each in happenings:
         if isinstance(each, events.Explained):
             event = each.event
             if event.kind == "clock_step":
                 say(f"the clock stepped back to {events.seconds(event.t_ns)}", to=sys.stderr)
-            elif as_text:
+                continue
+            has_acted = True
+            if as_text:
                 say(events.event_line(event, each.causes))
             else:
                 say(json.dumps(events.event_record(event, each.causes)))
@@ -206,6 +213,30 @@ def _show(happenings: Iterable[Explained | GateAnswer], as_text: bool) -> None:
             say(events.answer_line(each))
         else:
             say(json.dumps(events.answer_record(each)))
+    return has_acted
+
+
+def _tell_rest(lines: Sequence[TraceLine], until_ns: int | None, has_acted: bool) -> None:
+    """Tell, beside the output, that nothing happened, and what was not played."""
+    from deros.monitor.simulate import played
+
+    count = sum(1 for _ in played(lines, until_ns))
+    if not has_acted:
+        end_ns = until_ns if until_ns is not None else lines[-1].t_ns if lines else 0
+        say(f"no action was triggered or reset until {_decimal(end_ns)} s", to=sys.stderr)
+    if until_ns is not None and count < len(lines):
+        rest = len(lines) - count
+        many = "lines lie" if rest > 1 else "line lies"
+        was = "were" if rest > 1 else "was"
+        end = _decimal(until_ns)
+        say(f"{rest} {many} after --until {end} and {was} not played", to=sys.stderr)
+
+
+def _decimal(t_ns: int) -> str:
+    """Return nanoseconds as seconds, with the digits that count."""
+    from deros.monitor.simulate import seconds
+
+    return seconds(t_ns).rstrip("0").rstrip(".")
 
 
 def _fail(ctx: click.Context, findings: Sequence[Diagnostic]) -> NoReturn:

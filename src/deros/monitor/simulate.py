@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import takewhile
 from pathlib import PurePath
 from typing import Any, Protocol
 
@@ -84,13 +85,16 @@ def play(
 ) -> Iterator[Explained | GateAnswer]:
     """Yield the events of :func:`simulate` with their causes, and those of the gates."""
     player = _Player(monitor, gates)
-    for line in lines:
-        if until_ns is not None and line.t_ns > until_ns:
-            break
+    for line in played(lines, until_ns):
         yield from player.run_to(line.t_ns)
         yield from player.take(line)
     if until_ns is not None:
         yield from player.run_to(until_ns)
+
+
+def played(lines: Iterable[TraceLine], until_ns: int | None = None) -> Iterator[TraceLine]:
+    """Yield the lines of a trace that :func:`simulate` plays: those before the first beyond."""
+    return takewhile(lambda line: until_ns is None or line.t_ns <= until_ns, lines)
 
 
 class _Player:
