@@ -222,7 +222,7 @@ def test_gate_reports_output_and_reason() -> None:
     gates = GateSimulation(PROGRAM, embedded_store())
     events = played(
         Engine(PROGRAM),
-        speed("0.1", 15),
+        speed("0.05", 15),
         command("0.3", 0.0),
         {"t": "0.4", "reset": "/cmd_vel"},
         command("0.5", 0.5),
@@ -287,14 +287,38 @@ def test_every_command_can_be_listed() -> None:
     assert every[0].message == {name: dict.fromkeys("xyz", 0.0) for name in ("linear", "angular")}
 
 
-def test_heartbeat_waits_for_inputs_during_the_grace() -> None:
-    """The gate stays closed until they have arrived."""
-    gates = GateSimulation(PROGRAM, embedded_store(), grace_ns=10**9)
-    lines = read(command("0.1", 0.0), speed("0.6", 15)).lines
-    events = play(Engine(PROGRAM, grace_ns=10**9), lines, 9 * 10**8, gates)
-    closed = [each for each in events if isinstance(each, GateAnswer) and LOST_BEAT in each.why]
-    assert closed[-1].t_ns == 550 * 10**6 or closed[-1].t_ns > 550 * 10**6
-    assert gates.next_ns is not None
+def first_beat(*lines: dict[str, Any], grace_ns: int) -> int:
+    """Return at which of the publications, ten a second, the first heartbeat comes, in ms."""
+    for until in range(50, 3000, 100):
+        gates = GateSimulation(PROGRAM, embedded_store())
+        list(play(Engine(PROGRAM, grace_ns=grace_ns), read(*lines).lines, until * 10**6, gates))
+        if gates._beats:
+            return until - 50
+    raise AssertionError("there is no heartbeat")
+
+
+def test_heartbeat_waits_for_inputs() -> None:
+    """It comes with the first message or, without any, when the input is missing."""
+    for grace_ns in (0, 10**9):
+        assert first_beat(command("0.1", 0.0), speed("0.65", 15), grace_ns=grace_ns) == 700
+    assert first_beat(grace_ns=0) == 1000
+    assert first_beat(grace_ns=10**9) == 2000
+    assert first_beat(speed("0.1", "NaN"), grace_ns=0) == 1000  # type: ignore[arg-type]
+
+
+def test_heartbeat_waits_again_after_a_step_of_the_clock() -> None:
+    """All inputs are awaited then, until they come or are missing."""
+
+    def beats(line: dict[str, Any], until: str) -> int:
+        gates = GateSimulation(PROGRAM, embedded_store())
+        lines = [read(each).lines for each in (speed("5", 15), line, command(until, 0.0))]
+        list(play(Engine(PROGRAM), [line for (line,) in lines], gates=gates))
+        return gates._beats
+
+    before = beats(command("1", 0.0), "1")
+    assert beats(command("1", 0.0), "1.999") == before
+    assert beats(command("1", 0.0), "2") == before + 1
+    assert beats(speed("1", 15), "1.999") == before + 9
 
 
 # Faults in traces ---------------------------------------------------------------------------------

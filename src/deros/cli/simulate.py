@@ -148,7 +148,7 @@ def simulate(
     if with_gates or all_commands:
         from deros.monitor.gate_simulation import GateSimulation
 
-        gates = GateSimulation(program, store, grace_ns, publish_hz, report_all=all_commands)
+        gates = GateSimulation(program, store, publish_hz, report_all=all_commands)
     happenings = play(_monitor(engine, program, grace_ns), trace.lines, until_ns, gates)
     has_acted = _show(happenings, output_format == "text")
     _tell_rest(trace.lines, until_ns, has_acted)

@@ -59,7 +59,6 @@ class GateSimulation:
         self,
         program: Program,
         store: InterfaceStore,
-        grace_ns: int = 0,
         publish_hz: float = PUBLISH_HZ,
         *,
         report_all: bool = False,
@@ -69,17 +68,14 @@ class GateSimulation:
         Args:
             program: the rules with the gates.
             store: the message definitions.
-            grace_ns: how long after the start the heartbeat waits for inputs.
             publish_hz: the ``publish_freq`` of the safety node.
             report_all: whether every published command is reported, even if nothing changes.
         """
         self.heard = True
         self._gates = [_Gate(each, program.actions, store, report_all) for each in program.gates]
         self._states = _States(program, store)
-        self._grace_ns = grace_ns
         self._period_ns = round(NS_PER_S / publish_hz)
         self._publish_ns = 0  # when it publishes next
-        self._is_starting = True
         self._has_begun = False
         self._beats = 0
 
@@ -99,7 +95,7 @@ class GateSimulation:
         Args:
             t_ns: the instant.
             events: the events of the monitor.
-            waiting: whether the monitor waits for inputs.
+            waiting: whether an input is awaited, so that there is no heartbeat.
             stepped: whether the clock has stepped back.
         """
         self._states.follow(events)
@@ -135,8 +131,7 @@ class GateSimulation:
         if not self._has_begun:  # the states go out at the start, the first beat a period later
             self._has_begun = True
             return
-        self._is_starting = self._is_starting and waiting and t_ns < self._grace_ns
-        if self._is_starting:
+        if waiting:
             return
         self._beats += 1
         if self.heard:

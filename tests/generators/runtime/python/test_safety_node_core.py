@@ -324,19 +324,23 @@ def test_reset_that_cannot_be_stored_is_refused(robot: Robot) -> None:
 
 
 def test_heartbeat_waits_for_the_inputs(robot: Robot) -> None:
-    """During the grace period there is none until all inputs have arrived; after it, there is."""
+    """There is none while one is awaited, also after the grace and after a step of the clock."""
     robot.monitor.waiting = True
     robot.core._publish()
     assert robot.beats == []
     assert "starting" in robot.core._not_ready_reason()
-    robot.clockwork.now += SECOND - 1
+    robot.clockwork.now += 2 * SECOND
     robot.core._publish()
     assert robot.beats == []
-    robot.clockwork.now += 1
+    robot.monitor.waiting = False
     robot.core._publish()
     robot.core._publish()
     assert robot.beats == [1, 2]
     assert robot.core._not_ready_reason() == ""
+    robot.monitor.waiting = True
+    robot.core.stepped()
+    assert robot.beats == [1, 2]
+    assert "starting" in robot.core._not_ready_reason()
 
 
 def test_optional_behaviours_follow_their_parameters(tmp_path: Path) -> None:

@@ -358,17 +358,15 @@ void SafetyNodeCore::do_housekeeping()
   }
 }
 
-/// Return whether the start is over: during the startup grace, the node waits for its inputs.
+/// Return whether the start is over, or a step of the clock: no input is awaited.
 bool SafetyNodeCore::is_ready()
 {
-  if (is_starting_) {
-    if (hooks_.is_waiting() && runner_.now() < runner_.started_at() + grace_) {
-      return false;
-    }
-    is_starting_ = false;
+  const bool is_waiting = hooks_.is_waiting();
+  if (is_waiting != is_starting_) {
+    is_starting_ = is_waiting;
     diagnostics_.changed();
   }
-  return true;
+  return !is_waiting;
 }
 
 /// Return why the node does not watch all rules; an empty text if it does.

@@ -329,14 +329,12 @@ class SafetyNodeCore:
             self._hooks.beat(self._beats)
 
     def _is_ready(self) -> bool:
-        """Return whether the start is over: within the grace, inputs are waited for."""
-        runner = self.runner
-        if self._is_starting:
-            if runner.monitor.waiting and runner.now() < runner.began_at + self._grace:
-                return False
-            self._is_starting = False
+        """Return whether the start is over, or a step of the clock: no input is awaited."""
+        waiting = self.runner.monitor.waiting
+        if waiting != self._is_starting:
+            self._is_starting = waiting
             self._diagnostics.changed()
-        return True
+        return not waiting
 
     def _not_ready_reason(self) -> str:
         """Return what the node does not do; empty if it watches all rules."""
