@@ -23,7 +23,7 @@ def refused(robot: Robot, unknown: str) -> bool:
     success, message = robot.reset()
     assert not success, message
     why = message.partition("stop stays active, not known to be false: ")[2]
-    return "racing (faulty.deros:" in why and why.endswith(f", unknown: {unknown}")
+    return "racing (faulty.deros:" in why and why.endswith(f": {unknown} is unknown)")
 
 
 def assert_refused(robot: Robot, unknown: str) -> None:

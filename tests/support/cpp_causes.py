@@ -144,8 +144,8 @@ def _told_in_cpp(unit: Unit) -> str:
         conditions=[
             (
                 str(number),
-                *told(layout, number),
-                *(told(layout, early[number]) if number in early else ("", "")),
+                told(unit.view.program, layout, number),
+                told(unit.view.program, layout, early[number]) if number in early else None,
             )
             for number, _ in enumerate(unit.view.behaviour_names)
         ],

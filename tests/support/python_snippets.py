@@ -29,7 +29,10 @@ RULES = {
     "groups": "action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec "
     "input w = topic /imu.orientation timeout 1 sec "
     "entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); "
-    "failsafe u: (r for 1 sec) and not s; } "
+    "failsafe u: (r for 1 sec) and not s; "
+    "t: (u for 1 sec) and (r for 1 sec) or s; x: (t for 1 sec) and s; "
+    "failsafe y: ((x for 1 sec) and not s) or r; } "
+    "if e.y then { stop; }; "
     "if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };",
 }
 """The rules of each snippet, by its name."""

@@ -98,7 +98,7 @@ class _Early:
         """Return the program with what is early."""
         written = self._written
         everyone = {each.index: each for each in walk.behaviours(written)}
-        every = {index: _chain(everyone, index) for index in triggering_resettable(written)}
+        every = {index: chain_of(everyone, index) for index in triggering_resettable(written)}
         chains = {
             index: chain
             for index, chain in every.items()
@@ -221,7 +221,7 @@ def _after(numbers: Iterable[int]) -> Iterator[int]:
     return count(max(numbers, default=-1) + 1)
 
 
-def _chain(everyone: dict[int, Behaviour], index: int) -> tuple[Behaviour, ...]:
+def chain_of(everyone: dict[int, Behaviour], index: int) -> tuple[Behaviour, ...]:
     """Return a behaviour after all that enclose it, the outermost first."""
     chain = [everyone[index]]
     while (parent := chain[0].parent) is not None:

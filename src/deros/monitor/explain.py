@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from deros.monitor import walk
-from deros.monitor.causes import causes_of_behaviour, causes_of_rule
-from deros.monitor.early import early_ones
+from deros.monitor.causes import causes_of_behaviour, causes_of_rule, unknown_of_behaviour
+from deros.monitor.early import early_ones, triggering_resettable
 from deros.monitor.ir import Program, Rule, Scalar
 from deros.monitor.reads import Term, strip_comments, term_name, term_value, terms_of_rules
 from deros.monitor.state import State
@@ -43,7 +43,8 @@ class Explanation(NamedTuple):
     Attributes:
         rules: all of them.
         causes: of each behaviour that holds, the rules that make it hold, with their causes; of one
-            that is on its way, those that would if no ``for`` had to last.
+            that is on its way, those that would if no ``for`` had to last, and how long they have
+            lasted; of one that can refuse a reset and is unknown, the terms without a value.
     """
 
     rules: tuple[RuleState, ...]
@@ -64,13 +65,16 @@ def explain(program: Program, running: Program, state: State, t_ns: int) -> Expl
     )
     everyone = tuple(walk.behaviours(running))
     early = early_ones(running)
+    refusing = triggering_resettable(program)
     causes = {}
     for each in walk.behaviours(program):
-        coming = everyone[early.get(each.index, each.index)]
-        if state.holds[each.index] is True:
-            causes[each.name] = causes_of_behaviour(running, each, state, t_ns)
-        elif state.holds[each.index] is False and state.holds[coming.index] is True:
-            causes[each.name] = causes_of_behaviour(running, coming, state, t_ns)
+        asked = each
+        if state.holds[each.index] is False:
+            asked = everyone[early.get(each.index, each.index)]
+        if state.holds[asked.index] is True:
+            causes[each.name] = causes_of_behaviour(running, asked, state, t_ns)
+        elif state.holds[asked.index] is None and each.index in refusing:
+            causes[each.name] = unknown_of_behaviour(running, asked, state, t_ns)
     return Explanation(rules, causes)
 
 

@@ -55,7 +55,7 @@ class Monitor(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Explained:
-    """An event, and of the behaviours that it names and that hold, what makes them hold."""
+    """An event, and the causes of the behaviours that it names, if there are some."""
 
     event: Event
     causes: Mapping[str, str] = field(default_factory=dict)
@@ -146,7 +146,7 @@ class _Player:
         if events:
             causes = self._monitor.explain().causes
             for event in events:
-                names = (event.behaviour or "", *event.holding)
+                names = (event.behaviour or "", *event.holding, *event.unknown, *event.coming)
                 told = {name: "; ".join(causes[name]) for name in names if name in causes}
                 yield Explained(event, told)
         if self._gates is not None:
@@ -196,7 +196,10 @@ def event_line(event: Event, causes: Mapping[str, str]) -> str:
             coming = [_because(name, causes) for name in event.coming]
             reasons.append(f"on its way: {', '.join(coming)}")
         if event.unknown:
-            reasons.append(f"not known to be false: {', '.join(event.unknown)}")
+            unknown = [
+                f"{each} ({causes[each]})" if each in causes else each for each in event.unknown
+            ]
+            reasons.append(f"not known to be false: {', '.join(unknown)}")
         text = f"{event.action} stays active, {'; '.join(reasons)}"
     else:
         what = event.arguments[0] if event.action == "log_state" else event.action

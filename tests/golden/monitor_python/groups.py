@@ -1,7 +1,7 @@
 # action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec input w = topic /imu.orientation timeout 1 sec entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); failsafe u: (r for 1 sec) and not s; } if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };
 
     def explain(self) -> Explanation:
-        """Return the state of each rule, and why behaviours hold or are on their way."""
+        """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
         rules = (
             explained(
                 'e.r', 2, 'r: v > 1;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
@@ -19,15 +19,20 @@
                 ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
             ),
         )
-        causes = {}
-        if self._behaviour_1:
-            causes['behaviour_1'] = self._why_behaviour_1()
-        elif self._behaviour_1 is False and self._behaviour_1_early:
+    # 3 lines
+        elif self._behaviour_1 is None:
+            causes['behaviour_1'] = self._why_unknown_behaviour_1()
+        elif self._behaviour_1_early:
             causes['behaviour_1'] = self._why_behaviour_1_early()
-        if self._behaviour_2:
-            causes['behaviour_2'] = self._why_behaviour_2()
-        elif self._behaviour_2 is False and self._behaviour_2_early:
+        elif self._behaviour_1_early is None:
+            causes['behaviour_1'] = self._why_unknown_behaviour_1_early()
+    # 2 lines
+        elif self._behaviour_2 is None:
+            causes['behaviour_2'] = self._why_unknown_behaviour_2()
+        elif self._behaviour_2_early:
             causes['behaviour_2'] = self._why_behaviour_2_early()
+        elif self._behaviour_2_early is None:
+            causes['behaviour_2'] = self._why_unknown_behaviour_2_early()
         return Explanation(rules, causes)
 
     def _why_e_s(self) -> tuple[str, ...]:
@@ -51,12 +56,12 @@
         return tuple(found)
 
     def _why_e_u_early(self) -> tuple[str, ...]:
-    # 2 lines
-        found += all_of(
-            given(self._e_r, because('e.r: ', self._why_e_r())),
-            given(self._e_s is False, because('not e.s: ', self._why_not_e_s())),
+    # 3 lines
+        part_1 = any_of(
+            given(t >= self._e_u_due, because('e.r for 1 sec: ', self._why_e_r())),
+            given(t < self._e_u_due < NEVER, because(f'e.r for {shown((self._now - self._e_u_due + 1_000_000_000) / 1e9)} s, long enough in {shown((self._e_u_due - self._now) / 1e9)} s: ', self._why_e_r())),  # noqa: E501
         )
-    # 5 lines
+    # 8 lines
 
     def _why_behaviour_1(self) -> tuple[str, ...]:
     # 2 lines

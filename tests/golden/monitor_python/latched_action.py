@@ -12,6 +12,17 @@ def refusing(*behaviours: tuple) -> tuple[tuple[str, ...], ...]:
     coming = tuple(name for name, held, early in behaviours if held is False and early)
     return holding, unknown, coming
 
+def without_value(*reads: tuple) -> tuple[str, ...]:
+    """
+    Return the terms that have no value, each once.
+
+    Each comes with the verdict of the rule that reads it, which has to be unknown, and its value.
+    """
+    names = dict.fromkeys(
+        term for verdict, term, value in reads
+        if verdict is None and (value is None or value != value))
+    return tuple(f'{name} is unknown' for name in names)
+
     def __init__(
     # 15 lines
         self._stop_active = 'stop' in latched
@@ -32,6 +43,18 @@ def refusing(*behaviours: tuple) -> tuple[tuple[str, ...], ...]:
             ('behaviour_1', self._behaviour_1, False),
             ('behaviour_2', self._behaviour_2, False),
         )
+
+    def explain(self) -> Explanation:
+    # 10 lines
+        if self._behaviour_1:
+            causes['behaviour_1'] = self._why_behaviour_1()
+        elif self._behaviour_1 is None:
+            causes['behaviour_1'] = self._why_unknown_behaviour_1()
+        if self._behaviour_2:
+            causes['behaviour_2'] = self._why_behaviour_2()
+        elif self._behaviour_2 is None:
+            causes['behaviour_2'] = self._why_unknown_behaviour_2()
+        return Explanation(rules, causes)
 
     def reset(self, t: int) -> bool:
     # 7 lines

@@ -17,7 +17,7 @@ def decimal(value: float) -> float:
     return value
 
     def explain(self) -> Explanation:
-        """Return the state of each rule, and why behaviours hold or are on their way."""
+        """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
         rules = (
             explained(
                 'e.r', 2, 'r: v.nearest(-30 deg, 30 deg) < 0.4;', self._e_r, self._e_r_since,

@@ -64,7 +64,7 @@ class RuleState(NamedTuple):
 
 
 class Explanation(NamedTuple):
-    """The verdict of each rule, and why behaviours hold or are on their way, of those that do."""
+    """The verdict of each rule, and why behaviours hold, are on their way, or are unknown."""
 
     rules: tuple[RuleState, ...]
     causes: dict[str, tuple[str, ...]]
@@ -156,7 +156,7 @@ class Monitor:
         return False
 
     def explain(self) -> Explanation:
-        """Return the state of each rule, and why behaviours hold or are on their way."""
+        """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
         rules = (
             explained(
                 'e.r', 2, 'r: v;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),

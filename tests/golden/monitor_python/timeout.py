@@ -6,7 +6,7 @@
         return self._v_silent and not self._v_missing
 
     def explain(self) -> Explanation:
-        """Return the state of each rule, and why behaviours hold or are on their way."""
+        """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
         rules = (
             explained(
                 'e.r', 2, 'r: v > 1 or v.missing() or v.age() > 0.2 sec;', self._e_r,

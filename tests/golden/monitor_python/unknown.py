@@ -1,7 +1,7 @@
 # action stop; input v = topic /odom.twist.twist.linear.x timeout 0.5 sec entity e { r: v.unknown(); } if e.r then { stop; };
 
     def explain(self) -> Explanation:
-        """Return the state of each rule, and why behaviours hold or are on their way."""
+        """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
         rules = (
             explained(
                 'e.r', 2, 'r: v.unknown();', self._e_r, self._e_r_since, self._why_e_r,

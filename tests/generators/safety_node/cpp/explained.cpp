@@ -33,6 +33,9 @@ void tell(
   const told::runtime::MonitorSnapshot & state)
 {
   for (const std::size_t behaviour : behaviours) {
+    if (state.causes.count(behaviour) == 0) {  // unknown, and refuses no reset
+      continue;
+    }
     std::cout << kind << '\t' << told::rule_metadata().behaviours[behaviour].name << '\t' <<
       told::runtime::cause_of(behaviour, state) << '\n';
   }
@@ -54,6 +57,7 @@ void tell(const every_thing_monitor & monitor)
     std::cout << '\n';
   }
   tell("holding", state.holding, state);
+  tell("unknown", state.unknown, state);
   tell("coming", state.coming, state);
   std::cout << "." << std::endl;
 }

@@ -85,8 +85,8 @@ def _explained(model: Rules, context: Context) -> list[str]:
             reads = (f"{term}={_shown(read)}" for term, read in rule.reads)
             words = (rule.name, str(rule.line), rule.text, _shown(rule.value), str(rule.since))
             output.append("\t".join((*words, *reads, *rule.causes)) + "\n")
-        assert {*state.causes} == {*monitor.holding, *monitor.coming}
-        for kind in ("holding", "coming"):
+        assert {*state.causes} == {*monitor.holding, *monitor.unknown, *monitor.coming}
+        for kind in ("holding", "unknown", "coming"):
             output += [
                 f"{kind}\t{name}\t{'; '.join(state.causes[name])}\n"
                 for name in getattr(monitor, kind)

@@ -9,7 +9,8 @@ from deros.generators.monitor.python.formulas import printed
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
-from deros.monitor import causes, walk
+from deros.monitor import walk
+from deros.monitor.cause_plans import telling_unknown, told_rules
 from deros.monitor.functions import FUNCTIONS, Function, Result
 from deros.monitor.ir import (
     Age,
@@ -76,6 +77,7 @@ class Layout:
         why: of each rule, the method that returns why it is true.
         why_not: of each rule that a behaviour negates, the method that returns why it is false.
         why_holds: of each behaviour, the method that returns why it holds.
+        why_unknown: of each behaviour that can refuse a reset, that which returns what is unknown.
     """
 
     names: UniqueNames
@@ -103,6 +105,7 @@ class Layout:
     why: dict[int, str] = field(default_factory=dict)
     why_not: dict[int, str] = field(default_factory=dict)
     why_holds: dict[int, str] = field(default_factory=dict)
+    why_unknown: dict[int, str] = field(default_factory=dict)
 
 
 def lay_out_memory(program: Program) -> Layout:
@@ -198,7 +201,7 @@ def _name_actions(program: Program, layout: Layout) -> None:
 
 
 def _name_causes(program: Program, layout: Layout) -> None:
-    asked = causes.told_rules(program)
+    asked = told_rules(program)
     for rule in program.rules:
         if (rule.index, True) in asked:
             layout.why[rule.index] = layout.names.new("why", rule.entity, rule.name)
@@ -206,6 +209,8 @@ def _name_causes(program: Program, layout: Layout) -> None:
             layout.why_not[rule.index] = layout.names.new("why_not", rule.entity, rule.name)
     for behaviour in walk.behaviours(program):
         layout.why_holds[behaviour.index] = layout.names.new("why", behaviour.name)
+    for behaviour in telling_unknown(program):
+        layout.why_unknown[behaviour.index] = layout.names.new("why_unknown", behaviour.name)
 
 
 def knows(row: Function) -> bool:

@@ -11,7 +11,7 @@ MODULE_NAMES = frozenset(
     {
         *("Callable", "Collection", "Sequence", "NamedTuple", "functools", "math", "np"),
         *("Event", "Explanation", "Monitor", "RuleState", "explained", "scan_beams"),
-        *("RateWindow", "because", "shown", "stamp_of", "unknown_of"),
+        *("RateWindow", "because", "shown", "stamp_of", "unknown_of", "without_value"),
         *("all_of", "any_of", "given"),
         *("NAN", "NEVER", "OPTIONAL", "RULES_OF"),
     }
@@ -19,7 +19,7 @@ MODULE_NAMES = frozenset(
 METHOD_NAMES = frozenset(
     {
         *("act", "advance", "catch_up", "earliest", "enable", "evaluate", "explain", "refuse"),
-        *("disabled", "reset", "restart", "rules_of", "waiting"),
+        *("disabled", "refusing", "reset", "restart", "rules_of", "waiting"),
     }
 )
 LOCAL_NAMES = frozenset(

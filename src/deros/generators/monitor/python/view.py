@@ -52,6 +52,19 @@ class Timeout:
 
 
 @dataclass(frozen=True, slots=True)
+class Told:
+    """A behaviour's attribute, and the methods that return its causes.
+
+    ``holds`` is that while it is true; ``unknown``, of those that can refuse a reset, while it is
+    unknown.
+    """
+
+    attribute: str
+    holds: str
+    unknown: str
+
+
+@dataclass(frozen=True, slots=True)
 class MonitorView:
     """The data of the template.
 
@@ -74,9 +87,10 @@ class MonitorView:
         optional: the names of those that can be disabled.
         explained: the lines of the rule states that ``explain()`` returns.
         whys: the methods that return why rules are true or false, and why behaviours hold.
-        why_holds: the name of each behaviour, its attribute, and the method that returns why; then
-            both of its early one, if there is one.
-        says_unknown: whether one of them names the terms without a value.
+        told: of each behaviour its name, and by its attribute the methods that return its causes;
+            then the same of its early one, if there is one.
+        says_unknown: whether one of them names the terms without a value in a cause,
+            ``says_values`` in what refuses a reset.
         joins_causes: whether one of them combines the causes of several parts.
         waiting: the lines of what ``waiting`` returns.
         act: the lines of all behaviours and resets.
@@ -105,8 +119,9 @@ class MonitorView:
     optional: tuple[str, ...]
     explained: tuple[str, ...]
     whys: tuple[Why, ...]
-    why_holds: tuple[tuple[str, str, str, str, str], ...]
+    told: tuple[tuple[str, Told, Told | None], ...]
     says_unknown: bool
+    says_values: bool
     joins_causes: bool
     waiting: tuple[str, ...]
     act: tuple[str, ...]
@@ -178,12 +193,17 @@ def monitor_view(program: Program) -> MonitorView:
         optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
         explained=explained,
         whys=told,
-        why_holds=tuple(
-            (each.name, *_flags(layout, each.index), *_flags(layout, early.get(each.index)))
+        told=tuple(
+            (
+                each.name,
+                _told(layout, each.index),
+                _told(layout, early[each.index]) if each.index in early else None,
+            )
             for each in walk.behaviours(program)
         ),
         joins_causes=any("found += " in line for line in _lines(told)),
-        says_unknown=any("unknown_of(" in line for each in told for line in each.lines),
+        says_unknown=any("unknown_of(" in line for line in _lines(told)),
+        says_values=any("without_value(" in line for line in _lines(told)),
         waiting=tuple(waiting_lines(layout)),
     )
 
@@ -193,9 +213,9 @@ def _lines(told: Sequence[Why]) -> Iterator[str]:
         yield from each.lines
 
 
-def _flags(layout: Layout, behaviour: int | None) -> tuple[str, str]:
-    """Return the attribute of a behaviour and the method that returns why it holds."""
-    return ("", "") if behaviour is None else (layout.holds[behaviour], layout.why_holds[behaviour])
+def _told(layout: Layout, behaviour: int) -> Told:
+    unknown = layout.why_unknown.get(behaviour, "")
+    return Told(layout.holds[behaviour], layout.why_holds[behaviour], unknown)
 
 
 def _title(name: str) -> str:

@@ -1,4 +1,4 @@
-"""The methods that return why a rule is true, or false, and why a behaviour holds."""
+"""The methods that return why a rule is true, or false, and why a behaviour holds or is unknown."""
 
 from __future__ import annotations
 
@@ -14,19 +14,24 @@ from deros.generators.text.document import SOFTLINE, group, nest, render_lines
 from deros.generators.text.logic import Atom, Logic, lay_out, text
 from deros.generators.text.python import LINE_LENGTH, lay_out_call
 from deros.monitor import walk
-from deros.monitor.causes import (
+from deros.monitor.cause_plans import (
     AllOf,
     AnyOf,
     During,
+    NoValue,
     OrUnknown,
     Plan,
+    Reading,
     Say,
     SayRule,
     plan_of_behaviour,
     plan_of_rule,
+    plan_of_unknown,
+    telling_unknown,
 )
+from deros.monitor.cause_texts import Lasting, Piece
 from deros.monitor.ir import Program, Since
-from deros.monitor.reads import term_name
+from deros.monitor.reads import Term, term_name
 
 _TIME = re.compile(r"(?<![\w.])t [<>-]")
 _PLACE = "\0"  # stands for a value while a text is quoted
@@ -61,6 +66,10 @@ def whys(program: Program, layout: Layout) -> Iterator[Why]:
     for behaviour in walk.behaviours(program):
         lines = emitter.body(plan_of_behaviour(program, behaviour))
         yield Why(layout.why_holds[behaviour.index], f"{behaviour.name} holds", tuple(lines))
+    for behaviour in telling_unknown(program):
+        lines = emitter.unknown_body(plan_of_unknown(program, behaviour))
+        subject = f"{behaviour.name} is unknown"
+        yield Why(layout.why_unknown[behaviour.index], subject, tuple(lines))
 
 
 class _Emitter:
@@ -96,6 +105,25 @@ class _Emitter:
         lines = ["        t = self._now"] if any(map(_TIME.search, tests)) else []
         lines += ["        found = []", *self._block(8, plan, known=True)]
         return [*lines, "        return tuple(found)"]
+
+    def unknown_body(self, plan: NoValue) -> list[str]:
+        """Return the statements that return what is unknown."""
+        calls = [
+            [f"({', '.join(self._reading(each))})" for each in readings] for readings in plan.tiers
+        ]
+        lines: list[str] = []
+        for number, readings in enumerate(calls):
+            lines += [*(["        if not found:"] if number else [])]
+            lines += lay_out_call(12 if number else 8, "found = without_value(", readings)
+        otherwise = f"({plan.otherwise!r},)"
+        return [*lines, f"        return {f'found or {otherwise}' if lines else otherwise}"]
+
+    def _reading(self, each: Reading) -> tuple[str, str, str]:
+        """Return the verdict of the rule that reads a term, the term's name, and its value."""
+        verdict = "None" if each.rule is None else f"self._{self._layout.verdicts[each.rule]}"
+        term = each.term
+        value = "None" if term is None else value_text(self._program, term, self._layout)
+        return verdict, repr(each.name), value
 
     def _tests(self, plan: Plan, known: bool = True) -> Iterator[str]:
         """Yield the conditions that a plan reads."""
@@ -189,14 +217,21 @@ class _Emitter:
     def _cause(self, part: Say | SayRule) -> str:
         if isinstance(part, SayRule):
             method = (self._layout.why if part.holds else self._layout.why_not)[part.rule]
-            return f"because({part.head!r}, self._{method}())"
-        values = [
-            f"shown({value_text(self._program, each, self._layout)})"
-            for each in part.pieces
-            if not isinstance(each, str)
-        ]
-        pieces = [each if isinstance(each, str) else _PLACE for each in part.pieces]
-        return _text(pieces, values)
+            return f"because({self._pieces(part.head)}, self._{method}())"
+        return self._pieces(part.pieces)
+
+    def _pieces(self, pieces: tuple[Piece, ...]) -> str:
+        values = [f"shown({self._value(each)})" for each in pieces if not isinstance(each, str)]
+        texts = [each if isinstance(each, str) else _PLACE for each in pieces]
+        return _text(texts, values)
+
+    def _value(self, piece: Term | Lasting) -> str:
+        if not isinstance(piece, Lasting):
+            return value_text(self._program, piece, self._layout)
+        due = self._own.dues[piece.interval.index]
+        if piece.remains:
+            return f"({due} - self._now) / 1e9"
+        return f"(self._now - {due} + {piece.interval.duration_ns:_}) / 1e9"
 
     def _unknown(self, plan: OrUnknown) -> str:
         reads = (

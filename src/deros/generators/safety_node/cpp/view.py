@@ -14,6 +14,7 @@ from deros.generators.safety_node.cpp.rule_metadata import Item, rule_metadata_v
 from deros.generators.safety_node.cpp.rule_state import rule_states
 from deros.generators.safety_node.cpp.whys import (
     CauseFunction,
+    Told,
     cause_functions,
     told,
     why_rule,
@@ -172,19 +173,18 @@ class SafetyView:
         return f"{self.stem}_actions"
 
     @property
-    def conditions(self) -> list[tuple[str, str, str, str, str]]:
-        """The enumerator of each behaviour, its condition's field, and its cause function.
-
-        Then the field and the function of its early behaviour, if there is one.
-        """
-        early = early_ones(self.monitor.program)
+    def conditions(self) -> list[tuple[str, Told, Told | None]]:
+        """The enumerator of each behaviour, its condition, and that of its early one, if any."""
+        program, layout = self.monitor.program, self.monitor.layout
+        early = early_ones(program)
         return [
-            (name, *self._told(index), *self._told(early.get(index)))
+            (
+                name,
+                told(program, layout, index),
+                told(program, layout, early[index]) if index in early else None,
+            )
             for index, (_, name) in enumerate(self.monitor.behaviour_names)
         ]
-
-    def _told(self, behaviour: int | None) -> tuple[str, str]:
-        return ("", "") if behaviour is None else told(self.monitor.layout, behaviour)
 
     @property
     def bound(self) -> list[tuple[str, str]]:

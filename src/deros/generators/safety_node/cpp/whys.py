@@ -1,4 +1,4 @@
-"""C++ functions that return why a rule is true or false, and why a behaviour holds."""
+"""C++ functions that return why a rule is true or false, a behaviour holds or is unknown."""
 
 from __future__ import annotations
 
@@ -20,18 +20,23 @@ from deros.generators.text.c import flat, lay_out_if
 from deros.generators.text.cpp import Call, Chain, Expression, cpp_string, expression_lines
 from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of
 from deros.monitor import walk
-from deros.monitor.causes import (
+from deros.monitor.cause_plans import (
     AllOf,
     AnyOf,
     During,
+    NoValue,
     OrUnknown,
     Plan,
+    Reading,
     Say,
     SayRule,
     plan_of_behaviour,
     plan_of_rule,
+    plan_of_unknown,
+    telling_unknown,
     told_rules,
 )
+from deros.monitor.cause_texts import Lasting, Piece
 from deros.monitor.ir import (
     OPPOSITE,
     Age,
@@ -69,6 +74,19 @@ class CauseFunction:
         return any(_MONITOR.search(_TEXT.sub("", line)) for line in self.lines)
 
 
+@dataclass(frozen=True, slots=True)
+class Told:
+    """The field of a behaviour's condition, and the functions that return its causes.
+
+    ``holds`` is that while it is true; ``unknown`` that while it is unknown, or ``nullptr`` of one
+    that never refuses a reset.
+    """
+
+    field: str
+    holds: str
+    unknown: str
+
+
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 _MONITOR = re.compile(r"\bm\b")
 
@@ -78,9 +96,11 @@ def why_rule(layout: Layout, rule: int, holds: bool = True) -> str:
     return f"why_{str(holds).lower()}_{layout.verdicts[rule]}"
 
 
-def told(layout: Layout, behaviour: int) -> tuple[str, str]:
-    """Return the field of a behaviour's condition, and the function that returns why it holds."""
-    return layout.conditions[behaviour], f"why_holds_{layout.conditions[behaviour]}"
+def told(program: Program, layout: Layout, behaviour: int) -> Told:
+    """Return the field of a behaviour's condition with its cause functions."""
+    name = layout.conditions[behaviour]
+    can_refuse = any(each.index == behaviour for each in telling_unknown(program))
+    return Told(name, f"why_holds_{name}", f"why_unknown_{name}" if can_refuse else "nullptr")
 
 
 def cause_functions(program: Program, layout: Layout) -> Iterator[CauseFunction]:
@@ -94,8 +114,12 @@ def cause_functions(program: Program, layout: Layout) -> Iterator[CauseFunction]
             yield CauseFunction(why_rule(layout, rule.index, holds), subject, emitter.body(plan))
     for behaviour in walk.behaviours(program):
         plan = plan_of_behaviour(program, behaviour)
-        _, name = told(layout, behaviour.index)
+        name = told(program, layout, behaviour.index).holds
         yield CauseFunction(name, f"{behaviour.name} holds", emitter.body(plan))
+    for behaviour in telling_unknown(program):
+        lines = emitter.unknown_body(plan_of_unknown(program, behaviour))
+        name = told(program, layout, behaviour.index).unknown
+        yield CauseFunction(name, f"{behaviour.name} is unknown", lines)
 
 
 class _Emitter:
@@ -108,6 +132,30 @@ class _Emitter:
         """Return the statements that return the causes of a plan that is known to hold."""
         lines = self._block(2, plan, known=True)
         return ("  runtime::Causes causes;", *lines, "  return causes;")
+
+    def unknown_body(self, plan: NoValue) -> tuple[str, ...]:
+        """Return the statements that return what is unknown."""
+        lines = ["  runtime::Causes causes;"]
+        for number, readings in enumerate(plan.tiers):
+            lines += ["  if (causes.empty()) {"] if number else []
+            for each in readings:
+                arguments = ("causes", self._is_open(each), self._reading(each))
+                indent = 4 if number else 2
+                lines += _called("runtime::append_unknown", arguments, indent)
+            lines += ["  }"] if number else []
+        lines += ["  if (causes.empty()) {"]
+        lines += _called("causes.push_back", (cpp_string(plan.otherwise),), 4)
+        return (*lines, "  }", "  return causes;")
+
+    def _is_open(self, each: Reading) -> str:
+        if each.rule is None:
+            return "true"
+        return f"m.{self._layout.verdicts[each.rule]} == {self._layout.macro}_UNKNOWN"
+
+    def _reading(self, each: Reading) -> Expression:
+        if each.term is None:
+            return Call("runtime::Reading", (cpp_string(each.name), "std::nullopt"))
+        return reading(self._program, self._layout, each.term)
 
     # Statements, which append to the causes ---------------------------------------------------
 
@@ -175,14 +223,21 @@ class _Emitter:
     def _cause(self, part: Say | SayRule) -> Expression:
         if isinstance(part, SayRule):
             why = why_rule(self._layout, part.rule, part.holds)
-            return Call("runtime::rule_cause", (cpp_string(part.head), f"{why}(m)"))
-        pieces = (
-            cpp_string(each)
-            if isinstance(each, str)
-            else shown_text(self._program, self._layout, each)
-            for each in part.pieces
-        )
-        return Chain("", tuple(pieces), " + ")
+            return Call("runtime::rule_cause", (self._text(part.head), f"{why}(m)"))
+        return self._text(part.pieces)
+
+    def _text(self, pieces: tuple[Piece, ...]) -> Expression:
+        return Chain("", tuple(map(self._piece, pieces)), " + ")
+
+    def _piece(self, piece: Piece) -> str:
+        if isinstance(piece, str):
+            return cpp_string(piece)
+        if not isinstance(piece, Lasting):
+            return shown_text(self._program, self._layout, piece)
+        time = f"m.now - m.{self._layout.since[piece.interval.index]}"
+        if piece.remains:
+            time = f"{integer(piece.interval.duration_ns)} - ({time})"
+        return f"runtime::to_text(runtime::seconds({time}))"
 
     # Conditions, as tests whether they are true or false -------------------------------------
 

@@ -140,8 +140,8 @@ void EventReporter::report_monitor_event(
     set(values, "holding", names(holding));
     set(values, "unknown", names(unknown));
     set(values, "coming", names(coming));
-    for (const auto & caused : {holding, coming}) {
-      for (const std::size_t behaviour : caused) {
+    for (const auto & refusing : {holding, unknown, coming}) {
+      for (const std::size_t behaviour : refusing) {
         set(values, "cause " + metadata_.behaviours[behaviour].name, cause_of(behaviour, after));
       }
     }
@@ -205,25 +205,14 @@ std::string EventReporter::origin_holding(
   return cause.empty() ? origin(behaviour) : named.name + " (" + named.origin + "): " + cause;
 }
 
-/// Return origin(), followed by the terms without a value.
+/// Return a behaviour with its place in the rules, and what is unknown.
 std::string EventReporter::origin_unknown(
   std::size_t behaviour, const MonitorSnapshot & present) const
 {
-  const std::vector<std::string> & rules = metadata_.behaviours[behaviour].rules;
-  std::vector<std::string> terms;
-  for (const RuleState & rule : present.rules) {
-    const bool is_used = std::find(rules.begin(), rules.end(), rule.name) != rules.end();
-    if (!is_used || rule.verdict != Verdict::Unknown) {
-      continue;
-    }
-    for (const Reading & reading : rule.reads) {
-      if (!reading.value && std::find(terms.begin(), terms.end(), reading.term) == terms.end()) {
-        terms.push_back(reading.term);
-      }
-    }
-  }
-  return terms.empty() ? origin(behaviour) :
-         origin(behaviour) + ", unknown: " + joined(terms, ", ");
+  const Behaviour & named = metadata_.behaviours[behaviour];
+  const std::string cause = cause_of(behaviour, present);
+  return cause.empty() ? origin(behaviour) :
+         named.name + " (" + named.origin + ": " + cause + ')';
 }
 
 /// Return the behaviours that call an action, among some.

@@ -54,6 +54,15 @@ std::string unknown_terms_among(const std::vector<Reading> & reads)
   return "unknown: " + joined(names, ", ");
 }
 
+void append_unknown(Causes & causes, bool is_open, const Reading & reading)
+{
+  const std::string cause = reading.term + " is unknown";
+  const bool is_new = std::find(causes.begin(), causes.end(), cause) == causes.end();
+  if (is_open && !reading.value && is_new) {
+    causes.push_back(cause);
+  }
+}
+
 Causes cause_if(bool condition, const std::string & cause)
 {
   return condition ? Causes{cause} : Causes();

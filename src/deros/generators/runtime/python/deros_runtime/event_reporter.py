@@ -56,7 +56,7 @@ class EventReporter:
         if event.kind == EventKind.REFUSED:
             told |= {'holding': ', '.join(event.holding), 'unknown': ', '.join(event.unknown)}
             told |= {'coming': ', '.join(event.coming)}
-            for name in (*event.holding, *event.coming):
+            for name in (*event.holding, *event.unknown, *event.coming):
                 told[f'cause {name}'] = cause(name, after)
             for name in (*event.holding, *event.unknown, *event.coming):
                 told |= self._values(name, after)
@@ -113,18 +113,11 @@ class EventReporter:
         return f'{behaviour} ({self._behaviours[behaviour].origin}): {found}'
 
     def _origin_unknown(self, behaviour: str, present: Explanation) -> str:
-        """Return a behaviour as origin() does, with the terms without a value."""
-        rules = self._behaviours[behaviour].rules
-        terms = [
-            term
-            for state in present.rules
-            if state.name in rules and state.value is None
-            for term, value in state.reads
-            if value is None
-        ]
-        if not terms:
+        """Return a behaviour with its place in the rules, and what is unknown."""
+        found = cause(behaviour, present)
+        if not found:
             return self.origin(behaviour)
-        return f'{self.origin(behaviour)}, unknown: {", ".join(dict.fromkeys(terms))}'
+        return f'{behaviour} ({self._behaviours[behaviour].origin}: {found})'
 
     def _values(self, behaviour: str, after: Explanation) -> dict[str, str]:
         """Return the verdicts of the rules that a behaviour depends on, and the values behind."""
@@ -158,9 +151,9 @@ class EventReporter:
 
 def cause(behaviour: str, explained: Explanation) -> str:
     """
-    Return what makes a behaviour hold: rules, with the true parts of their conditions.
+    Return why a behaviour holds, is on its way, or is unknown.
 
-    Empty if it no longer holds: a message may show that the clock has stepped back, and at once
+    Empty if it no longer does: a message may show that the clock has stepped back, and at once
     change what the step caused.
     """
     return '; '.join(explained.causes.get(behaviour, ()))

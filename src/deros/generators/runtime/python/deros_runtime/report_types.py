@@ -109,7 +109,7 @@ class Explanation(Protocol):
 
     @property
     def causes(self) -> Mapping[str, Sequence[str]]:
-        """Return why behaviours hold or are on their way, of those that do."""
+        """Return why behaviours hold, are on their way, or are unknown, of those that do."""
 
 
 class Monitor(Protocol):

@@ -69,12 +69,6 @@ public:
     return clock_.now();
   }
 
-  /// Return when the monitor was started; 0 if simulated time has not begun yet.
-  Time started_at() const
-  {
-    return started_at_;
-  }
-
   /// Start the monitor: its timeouts count from now.
   void start();
 

@@ -147,6 +147,9 @@ std::string unknown_terms(Readings && ... reads)
   return unknown_terms_among(std::vector<Reading>{std::forward<Readings>(reads)...});
 }
 
+/// Append the cause that a term has no value, once, if it has none and whatever reads it is open.
+void append_unknown(Causes & causes, bool is_open, const Reading & reading);
+
 /// Return a cause if a condition is true, and none otherwise.
 Causes cause_if(bool condition, const std::string & cause);
 
@@ -185,10 +188,10 @@ struct MonitorSnapshot
   std::vector<std::size_t> holding;  // the behaviours whose conditions hold
   std::vector<std::size_t> unknown;  // the behaviours whose conditions are unknown
   std::vector<std::size_t> coming;  // the behaviours whose conditions are on their way
-  std::map<std::size_t, std::string> causes;  // of each that holds or is on its way
+  std::map<std::size_t, std::string> causes;  // of each that holds, is on its way, or refuses
 };
 
-/// Return the causes of a behaviour; an empty text if it neither holds nor is on its way any more.
+/// Return the causes of a behaviour; an empty text if it has none any more.
 /**
  * A message may reveal that the clock has stepped back, and change at once what the step caused.
  */
