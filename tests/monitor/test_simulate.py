@@ -177,6 +177,35 @@ def test_reset_is_refused_with_causes_then_done(monitor: Any) -> None:
 
 
 @monitors
+def test_refused_reset_says_what_is_coming_and_what_is_unknown(monitor: Any) -> None:
+    """Through named rules, with how long it has lasted; a rule that is known names nothing."""
+    text = """
+    action stop publishes true on /stop : std_msgs.Bool latched;
+    input v = topic /speed.data timeout 9 sec
+    input u = topic /mode.data timeout 9 sec
+    entity drive { fast: v > 30; hot: (fast for 2 sec) and v > 10; both: v > 20 and u > 1; }
+    behaviour cut: if (drive.hot for 3 sec) or drive.both then { stop; };
+    """
+    running = monitor(program(text), latched={"stop"})
+    reset = {"t": "0.5", "reset": True}
+    lines = [read(each).lines[0] for each in (speed("0.1", 31), reset)]
+    (early,) = play(running, lines)
+    assert isinstance(early, Explained)
+    assert event_line(early.event, early.causes).endswith(
+        "stop stays active, not known to be false: cut (u is unknown)"
+    )
+    (late,) = play(
+        monitor(program(text.replace(" or drive.both", "")), latched={"stop"}),
+        lines,
+    )
+    assert isinstance(late, Explained)
+    assert late.causes == {
+        "cut": "drive.hot, then for 3 sec: drive.fast for 0.4 s, long enough in 1.6 s: v 31.0 > 30;"
+        " v 31.0 > 10"
+    }
+
+
+@monitors
 def test_optional_behaviour_is_switched(monitor: Any) -> None:
     """Enabled while its condition is true, it acts."""
     lines = [{"t": "0.1", "disable": "ease"}, speed("0.2", 25), {"t": "0.3", "enable": "ease"}]

@@ -30,8 +30,7 @@ RULES = {
     "input w = topic /imu.orientation timeout 1 sec "
     "entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); "
     "failsafe u: (r for 1 sec) and not s; "
-    "t: (u for 1 sec) and (r for 1 sec) or s; x: (t for 1 sec) and s; "
-    "failsafe y: ((x for 1 sec) and not s) or r; } "
+    "failsafe y: (u for 1 sec) and not s; } "
     "if e.y then { stop; }; "
     "if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };",
 }

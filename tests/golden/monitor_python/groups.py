@@ -1,4 +1,4 @@
-# action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec input w = topic /imu.orientation timeout 1 sec entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); failsafe u: (r for 1 sec) and not s; } if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };
+# action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec input w = topic /imu.orientation timeout 1 sec entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); failsafe u: (r for 1 sec) and not s; failsafe y: (u for 1 sec) and not s; } if e.y then { stop; }; if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };
 
     def explain(self) -> Explanation:
         """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
@@ -18,6 +18,12 @@
                 ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
                 ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
             ),
+            explained(
+                'e.y', 2, 'failsafe y: (u for 1 sec) and not s;', self._e_y, self._e_y_since,
+                self._why_e_y, ('v', self._v), ('v.rate()', self._v_rate),
+                ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
+                ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
+            ),
         )
     # 3 lines
         elif self._behaviour_1 is None:
@@ -33,6 +39,13 @@
             causes['behaviour_2'] = self._why_behaviour_2_early()
         elif self._behaviour_2_early is None:
             causes['behaviour_2'] = self._why_unknown_behaviour_2_early()
+    # 2 lines
+        elif self._behaviour_3 is None:
+            causes['behaviour_3'] = self._why_unknown_behaviour_3()
+        elif self._behaviour_3_early:
+            causes['behaviour_3'] = self._why_behaviour_3_early()
+        elif self._behaviour_3_early is None:
+            causes['behaviour_3'] = self._why_unknown_behaviour_3_early()
         return Explanation(rules, causes)
 
     def _why_e_s(self) -> tuple[str, ...]:
@@ -63,7 +76,15 @@
         )
     # 8 lines
 
-    def _why_behaviour_1(self) -> tuple[str, ...]:
+    def _why_e_y_early(self) -> tuple[str, ...]:
+    # 2 lines
+        found += all_of(
+            given(self._e_u_early, because('e.u, then for 1 sec: ', self._why_e_u_early())),
+            given(self._e_s is False, because('not e.s: ', self._why_not_e_s())),
+        )
+    # 5 lines
+
+    def _why_behaviour_2(self) -> tuple[str, ...]:
     # 2 lines
         if self._e_u:
             found.append(because('e.u: ', self._why_e_u()))
@@ -109,26 +130,36 @@
             verdict = False
         else:
             verdict = None
-    # 20 lines
+    # 18 lines
+        if (
+            t >= e_y_due and e_s is False
+            or not (t < e_y_due < NEVER or e_u is False or e_s) and (not v_silent or v_missing)
+        ):
+            verdict = True
+        elif t < e_y_due < NEVER or e_u is False or e_s:
+            verdict = False
+        else:
+            verdict = None
+    # 38 lines
 
     def _act(self, t: int) -> None:
-    # 20 lines
-        behaviour_2_due = self._behaviour_2_due
+    # 34 lines
+        behaviour_3_due = self._behaviour_3_due
         if e_r is False:
-            if behaviour_2_due is NEVER:
-                behaviour_2_due = t + 1_000_000_000
-                self._behaviour_2_due = behaviour_2_due
-                if behaviour_2_due < self._due:
-                    self._due = behaviour_2_due
-        elif behaviour_2_due is not NEVER:
-            behaviour_2_due = self._behaviour_2_due = NEVER
-        if t >= behaviour_2_due:
-            if not self._behaviour_2:
-                self._behaviour_2 = True
+            if behaviour_3_due is NEVER:
+                behaviour_3_due = t + 1_000_000_000
+                self._behaviour_3_due = behaviour_3_due
+                if behaviour_3_due < self._due:
+                    self._due = behaviour_3_due
+        elif behaviour_3_due is not NEVER:
+            behaviour_3_due = self._behaviour_3_due = NEVER
+        if t >= behaviour_3_due:
+            if not self._behaviour_3:
+                self._behaviour_3 = True
                 self._stop_active = True
-                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_2', (), 2))
-        elif t < behaviour_2_due < NEVER or e_r:
-            self._behaviour_2 = False
+                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_3', (), 2))
+        elif t < behaviour_3_due < NEVER or e_r:
+            self._behaviour_3 = False
         else:
-            self._behaviour_2 = None
-    # 20 lines
+            self._behaviour_3 = None
+    # 30 lines

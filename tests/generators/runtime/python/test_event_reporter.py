@@ -56,6 +56,7 @@ RULES = (
     Rule("body.near", None, (("scan.nearest(-1, 1)", None),)),
 )
 HOLDING = Explanation(RULES, {"halt": ("drive.fast: speed 2.0 > 1", "body.near: x")})
+REFUSING = Explanation(RULES, {**HOLDING.causes, "back": ("scan.nearest(-1, 1) is unknown",)})
 
 
 def reported(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
@@ -93,12 +94,14 @@ def test_trigger_of_a_past_cause_shows_its_condition() -> None:
 
 def test_refused_reset_lists_holding_and_unknown_behaviours() -> None:
     """Each has its cause, or the terms without a value."""
-    line, values = reported(Event(EventKind.REFUSED, holding=("halt",), unknown=("back",)), HOLDING)
+    line, values = reported(
+        Event(EventKind.REFUSED, holding=("halt",), unknown=("back",)), REFUSING
+    )
     cause = "drive.fast: speed 2.0 > 1; body.near: x"
     assert line == (
         f"stop stays active, called for by halt (robot.deros:7): {cause}; not known to be false:"
-        " back (robot.deros:9: if body.near), unknown: scan.nearest(-1, 1)"
+        " back (robot.deros:9: scan.nearest(-1, 1) is unknown)"
     )
     assert (values["holding"], values["unknown"]) == ("halt", "back")
     assert values["cause halt"] == cause
-    assert "cause back" not in values
+    assert values["cause back"] == "scan.nearest(-1, 1) is unknown"
