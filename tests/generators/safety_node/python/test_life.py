@@ -249,7 +249,7 @@ def test_latched_action_survives_a_restart(start: Start, robot: Robot) -> None:
         assert not refused.success
         assert refused.message == (
             "stop stays active, not known to be false: speeding"
-            " (every_thing.deros:28: if drive.fast for 100 ms), unknown: speed"
+            " (every_thing.deros:28: speed is unknown)"
         )
         robot.peer.until(lambda: robot.reset(0.1).message == "stop is reset")
         robot.peer.until(lambda: not robot.stop[-1])
