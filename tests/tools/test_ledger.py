@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -76,6 +77,20 @@ def test_changed_contract_opens_the_functions_that_read_it(ledger: Ledger, sourc
     opened = ledger.open("example", source)
     assert opened
     assert len(opened) < len(c_proof.functions_of(source))
+
+
+def test_line_of_the_rules_opens_nothing_unless_a_contract_reads_it(
+    ledger: Ledger, source: Path
+) -> None:
+    """The lines are in the table of actions, for the host."""
+    text = source.read_text(encoding="utf-8")
+    moved, count = re.subn(r"(_BEHAVIOUR_\w+, )\d+U", r"\g<1>4711U", text)
+    assert count
+    source.write_text(moved, encoding="utf-8")
+    assert ledger.open("example", source) == []
+    contracts = beside(source, "_contracts.h")
+    replace(contracts, "requires ", "requires sites[0].line == 4711 && ")
+    assert len(ledger.open("example", source)) == len(digests(source))
 
 
 @pytest.mark.parametrize("suffix", ["_monitor.h", "_monitor.c"])
