@@ -321,3 +321,12 @@ def test_functions_apply_to_user_defined_messages(tmp_path: Path) -> None:
         (0, 4),
         (3, 3),
     ]
+
+
+@pytest.mark.parametrize("number", ["1 m/s", "0.5", ".5 m/s", "1e-3 m/s"])
+def test_space_may_follow_a_minus_sign(number: str) -> None:
+    """The number is the same, as a bound, in an interval, and behind another operation."""
+    declared = "input v = topic /odom.twist.twist.linear.x timeout 1 sec"
+    for text in ("v > -{}", "v in [-{}, 5]", "v + v > -{}", "not v <= -{}"):
+        spaced = condition(text.replace("-", "- ").format(number), declared)
+        assert spaced == condition(text.format(number), declared)

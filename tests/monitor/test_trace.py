@@ -171,6 +171,8 @@ def test_float32_values_are_rounded() -> None:
         ('{"t": "1"}', "DRS501", "lacks 'topic'"),
         ('{"t": "1", "topic": 7}', "DRS501", "'topic' is no text"),
         ('{"t": "1", "topic": "/speed", "data": 1}', "DRS501", "'data' is no object"),
+        ('{"t": 1, "topic": "/speed", "message": {"data": 1}}', "DRS501", "has no 'message'"),
+        ('{"t": 1, "reset": true, "why": "x"}', "DRS501", "has no 'why'"),
         ('{"t": "x", "topic": "/speed"}', "DRS502", "is no time"),
         ('{"t": true, "topic": "/speed"}', "DRS502", "is no time"),
         ('{"t": -1, "topic": "/speed"}', "DRS502", "is no time"),
@@ -320,7 +322,10 @@ def test_clock_steps_are_printed_on_stderr(folder: Path) -> None:
     trace = "\n".join(line("/speed", {"data": 0}, t) for t in ("2", "1"))
     result = run(folder, trace=trace)
     assert result.stdout == ""
-    assert result.stderr == "the clock stepped back to 1.000000000\n"
+    assert result.stderr.splitlines() == [
+        "the clock stepped back to 1.000000000",
+        "no action was triggered or reset until 1 s",
+    ]
 
 
 def test_faulty_trace_fails_the_run(folder: Path) -> None:

@@ -138,7 +138,7 @@ class TermConverter(Converter):
         kind = type(found).__name__
         if kind == "Group":
             return self._nested(found.term)
-        if kind == "Quantity":
+        if kind in ("Quantity", "UnsignedQuantity"):
             return self._number(found)
         if kind == "Literal":
             text: Token = found.text

@@ -29,6 +29,7 @@ _WORDS = {
     "LiteralText": "true, false or a string",
     "Scalar": "a value",
     "Number": "a number",
+    "UnsignedNumber": "a number",
     "Integer": "a whole number",
     "UnitText": "a unit",
     "LossUnit": "a unit",

@@ -41,6 +41,9 @@ from deros.monitor.resolved import (
 from deros.monitor.scope import Scope
 from deros.monitor.term_names import counted, describe
 
+_GRAVITY = 9.80665
+"""Standard gravity in m/s^2 (3rd General Conference on Weights and Measures, 1901)."""
+
 _RESULT_TYPES = {Result.FLOAT: FieldType("float64"), Result.INTEGER: FieldType("uint64")}
 
 
@@ -333,5 +336,14 @@ def compatible(scope: Scope, found: Unit, wanted: Unit, term: rules.Term) -> boo
         return True
     need = "a plain number" if wanted.text == "1" else f"{wanted.text} ({wanted.dimension})"
     message = f"'{term.span.text}' is in {found.text} ({found.dimension}), {need} is needed"
-    scope.fault(codes.INCOMPATIBLE_UNITS, message, term.span)
+    scope.fault(codes.INCOMPATIBLE_UNITS, message, term.span, _of_gravity(found, wanted, term))
     return False
+
+
+def _of_gravity(found: Unit, wanted: Unit, term: rules.Term) -> str:
+    """Return a hint where a multiple of the acceleration of free fall was probably meant."""
+    is_acceleration = wanted.exponents == (("m", Fraction(1)), ("s", Fraction(-2)))
+    if found.text != "g" or not is_acceleration or not isinstance(term, rules.Number):
+        return ""
+    meant = float(term.value) * _GRAVITY
+    return f"'g' is the gram; free fall is {_GRAVITY} m/s^2: write '{meant:.6g} m/s^2'"

@@ -264,6 +264,12 @@ def _record(line: str, span: Span) -> Mapping[str, Any]:
         hint = did_you_mean(key for each in record for key in near(each, _KINDS))
         text = "the line lacks 'topic', and is no 'reset', 'enable', 'disable' or 'heartbeat'"
         raise _Fault(report(codes.BAD_TRACE_LINE, text, span, hint))
+    known = ("t", "topic", "data") if "topic" in record else ("t", *_KINDS)
+    for key in record:
+        if key not in known and key not in _KINDS:
+            hint = 'its fields stand in \'data\': {"t": …, "topic": …, "data": {…}}'
+            text = f"a line has no '{key}'"
+            raise _fault(text, key, span, hint if "topic" in record else "")
     if not isinstance(record.get("topic", ""), str):
         where = _find(span, "topic")
         raise _Fault(report(codes.BAD_TRACE_LINE, "'topic' is no text", where))

@@ -267,6 +267,15 @@ def _via(node: NodeType, port: Port) -> Iterator[Diagnostic]:
             hint="use a string parameter",
             related=(Related(parameter.span, "declared here"),),
         )
+    elif "<" in parameter.name:
+        yield report(
+            codes.UNKNOWN_VIA_PARAMETER,
+            f"parameter '{port.via}' has a value for each entry of a list: one port cannot have all"
+            " their names",
+            span,
+            hint="declare a port for each entry, and a string parameter without '<…>' for its name",
+            related=(Related(parameter.span, "declared here"),),
+        )
     elif isinstance(parameter.default, str) and parameter.default:
         place = parameter.default_span or parameter.span
         yield from _refused(check_topic_name(parameter.default), parameter.default, place)

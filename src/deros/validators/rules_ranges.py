@@ -56,7 +56,7 @@ def check_ranges(rules: Rules, comparisons: Sequence[ResolvedComparison]) -> Ite
                 codes.EXACT_FLOAT_COMPARISON,
                 f"'{each.condition.span.text}' compares floating-point values exactly",
                 each.condition.span,
-                "the result depends on rounding; compare with an interval: 'in [a, b]'",
+                f"the result depends on rounding; write an interval: '{_inside(each)} [a, b]'",
             )
 
 
@@ -277,6 +277,12 @@ class _Ranges:
             number = self._plain(term.operand)
             return None if number is None else -number
         return term.value if isinstance(term, Number) and term.unit is None else None
+
+
+def _inside(comparison: ResolvedComparison) -> str:
+    condition = comparison.condition
+    unequal = isinstance(condition, Comparison) and condition.operator == "!="
+    return "not in" if unequal else "in"
 
 
 def _intersection(parts: Iterable[_Needs]) -> _Needs:
