@@ -97,3 +97,42 @@ def test_interfaces_come_from_given_folders() -> None:
 def test_missing_interface_folder_is_a_usage_error() -> None:
     """The exit code is 2."""
     assert deros("check", "--interfaces", "nowhere", "good.rnd").code == 2
+
+
+COUNTED = """\
+use "counted.system" import Counted
+action stop publishes true on /stop : std_msgs.Bool latched;
+input ticks = topic /ticks.data timeout 1 sec
+entity e { moved: ticks.rate() > 5; lost: ticks.missing(); }
+if e.moved or e.lost then { stop; };
+"""
+TICKS = """\
+system Counted
+topics
+  external topic /ticks : std_msgs.Int64
+  external topic /stop : std_msgs.Bool
+"""
+
+
+@pytest.mark.parametrize(
+    ("statement", "project", "refused"),
+    [
+        ('safety "counted.deros"\n', "", False),
+        ('safety "counted.deros" target cpp\n', "", True),
+        ('subsystem Arm { safety "counted.deros" target cpp }\n', "", True),
+        ("", '[targets]\nderos = ["c"]\n', True),
+        ("", '[targets]\nderos = ["python"]\n', False),
+    ],
+)
+def test_what_a_named_target_cannot_express_is_found(
+    statement: str, project: str, refused: bool
+) -> None:
+    """It is found where the system or the project names the target, before generating."""
+    Path("counted.system").write_text(TICKS + statement)
+    Path("counted.deros").write_text(COUNTED)
+    Path("deros.toml").write_text(project)
+    for named in ("counted.system", "counted.deros"):
+        outcome = deros("check", named)
+        expected = refused and (bool(project) == (named == "counted.deros"))
+        assert ("DRS402" in outcome.out) == expected, outcome.out
+        assert outcome.code == int(expected), outcome.out

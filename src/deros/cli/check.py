@@ -131,14 +131,18 @@ def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
     from deros.cli.models import named_models, to_be_checked
     from deros.diagnostics import has_errors, in_file_order
     from deros.pipeline.project import unneeded
+    from deros.pipeline.refusals import refusals
     from deros.pipeline.workspace import load
 
     models = named_models(files)
     names = [each.path for each in models]
     workspace = load(names, interfaces)
     repository = workspace.repository
-    checked = workspace.check(to_be_checked(models, workspace.files, repository))
+    named = to_be_checked(models, workspace.files, repository)
+    checked = workspace.check(named)
     findings = checked.findings
+    if not has_errors(findings):
+        findings = in_file_order([*findings, *refusals(workspace, named)])
     if not has_errors(findings):
         findings = in_file_order([*findings, *unneeded(workspace.projects, files, checked.allowed)])
     return Found(findings, checked.allowed, len(repository.files), names)

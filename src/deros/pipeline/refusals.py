@@ -1,0 +1,78 @@
+"""What the targets that a project and its systems name would refuse; nothing is generated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from deros.pipeline.project import project_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from deros.diagnostics import Diagnostic
+    from deros.metamodels.load import LoadedFile, Repository
+    from deros.metamodels.system import Subsystem, System
+    from deros.pipeline.workspace import Workspace
+
+
+def refusals(workspace: Workspace, files: list[LoadedFile]) -> list[Diagnostic]:
+    """Return the findings of the targets of models without errors: what they cannot express.
+
+    The targets of a model are those that its project file names for its language and, of rules,
+    the one that a ``safety`` statement of a checked system names. Descriptions of existing programs
+    have none.
+    """
+    from deros import codes
+    from deros.generators.api.protocol import GenerationError
+    from deros.generators.api.registry import discover
+
+    found: dict[Diagnostic, None] = {}
+    context = None
+    for file, target in _targets(files, workspace.repository):
+        language = file.language
+        generator = None if language is None else discover().find(language.name, target)
+        if generator is None:  # the project file has a finding of its own
+            continue
+        context = context or workspace.context()
+        known = {option.name for option in generator.options}
+        options = project_of(file.path).options
+        try:
+            generator(file.model, context, {n: v for n, v in options.items() if n in known})
+        except GenerationError as error:
+            refused = (e for e in error.diagnostics if e.code is codes.UNSUPPORTED_BY_TARGET)
+            found |= dict.fromkeys(refused)
+        except ValueError:  # an option that cannot be read; `deros generate` says which
+            continue
+    return list(found)
+
+
+def _targets(files: list[LoadedFile], repository: Repository) -> Iterator[tuple[LoadedFile, str]]:
+    """Yield each model with each of its targets, once."""
+    from deros.metamodels.node import NodeType
+    from deros.metamodels.system import System
+
+    wanted: dict[tuple[str, str], LoadedFile] = {}
+    for file in files:
+        if isinstance(file.model, NodeType) and file.model.executable is not None:
+            continue
+        suffix = Path(file.path).suffix.removeprefix(".")
+        for target in project_of(file.path).targets.get(suffix, ()):
+            wanted.setdefault((file.path, target), file)
+        if isinstance(file.model, System):
+            for rules, target in _safety(file.model):
+                loaded = repository.load(rules)
+                wanted.setdefault((loaded.path, target), loaded)
+    yield from ((file, target) for (_, target), file in wanted.items())
+
+
+def _safety(part: System | Subsystem) -> Iterator[tuple[str, str]]:
+    """Yield the file and the target of the rules that safety statements name."""
+    from deros.metamodels.system import Subsystem
+
+    for each in part.safety:
+        if each.target != "python" and each.reference.rules is not None:  # Python expresses all
+            yield each.reference.rules.source.path, each.target
+    for member in part.members:
+        if isinstance(member, Subsystem):
+            yield from _safety(member)
