@@ -411,7 +411,7 @@ ALL = [
     *GIVEN,
     *(
         each
-        for file in ("more", "named_rules", "since", "within", "arithmetic", "previous")
+        for file in ("more", "named_rules", "since", "within", "arithmetic", "previous", "begins")
         for each in read(DIRECTORY / f"{file}.md")
     ),
 ]
