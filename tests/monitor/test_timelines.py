@@ -11,11 +11,17 @@ import pytest
 from click.testing import CliRunner
 
 from deros.cli.simulate import simulate as command
+from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.monitor.engine import Engine
 from deros.monitor.simulate import seconds, simulate
 from deros.monitor.trace import TraceMessage
 from tests.support import timelines
+from tests.support.c_harness import unit
+from tests.support.c_library import Loaded
+from tests.support.c_monitors import CMonitor
+from tests.support.needs import needs
+from tests.support.profiles import slow
 from tests.support.timelines import Timeline
 
 DEROS = Path(sys.executable).with_name("deros")
@@ -38,6 +44,9 @@ if e.r then { stop; };
 | 1 s | v = 0.6 | stop |
 | 2 s | | stop refused |
 """
+
+REFUSED_BY_C = {"counter_above_two_to_the_53"}
+"""Those that compute with 64-bit integers, which the numbers of C do not hold."""
 
 every_timeline = pytest.mark.parametrize("case", timelines.ALL, ids=lambda case: case.name)
 
@@ -188,6 +197,32 @@ def test_timeline_matches(case: Timeline) -> None:
         events = simulate(monitor(program), messages, case.until_ns)
         assert timelines.happenings(list(events)) == case.expect, monitor
         assert _with_punctual_timers(monitor(program), messages, case) == case.expect, monitor
+
+
+@needs("gcc")
+@pytest.mark.parametrize("cases", [timelines.MISREAD, slow(timelines.ALL)], ids=["misread", "all"])
+def test_timelines_match_in_c(cases: list[Timeline], tmp_path: Path) -> None:
+    """The monitors in C give the same."""
+    cases = [each for each in cases if each.name not in REFUSED_BY_C]
+    programs = {case.rules: case.program() for case in cases}
+    units = [unit(each, f"timeline_{number}") for number, each in enumerate(programs.values())]
+    library = Loaded(units, tmp_path, "-O0")
+    for case in cases:
+        runner = CMonitor(library, list(programs).index(case.rules))
+        for message in case.messages(programs[case.rules]):
+            if message.t_ns <= case.until_ns:
+                runner.message(message.t_ns, message.topic, message.leaves)
+        runner.advance(case.until_ns)
+        events = [event for event, _ in runner.events]
+        assert timelines.happenings(events) == case.expect, case.name
+
+
+@pytest.mark.parametrize("name", sorted(REFUSED_BY_C))
+def test_timeline_that_c_refuses(name: str) -> None:
+    """A monitor in C says so when it is generated."""
+    program = next(each for each in timelines.ALL if each.name == name).program()
+    with pytest.raises(GenerationError):
+        unit(program, "refused")
 
 
 def _with_punctual_timers(

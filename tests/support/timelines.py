@@ -52,6 +52,7 @@ from deros.monitor.ir import Program
 from deros.monitor.trace import TraceMessage, nanoseconds, read_trace
 
 DIRECTORY = Path(__file__).resolve().parents[1] / "data" / "timelines"
+FILES = sorted(DIRECTORY.glob("*.md"))
 Happening = tuple[int, str, str]
 """When, of which action, what: ``trigger``, ``reset`` or ``refused``."""
 
@@ -407,11 +408,5 @@ def _fields(cell: str, row: _Line) -> Iterator[tuple[str, str, str]]:
 
 
 GIVEN = read(DIRECTORY / "timelines.md")
-ALL = [
-    *GIVEN,
-    *(
-        each
-        for file in ("more", "named_rules", "since", "within", "arithmetic", "previous", "begins")
-        for each in read(DIRECTORY / f"{file}.md")
-    ),
-]
+MISREAD = read(DIRECTORY / "misread.md")
+ALL = [*GIVEN, *(each for path in FILES if path.stem != "timelines" for each in read(path))]

@@ -45,6 +45,7 @@ class Step:
             assignment, and the old one before. ``elapsed`` is the time since the last message.
         exact_integers: whether integers are subtracted as they are, and the difference is rounded,
             if anything; else they are rounded first.
+        keeps_integers: whether an integer that a double does not hold stays as it is.
         forgets_time: whether ``elapsed`` is unknown at the first message. A formula that does not
             depend on it then may leave it undefined.
     """
@@ -52,6 +53,7 @@ class Step:
     memory: tuple[Remembered, ...]
     formula: Formula
     exact_integers: bool = False
+    keeps_integers: bool = False
     forgets_time: bool = True
 
     @property
@@ -136,7 +138,9 @@ class StepMemory:
         names[ELAPSED] = math.nan if self._at_ns is None else (t_ns - self._at_ns) / 1e9
         for name, value in zip(self._parameters, arguments, strict=True):
             known = math.nan if value is None else value
-            names[name] = known if self._step.exact_integers else float(known)
+            is_kept = self._step.keeps_integers and known != float(known)
+            is_exact = self._step.exact_integers or is_kept
+            names[name] = known if is_exact else float(known)
         result = evaluate(self._step.formula, names)
         self._at_ns = t_ns
         self._numbers = {name: names[name] for name in self._numbers}

@@ -233,6 +233,7 @@ last = value
 former
 """,
             Remembered("last", "the value before"),
+            keeps_integers=True,
         ),
         bounds_from=lambda operand: operand,
     ),

@@ -229,10 +229,7 @@ class _Writer:
         and stored afterwards: each number is the result or a copy of an argument.
         """
         memory = self._layout.memories.get(function)
-        arguments = [
-            self._as_float(value, text) if is_printed(row) else text
-            for value, text in ((each, self._value(each)) for each in function.arguments)
-        ]
+        arguments = [self._argument(row, value, self._value(value)) for value in function.arguments]
         if memory is not None and row.over_span:
             value, span, *header = arguments
             return f"self._{memory}.rate", [value, _stamp(header), span], []
@@ -251,6 +248,19 @@ class _Writer:
             before.append(f"t - self._{names['last_t']}")
             after.append(f"self._{names['last_t']} = t")
         return row.python_call, [*arguments, *before], after
+
+    def _argument(self, row: Function, value: ValueExpression, text: str) -> str:
+        """Return the text of an argument: a double, where the function computes with doubles."""
+        if not is_printed(row):
+            return text
+        keeps = row.step is not None and row.step.keeps_integers
+        if keeps and isinstance(value, Read) and self._is_wide(value):
+            return f"float({text}) if {text} == float({text}) else {text}"
+        return self._as_float(value, text)
+
+    def _is_wide(self, value: Read) -> bool:
+        """Return whether a field is an integer that a double may not hold."""
+        return self._program.leaves[value.leaf].type.base in ("int64", "uint64")
 
     def _as_float(self, value: ValueExpression, text: str) -> str:
         """Return the text of an argument of a printed function, which computes with doubles."""
