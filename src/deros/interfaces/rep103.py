@@ -3,7 +3,8 @@
 ROS prescribes SI units and radians (REP 103), and the message definitions say the rest in comments;
 ``rep103.json`` holds both as data. A unit given to a field of message type holds for all that is
 nested in it: ``geometry_msgs/Twist.linear`` applies to ``x``, ``y`` and ``z`` of every Twist.
-A unit with ``wrapping`` behind it is that of an angle that jumps by a full turn.
+A unit with ``wrapping`` behind it is that of an angle that jumps by a full turn, and
+``1 in [0, 1]`` is that of a ratio that its message keeps within these bounds.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from deros.interfaces.types import InterfaceType
 from deros.interfaces.units import Unit, UnitRegistry
 
 _WRAPPING = " wrapping"
+_SHARE = " in [0, 1]"
 
 
 def unit_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str | None:
@@ -27,7 +29,7 @@ def unit_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str 
     ``"1"`` says that it is a ratio, ``None`` that nothing is known of its unit.
     """
     text = _text_of(store, kind, path)
-    return text.removesuffix(_WRAPPING) if text is not None else None
+    return text.removesuffix(_WRAPPING).removesuffix(_SHARE) if text is not None else None
 
 
 def usual_unit(
@@ -41,6 +43,11 @@ def usual_unit(
 def is_wrapping(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> bool:
     """Return whether the field is an angle that wraps around after a full turn."""
     return (_text_of(store, kind, path) or "").endswith(_WRAPPING)
+
+
+def is_share(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> bool:
+    """Return whether the field is a ratio from 0 to 1, as its message says."""
+    return (_text_of(store, kind, path) or "").endswith(_SHARE)
 
 
 def _text_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str | None:

@@ -16,6 +16,9 @@ from deros.monitor import ir
 Ends = tuple[Fraction | float, Fraction | float]
 """The least and the greatest of some numbers."""
 
+SHARE: Ends = (Fraction(0), Fraction(1))
+"""The bounds of a ratio that its message keeps between nothing and the whole."""
+
 
 @dataclass(frozen=True, slots=True)
 class Bounds:

@@ -14,7 +14,7 @@ from fractions import Fraction
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.interfaces.fields import FieldPath, format_path
-from deros.interfaces.rep103 import is_wrapping, usual_unit
+from deros.interfaces.rep103 import is_share, is_wrapping, usual_unit
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.interfaces.units import Unit, UnitRegistry, in_bases, is_same, is_seen
@@ -70,6 +70,11 @@ class FieldUnits:
         if unit is None or degree is None or not self._units.compatible(unit, degree):
             return None
         return rounded(360 * degree.factor / unit.factor)
+
+    def is_share(self, topic: str, kind: InterfaceType, path: FieldPath) -> bool:
+        """Return whether a field is a ratio from 0 to 1, in the unit that its message gives it."""
+        unit = self.unit_of(topic, kind, path)
+        return unit is not None and unit.factor == 1 and is_share(self._store, kind, path)
 
     def turn_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> float | None:
         """Return the full turn by which a field wraps around, if it does."""

@@ -14,7 +14,7 @@ from deros.metamodels import rules
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.monitor import ir
 from deros.monitor.arithmetic import ArithmeticTerm
-from deros.monitor.bounds import type_bounds
+from deros.monitor.bounds import SHARE, type_bounds
 from deros.monitor.function_terms import FunctionTerms
 from deros.monitor.operations import is_arithmetic
 from deros.monitor.resolved import (
@@ -200,12 +200,13 @@ class Terms:
     def _value(self, owner: DeclaredInput, path: FieldPath, found: ResolvedField) -> Value:
         units = self._scope.field_units
         unit = units.unit_of(owner.topic, owner.type, path)
+        is_share = units.is_share(owner.topic, owner.type, path)
         return Value(
             self._scope.read(owner, path, found.type),
             found.type,
             unit,
             owner,
-            type_bounds(found.type),
+            SHARE if is_share else type_bounds(found.type),
             found.parent,
             units.turn_of(owner.topic, owner.type, path),
             ((owner.topic, path),) if unit is None else (),

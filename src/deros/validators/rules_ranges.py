@@ -255,14 +255,16 @@ class _Ranges:
         return None
 
     def _report(self, code: Code, message: str, condition: Condition, key: _Key) -> None:
-        """Report a decided condition, with a hint where degrees were probably meant."""
+        """Report a decided condition, with a hint where degrees or percent were probably meant."""
         unit = self._operands[key].unit
         hint = ""
-        if unit is not None and unit.exponents == _ANGLE and unit.factor == 1:
+        if unit is not None and unit.exponents in (_ANGLE, ()) and unit.factor == 1:
             plain = (self._plain(term) for term in terms_of(condition))
             number = next((each for each in plain if each is not None), None)
-            if number is not None and abs(number) > math.pi:
+            if number is not None and unit.exponents and abs(number) > math.pi:
                 hint = f"a number without a unit is in rad here: write '{number} deg'"
+            elif number is not None and not unit.exponents and 1 < number <= 100:
+                hint = f"1 is the whole here: write '{number} %'"
         self.findings.append(report(code, message, condition.span, hint))
 
     def _plain(self, term: Term) -> Decimal | None:
