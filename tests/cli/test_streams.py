@@ -102,9 +102,12 @@ def test_any_text_can_be_written(text: str) -> None:
     assert len(written) >= len(text)
 
 
-def test_output_on_a_full_disk_is_told(robot: Path) -> None:
+@pytest.mark.parametrize(
+    "command", ["check rules.deros", "explain DRS317", "--help", "check --help", "graph robot.system"]
+)
+def test_output_on_a_full_disk_is_told(robot: Path, command: str) -> None:
     """In one line, as a fault of the output, without a traceback."""
-    done = run("check", "rules.deros", folder=robot, full=True)
+    done = run(*command.split(), folder=robot, full=True)
     assert done.returncode == 2
     assert done.stderr == "deros: cannot write the output: No space left on device\n"
 
