@@ -103,7 +103,8 @@ def test_any_text_can_be_written(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "command", ["check rules.deros", "explain DRS317", "--help", "check --help", "graph robot.system"]
+    "command",
+    ["check rules.deros", "explain DRS317", "--help", "check --help", "graph robot.system"],
 )
 def test_output_on_a_full_disk_is_told(robot: Path, command: str) -> None:
     """In one line, as a fault of the output, without a traceback."""
